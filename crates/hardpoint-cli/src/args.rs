@@ -15,6 +15,7 @@ pub const MOST_SWEPT: u32 = 1_000_000_000;
 const AFTER: &str = "\
 Examples:
   hardpoint check models/macpherson.toml
+  hardpoint import four_bar.asmt -o four_bar.toml
   hardpoint run models/macpherson.toml -o results/macpherson
   hardpoint verify models/macpherson.toml --sweep
   hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --measure toe
@@ -60,6 +61,8 @@ pub enum Command {
     Run(Run),
     /// Examine a model: mobility, loops, redundancy, margins, and whether its design variables can be followed
     Check(Check),
+    /// Make a model file of a mechanism of another program, and check it
+    Import(Import),
     /// Compare the sensitivities with re-solved designs
     Verify(Verify),
     /// Change the design: today's curves, predicted ones and exact ones; and which variable moves which measure most
@@ -382,6 +385,41 @@ pub struct Optimize {
     /// Search from several starts on so many threads; what is found does not depend on it [default: one for each core]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZero<usize>>,
+}
+
+const AFTER_IMPORT: &str = "\
+The format shows in the file; `--list` names the formats. Names of bodies and joints are
+kept. What nothing drives in the source gets a driver that holds it as drawn; where that
+is the only freedom, it swings. Shapes are written as meshes/BODY.stl beside the model.
+The report says what was taken, approximated and refused, with the place in the source
+(docs/import.md). Then the model is checked as by `hardpoint check`, whose exit codes
+these are; 3 also where the source has errors, and then no model is written.
+
+Examples:
+  hardpoint import four_bar.asmt -o four_bar.toml
+  hardpoint import suspension.adm -o suspension.toml
+  hardpoint import robot.xml --format mjcf -o robot.toml --json | jq '.report.entries[]'
+  hardpoint import --list";
+
+/// `hardpoint import`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_IMPORT)]
+pub struct Import {
+    /// The other program's file
+    #[arg(value_name = "FILE", required_unless_present = "list")]
+    pub source: Option<PathBuf>,
+    /// Write the model into this file
+    #[arg(short, long, value_name = "MODEL.toml", required_unless_present = "list")]
+    pub output: Option<PathBuf>,
+    /// Read it as this format [default: as it shows]
+    #[arg(long, value_name = "NAME")]
+    pub format: Option<String>,
+    /// List the formats
+    #[arg(long, conflicts_with_all = ["source", "output", "format"])]
+    pub list: bool,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    pub json: bool,
 }
 
 const AFTER_TOLERANCE: &str = "\

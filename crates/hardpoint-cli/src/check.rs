@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use hardpoint::Analysis;
+use hardpoint::topology::Formulation;
 use hardpoint_file::ModelFile;
 use hardpoint_report::diagnose;
 use hardpoint_report::facts::outline;
@@ -21,7 +22,19 @@ pub fn check(options: &Check) -> Outcome {
 }
 
 fn check_in(session: &Session, options: &Check, file: &ModelFile) -> Result<Outcome, Outcome> {
-    let analysis = Analysis::with(&file.model, options.common.formulation()).map_err(|fault| {
+    let summary = examine(session, options.common.formulation(), file)?;
+    if options.common.json {
+        session.print_json(&summary);
+    } else {
+        text::print(&facts_text(&summary));
+        session.tell(file, &summary.diagnostics);
+    }
+    Ok(outcome(&summary))
+}
+
+/// Solves a model's motion and says what is to be said of it.
+pub fn examine(session: &Session, formulation: Formulation, file: &ModelFile) -> Result<Summary, Outcome> {
+    let analysis = Analysis::with(&file.model, formulation).map_err(|fault| {
         if !session.is_json() {
             text::print(&outline_text(file));
         }
@@ -37,17 +50,16 @@ fn check_in(session: &Session, options: &Check, file: &ModelFile) -> Result<Outc
     summary.timings.solve = started.elapsed().as_secs_f64();
     summary.timings.total = session.seconds();
     summary.diagnostics = diagnose::all(file, &summary, &course, None);
-    if options.common.json {
-        session.print_json(&summary);
-    } else {
-        text::print(&facts_text(&summary));
-        session.tell(file, &summary.diagnostics);
-    }
-    Ok(match summary.status {
+    Ok(summary)
+}
+
+/// How a command ends that did that.
+pub fn outcome(summary: &Summary) -> Outcome {
+    match summary.status {
         RunStatus::Complete => Outcome::Done,
         RunStatus::Stopped => Outcome::Stopped,
         RunStatus::Interrupted => Outcome::Interrupted,
-    })
+    }
 }
 
 /// What is known of a mechanism that cannot be driven.

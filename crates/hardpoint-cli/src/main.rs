@@ -5,6 +5,7 @@ mod calibrate;
 mod check;
 mod compare;
 mod folder;
+mod import;
 mod journal;
 mod long_table;
 mod maps;
@@ -47,6 +48,7 @@ fn main() -> ExitCode {
     let outcome = match arguments.command {
         Command::Run(options) => run::run(&options),
         Command::Check(options) => check::check(&options),
+        Command::Import(options) => import::import(&options),
         Command::Verify(options) => verify::verify(&options),
         Command::Whatif(options) => whatif::whatif(&options),
         Command::Compare(options) => compare::compare(&options),

@@ -155,6 +155,21 @@ impl Session {
         })
     }
 
+    /// The bytes of a file of another program.
+    pub fn bytes_of(&self, path: &Path) -> Result<Vec<u8>, Outcome> {
+        std::fs::read(path).map_err(|error| {
+            let message = format!("`{}` cannot be read", path.display());
+            self.refuse(
+                "HP0809",
+                &message,
+                Some(path),
+                &error.to_string(),
+                "check the path, and that you may read it",
+            );
+            Outcome::BadModel
+        })
+    }
+
     /// Tells what is wrong with a file that was read.
     pub fn not_read(&self, diagnostics: &Diagnostics) {
         match &self.audience {

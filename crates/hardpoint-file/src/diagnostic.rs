@@ -138,16 +138,19 @@ impl Serialize for Diagnostics {
     }
 }
 
-/// A file's name and text, with its lines counted.
+/// A file's name and text, with its lines counted: what knows where in it a diagnostic is.
 #[derive(Clone, Debug)]
-pub(crate) struct Source {
+pub struct Source {
+    /// The name as it was given.
     pub file: Arc<str>,
+    /// The text.
     pub text: Arc<str>,
     /// Where each line begins.
     lines: Arc<[usize]>,
 }
 
 impl Source {
+    /// Of a name and a text.
     pub fn new(file: &str, text: &str) -> Self {
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(k, _)| k + 1)).collect();
         Self { file: printable(file.to_owned()).into(), text: text.into(), lines }

@@ -50,13 +50,14 @@ use hardpoint::{
 };
 use toml::de::DeTable;
 
-pub use diagnostic::{Diagnostic, Diagnostics, Severity};
+pub use diagnostic::{Diagnostic, Diagnostics, Severity, Source};
 pub use drawing::{Drawing, Form, Mesh, MeshFrame};
 pub use measured::Measured;
+pub use read::triangles;
 pub use schema::schema;
 pub use units::{AngleUnit, LengthUnit, Units};
 
-use diagnostic::{Source, closest, shown};
+use diagnostic::{closest, shown};
 use places::Places;
 pub use tree::Texts;
 use tree::{Folder, Reader};

@@ -34,6 +34,8 @@ use crate::places::{EntryPlace, Places};
 use crate::tree::{Field, Fields, LINE, MOST_ENTRIES, PLACE, Reader, Subject, Value, above_tables, quoted};
 use crate::units::{AngleUnit, LengthUnit};
 
+pub use mesh::triangles;
+
 /// The axis of a marker that a joint's `axis` is.
 const ALONG_AXIS: usize = 2;
 /// The file as a whole.

@@ -121,6 +121,25 @@ fn triangles_of(folder: Folder<'_>, name: &str) -> Result<Triangles, DataError> 
     Ok(triangles)
 }
 
+/// The triangles in the bytes of a mesh file, whose kind the ending of its name tells: vertices as they are written, and three of
+/// them for each triangle.
+///
+/// # Errors
+/// Why there are none.
+pub fn triangles(name: &str, bytes: &[u8]) -> Result<(Vec<[f64; 3]>, Vec<[u32; 3]>), String> {
+    let ending = Path::new(name).extension().and_then(|e| e.to_str()).unwrap_or_default();
+    let Some((_, kind, load)) = KINDS.iter().find(|kind| kind.0.eq_ignore_ascii_case(ending)) else {
+        return Err("it is none of `.stl`, `.obj`, `.glb` and `.gltf`".into());
+    };
+    let mut triangles = Triangles::default();
+    load(bytes, &mut triangles).map_err(|why| format!("it cannot be read as {kind}: {why}"))?;
+    match triangles.count {
+        0 => Err("it has no triangles".into()),
+        n if n > MOST_TRIANGLES => Err(format!("it has {n} triangles; at most {MOST_TRIANGLES} are drawn")),
+        _ => Ok((triangles.vertices, triangles.triangles)),
+    }
+}
+
 impl Reader<'_> {
     /// The shape of a body: a file's name, or a table with it.
     pub(super) fn mesh(&mut self, body: &Fields<'_>, f: Field<'_>) -> Option<Mesh> {

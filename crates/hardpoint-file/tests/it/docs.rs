@@ -115,7 +115,15 @@ fn every_documented_code_is_in_the_source() {
 /// All codes of the crates that speak to users.
 fn codes_in_the_source() -> BTreeSet<String> {
     let mut found = BTreeSet::new();
-    for name in ["hardpoint", "hardpoint-file", "hardpoint-report", "hardpoint-studio", "hardpoint-cli"] {
+    let crates = [
+        "hardpoint",
+        "hardpoint-file",
+        "hardpoint-import",
+        "hardpoint-report",
+        "hardpoint-studio",
+        "hardpoint-cli",
+    ];
+    for name in crates {
         codes_below(&root().join("crates").join(name).join("src"), &mut found);
     }
     found

@@ -1,0 +1,164 @@
+//! `hardpoint import`.
+
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+
+use hardpoint::topology::Formulation;
+use hardpoint::{Analysis, Run};
+use hardpoint_file::{LARGEST_FILE, ModelFile};
+use hardpoint_import::{Difference, FORMATS, Format, Imported, Problems};
+use hardpoint_report::GENERATOR;
+use hardpoint_report::summary::Summary;
+use serde_json::json;
+
+use crate::args::Import;
+use crate::check;
+use crate::folder::{Folder, NotWritten};
+use crate::outcome::Outcome;
+use crate::session::Session;
+use crate::text;
+
+/// Makes a model file of another program's mechanism, and checks it.
+pub fn import(options: &Import) -> Outcome {
+    let session = Session::begin(options.json);
+    if options.list {
+        list(&session);
+        return Outcome::Done;
+    }
+    // The command line asks for both unless it lists the formats.
+    let (Some(source), Some(to)) = (&options.source, &options.output) else { return Outcome::Misunderstood };
+    import_to(&session, options, source, to).unwrap_or_else(|outcome| outcome)
+}
+
+fn list(session: &Session) {
+    if session.is_json() {
+        let formats =
+            FORMATS.iter().map(|f| json!({ "name": f.name, "about": f.about, "endings": f.endings }));
+        session.print_json(&json!({ "generator": GENERATOR, "formats": formats.collect::<Vec<_>>() }));
+        return;
+    }
+    let row = |f: &Format| {
+        let endings: Vec<String> = f.endings.iter().map(|e| format!(".{e}")).collect();
+        (f.name, format!("{} ({})", f.about, endings.join(", ")))
+    };
+    text::print(&text::pairs(&FORMATS.iter().map(row).collect::<Vec<_>>()));
+}
+
+fn import_to(session: &Session, options: &Import, source: &Path, to: &Path) -> Result<Outcome, Outcome> {
+    let format = options.format.as_deref().map(|name| format_named(session, name)).transpose()?;
+    session.may_save(source, Some(to))?;
+    let bytes = session.bytes_of(source)?;
+    let name = source.display().to_string();
+    let folder = source.parent().unwrap_or(Path::new("")).to_owned();
+    let resolve = |path: &str| beside(&folder, path);
+    let imported = match format {
+        Some(format) => hardpoint_import::import_as(format, &bytes, &name, &resolve),
+        None => hardpoint_import::import(&bytes, &name, &resolve),
+    };
+    let imported = imported.map_err(|problems| refused(session, &problems))?;
+    write(to, &imported).map_err(|e| session.not_written(&e))?;
+    if !session.is_json() {
+        text::print(&format!("{}\n", imported.report));
+    }
+    if let Some(fault) = &imported.fault {
+        refused(session, fault);
+        session.remark(&format!("`{}` is written all the same, for you to mend", to.display()));
+        return Err(Outcome::CannotBeDriven);
+    }
+    let file = session.read(to)?;
+    let summary = check::examine(session, Formulation::Relative, &file)?;
+    let difference = compared(&file, &imported);
+    if session.is_json() {
+        let files: Vec<&str> = imported.files.iter().map(|(name, _)| name.as_str()).collect();
+        session.print_json(&json!({
+            "generator": GENERATOR, "status": summary.status, "model": to, "files": files,
+            "report": imported.report, "stored": difference, "check": summary,
+        }));
+    } else {
+        text::print(&told(&file, to, &imported, &summary, difference.as_ref()));
+        session.tell(&file, &summary.diagnostics);
+    }
+    Ok(check::outcome(&summary))
+}
+
+fn format_named(session: &Session, name: &str) -> Result<&'static Format, Outcome> {
+    Format::named(name).ok_or_else(|| {
+        let known: Vec<&str> = FORMATS.iter().map(|f| f.name).collect();
+        session.misunderstood(&format!(
+            "`--format {name}`: there is no such format; there are {}",
+            known.join(", ")
+        ))
+    })
+}
+
+/// Tells what is wrong with a source.
+fn refused(session: &Session, problems: &Problems) -> Outcome {
+    if session.is_json() {
+        let list: Vec<_> = problems.list().collect();
+        session.print_json(&json!({ "generator": GENERATOR, "status": "error", "diagnostics": list }));
+    } else {
+        text::complain(&format!("{}\n\n", problems.render(text::stderr_in_color())));
+    }
+    Outcome::BadModel
+}
+
+/// A file that a source names: from its folder, or the two above it, as packages of robots are laid out.
+fn beside(folder: &Path, path: &str) -> Option<Vec<u8>> {
+    let upwards = ["", "..", "../.."].map(|up| folder.join(up).join(path));
+    let found = upwards.into_iter().find(|p| p.is_file())?;
+    let mut bytes = Vec::new();
+    std::fs::File::open(found).ok()?.take(LARGEST_FILE).read_to_end(&mut bytes).ok()?;
+    Some(bytes)
+}
+
+/// The model and what it refers to; the model comes last, so that it never stands there without them.
+fn write(to: &Path, imported: &Imported) -> Result<(), NotWritten> {
+    let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    for (name, bytes) in &imported.files {
+        let path = parent.join(name);
+        let (folder, name) = (path.parent().unwrap_or(parent), file_name(&path));
+        let mut folder = Folder::open(folder)?;
+        folder.write(&name, |out| out.write_all(bytes))?;
+        folder.commit(&[])?;
+    }
+    let mut folder = Folder::open(parent)?;
+    folder.write(&file_name(to), |out| out.write_all(imported.text.as_bytes()))?;
+    folder.commit(&[])
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// What the source has stored beside what the model does.
+fn compared(file: &ModelFile, imported: &Imported) -> Option<Difference> {
+    let series = imported.series.as_ref()?;
+    let analysis = Analysis::new(&file.model).ok()?;
+    Some(series.compare(file, &analysis.solve(Run::new().without_sensitivities())))
+}
+
+fn told(
+    file: &ModelFile,
+    to: &Path,
+    imported: &Imported,
+    summary: &Summary,
+    difference: Option<&Difference>,
+) -> String {
+    let mut rows = vec![
+        ("model", to.display().to_string()),
+        ("degrees of freedom", summary.model.freedom_line()),
+        ("constraints", summary.model.constraints_line()),
+        ("motion", format!("{} of {} steps solved", summary.steps.solved, summary.steps.asked)),
+    ];
+    if !imported.files.is_empty() {
+        let folder: PathBuf = imported.files[0].0.split('/').next().unwrap_or_default().into();
+        rows.push(("shapes", format!("{} in `{}` beside it", imported.files.len(), folder.display())));
+    }
+    if let Some(d) = difference {
+        let unit = file.units.length.symbol();
+        let line =
+            format!("differs at {} times by {:.1e} {unit} and {:.1e} rad at most", d.times, d.place, d.turn);
+        rows.push(("stored motion", line));
+    }
+    format!("{}\n", text::pairs(&rows))
+}

@@ -1,0 +1,794 @@
+//! Adams/Solver datasets (`.adm`): parts, markers, joints, primitives, motions, couplers, gears.
+
+use std::collections::BTreeMap;
+
+use hardpoint::space::{Mat3, Pose, Vec3};
+
+use crate::law::{self, Language};
+use crate::markers::{Called, Joined, Marker, carrying, counted, join, offset, way};
+use crate::mechanism::{Coordinate, Drives, GROUND, Law, Mechanism};
+use crate::report::{At, Notes};
+use crate::turn::{from_z_and_x, home, sequence};
+use crate::{Format, Input};
+
+/// See the module.
+pub const FORMAT: Format = Format {
+    name: "adams",
+    about: "Adams/Solver dataset",
+    endings: &["adm"],
+    looks: |text| {
+        let statement = |l: &str, word: &str| {
+            l.len() > word.len()
+                && l.is_char_boundary(word.len())
+                && l[..word.len()].eq_ignore_ascii_case(word)
+        };
+        text.lines().any(|l| statement(l.trim_start(), "PART/"))
+            && text.lines().any(|l| statement(l.trim_start(), "MARKER/"))
+    },
+    read,
+    binary: false,
+};
+
+/// Where a statement was continued: a blank, or in the middle of a function perhaps a comma.
+const SEAM: char = '\u{1}';
+
+/// A statement: `NAME/id, KEY = values, FLAG, ...`.
+#[derive(Debug, Default)]
+struct Statement {
+    name: String,
+    id: String,
+    at: At,
+    /// What the modeller calls it, from the comment before it.
+    label: String,
+    /// In capital letters, with what stands behind the equals sign; flags with nothing.
+    keys: Vec<(String, String)>,
+}
+
+impl Statement {
+    fn text(&self, key: &str) -> Option<&str> {
+        self.keys.iter().find(|(k, _)| k == key).map(|(_, v)| v.as_str())
+    }
+
+    fn has(&self, key: &str) -> bool {
+        self.text(key).is_some()
+    }
+
+    fn called(&self) -> Called<'_> {
+        Called { kind: &self.name, name: &self.label, at: Some(self.at) }
+    }
+
+    /// Numbers behind a key; angles in rad. What is wrong with them is told.
+    fn numbers(&self, key: &str, notes: &mut Notes) -> Option<Vec<f64>> {
+        let text = self.text(key)?;
+        let words =
+            text.split(|c: char| c == ',' || c == SEAM || c.is_whitespace()).filter(|w| !w.is_empty());
+        let list: Option<Vec<f64>> = words.map(number).collect();
+        if list.is_none() {
+            let text = text.replace(SEAM, " ");
+            notes.problem(
+                "HP0804",
+                Some(self.at),
+                format!("`{key}` of {}/{} is no list of numbers: `{}`", self.name, self.id, text.trim()),
+            );
+        }
+        list
+    }
+
+    fn vector(&self, key: &str, notes: &mut Notes) -> Option<Vec3> {
+        let list = self.numbers(key, notes)?;
+        match <[f64; 3]>::try_from(list) {
+            Ok(v) => Some(v.into()),
+            Err(list) => {
+                notes.problem(
+                    "HP0804",
+                    Some(self.at),
+                    format!("`{key}` of {}/{} is three numbers, not {}", self.name, self.id, list.len()),
+                );
+                None
+            }
+        }
+    }
+
+    /// The number that a key refers to.
+    fn reference<'s>(&'s self, key: &str) -> Option<&'s str> {
+        self.text(key).map(str::trim)
+    }
+}
+
+/// `30D` is an angle in degrees; exponents are as in Fortran.
+fn number(word: &str) -> Option<f64> {
+    let lower = word.to_ascii_lowercase();
+    let degrees = lower.strip_suffix('d');
+    let value: f64 = degrees.unwrap_or(&lower).replace('d', "e").parse().ok()?;
+    let value = if degrees.is_some() { value.to_radians() } else { value };
+    value.is_finite().then_some(value)
+}
+
+fn read(source: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+    let statements = statements(source.text);
+    let (scale, length, time) = units(&statements, notes);
+    let title = source.text.lines().next().unwrap_or_default();
+    let title = title.split_once("model name:").map_or(source.stem, |(_, name)| name.trim());
+    let m = Mechanism::new(if title.is_empty() { source.stem } else { title }, length, "rad");
+    let mut reader = Reader {
+        m,
+        notes,
+        scale,
+        time,
+        parts: BTreeMap::new(),
+        markers: BTreeMap::new(),
+        joints: BTreeMap::new(),
+        splines: BTreeMap::new(),
+    };
+    reader.parts(&statements);
+    reader.markers(&statements);
+    reader.constraints(&statements);
+    reader.motions(&statements);
+    reader.rest(&statements);
+    let m = reader.m;
+    (m.bodies.len() > 1).then_some(m)
+}
+
+/// The statements of a dataset: comments and continuations resolved.
+fn statements(text: &str) -> Vec<Statement> {
+    let mut lines: Vec<(At, String, String)> = Vec::new();
+    let mut label = String::new();
+    let mut start = 0;
+    for (k, whole) in text.split_inclusive('\n').enumerate() {
+        let line = whole.trim_end_matches(['\n', '\r']);
+        let from = start + line.len() - line.trim_start().len();
+        let at = At { text: 0, start: from, end: start + line.trim_end().len() };
+        start += whole.len();
+        let (code, remark) = line.split_once('!').unwrap_or((line, ""));
+        if let Some((_, name)) = remark.split_once("adams_view_name=") {
+            label = name.trim().trim_matches(['\'', '"']).to_owned();
+        }
+        let code = code.trim();
+        // The first line is a title, whatever it looks like.
+        let is_title = k == 0 && code.to_ascii_uppercase().starts_with("ADAMS");
+        if code.is_empty() || is_title {
+            continue;
+        }
+        match (code.strip_prefix([',', '&']), lines.last_mut()) {
+            (Some(rest), Some(last)) => {
+                last.1.push(SEAM);
+                last.1.push_str(rest);
+            }
+            _ => lines.push((at, code.to_owned(), std::mem::take(&mut label))),
+        }
+    }
+    lines.iter().filter_map(|(at, code, label)| statement(*at, code, label)).collect()
+}
+
+fn statement(at: At, code: &str, label: &str) -> Option<Statement> {
+    let code = code.trim_end_matches([';', ' ']);
+    let end = code.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(code.len());
+    let (name, rest) = code.split_at(end);
+    let Some(rest) = rest.trim_start().strip_prefix('/') else {
+        // A title, `END`.
+        return None;
+    };
+    let mut out = Statement { name: name.to_ascii_uppercase(), at, ..Statement::default() };
+    for part in parts_of(rest) {
+        let part = part.trim_matches(|c: char| c.is_whitespace() || c == SEAM);
+        let keyed = part.split_once('=').filter(|(key, _)| {
+            let key = key.trim_matches(|c: char| c.is_whitespace() || c == SEAM);
+            !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '\\')
+        });
+        if let Some((key, text)) = keyed {
+            let key = key.trim_matches(|c: char| c.is_whitespace() || c == SEAM);
+            out.keys.push((key.to_ascii_uppercase(), text.trim().to_owned()));
+        } else if out.keys.is_empty() && out.id.is_empty() && part.chars().all(|c| c.is_ascii_digit()) {
+            out.id = part.to_owned();
+        } else {
+            // A further value of the key before, or a flag.
+            let is_value = part.chars().next().is_some_and(|c| c.is_ascii_digit() || "+-.(".contains(c));
+            match out.keys.last_mut() {
+                Some((key, text)) if !text.is_empty() && (is_value || key == "FUNCTION") => {
+                    text.push(',');
+                    text.push_str(part);
+                }
+                _ if part.is_empty() => {}
+                _ => out.keys.push((part.to_ascii_uppercase(), String::new())),
+            }
+        }
+    }
+    out.label = if label.is_empty() { format!("{}_{}", out.name, out.id) } else { label.to_owned() };
+    Some(out)
+}
+
+/// The parts between commas outside of parentheses; a backslash or a seam before a key parts too.
+fn parts_of(text: &str) -> Vec<String> {
+    let (mut out, mut depth) = (vec![String::new()], 0_i32);
+    let chars: Vec<char> = text.chars().collect();
+    for (k, c) in chars.iter().enumerate() {
+        depth += i32::from(*c == '(') - i32::from(*c == ')');
+        let key_follows = || {
+            let rest: String = chars[k + 1..].iter().take(40).collect();
+            rest.split_once('=').is_some_and(|(key, _)| {
+                let key = key.trim();
+                key.starts_with(|c: char| c.is_ascii_alphabetic())
+                    && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+            })
+        };
+        let parts = (*c == ',' && depth <= 0) || *c == '\\' || (*c == SEAM && depth <= 0 && key_follows());
+        match out.last_mut() {
+            Some(last) if !parts => last.push(*c),
+            _ => out.push(String::new()),
+        }
+    }
+    out
+}
+
+/// The factor of lengths, the length unit of the model, and the time of functions.
+fn units(statements: &[Statement], notes: &mut Notes) -> (f64, &'static str, &'static str) {
+    let mut out = (1.0, "mm", "t");
+    let Some(units) = statements.iter().find(|s| s.name == "UNITS") else {
+        notes.approximated(
+            "UNITS",
+            "",
+            None,
+            "there is no such statement: lengths are taken for millimetres",
+        );
+        return out;
+    };
+    let at = Some(units.at);
+    if let Some(word) = units.text("LENGTH") {
+        let known = match word.to_ascii_uppercase().as_str() {
+            "MILLIMETER" | "MM" => Some((1.0, "mm")),
+            "CENTIMETER" | "CM" => Some((1.0, "cm")),
+            "METER" | "M" => Some((1.0, "m")),
+            "KILOMETER" | "KM" => Some((1000.0, "m")),
+            "MICROMETER" | "UM" => Some((1e-3, "mm")),
+            "INCH" | "IN" => Some((1.0, "in")),
+            "FOOT" | "FT" => Some((12.0, "in")),
+            "YARD" => Some((36.0, "in")),
+            "MILE" => Some((63_360.0, "in")),
+            _ => None,
+        };
+        match known {
+            Some((scale, unit)) => (out.0, out.1) = (scale, unit),
+            None => notes.problem("HP0804", at, format!("`{word}` is no unit of length")),
+        }
+    }
+    match units.text("TIME").unwrap_or("SECOND").to_ascii_uppercase().as_str() {
+        "SECOND" | "SEC" | "S" => {}
+        "MILLISECOND" | "MS" => out.2 = "(1000*t)",
+        "MICROSECOND" => out.2 = "(1000000*t)",
+        "MINUTE" | "MIN" => out.2 = "(t/60)",
+        "HOUR" => out.2 = "(t/3600)",
+        word => notes.problem("HP0804", at, format!("`{word}` is no unit of time")),
+    }
+    notes.taken("UNITS", "", at);
+    out
+}
+
+struct Reader<'n> {
+    m: Mechanism,
+    notes: &'n mut Notes,
+    scale: f64,
+    time: &'static str,
+    parts: BTreeMap<String, usize>,
+    markers: BTreeMap<String, Marker>,
+    joints: BTreeMap<String, Joined>,
+    splines: BTreeMap<String, Vec<[f64; 2]>>,
+}
+
+impl Reader<'_> {
+    /// A frame by its origin and its orientation: Euler angles, or points on its z and x axes.
+    fn frame(&mut self, s: &Statement, origin: &str, along_z: &str, along_x: &str) -> Pose {
+        let r = s.vector(origin, self.notes).unwrap_or_else(|| [0.0; 3].into());
+        let angles = s.vector("REULER", self.notes).or_else(|| s.vector("EULER", self.notes));
+        let rot = match angles {
+            Some(a) => sequence("zxz", a.to_array()),
+            None => {
+                let [z, x] = [along_z, along_x].map(|key| s.vector(key, self.notes).map(|p| p - r));
+                self.pointed(s, z, x)
+            }
+        };
+        Pose { rot, r: r * self.scale }
+    }
+
+    /// The orientation by a point on the z axis and one in the xz plane; with `USEXP` the other way round.
+    fn pointed(&mut self, s: &Statement, z: Option<Vec3>, x: Option<Vec3>) -> Mat3 {
+        let found = match (z, x) {
+            (None, None) => return home().rot,
+            (Some(z), None) => {
+                from_z_and_x(z, [1.0, 0.0, 0.0].into()).or_else(|| from_z_and_x(z, [0.0, 0.0, 1.0].into()))
+            }
+            (None, Some(x)) => {
+                let away = [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]].map(Vec3::from);
+                away.iter().find_map(|z| {
+                    let x = x.unit()?;
+                    from_z_and_x(*z - x * x.dot(*z), x)
+                })
+            }
+            (Some(z), Some(x)) if s.has("USEXP") => x.unit().and_then(|x| from_z_and_x(z - x * x.dot(z), x)),
+            (Some(z), Some(x)) => from_z_and_x(z, x),
+        };
+        found.unwrap_or_else(|| {
+            self.notes.problem(
+                "HP0804",
+                Some(s.at),
+                format!("the points of {}/{} give it no orientation: they lie on one line", s.name, s.id),
+            );
+            home().rot
+        })
+    }
+
+    fn parts(&mut self, statements: &[Statement]) {
+        for s in statements {
+            let kind = s.name.as_str();
+            if !["PART", "POINT_MASS", "FLEX_BODY"].contains(&kind) {
+                continue;
+            }
+            let id = format!("{kind}/{}", s.id);
+            if s.has("GROUND") {
+                self.parts.insert(id, GROUND);
+                self.notes.taken(kind, &s.label, Some(s.at));
+                continue;
+            }
+            let pose = self.frame(s, "QG", "ZG", "XG");
+            let body = self.m.body(&s.label, s.called().note(self.notes), Some(pose));
+            match kind {
+                "FLEX_BODY" => self.notes.approximated(
+                    kind,
+                    &s.label,
+                    Some(s.at),
+                    "taken as a rigid body in its undeformed shape",
+                ),
+                "POINT_MASS" => {
+                    self.notes.approximated(
+                        kind,
+                        &s.label,
+                        Some(s.at),
+                        "taken as a rigid body that does not turn",
+                    );
+                    let never = crate::mechanism::Joint::new(
+                        &format!("{}_upright", s.label),
+                        "a point mass does not turn".into(),
+                        "orientation",
+                        [GROUND, body],
+                        pose.r,
+                    );
+                    self.m.joint(never);
+                }
+                _ => self.notes.taken(kind, &s.label, Some(s.at)),
+            }
+            if self.parts.insert(id.clone(), body).is_some() {
+                self.notes.problem("HP0803", Some(s.at), format!("{id} is there twice"));
+            }
+        }
+    }
+
+    fn markers(&mut self, statements: &[Statement]) {
+        let mut part = None;
+        for s in statements {
+            if ["PART", "POINT_MASS", "FLEX_BODY"].contains(&s.name.as_str()) {
+                part = self.parts.get(&format!("{}/{}", s.name, s.id)).copied();
+            }
+            if s.name != "MARKER" {
+                continue;
+            }
+            if s.has("FLOATING") || s.has("NODE_ID") && s.has("FLEX_BODY") && !s.has("QP") {
+                self.notes.refused("MARKER", &s.label, Some(s.at), "its place is not in the file");
+                continue;
+            }
+            let named =
+                ["PART", "POINT_MASS", "FLEX_BODY"].iter().find_map(|kind| Some((*kind, s.reference(kind)?)));
+            let body = match named {
+                Some((kind, id)) => self.parts.get(&format!("{kind}/{id}")).copied(),
+                None => part,
+            };
+            let Some(body) = body else {
+                let what = named.map_or("no part before it".into(), |(kind, id)| format!("no {kind}/{id}"));
+                self.notes.problem(
+                    "HP0803",
+                    Some(s.at),
+                    format!("MARKER/{} is on a part that is not there: {what}", s.id),
+                );
+                continue;
+            };
+            let inner = self.frame(s, "QP", "ZP", "XP");
+            let outer = self.m.bodies[body].pose.unwrap_or_else(home);
+            self.markers.insert(s.id.clone(), Marker { body, pose: outer.compose(inner) });
+            self.notes.taken("MARKER", &s.label, Some(s.at));
+        }
+    }
+
+    /// The markers of a statement: Adams' J first, against which Adams' I moves.
+    fn pair(&mut self, s: &Statement) -> Option<[Marker; 2]> {
+        let mut found = Vec::new();
+        for key in ["J", "I"] {
+            let id = s.reference(key);
+            match id.and_then(|id| self.markers.get(id)) {
+                Some(marker) => found.push(*marker),
+                None => {
+                    let what = id.map_or(format!("has no `{key}`"), |id| {
+                        format!("names MARKER/{id} as `{key}`, which is not there")
+                    });
+                    self.notes.problem("HP0803", Some(s.at), format!("{}/{} {what}", s.name, s.id));
+                }
+            }
+        }
+        <[Marker; 2]>::try_from(found).ok()
+    }
+
+    fn constraints(&mut self, statements: &[Statement]) {
+        for s in statements {
+            match s.name.as_str() {
+                "JOINT" => self.joint(s),
+                "JPRIM" => self.primitive(s),
+                _ => {}
+            }
+        }
+        for s in statements.iter().filter(|s| s.name == "JOINT" && s.has("RACKPIN")) {
+            self.rack_and_pinion(s);
+        }
+    }
+
+    fn joint(&mut self, s: &Statement) {
+        const KINDS: [(&str, &str); 11] = [
+            ("REVOLUTE", "revolute"),
+            ("TRANSLATIONAL", "translational"),
+            ("CYLINDRICAL", "cylindrical"),
+            ("SPHERICAL", "spherical"),
+            ("UNIVERSAL", "universal"),
+            ("HOOKE", "universal"),
+            ("PLANAR", "planar"),
+            ("FIXED", "fixed"),
+            ("CONVEL", "constant_velocity"),
+            ("SCREW", "screw"),
+            ("INLINE", "inline"),
+        ];
+        if s.has("RACKPIN") {
+            return;
+        }
+        // Words may be cut short as far as they are clear.
+        let written = s.keys.iter().filter(|(k, v)| v.is_empty() && k.len() >= 3).map(|(k, _)| k);
+        let kind =
+            written.into_iter().find_map(|k| KINDS.iter().find(|(name, _)| name.starts_with(k.as_str())));
+        let Some((name, kind)) = kind else {
+            self.notes.refused("JOINT", &s.label, Some(s.at), "its type is none that is known");
+            return;
+        };
+        let Some(mut markers) = self.pair(s) else { return };
+        if *name == "HOOKE" {
+            // The cross turns about x of I and about y of J; what else is drawn square is taken where these are not.
+            let [j, i] = markers;
+            let pins = [(j.y(), i.x()), (j.x(), i.y()), (j.x(), i.x()), (j.y(), i.y())];
+            let square = pins.iter().find(|(a, b)| a.dot(*b).abs() < 1e-6).unwrap_or(&pins[0]);
+            let turned =
+                |m: &Marker, z: Vec3| Pose { rot: from_z_and_x(z, m.z()).unwrap_or(m.pose.rot), r: m.pose.r };
+            markers = [
+                Marker { body: j.body, pose: turned(&j, square.0) },
+                Marker { body: i.body, pose: turned(&i, square.1) },
+            ];
+        }
+        let Some(number) = join(&mut self.m, self.notes, s.called(), kind, markers) else { return };
+        if *kind == "screw" {
+            match s.numbers("PITCH", self.notes).and_then(|p| p.first().copied()) {
+                Some(pitch) if pitch != 0.0 => self.m.joints[number].lead = Some(pitch * self.scale),
+                _ => self.notes.problem(
+                    "HP0804",
+                    Some(s.at),
+                    format!("JOINT/{} is a screw without a PITCH", s.id),
+                ),
+            }
+        }
+        self.joints.insert(s.id.clone(), Joined { number, kind, markers });
+    }
+
+    fn primitive(&mut self, s: &Statement) {
+        const KINDS: [(&str, &str); 6] = [
+            ("ATPOINT", "spherical"),
+            ("INLINE", "inline"),
+            ("INPLANE", "inplane"),
+            ("ORIENTATION", "orientation"),
+            ("PARALLEL_AXES", "parallel"),
+            ("PERPENDICULAR", "dot1"),
+        ];
+        let written = s.keys.iter().filter(|(k, v)| v.is_empty() && k.len() >= 3).map(|(k, _)| k);
+        let kind =
+            written.into_iter().find_map(|k| KINDS.iter().find(|(name, _)| name.starts_with(k.as_str())));
+        match kind {
+            Some((_, kind)) => {
+                if let Some(markers) = self.pair(s) {
+                    join(&mut self.m, self.notes, s.called(), kind, markers);
+                }
+            }
+            None => self.notes.refused("JPRIM", &s.label, Some(s.at), "its type is none that is known"),
+        }
+    }
+
+    /// Couples the slide of the rack's part with the hinge of the pinion's, by rolling where the markers are.
+    fn rack_and_pinion(&mut self, s: &Statement) {
+        let Some([rack, pinion]) = self.pair(s) else { return };
+        let diameter =
+            s.numbers("PD", self.notes).and_then(|d| d.first().copied()).unwrap_or(0.0) * self.scale;
+        let hinge = carrying(self.joints.values(), pinion.body, &["revolute", "cylindrical"], pinion.z());
+        let slide = carrying(self.joints.values(), rack.body, &["translational", "cylindrical"], rack.z());
+        let (Some(hinge), Some(slide)) = (hinge, slide) else {
+            self.notes.refused("JOINT", &s.label, Some(s.at), "a rack and pinion needs a hinge of the pinion and a slide of the rack, along the markers' z axes");
+            return;
+        };
+        let arm = rack.pose.r - pinion.pose.r;
+        let rolls = pinion.z().cross(arm).dot(rack.z());
+        let turn = if rolls.abs() > 1e-9 * arm.norm() { rolls.signum() } else { 1.0 };
+        let factor =
+            turn * way(hinge, pinion.body, pinion.z()) * way(slide, rack.body, rack.z()) * diameter / 2.0;
+        let terms = vec![
+            (Coordinate { joint: slide.number, name: "displacement" }, 1.0),
+            (Coordinate { joint: hinge.number, name: "angle" }, -factor),
+        ];
+        if diameter == 0.0 {
+            self.notes.problem(
+                "HP0804",
+                Some(s.at),
+                format!("JOINT/{} is a rack and pinion without a pitch diameter `PD`", s.id),
+            );
+        }
+        self.m.coupler(&s.label, s.called().note(self.notes), terms);
+        self.notes.approximated(
+            "JOINT",
+            &s.label,
+            Some(s.at),
+            "a coupler of the rack's slide and the pinion's hinge; it rolls as its markers lie",
+        );
+    }
+
+    fn motions(&mut self, statements: &[Statement]) {
+        for s in statements.iter().filter(|s| s.name == "SPLINE") {
+            let lists = ["X", "Y"].map(|key| s.numbers(key, self.notes).unwrap_or_default());
+            self.splines.insert(
+                s.id.clone(),
+                lists[0].iter().copied().zip(lists[1].iter().copied()).map(|(x, y)| [x, y]).collect(),
+            );
+        }
+        for s in statements {
+            match s.name.as_str() {
+                "MOTION" => self.motion(s),
+                "COUPLER" => self.coupler(s),
+                "GEAR" => self.gear(s),
+                _ => {}
+            }
+        }
+    }
+
+    fn motion(&mut self, s: &Statement) {
+        let refuse = |reader: &mut Self, why: &str| {
+            reader.notes.refused(
+                "MOTION",
+                &s.label,
+                Some(s.at),
+                format!("{why}; what it drives is held as drawn"),
+            );
+        };
+        if ["VELOCITY", "ACCELERATION"].iter().any(|k| s.has(k)) {
+            return refuse(
+                self,
+                "it prescribes a velocity or an acceleration: write the displacement that it comes to",
+            );
+        }
+        let Some(function) = s.text("FUNCTION") else { return refuse(self, "it has no FUNCTION") };
+        let function = function.to_owned();
+        if let Some(id) = s.reference("JOINT") {
+            let Some(joint) = self.joints.get(id) else {
+                let seen = self.notes.report.of(crate::Fate::Refused).any(|e| e.kind == "JOINT");
+                if seen {
+                    return refuse(self, &format!("JOINT/{id} is refused"));
+                }
+                self.notes.problem(
+                    "HP0803",
+                    Some(s.at),
+                    format!("MOTION/{} drives JOINT/{id}, which is not there", s.id),
+                );
+                return;
+            };
+            let drawn = offset(&joint.markers[0], &joint.markers[1]);
+            let turns = s
+                .keys
+                .iter()
+                .any(|(k, v)| v.is_empty() && k.len() >= 3 && "ROTATIONAL".starts_with(k.as_str()));
+            let (name, drawn, scale) = if turns {
+                ("angle", drawn.angle, 1.0)
+            } else {
+                ("displacement", drawn.displacement, self.scale)
+            };
+            let has = hardpoint::joint::ALL
+                .iter()
+                .find(|k| k.name == joint.kind)
+                .is_some_and(|k| k.coordinates.iter().any(|c| c.name == name));
+            let coordinate = Coordinate { joint: joint.number, name };
+            if !has {
+                return refuse(self, &format!("a joint of type {} has no {name}", joint.kind));
+            }
+            if self.m.is_driven(coordinate) {
+                return refuse(self, "the joint is driven already");
+            }
+            match self.law(&function, scale, drawn, turns) {
+                Ok(law) => {
+                    self.m.driver(&s.label, s.called().note(self.notes), Drives::Coordinate(coordinate), law);
+                    self.notes.taken("MOTION", &s.label, Some(s.at));
+                }
+                Err(why) => refuse(self, &why),
+            }
+            return;
+        }
+        let Some([j, i]) = self.pair(s) else { return };
+        let axis = ["X", "Y", "Z"].iter().position(|k| s.has(k)).map(|k| j.pose.rot.cols[k]);
+        match axis {
+            Some(along) if j.body == GROUND && i.body != GROUND => {
+                match self.law(&function, self.scale, along.dot(i.pose.r - j.pose.r), false) {
+                    Ok(law) => {
+                        self.m.driver(
+                            &s.label,
+                            s.called().note(self.notes),
+                            Drives::Way { body: i.body, at: i.pose.r, along },
+                            law,
+                        );
+                        self.notes.taken("MOTION", &s.label, Some(s.at));
+                    }
+                    Err(why) => refuse(self, &why),
+                }
+            }
+            _ => refuse(
+                self,
+                "it drives an angle between two markers, or a way that is not against the ground",
+            ),
+        }
+    }
+
+    /// A function as the law of a coordinate, counted from the drawing.
+    fn law(&self, function: &str, scale: f64, drawn: f64, turns: bool) -> Result<Law, String> {
+        let drawn = if drawn.abs() < 1e-12 { 0.0 } else { drawn };
+        let said = |text: &str| {
+            let text = text.trim().trim_matches(['\'', '"']);
+            law::translate_with(text, Language::Adams, self.time)
+        };
+        // A continued function: the comma at the beginning of a line only continues it, or is one of its own.
+        let readings = [" ", ","].map(|seam| function.replace(SEAM, seam));
+        if let Some(points) = readings.iter().find_map(|text| self.through_spline(text)) {
+            return Ok(Law::Table(points.iter().map(|[t, x]| [*t, x * scale - drawn]).collect()));
+        }
+        let text = said(&readings[0]).or_else(|why| said(&readings[1]).map_err(|_| why))?;
+        let text = if scale == 1.0 { text } else { format!("{scale}*({text})") };
+        let text = counted(&text, drawn, turns);
+        if law::constant(&text) == Some(0.0) { Ok(Law::Held) } else { Ok(Law::Text(text)) }
+    }
+
+    /// `a*AKISPL(TIME, 0, id) + b` and the like: the spline's points.
+    fn through_spline(&self, function: &str) -> Option<Vec<[f64; 2]>> {
+        let lower = function.to_ascii_lowercase();
+        let start = ["akispl", "cubspl", "intspl"].iter().find_map(|name| lower.find(name))?;
+        let open = start + lower[start..].find('(')?;
+        let close = open + lower[open..].find(')')?;
+        let arguments: Vec<&str> = lower[open + 1..close].split(',').map(str::trim).collect();
+        let is_zero = |k: usize| arguments.get(k).is_none_or(|a| number(a) == Some(0.0));
+        if arguments.first() != Some(&"time")
+            || self.time != "t"
+            || arguments.len() < 3
+            || !is_zero(1)
+            || !is_zero(3)
+        {
+            return None;
+        }
+        let points = self.splines.get(arguments[2])?;
+        if points.len() < 3 || points.windows(2).any(|w| w[1][0] <= w[0][0]) {
+            return None;
+        }
+        let [at_0, at_1, at_2] = ["(0)", "(1)", "(2)"].map(|x| {
+            let text = format!("{}{x}{}", &lower[..start], &lower[close + 1..]);
+            law::constant(&law::translate_with(&text, Language::Adams, "t").ok()?)
+        });
+        let (b, a) = (at_0?, at_1? - at_0?);
+        ((at_2? - b - 2.0 * a).abs() <= 1e-12 * (a.abs() + b.abs()))
+            .then(|| points.iter().map(|[t, x]| [*t, a * x + b]).collect())
+    }
+
+    fn coupler(&mut self, s: &Statement) {
+        let names: Vec<&str> =
+            s.text("JOINTS").unwrap_or_default().split([',', ':', SEAM]).map(str::trim).collect();
+        let scales = s.numbers("SCALES", self.notes).unwrap_or_default();
+        let kinds: String = s.text("TYPE").unwrap_or_default().to_ascii_uppercase();
+        let kinds: Vec<&str> =
+            kinds.split([':', ',', SEAM]).map(str::trim).filter(|k| !k.is_empty()).collect();
+        let mut terms = Vec::new();
+        for (k, id) in names.iter().enumerate() {
+            let Some(joint) = self.joints.get(*id) else {
+                self.notes.problem(
+                    "HP0803",
+                    Some(s.at),
+                    format!("COUPLER/{} names JOINT/{id}, which is not there", s.id),
+                );
+                return;
+            };
+            let turns = match kinds.get(k) {
+                Some(kind) => kind.starts_with('R'),
+                None => joint.kind == "revolute",
+            };
+            let name = if turns { "angle" } else { "displacement" };
+            let Some(scale) = scales.get(k) else {
+                self.notes.problem(
+                    "HP0804",
+                    Some(s.at),
+                    format!("COUPLER/{} has {} joints and {} scales", s.id, names.len(), scales.len()),
+                );
+                return;
+            };
+            // Scales are for the source's lengths; angles are in rad on both sides.
+            let factor = if turns { *scale } else { scale / self.scale };
+            terms.push((Coordinate { joint: joint.number, name }, factor));
+        }
+        self.m.coupler(&s.label, s.called().note(self.notes), terms);
+        self.notes.taken("COUPLER", &s.label, Some(s.at));
+    }
+
+    /// Both joints give the common point, of marker CV, the same velocity along its z axis.
+    fn gear(&mut self, s: &Statement) {
+        let names: Vec<&str> =
+            s.text("JOINTS").unwrap_or_default().split([',', ':', SEAM]).map(str::trim).collect();
+        let cv = s.reference("CV").and_then(|id| self.markers.get(id)).copied();
+        let joints: Vec<&Joined> = names.iter().filter_map(|id| self.joints.get(*id)).collect();
+        let (Some(cv), [a, b]) = (cv, &joints[..]) else {
+            self.notes.problem(
+                "HP0803",
+                Some(s.at),
+                format!("GEAR/{} needs two JOINTS and a marker CV that are there", s.id),
+            );
+            return;
+        };
+        let speed = |k: &Joined| {
+            // Of the part that is not the carrier, against the carrier.
+            let sign = if k.markers[1].body == cv.body { -1.0 } else { 1.0 };
+            let z = k.markers[0].z();
+            let slides = k.kind == "translational";
+            let v = if slides { z } else { z.cross(cv.pose.r - k.markers[0].pose.r) };
+            (
+                Coordinate { joint: k.number, name: if slides { "displacement" } else { "angle" } },
+                sign * v.dot(cv.z()),
+            )
+        };
+        let [(first, u), (second, v)] = [speed(a), speed(b)];
+        if u == 0.0 || v == 0.0 {
+            self.notes.refused(
+                "GEAR",
+                &s.label,
+                Some(s.at),
+                "one of its joints does not move the marker CV along its z axis",
+            );
+            return;
+        }
+        self.m.coupler(&s.label, s.called().note(self.notes), vec![(first, u), (second, -v)]);
+        self.notes.taken("GEAR", &s.label, Some(s.at));
+    }
+
+    /// All that is neither mechanism nor force.
+    fn rest(&mut self, statements: &[Statement]) {
+        const DONE: [&str; 10] = [
+            "PART",
+            "POINT_MASS",
+            "FLEX_BODY",
+            "MARKER",
+            "JOINT",
+            "JPRIM",
+            "MOTION",
+            "COUPLER",
+            "GEAR",
+            "UNITS",
+        ];
+        const HOLD: [&str; 8] = ["PTCV", "CVCV", "PTSF", "CURVE", "UCON", "GCON", "SURFACE", "NFORCE"];
+        for s in statements.iter().filter(|s| !DONE.contains(&s.name.as_str())) {
+            if HOLD[..6].contains(&s.name.as_str()) && s.name != "CURVE" {
+                self.notes.refused(
+                    &s.name,
+                    &s.label,
+                    Some(s.at),
+                    "a constraint that has no equivalent: what it holds is held by a driver",
+                );
+            } else {
+                self.notes.ignored(&s.name, Some(s.at));
+            }
+        }
+    }
+}

@@ -1,0 +1,577 @@
+//! Assemblies of OndselSolver (`.asmt`), which FreeCAD's Assembly workbench solves with and exports; with the motion stored in them.
+
+use std::collections::BTreeMap;
+
+use hardpoint::space::{Mat3, Pose, Vec3};
+
+use crate::law::{self, Language};
+use crate::markers::{Called, Joined, Marker, carrying, counted, join, offset, way};
+use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Times};
+use crate::report::{At, Notes};
+use crate::series::{Series, Stored};
+use crate::turn::{home, none, sequence};
+use crate::{Format, Input};
+
+/// See the module.
+pub const FORMAT: Format = Format {
+    name: "asmt",
+    about: "Ondsel assembly",
+    endings: &["asmt"],
+    looks: |text| {
+        let mut lines = text.lines().map(str::trim_end);
+        lines.any(|l| l == "Assembly") && lines.any(|l| l.trim() == "RefPoints" || l.trim() == "Parts")
+    },
+    read,
+    binary: false,
+};
+
+/// Lines are nested so deep at most.
+const DEEPEST: usize = 64;
+/// So many output times at most; more are asked for in no file.
+const MOST_TIMES: f64 = 100_000.0;
+
+/// A line and what is indented under it.
+#[derive(Debug)]
+struct Node<'t> {
+    text: &'t str,
+    at: At,
+    children: Vec<Node<'t>>,
+}
+
+impl<'t> Node<'t> {
+    fn child(&self, name: &str) -> Option<&Self> {
+        self.children.iter().find(|c| c.text == name)
+    }
+
+    /// The text on the line below a heading.
+    fn value(&self, name: &str) -> Option<(&'t str, At)> {
+        let below = self.child(name)?.children.first()?;
+        Some((below.text, below.at))
+    }
+
+    fn name(&self) -> &'t str {
+        self.value("Name").map_or("", |(name, _)| name)
+    }
+
+    /// Numbers on the lines below a heading.
+    fn numbers<const N: usize>(&self, name: &str, notes: &mut Notes) -> Option<[f64; N]> {
+        let list = self.child(name)?;
+        let words = list.children.iter().flat_map(|c| c.text.split_whitespace());
+        let numbers: Option<Vec<f64>> = words.map(number).collect();
+        let exact = numbers.and_then(|n| <[f64; N]>::try_from(n).ok());
+        if exact.is_none() {
+            let s = if N == 1 { "number stands" } else { "numbers stand" };
+            let help = "export the assembly again, or correct the lines below it";
+            notes.problem_with("HP0804", Some(list.at), format!("below `{name}`, {N} {s}"), help);
+        }
+        exact
+    }
+
+    /// A frame by its position and its rotation matrix; home where none is given.
+    fn pose(&self, notes: &mut Notes) -> Pose {
+        let r = self.numbers::<3>("Position3D", notes).unwrap_or_default();
+        let rows = self.numbers::<9>("RotationMatrix", notes);
+        let rot = rows.map_or_else(none, |[a, b, c, d, e, f, g, h, i]| Mat3 {
+            cols: [[a, d, g].into(), [b, e, h].into(), [c, f, i].into()],
+        });
+        // What has six digits is no rotation yet.
+        let q = hardpoint::space::Quat::from_rotation(rot).to_array();
+        let square = crate::turn::quaternion(q);
+        let off = (0..3).map(|k| (rot.cols[k].norm() - 1.0).abs()).fold(0.0, f64::max);
+        match square {
+            Some(rot) if off < 1e-3 => Pose { rot, r: r.into() },
+            _ => {
+                let at = self.child("RotationMatrix").map(|c| c.at);
+                notes.problem("HP0804", at, "the rotation matrix is none: its columns are not of length one");
+                home()
+            }
+        }
+    }
+}
+
+/// A number; C++ may have written `1.0d`, Smalltalk does.
+fn number(word: &str) -> Option<f64> {
+    let word = word.strip_suffix(['d', 'D']).unwrap_or(word);
+    word.parse().ok().filter(|x: &f64| x.is_finite())
+}
+
+fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+    let (nodes, series) = tree(input.text, notes)?;
+    let Some(assembly) = nodes.iter().find(|n| n.text == "Assembly") else {
+        let help = "export the assembly as .asmt again";
+        notes.problem_with("HP0803", None, "there is no `Assembly` in the file", help);
+        return None;
+    };
+    // What FreeCAD writes is in its millimetres; the solver's own examples say that theirs is in SI.
+    let by_freecad = input.text.starts_with("OndselSolver");
+    let unit = if by_freecad { "mm" } else { "m" };
+    notes.approximated(
+        "Assembly",
+        assembly.name(),
+        Some(assembly.at),
+        format!("the file names no unit: lengths are taken for {unit}"),
+    );
+    let mut m =
+        Mechanism::new(if assembly.name().is_empty() { input.stem } else { assembly.name() }, unit, "rad");
+    m.times = times(assembly, notes);
+    let mut reader =
+        Reader { m, notes, markers: BTreeMap::new(), joints: BTreeMap::new(), parts: BTreeMap::new() };
+    reader.parts(assembly);
+    reader.joints(assembly);
+    reader.motions(assembly);
+    reader.rest(assembly);
+    let (m, parts) = (reader.m, reader.parts);
+    if let Some(series) = series {
+        input.series = stored(&series, &m, &parts, notes);
+    }
+    (m.bodies.len() > 1).then_some(m)
+}
+
+/// The lines by their tabs, and where the stored series begin.
+fn tree<'t>(text: &'t str, notes: &mut Notes) -> Option<(Vec<Node<'t>>, Option<Vec<(&'t str, At)>>)> {
+    let mut open: Vec<Node<'t>> = vec![Node { text: "", at: At::default(), children: Vec::new() }];
+    let mut series: Option<Vec<(&str, At)>> = None;
+    let mut start = 0;
+    for whole in text.split_inclusive('\n') {
+        let line = whole.trim_end();
+        let tabs = line.len() - line.trim_start_matches('\t').len();
+        let from = start + tabs;
+        let at = At { text: 0, start: from, end: start + line.len() };
+        let code = &line[tabs..];
+        start += whole.len();
+        if code.trim().is_empty() {
+            continue;
+        }
+        if tabs == 0 && code.trim() == "TimeSeries" {
+            series = Some(Vec::new());
+        }
+        if let Some(series) = &mut series {
+            series.push((code, at));
+            continue;
+        }
+        if tabs >= DEEPEST || tabs + 1 > open.len() {
+            notes.problem_with(
+                "HP0802",
+                Some(at),
+                "the line is indented more than what it could stand below",
+                "indent it by one tab more than its heading",
+            );
+            return None;
+        }
+        fold(&mut open, tabs + 1);
+        open.push(Node { text: code.trim(), at, children: Vec::new() });
+    }
+    fold(&mut open, 1);
+    Some((open.pop().map(|root| root.children).unwrap_or_default(), series))
+}
+
+fn fold(open: &mut Vec<Node<'_>>, depth: usize) {
+    while open.len() > depth {
+        if let (Some(last), Some(parent)) = (open.pop(), open.last_mut()) {
+            parent.children.push(last);
+        }
+    }
+}
+
+fn times(assembly: &Node<'_>, notes: &mut Notes) -> Option<Times> {
+    let s = assembly.child("SimulationParameters")?;
+    let [start, end, step] = ["tstart", "tend", "hout"].map(|k| s.numbers::<1>(k, notes).map(|[x]| x));
+    let (start, end, step) = (start.unwrap_or(0.0), end?, step?);
+    let steps = ((end - start) / step).round();
+    let fits = steps >= 1.0 && steps <= MOST_TIMES && ((end - start) / step - steps).abs() < 1e-6 * steps;
+    if !fits {
+        notes.approximated(
+            "SimulationParameters",
+            "",
+            Some(s.at),
+            "`hout` does not divide the time into so many intervals: one second in a hundred is taken",
+        );
+        return None;
+    }
+    notes.taken("SimulationParameters", "", Some(s.at));
+    Some(Times { start, end, steps: steps as usize })
+}
+
+struct Reader<'n> {
+    m: Mechanism,
+    notes: &'n mut Notes,
+    /// By their paths.
+    markers: BTreeMap<String, Marker>,
+    joints: BTreeMap<String, Joined>,
+    parts: BTreeMap<String, usize>,
+}
+
+impl Reader<'_> {
+    fn parts(&mut self, assembly: &Node<'_>) {
+        let path = format!("/{}", assembly.name());
+        let whole = assembly.pose(self.notes);
+        self.markers_of(assembly, &path, GROUND, whole);
+        let parts = assembly.child("Parts").map_or(&[][..], |p| &p.children);
+        for part in parts {
+            if part.text != "Part" {
+                self.notes.refused(part.text, part.name(), Some(part.at), "only parts are known here");
+                continue;
+            }
+            let pose = whole.compose(part.pose(self.notes));
+            let is_fixed = part.value("isFixed").is_some_and(|(v, _)| v == "true");
+            let called = Called { kind: "Part", name: part.name(), at: Some(part.at) };
+            let body =
+                if is_fixed { GROUND } else { self.m.body(part.name(), called.note(self.notes), Some(pose)) };
+            let path = format!("{path}/{}", part.name());
+            if self.parts.insert(path.clone(), body).is_some() {
+                self.notes.problem_with(
+                    "HP0803",
+                    Some(part.at),
+                    format!("there are two parts `{path}`"),
+                    "rename one of them",
+                );
+            }
+            self.markers_of(part, &path, body, pose);
+            self.notes.taken("Part", part.name(), Some(part.at));
+        }
+        if let Some(list) = assembly.child("Assemblies").filter(|l| !l.children.is_empty()) {
+            self.notes.refused(
+                "Assemblies",
+                "",
+                Some(list.at),
+                "assemblies in assemblies are not read: export them as parts of one",
+            );
+        }
+    }
+
+    fn markers_of(&mut self, owner: &Node<'_>, path: &str, body: usize, pose: Pose) {
+        let points = owner.child("RefPoints").map_or(&[][..], |p| &p.children);
+        for point in points {
+            let place = pose.compose(point.pose(self.notes));
+            let markers = point.child("Markers").map_or(&[][..], |p| &p.children);
+            for marker in markers {
+                let pose = place.compose(marker.pose(self.notes));
+                let path = format!("{path}/{}", marker.name());
+                if self.markers.insert(path.clone(), Marker { body, pose }).is_some() {
+                    self.notes.problem_with(
+                        "HP0803",
+                        Some(marker.at),
+                        format!("there are two markers `{path}`"),
+                        "rename one of them",
+                    );
+                }
+                self.notes.taken("Marker", marker.name(), Some(marker.at));
+            }
+        }
+    }
+
+    fn pair(&mut self, joint: &Node<'_>) -> Option<[Marker; 2]> {
+        let found = ["MarkerI", "MarkerJ"].map(|key| {
+            let (path, at) = joint.value(key).unwrap_or(("", joint.at));
+            let marker = self.markers.get(path).copied();
+            if marker.is_none() {
+                let message = if path.is_empty() {
+                    format!("`{}` has no `{key}`", joint.name())
+                } else {
+                    format!("`{}` names the marker `{path}`, which is not there", joint.name())
+                };
+                self.notes.problem_with(
+                    "HP0803",
+                    Some(at),
+                    message,
+                    "name a marker by its path, as in `/Assembly/Part/Marker`",
+                );
+            }
+            marker
+        });
+        let [Some(i), Some(j)] = found else { return None };
+        Some([i, j])
+    }
+
+    fn joints(&mut self, assembly: &Node<'_>) {
+        let sets = assembly.child("ConstraintSets");
+        let joints = sets.and_then(|c| c.child("Joints")).map_or(&[][..], |p| &p.children);
+        for joint in joints {
+            self.joint(joint);
+        }
+        for joint in joints.iter().filter(|j| ["GearJoint", "RackPinionJoint"].contains(&j.text)) {
+            self.gear(joint);
+        }
+    }
+
+    fn joint(&mut self, joint: &Node<'_>) {
+        let called = Called { kind: joint.text, name: joint.name(), at: Some(joint.at) };
+        let kind = match joint.text {
+            "FixedJoint" => "fixed",
+            "RevoluteJoint" => "revolute",
+            "CylindricalJoint" => "cylindrical",
+            "TranslationalJoint" => "translational",
+            "SphericalJoint" | "AtPointJoint" => "spherical",
+            "UniversalJoint" => "universal",
+            "ConstantVelocityJoint" => "constant_velocity",
+            "PlanarJoint" => "planar",
+            "ScrewJoint" => "screw",
+            "NoRotationJoint" => "orientation",
+            "ParallelAxesJoint" => "parallel",
+            "PerpendicularJoint" => "dot1",
+            "InLineJoint" | "PointInLineJoint" => "inline",
+            "InPlaneJoint" | "PointInPlaneJoint" => "inplane",
+            "SphericalSphericalJoint" | "SphSphJoint" => "distance",
+            "AngleJoint" => "angle",
+            "LineInPlaneJoint" => "line_in_plane",
+            "RevRevJoint" | "RevCylJoint" | "CylSphJoint" => {
+                self.notes.refused(
+                    joint.text,
+                    joint.name(),
+                    Some(joint.at),
+                    "a joint of this type is known to no model file",
+                );
+                return;
+            }
+            "GearJoint" | "RackPinionJoint" => return,
+            _ => {
+                self.notes.refused(
+                    joint.text,
+                    joint.name(),
+                    Some(joint.at),
+                    "its type is none that is known",
+                );
+                return;
+            }
+        };
+        let Some([i, j]) = self.pair(joint) else { return };
+        let place = |m: &mut Mechanism, notes: &mut Notes, made: Joint| {
+            notes.taken(joint.text, joint.name(), Some(joint.at));
+            m.joint(made)
+        };
+        let note = called.note(self.notes);
+        let number = match kind {
+            "distance" => {
+                let rod = Joint::new(joint.name(), note, "distance", [i.body, j.body], i.pose.r)
+                    .between(i.pose.r, j.pose.r);
+                if (j.pose.r - i.pose.r).norm() == 0.0 {
+                    self.notes.refused(
+                        joint.text,
+                        joint.name(),
+                        Some(joint.at),
+                        "both its markers are at one place",
+                    );
+                    return;
+                }
+                Some(place(&mut self.m, self.notes, rod))
+            }
+            "angle" if i.z().cross(j.z()).norm() > 1e-6 => {
+                let angle = Joint::new(joint.name(), note, "angle", [i.body, j.body], i.pose.r)
+                    .with_axes(i.z(), j.z());
+                Some(place(&mut self.m, self.notes, angle))
+            }
+            "angle" => join(&mut self.m, self.notes, called, "parallel", [i, j]),
+            // The z axis of marker I lies in the xy plane of marker J.
+            "line_in_plane" => {
+                let in_plane = join(&mut self.m, self.notes, called, "inplane", [j, i]);
+                let square = Marker { body: j.body, pose: j.pose };
+                join(&mut self.m, self.notes, called, "dot1", [square, i]);
+                in_plane
+            }
+            // The point of marker I stays on the plane, or the line, of marker J.
+            "inline" | "inplane" => join(&mut self.m, self.notes, called, kind, [j, i]),
+            _ => join(&mut self.m, self.notes, called, kind, [i, j]),
+        };
+        let Some(number) = number else { return };
+        if kind == "screw" {
+            let pitch = joint.numbers::<1>("pitch", self.notes).map(|[p]| p);
+            match pitch {
+                Some(pitch) if pitch != 0.0 => self.m.joints[number].lead = Some(pitch),
+                _ => self.notes.problem_with(
+                    "HP0804",
+                    Some(joint.at),
+                    format!("the screw `{}` has no pitch", joint.name()),
+                    "give it a `pitch` other than zero",
+                ),
+            }
+        }
+        self.joints.insert(joint.name().to_owned(), Joined { number, kind, markers: [i, j] });
+    }
+
+    /// Gears, and a rack with its pinion: couplers of the joints that carry their parts.
+    fn gear(&mut self, joint: &Node<'_>) {
+        let Some([i, j]) = self.pair(joint) else { return };
+        let hinges = ["revolute", "cylindrical"];
+        let note = Called { kind: joint.text, name: joint.name(), at: Some(joint.at) }.note(self.notes);
+        let radius = |reader: &mut Self, key: &str| {
+            joint.numbers::<1>(key, reader.notes).map(|[r]| r).filter(|r| *r != 0.0)
+        };
+        let terms = if joint.text == "GearJoint" {
+            let radii = [radius(self, "radiusI"), radius(self, "radiusJ")];
+            let [a, b] = [i, j].map(|m| {
+                carrying(self.joints.values(), m.body, &hinges, m.z())
+                    .map(|k| (k.number, way(k, m.body, i.z())))
+            });
+            match (radii, a, b) {
+                ([Some(ri), Some(rj)], Some((a, u)), Some((b, v))) if a != b => Some(vec![
+                    (Coordinate { joint: a, name: "angle" }, ri * u),
+                    (Coordinate { joint: b, name: "angle" }, rj * v),
+                ]),
+                _ => None,
+            }
+        } else {
+            let radius = radius(self, "pitchRadius");
+            // The rack moves along the x axis of marker I, the pinion turns about the z axis of marker J.
+            let slide = carrying(self.joints.values(), i.body, &["translational", "cylindrical"], i.x());
+            let hinge = carrying(self.joints.values(), j.body, &hinges, j.z());
+            match (radius, slide, hinge) {
+                (Some(r), Some(slide), Some(hinge)) => Some(vec![
+                    (Coordinate { joint: slide.number, name: "displacement" }, way(slide, i.body, i.x())),
+                    (Coordinate { joint: hinge.number, name: "angle" }, r * way(hinge, j.body, j.z())),
+                ]),
+                _ => None,
+            }
+        };
+        match terms {
+            Some(terms) => {
+                self.m.coupler(joint.name(), note, terms);
+                let why = "a coupler of the joints that carry its two parts";
+                self.notes.approximated(joint.text, joint.name(), Some(joint.at), why);
+            }
+            None => {
+                let why = "no joints that carry its two parts along its markers' axes, or no radii";
+                self.notes.refused(joint.text, joint.name(), Some(joint.at), why);
+            }
+        }
+    }
+
+    fn motions(&mut self, assembly: &Node<'_>) {
+        let sets = assembly.child("ConstraintSets");
+        let motions = sets.and_then(|c| c.child("Motions")).map_or(&[][..], |p| &p.children);
+        for motion in motions {
+            if let Err(why) = self.motion(motion) {
+                self.notes.refused(
+                    motion.text,
+                    motion.name(),
+                    Some(motion.at),
+                    format!("{why}; what it drives is held as drawn"),
+                );
+            }
+        }
+    }
+
+    fn motion(&mut self, motion: &Node<'_>) -> Result<(), String> {
+        let (key, name) = match motion.text {
+            "RotationalMotion" => ("RotationZ", "angle"),
+            "TranslationalMotion" => ("TranslationZ", "displacement"),
+            _ => return Err("it drives all six coordinates of two markers".into()),
+        };
+        let (path, at) = motion.value("MotionJoint").unwrap_or(("", motion.at));
+        let wanted = path.rsplit('/').next().unwrap_or_default();
+        let Some(joint) = self.joints.get(wanted).copied() else {
+            if self.notes.report.of(crate::Fate::Refused).any(|e| e.name == wanted) {
+                return Err(format!("the joint `{wanted}` is refused"));
+            }
+            let message = format!("`{}` drives the joint `{path}`, which is not there", motion.name());
+            self.notes.problem_with(
+                "HP0803",
+                Some(at),
+                message,
+                "name a joint by its path, as in `/Assembly/Joint`",
+            );
+            return Ok(());
+        };
+        let Some((function, _)) = motion.value(key) else { return Err(format!("it has no `{key}`")) };
+        let kind = hardpoint::joint::ALL.iter().find(|k| k.name == joint.kind);
+        if !kind.is_some_and(|k| k.coordinates.iter().any(|c| c.name == name)) {
+            return Err(format!("a joint of type {} has no {name}", joint.kind));
+        }
+        let coordinate = Coordinate { joint: joint.number, name };
+        if self.m.is_driven(coordinate) {
+            return Err("the joint is driven already".into());
+        }
+        let turns = name == "angle";
+        let drawn = offset(&joint.markers[0], &joint.markers[1]);
+        let drawn = if turns { drawn.angle } else { drawn.displacement };
+        let text = counted(&law::translate(function, Language::Ondsel)?, drawn, turns);
+        let law = if law::constant(&text) == Some(0.0) { Law::Held } else { Law::Text(text) };
+        let note = Called { kind: motion.text, name: motion.name(), at: Some(motion.at) }.note(self.notes);
+        self.m.driver(motion.name(), note, Drives::Coordinate(coordinate), law);
+        self.notes.taken(motion.text, motion.name(), Some(motion.at));
+        Ok(())
+    }
+
+    fn rest(&mut self, assembly: &Node<'_>) {
+        let sets = assembly.child("ConstraintSets");
+        for limit in sets.and_then(|c| c.child("Limits")).map_or(&[][..], |p| &p.children) {
+            self.notes.refused(
+                limit.text,
+                limit.name(),
+                Some(limit.at),
+                "drivers prescribe what moves: nothing stops at a limit",
+            );
+        }
+        for set in sets.and_then(|c| c.child("GeneralConstraintSets")).map_or(&[][..], |p| &p.children) {
+            self.notes.refused(set.text, set.name(), Some(set.at), "a general constraint has no equivalent");
+        }
+        for force in assembly.child("ForceTorques").map_or(&[][..], |p| &p.children) {
+            self.notes.ignored(force.text, Some(force.at));
+        }
+    }
+}
+
+/// The series of the parts: the column of the input, and then one for each output time.
+fn stored(
+    lines: &[(&str, At)],
+    m: &Mechanism,
+    parts: &BTreeMap<String, usize>,
+    notes: &mut Notes,
+) -> Option<Series> {
+    let row = |line: &str| -> Vec<Option<f64>> { line.split_whitespace().skip(1).map(number).collect() };
+    let (line, at) = lines.iter().find(|(l, _)| l.starts_with("Time") && !l.starts_with("TimeSeries"))?;
+    let times = row(line);
+    let skipped = times.iter().take_while(|t| t.is_none()).count();
+    let times: Option<Vec<f64>> = times[skipped..].iter().copied().collect();
+    let Some(times) = times.filter(|t| !t.is_empty()) else {
+        notes.refused("TimeSeries", "", Some(*at), "its times are no numbers");
+        return None;
+    };
+    let mut series = Series { times, bodies: Vec::new() };
+    let mut k = 0;
+    while k < lines.len() {
+        let (head, at) = lines[k];
+        k += 1;
+        let Some(path) = head.strip_prefix("PartSeries") else { continue };
+        let body = parts.get(path.trim()).copied();
+        let mut rows: BTreeMap<&str, Vec<Option<f64>>> = BTreeMap::new();
+        while let Some((line, _)) = lines.get(k).filter(|(l, _)| !l.contains("Series")) {
+            rows.insert(line.split_whitespace().next().unwrap_or_default(), row(line));
+            k += 1;
+        }
+        let body = match body {
+            Some(body) if body != GROUND => body,
+            _ => {
+                notes.ignored("PartSeries", Some(at));
+                continue;
+            }
+        };
+        let vector = |names: [&str; 3], step: usize| -> Option<Vec3> {
+            let [x, y, z] = names.map(|n| rows.get(n).and_then(|r| r.get(step + skipped).copied().flatten()));
+            Some([x?, y?, z?].into())
+        };
+        let all: Option<Vec<Stored>> = (0..series.times.len())
+            .map(|step| {
+                let r = vector(["X", "Y", "Z"], step)?;
+                let angles = vector(["Bryantx", "Bryanty", "Bryantz"], step)?;
+                let rates = [
+                    ["VX", "VY", "VZ"],
+                    ["OmegaX", "OmegaY", "OmegaZ"],
+                    ["AX", "AY", "AZ"],
+                    ["AlphaX", "AlphaY", "AlphaZ"],
+                ];
+                Some(Stored {
+                    pose: Pose { rot: sequence("xyz", angles.to_array()), r },
+                    rates: rates.map(|names| vector(names, step)),
+                })
+            })
+            .collect();
+        match all {
+            Some(all) => {
+                series.bodies.push((m.bodies[body].name.clone(), all));
+                notes.taken("PartSeries", path.trim(), Some(at));
+            }
+            None => notes.refused("PartSeries", path.trim(), Some(at), "a number is missing in it"),
+        }
+    }
+    (!series.bodies.is_empty()).then_some(series)
+}

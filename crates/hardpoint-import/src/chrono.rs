@@ -1,0 +1,224 @@
+//! Suspension templates of Project Chrono's vehicle module (JSON): one side, as the file has it, or both with their mirror image.
+
+use hardpoint::space::Vec3;
+
+use crate::corner::{Corner, Link, Mount, Role};
+use crate::mechanism::Mechanism;
+use crate::report::Notes;
+use crate::tree::{self, Tree};
+use crate::{Format, Input};
+
+/// See the module.
+pub const FORMAT: Format = Format {
+    name: "chrono",
+    about: "Chrono suspension",
+    endings: &["json"],
+    looks: |text| text.contains("\"Template\"") && text.contains("\"Type\""),
+    read,
+    binary: false,
+};
+
+/// Templates whose topology is known here.
+const TEMPLATES: [&str; 6] = [
+    "DoubleWishbone",
+    "DoubleWishboneReduced",
+    "SAEToeBarDoubleWishbone",
+    "MacPhersonStrut",
+    "MultiLink",
+    "SemiTrailingArm",
+];
+
+fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+    let root = tree::json(input.text, notes)?;
+    let kind = root.text_of("Type").unwrap_or_default();
+    let template = root.get("Template");
+    let name = template.and_then(Tree::text).unwrap_or_default();
+    let at = template.map(|t| t.at).or(Some(root.at));
+    if !kind.eq_ignore_ascii_case("suspension") {
+        let at = root.get("Type").map_or(root.at, |t| t.at);
+        notes.problem_with(
+            "HP0805",
+            Some(at),
+            format!("the file is of type `{kind}`, not a `Suspension`"),
+            "import the file of the suspension",
+        );
+        return None;
+    }
+    let Some(known) = TEMPLATES.iter().find(|t| t.eq_ignore_ascii_case(name)) else {
+        let help = format!("known are {}", TEMPLATES.join(", "));
+        notes.problem_with("HP0805", at, format!("the template `{name}` is not known here"), &help);
+        return None;
+    };
+    let title = root.text_of("Name").filter(|n| !n.trim().is_empty()).unwrap_or(input.stem);
+    let mut m = Mechanism::new(title, "m", "deg");
+    let mut reader = Reader {
+        root: &root,
+        m: &mut m,
+        notes,
+        corner: Corner { at: Some(root.at), rack: true, ..Corner::default() },
+    };
+    match *known {
+        "MacPhersonStrut" => {
+            reader.arm(
+                "Control Arm",
+                [Role::LowerFront, Role::LowerRear, Role::LowerOuter],
+                &["Location Chassis Front", "Location Chassis Back", "Location Upright"],
+            );
+            reader.pair("Shock", [Role::StrutTop, Role::StrutBottom], &["Location Upright"]);
+        }
+        "MultiLink" => {
+            reader.arm(
+                "Upper Arm",
+                [Role::UpperFront, Role::UpperRear, Role::UpperOuter],
+                &["Location Chassis Front", "Location Chassis Back", "Location Upright"],
+            );
+            for link in ["Lateral", "Trailing Link"] {
+                reader.link(link);
+            }
+            reader.pair(
+                "Shock",
+                [Role::DamperChassis, Role::DamperMoving],
+                &["Location Link", "Location Upright"],
+            );
+            reader.pair(
+                "Spring",
+                [Role::SpringChassis, Role::SpringMoving],
+                &["Location Link", "Location Upright"],
+            );
+            reader.corner.spring_on = Some(Mount::Nothing("link".into()));
+        }
+        "SemiTrailingArm" => {
+            reader.arm(
+                "Trailing Arm",
+                [Role::TrailingA, Role::TrailingB, Role::Spindle],
+                &["Location Chassis Inner", "Location Chassis Outer", "Location Spindle"],
+            );
+            reader.corner.points.remove(&Role::Spindle);
+            reader.pair("Shock", [Role::DamperChassis, Role::DamperMoving], &["Location Arm"]);
+            reader.pair("Spring", [Role::SpringChassis, Role::SpringMoving], &["Location Arm"]);
+            reader.corner.spring_on = Some(Mount::Upright);
+        }
+        _ => {
+            let ends = ["Location Chassis Front", "Location Chassis Back", "Location Upright"];
+            reader.arm("Upper Control Arm", [Role::UpperFront, Role::UpperRear, Role::UpperOuter], &ends);
+            reader.arm("Lower Control Arm", [Role::LowerFront, Role::LowerRear, Role::LowerOuter], &ends);
+            reader.pair(
+                "Shock",
+                [Role::DamperChassis, Role::DamperMoving],
+                &["Location Arm", "Location Upright"],
+            );
+            reader.pair(
+                "Spring",
+                [Role::SpringChassis, Role::SpringMoving],
+                &["Location Arm", "Location Upright"],
+            );
+            let reduced = known.ends_with("Reduced");
+            reader.corner.spring_on = Some(if reduced { Mount::Upright } else { Mount::Lower });
+        }
+    }
+    if *known != "SemiTrailingArm" {
+        reader.pair("Tierod", [Role::TieInner, Role::TieOuter], &["Location Upright"]);
+    }
+    reader.wheel();
+    let corner = reader.corner;
+    for (key, at, value) in root.entries() {
+        let is_made = value.entries().iter().any(|(k, ..)| k.starts_with("Location"));
+        if !is_made && !["Name", "Type", "Template", "Spindle"].contains(&key.as_str()) {
+            notes.ignored(key, Some(*at));
+        }
+    }
+    let mut rack = None;
+    if notes.problem_count() == 0 && !corner.build(&mut m, notes, &mut rack) {
+        let message = format!("points are missing of what a `{name}` consists of");
+        notes.problem_with("HP0803", at, message, "give the locations of its arms and links");
+    }
+    Some(m)
+}
+
+struct Reader<'r> {
+    root: &'r Tree,
+    m: &'r mut Mechanism,
+    notes: &'r mut Notes,
+    corner: Corner,
+}
+
+impl Reader<'_> {
+    /// A location in a part; the first of the names that is there.
+    fn location(&mut self, part: &str, names: &[&str]) -> Option<Vec3> {
+        let Some(tree) = self.root.get(part) else {
+            self.notes.problem_with(
+                "HP0803",
+                Some(self.root.at),
+                format!("there is no `{part}`"),
+                "a template has all its parts",
+            );
+            return None;
+        };
+        let Some(found) = names.iter().find_map(|n| tree.get(n)) else {
+            let message = format!("`{part}` has no `{}`", names[0]);
+            self.notes.problem_with("HP0803", Some(tree.at), message, "give it as a list of three numbers");
+            return None;
+        };
+        let v = found.vector();
+        if v.is_none() {
+            let message = format!("`{}` of `{part}` is three numbers", names[0]);
+            self.notes.problem_with(
+                "HP0804",
+                Some(found.at),
+                message,
+                "give it as a list like `[0, 0.7, 0.2]`",
+            );
+        }
+        v.map(Vec3::from)
+    }
+
+    fn point(&mut self, part: &str, names: &[&str], role: Role) {
+        if let Some(v) = self.location(part, names) {
+            let short = names[0].trim_start_matches("Location ");
+            self.m.hardpoints.push((crate::corner::plain(&format!("{part} {short}")), v));
+            let at = self.root.get(part).map(|t| t.at);
+            self.notes.taken("location", &format!("{part}, {short}"), at);
+            self.corner.points.insert(role, v);
+        }
+    }
+
+    fn arm(&mut self, part: &str, roles: [Role; 3], names: &[&str; 3]) {
+        for (role, name) in roles.into_iter().zip(names) {
+            self.point(part, &[name], role);
+        }
+    }
+
+    /// From the body to something: a tie rod, spring or shock; a spring or shock may be missing.
+    fn pair(&mut self, part: &str, [chassis, moving]: [Role; 2], ends: &[&str]) {
+        if self.root.get(part).is_none() && part != "Tierod" {
+            return;
+        }
+        self.point(part, &["Location Chassis", "Location Chassis Front"], chassis);
+        self.point(part, ends, moving);
+    }
+
+    fn link(&mut self, part: &str) {
+        let ends = [self.location(part, &["Location Chassis"]), self.location(part, &["Location Upright"])];
+        if let [Some(i), Some(j)] = ends {
+            let name = crate::corner::plain(part);
+            for (end, v) in [("chassis", i), ("upright", j)] {
+                self.m.hardpoints.push((format!("{name}_{end}"), v));
+            }
+            self.corner.links.push(Link { name, ends: [i, j], at: self.root.get(part).map(|t| t.at) });
+        }
+    }
+
+    /// The wheel's centre is the spindle's, its axis y but for static angles.
+    fn wheel(&mut self) {
+        if let Some(centre) = self.location("Spindle", &["COM", "Location"]) {
+            self.m.hardpoints.push(("spindle".into(), centre));
+            self.corner.points.insert(Role::WheelCentre, centre);
+            let angle = |key: &str| self.root.get(key).and_then(Tree::number).unwrap_or(0.0).to_radians();
+            let (camber, toe) = (angle("Camber Angle (deg)"), angle("Toe Angle (deg)"));
+            let side = if centre.y < 0.0 { -1.0 } else { 1.0 };
+            // Toe-in turns the outboard axis forward, camber tilts it down.
+            let axis = Vec3::from([toe.sin() * camber.cos(), side * toe.cos() * camber.cos(), -camber.sin()]);
+            self.corner.spin_axis = Some(axis);
+        }
+    }
+}

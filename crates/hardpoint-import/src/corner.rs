@@ -1,0 +1,665 @@
+//! Suspensions by the names of their hardpoints: what hangs on what follows from which of them there are.
+
+use std::collections::BTreeMap;
+
+use hardpoint::space::Vec3;
+
+use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Wheel};
+use crate::report::{At, Notes};
+
+/// What a hardpoint of a corner is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Role {
+    /// Of the lower arm: its pivots and its ball joint.
+    LowerFront,
+    /// See there.
+    LowerRear,
+    /// See there.
+    LowerOuter,
+    /// Of the upper arm.
+    UpperFront,
+    /// See there.
+    UpperRear,
+    /// See there.
+    UpperOuter,
+    /// Of the tie rod.
+    TieInner,
+    /// See there.
+    TieOuter,
+    /// The wheel's centre.
+    WheelCentre,
+    /// A point of the wheel's axis, inboard of the centre.
+    Spindle,
+    /// Of a strut or coilover: on the body, and where it is clamped.
+    StrutTop,
+    /// See there.
+    StrutBottom,
+    /// Of the push or pull rod: at the suspension, and at the rocker.
+    RodOuter,
+    /// See there.
+    RodInner,
+    /// Two points of the rocker's axis.
+    RockerA,
+    /// See there.
+    RockerB,
+    /// Of a damper at the rocker or arm: on the body, and there.
+    DamperChassis,
+    /// See there.
+    DamperMoving,
+    /// Of a spring, likewise.
+    SpringChassis,
+    /// See there.
+    SpringMoving,
+    /// Two pivots of a trailing arm.
+    TrailingA,
+    /// See there.
+    TrailingB,
+}
+
+/// Names of hardpoints, in small letters and with `_` between words, by what they are. The first that fits is taken.
+const NAMES: &[(Role, &[&str])] = &[
+    (
+        Role::LowerFront,
+        &[
+            "lower_wishbone_inboard_front",
+            "lower_wishbone_front_pivot",
+            "lca_front",
+            "lower_arm_front",
+            "lf",
+            "lower_control_arm_front",
+            "lwr_arm_front",
+            "lca_frt",
+            "arm_front",
+        ],
+    ),
+    (
+        Role::LowerRear,
+        &[
+            "lower_wishbone_inboard_rear",
+            "lower_wishbone_rear_pivot",
+            "lca_rear",
+            "lower_arm_rear",
+            "la",
+            "lr",
+            "lower_control_arm_rear",
+            "lwr_arm_rear",
+            "arm_rear",
+        ],
+    ),
+    (
+        Role::LowerOuter,
+        &[
+            "lower_wishbone_outboard",
+            "lower_wishbone_outer_ball_joint",
+            "lca_outer",
+            "lower_arm_outer",
+            "lbj",
+            "lower_ball_joint",
+            "lca_balljoint",
+            "lower_control_arm_outer",
+            "arm_outer",
+        ],
+    ),
+    (
+        Role::UpperFront,
+        &[
+            "upper_wishbone_inboard_front",
+            "upper_wishbone_front_pivot",
+            "uca_front",
+            "upper_arm_front",
+            "uf",
+            "upper_control_arm_front",
+            "upr_arm_front",
+        ],
+    ),
+    (
+        Role::UpperRear,
+        &[
+            "upper_wishbone_inboard_rear",
+            "upper_wishbone_rear_pivot",
+            "uca_rear",
+            "upper_arm_rear",
+            "ua",
+            "ur",
+            "upper_control_arm_rear",
+            "upr_arm_rear",
+        ],
+    ),
+    (
+        Role::UpperOuter,
+        &[
+            "upper_wishbone_outboard",
+            "upper_wishbone_outer_ball_joint",
+            "uca_outer",
+            "upper_arm_outer",
+            "ubj",
+            "upper_ball_joint",
+            "uca_balljoint",
+            "upper_control_arm_outer",
+        ],
+    ),
+    (
+        Role::TieInner,
+        &[
+            "trackrod_inboard",
+            "inner_track_rod_ball_joint",
+            "track_rod_inner_ball_joint",
+            "tierod_inner",
+            "tie_rod_inner",
+            "tri",
+            "toe_link_inner",
+            "track_rod_inner",
+        ],
+    ),
+    (
+        Role::TieOuter,
+        &[
+            "trackrod_outboard",
+            "outer_track_rod_ball_joint",
+            "track_rod_outer_ball_joint",
+            "tierod_outer",
+            "tie_rod_outer",
+            "tro",
+            "toe_link_outer",
+            "track_rod_outer",
+        ],
+    ),
+    (
+        Role::WheelCentre,
+        &["wheel_centre_point", "wheel_center", "wheel_centre", "axle_outboard", "wc", "wheel_center_point"],
+    ),
+    (
+        Role::Spindle,
+        &["wheel_spindle_point", "axle_inboard", "spindle", "spindle_inner", "wsp", "spindle_align"],
+    ),
+    (
+        Role::StrutTop,
+        &[
+            "strut_top",
+            "top_mount",
+            "strut_slider_top",
+            "strut_top_point",
+            "upper_strut_mount",
+            "strut_body_point",
+            "strut_upper",
+        ],
+    ),
+    (
+        Role::StrutBottom,
+        &[
+            "strut_bottom",
+            "strut_lower",
+            "lower_strut_point",
+            "strut_lwr_mount",
+            "strut_slider_bottom",
+            "strut_lower_point",
+            "strut_lower_mount",
+            "strut_clamp",
+        ],
+    ),
+    (
+        Role::RodOuter,
+        &[
+            "pushrod_outboard",
+            "push_rod_wishbone_end",
+            "pull_rod_wishbone_end",
+            "push_rod_upright_end",
+            "prod_outboard",
+            "pushrod_outer",
+            "pullrod_outer",
+            "push_rod_outer",
+            "pro",
+        ],
+    ),
+    (
+        Role::RodInner,
+        &[
+            "pushrod_inboard",
+            "push_rod_rocker_end",
+            "pull_rod_rocker_end",
+            "prod_to_bellcrank",
+            "pushrod_inner",
+            "pullrod_inner",
+            "push_rod_inner",
+            "pri",
+        ],
+    ),
+    (
+        Role::RockerA,
+        &["rocker_axis_a", "rocker_axis_1st_point", "bellcrank_pivot", "rocker_axis_front", "rpa1"],
+    ),
+    (
+        Role::RockerB,
+        &[
+            "rocker_axis_b",
+            "rocker_axis_2nd_point",
+            "bellcrank_pivot_orient",
+            "bellcrank_axis",
+            "rocker_axis_rear",
+            "rpa2",
+        ],
+    ),
+    (
+        Role::DamperChassis,
+        &[
+            "damper_chassis",
+            "damper_to_body_point",
+            "damper_body_point",
+            "damper_inboard",
+            "shock_to_chassis",
+            "top_damper_mount",
+            "damper_upper",
+            "shock_upper",
+            "dc",
+        ],
+    ),
+    (
+        Role::DamperMoving,
+        &[
+            "damper_rocker",
+            "damper_to_rocker_point",
+            "damper_to_wishbone_point",
+            "damper_wishbone_point",
+            "damper_outboard",
+            "shock_to_bellcrank",
+            "lwr_shock_mount",
+            "damper_lower",
+            "shock_lower",
+            "rd",
+        ],
+    ),
+    (
+        Role::SpringChassis,
+        &[
+            "spring_to_body_point",
+            "upper_spring_pivot_point",
+            "spring_chassis",
+            "upper_spring_seat",
+            "spring_upper",
+        ],
+    ),
+    (
+        Role::SpringMoving,
+        &[
+            "spring_to_wishbone_point",
+            "lower_spring_pivot_point",
+            "spring_rocker",
+            "lwr_spring_seat",
+            "spring_lower",
+        ],
+    ),
+    (Role::TrailingA, &["trailing_arm_pivot_a", "trailing_arm_inner", "trailing_arm_front"]),
+    (Role::TrailingB, &["trailing_arm_pivot_b", "trailing_arm_outer", "trailing_arm_rear"]),
+];
+
+/// In small letters, with `_` between words.
+pub fn plain(name: &str) -> String {
+    let mut out = String::new();
+    for c in name.trim().chars() {
+        if c.is_alphanumeric() {
+            out.extend(c.to_lowercase());
+        } else if !out.ends_with('_') && !out.is_empty() {
+            out.push('_');
+        }
+    }
+    out.trim_end_matches('_').to_owned()
+}
+
+/// What a hardpoint of that name is.
+pub fn role_of(name: &str) -> Option<Role> {
+    let name = plain(name);
+    NAMES.iter().find(|(_, names)| names.contains(&name.as_str())).map(|(role, _)| *role)
+}
+
+/// What a rod, or a spring, is on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Mount {
+    /// The lower arm.
+    Lower,
+    /// The upper arm.
+    Upper,
+    /// The upright.
+    Upright,
+    /// Nothing that has a body of its own.
+    Nothing(String),
+}
+
+/// A rod of constant length from the body to the upright.
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// Its name.
+    pub name: String,
+    /// Its ends, inboard first.
+    pub ends: [Vec3; 2],
+    /// Where it stands.
+    pub at: Option<At>,
+}
+
+/// One corner of a vehicle.
+#[derive(Clone, Debug, Default)]
+pub struct Corner {
+    /// What is put behind the names of its bodies and joints.
+    pub suffix: String,
+    /// Its hardpoints, by what they are.
+    pub points: BTreeMap<Role, Vec3>,
+    /// Further links between body and upright.
+    pub links: Vec<Link>,
+    /// What the push rod is on.
+    pub rod_on: Option<Mount>,
+    /// What the coilover, or the spring and damper, are on.
+    pub spring_on: Option<Mount>,
+    /// Whether a rack moves the tie rod.
+    pub rack: bool,
+    /// From the wheel's centre to the ground.
+    pub radius: Option<f64>,
+    /// The spin axis, outboard, where no spindle point gives it.
+    pub spin_axis: Option<Vec3>,
+    /// Where its file begins to tell of it.
+    pub at: Option<At>,
+}
+
+/// The bump of a wheel, in mm, of whose law no source says anything.
+const BUMP: f64 = 60.0;
+/// The radius of a wheel, in mm, of which the source says none.
+const RADIUS: f64 = 330.0;
+
+impl Corner {
+    fn get(&self, role: Role) -> Option<Vec3> {
+        self.points.get(&role).copied()
+    }
+
+    fn all<const N: usize>(&self, roles: [Role; N]) -> Option<[Vec3; N]> {
+        let found: Option<Vec<Vec3>> = roles.iter().map(|r| self.get(*r)).collect();
+        found.and_then(|v| <[Vec3; N]>::try_from(v).ok())
+    }
+
+    /// The same on the other side.
+    pub fn mirrored(&self, suffix: &str) -> Self {
+        let over = |v: Vec3| Vec3::from([v.x, -v.y, v.z]);
+        let mut out = self.clone();
+        out.suffix = suffix.to_owned();
+        out.points.values_mut().for_each(|p| *p = over(*p));
+        out.links.iter_mut().for_each(|l| l.ends = l.ends.map(over));
+        out.spin_axis = self.spin_axis.map(over);
+        out
+    }
+
+    /// Bodies, joints and the wheel of it; `rack` is that of the axle, once there is one. Whether its topology is known.
+    pub fn build(&self, m: &mut Mechanism, notes: &mut Notes, rack: &mut Option<usize>) -> bool {
+        use Role::*;
+        let lower = self.all([LowerFront, LowerRear, LowerOuter]);
+        let upper = self.all([UpperFront, UpperRear, UpperOuter]);
+        let strut = self.all([StrutTop, StrutBottom]);
+        let trailing = self.all([TrailingA, TrailingB]);
+        let tie = self.all([TieInner, TieOuter]);
+        let ties = self.links.len() + usize::from(tie.is_some());
+        let held = 2 * (usize::from(lower.is_some()) + usize::from(upper.is_some())) + ties;
+        let is_strut = lower.is_some() && upper.is_none() && strut.is_some() && self.links.is_empty();
+        if !(trailing.is_some() || is_strut || held >= 5) {
+            return false;
+        }
+        let same = [("strut", strut), ("trailing arm's axis", trailing), ("tie rod", tie)];
+        for (what, _) in same.iter().filter(|(_, ends)| ends.is_some_and(|[a, b]| a == b)) {
+            notes.problem_with(
+                "HP0804",
+                self.at,
+                format!("both points of the {what} are at one place"),
+                "correct one of them",
+            );
+        }
+        if notes.problem_count() > 0 {
+            return true;
+        }
+        let name = |base: &str| format!("{base}{}", self.suffix);
+        let frame = |at: Vec3| Some(hardpoint::space::Pose { rot: crate::turn::none(), r: at });
+        let centre = self.get(WheelCentre);
+        let upright_at = centre.or(lower.map(|l| l[2])).unwrap_or_else(Vec3::zero);
+        let upright = m.body(&name("upright"), String::new(), frame(upright_at));
+        let mut arms: BTreeMap<&str, usize> = BTreeMap::new();
+        for (arm, points) in [("lower_arm", lower), ("upper_arm", upper)] {
+            let Some([front, rear, outer]) = points else { continue };
+            let body = m.body(&name(arm), String::new(), frame((front + rear) * 0.5));
+            if (front - rear).norm() > 0.0 {
+                m.joint(
+                    Joint::new(
+                        &name(&format!("{arm}_pivot")),
+                        String::new(),
+                        "revolute",
+                        [GROUND, body],
+                        rear,
+                    )
+                    .through(rear, front),
+                );
+            } else {
+                notes.problem_with(
+                    "HP0804",
+                    self.at,
+                    format!("both pivots of the {} are at one place", arm.replace('_', " ")),
+                    "correct one of them",
+                );
+            }
+            m.joint(Joint::new(
+                &name(&format!("{arm}_ball")),
+                String::new(),
+                "spherical",
+                [body, upright],
+                outer,
+            ));
+            arms.insert(arm, body);
+            notes.taken("arm", &name(arm), self.at);
+        }
+        if let (true, Some([top, bottom])) = (is_strut, strut) {
+            let body = m.body(&name("strut"), String::new(), frame(top));
+            m.joint(Joint::new(&name("strut_top_mount"), String::new(), "spherical", [GROUND, body], top));
+            let mut slide =
+                Joint::new(&name("strut_slide"), String::new(), "translational", [upright, body], bottom)
+                    .through(bottom, top);
+            slide.draw = Some("coilover");
+            m.joint(slide);
+            notes.taken("strut", &name("strut"), self.at);
+        }
+        if let Some([a, b]) = trailing {
+            m.joint(
+                Joint::new(&name("trailing_arm_pivot"), String::new(), "revolute", [GROUND, upright], a)
+                    .through(a, b),
+            );
+            notes.taken("arm", &name("trailing_arm"), self.at);
+        }
+        for link in self.links.iter().filter(|l| l.ends[0] != l.ends[1]) {
+            m.joint(
+                Joint::new(&name(&link.name), String::new(), "distance", [GROUND, upright], link.ends[0])
+                    .between(link.ends[0], link.ends[1]),
+            );
+            notes.taken("link", &name(&link.name), link.at);
+        }
+        if let Some([inner, outer]) = tie {
+            let carrier = if self.rack { self.rack_of(m, notes, rack, inner) } else { GROUND };
+            m.joint(
+                Joint::new(&name("tie_rod"), String::new(), "distance", [carrier, upright], inner)
+                    .between(inner, outer),
+            );
+            notes.taken("link", &name("tie_rod"), self.at);
+        }
+        let on = |mount: &Mount| match mount {
+            Mount::Lower => arms.get("lower_arm").copied(),
+            Mount::Upper => arms.get("upper_arm").copied(),
+            Mount::Upright => Some(upright),
+            Mount::Nothing(_) => None,
+        };
+        let rocker = self.rocker(m, notes, &on);
+        self.springs(m, notes, &on, rocker, is_strut);
+        if let Some(centre) = centre {
+            self.wheel(m, notes, upright, centre);
+        } else {
+            notes.approximated(
+                "wheel",
+                &name("wheel"),
+                self.at,
+                "its centre is not in the file: what moves is held, or swings if it is the only freedom",
+            );
+        }
+        true
+    }
+
+    /// The rack of the axle.
+    fn rack_of(&self, m: &mut Mechanism, notes: &mut Notes, rack: &mut Option<usize>, at: Vec3) -> usize {
+        if let Some(body) = *rack {
+            return body;
+        }
+        let at = Vec3::from([at.x, 0.0, at.z]);
+        let body = m.body(
+            "rack",
+            "what the tie rods are on".into(),
+            Some(hardpoint::space::Pose { rot: crate::turn::none(), r: at }),
+        );
+        let slide = m.joint(
+            Joint::new("rack_slide", String::new(), "translational", [GROUND, body], at)
+                .along([0.0, 1.0, 0.0].into()),
+        );
+        let drives = Drives::Coordinate(Coordinate { joint: slide, name: "displacement" });
+        m.driver("steering", "no law in the source: held as drawn".into(), drives, Law::Held);
+        notes.approximated(
+            "motion",
+            "rack_slide",
+            self.at,
+            "nothing drives it in the source: a driver holds it as drawn",
+        );
+        *rack = Some(body);
+        body
+    }
+
+    /// The rocker, moved by its rod.
+    fn rocker(
+        &self,
+        m: &mut Mechanism,
+        notes: &mut Notes,
+        on: &dyn Fn(&Mount) -> Option<usize>,
+    ) -> Option<usize> {
+        use Role::*;
+        let name = |base: &str| format!("{base}{}", self.suffix);
+        let [outer, inner] = self.all([RodOuter, RodInner])?;
+        let Some([a, b]) = self.all([RockerA, RockerB]).filter(|[a, b]| a != b && outer != inner) else {
+            notes.refused("push rod", &name("push_rod"), self.at, "its rocker has no axis in the file");
+            return None;
+        };
+        let nearest = || {
+            let to = |role| self.get(role).map_or(f64::INFINITY, |p| (p - outer).norm());
+            if to(UpperOuter) < to(LowerOuter) { Mount::Upper } else { Mount::Lower }
+        };
+        let mount = self.rod_on.clone().unwrap_or_else(nearest);
+        if self.rod_on.is_none() {
+            let why = "what its outer end is on is not in the file: the arm whose ball joint is nearest";
+            notes.approximated("push rod", &name("push_rod"), self.at, why);
+        }
+        let Some(carrier) = on(&mount) else {
+            notes.refused(
+                "push rod",
+                &name("push_rod"),
+                self.at,
+                "what its outer end is on has no body here",
+            );
+            return None;
+        };
+        let body = m.body(
+            &name("rocker"),
+            String::new(),
+            Some(hardpoint::space::Pose { rot: crate::turn::none(), r: a }),
+        );
+        m.joint(
+            Joint::new(&name("rocker_pivot"), String::new(), "revolute", [GROUND, body], a).through(a, b),
+        );
+        m.joint(
+            Joint::new(&name("push_rod"), String::new(), "distance", [carrier, body], outer)
+                .between(outer, inner),
+        );
+        notes.taken("rocker", &name("rocker"), self.at);
+        Some(body)
+    }
+
+    /// What has a length that is worth knowing: coilover, damper, spring. They hold nothing.
+    fn springs(
+        &self,
+        m: &mut Mechanism,
+        notes: &mut Notes,
+        on: &dyn Fn(&Mount) -> Option<usize>,
+        rocker: Option<usize>,
+        is_strut: bool,
+    ) {
+        use Role::*;
+        let pairs = [
+            ("coilover", [StrutTop, StrutBottom], "coilover", is_strut),
+            ("damper", [DamperChassis, DamperMoving], "damper", false),
+            ("spring", [SpringChassis, SpringMoving], "spring", false),
+        ];
+        for (base, ends, form, done) in pairs {
+            let Some([top, bottom]) = self.all(ends).filter(|[a, b]| !done && a != b) else { continue };
+            let name = format!("{base}{}", self.suffix);
+            let guess = if self.get(LowerOuter).is_some() { Mount::Lower } else { Mount::Upright };
+            let mount = self.spring_on.clone().unwrap_or(guess);
+            let carrier = if base == "coilover" { on(&mount) } else { rocker.or_else(|| on(&mount)) };
+            let Some(carrier) = carrier else {
+                notes.refused(base, &name, self.at, "what its lower end is on has no body here");
+                continue;
+            };
+            let mut leg =
+                Joint::new(&name, String::new(), "leg", [GROUND, carrier], top).between(top, bottom);
+            leg.draw = Some(form);
+            m.joint(leg);
+            notes.taken(base, &name, self.at);
+        }
+    }
+
+    fn wheel(&self, m: &mut Mechanism, notes: &mut Notes, upright: usize, centre: Vec3) {
+        use Role::*;
+        let name = format!("wheel{}", self.suffix);
+        let per_mm = match m.length {
+            "m" => 1e-3,
+            "cm" => 0.1,
+            "in" => 1.0 / 25.4,
+            _ => 1.0,
+        };
+        let outboard = Vec3::from([0.0, if centre.y < 0.0 { -1.0 } else { 1.0 }, 0.0]);
+        let axis = self.get(Spindle).and_then(|s| (centre - s).unit()).or(self.spin_axis).unwrap_or(outboard);
+        let spindle = self.get(Spindle).filter(|s| (centre - *s).dot(outboard) > 0.0);
+        let axis = if axis.dot(outboard) < 0.0 { -axis } else { axis };
+        let radius = self.radius.filter(|r| *r > 0.0).unwrap_or_else(|| {
+            let radius = RADIUS * per_mm;
+            notes.approximated(
+                "wheel",
+                &name,
+                self.at,
+                format!("its radius is not in the file: taken for {radius} {}", m.length),
+            );
+            radius
+        });
+        let bump = BUMP * per_mm;
+        let text = format!("{bump}*sin(2*pi*t)");
+        let drives = Drives::Way { body: upright, at: centre, along: [0.0, 0.0, 1.0].into() };
+        notes.approximated(
+            "motion",
+            &name,
+            self.at,
+            format!("nothing drives it in the source: it goes up and down, law `{text}`"),
+        );
+        let bump = m.driver(
+            &format!("bump{}", self.suffix),
+            "no law in the source: the wheel goes up and down".into(),
+            drives,
+            Law::Text(text),
+        );
+        let lower = self.get(LowerOuter).map(|p| (upright, p));
+        let upper = self.get(UpperOuter).map(|p| (upright, p)).or(self.get(StrutTop).map(|p| (GROUND, p)));
+        let kingpin = lower.zip(upper).map(|(l, u)| [l, u]).filter(|_| self.rack);
+        m.wheels.push(Wheel {
+            name: name.clone(),
+            body: upright,
+            centre,
+            spin_axis: axis,
+            spindle,
+            radius,
+            kingpin,
+            bump,
+        });
+        notes.taken("wheel", &name, self.at);
+    }
+}

@@ -1,0 +1,246 @@
+//! Geometry files of suspension-explorer (YAML): corners and axles by the names of their hardpoints.
+
+use hardpoint::space::Vec3;
+
+use crate::corner::{Corner, Link, Mount, plain, role_of};
+use crate::mechanism::Mechanism;
+use crate::report::{At, Notes};
+use crate::tree::{self, Tree};
+use crate::{Format, Input};
+
+/// See the module.
+pub const FORMAT: Format = Format {
+    name: "suspension-explorer",
+    about: "suspension-explorer geometry",
+    endings: &["yaml", "yml"],
+    looks: |text| text.lines().any(|l| l.starts_with("hardpoints:") || l.starts_with("hard_points:")),
+    read,
+    binary: false,
+};
+
+fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+    let root = tree::yaml(input.text, notes)?;
+    let points = root.get("hardpoints").or_else(|| root.get("hard_points"));
+    let Some(points) = points.filter(|p| !p.entries().is_empty()) else {
+        let help = "write them as `hardpoints:` with entries like `strut_top: {x: 0, y: 700, z: 850}`";
+        notes.problem_with("HP0803", Some(root.at), "there are no `hardpoints`", help);
+        return None;
+    };
+    let name = root.text_of("name").filter(|n| !n.trim().is_empty()).unwrap_or(input.stem);
+    let mut m = Mechanism::new(name, units(&root, notes), "deg");
+    let sides: Vec<&str> = ["left", "right"].into_iter().filter(|s| points.get(s).is_some()).collect();
+    let mut rack = None;
+    let mut known = true;
+    let mut made = false;
+    if sides.is_empty() {
+        let mut corner = Corner { at: Some(points.at), ..settings(&root, notes) };
+        collect(points, "", &mut corner, &mut m, notes, "");
+        mount(&root, &mut corner);
+        if root.text_of("side").is_some_and(|s| s.eq_ignore_ascii_case("right"))
+            && corner.points.values().all(|p| p.y > 0.0)
+        {
+            notes.approximated(
+                "side",
+                "right",
+                root.get("side").map(|s| s.at),
+                "its hardpoints have positive y, which is left: they are taken as written",
+            );
+        }
+        known &= corner.build(&mut m, notes, &mut rack);
+        made = true;
+    }
+    for side in &sides {
+        let Some(list) = points.get(side) else { continue };
+        let mut corner = Corner { suffix: format!("_{side}"), at: Some(list.at), ..settings(&root, notes) };
+        collect(list, "", &mut corner, &mut m, notes, &format!("_{side}"));
+        mount(&root, &mut corner);
+        known &= corner.build(&mut m, notes, &mut rack);
+        made = true;
+        if sides.len() == 1 {
+            let other = if *side == "left" { "_right" } else { "_left" };
+            notes.approximated(
+                "side",
+                other.trim_start_matches('_'),
+                Some(list.at),
+                "the file has one side: the other is its mirror image",
+            );
+            known &= corner.mirrored(other).build(&mut m, notes, &mut rack);
+        }
+    }
+    if let Some(centre) = points.get("center").or_else(|| points.get("centre")) {
+        for (name, at, _) in centre.entries() {
+            notes.refused(
+                "hardpoint",
+                name,
+                Some(*at),
+                "what is between both sides (anti-roll bar, heave link) holds nothing and is not made",
+            );
+        }
+    }
+    for (key, at, _) in root.entries() {
+        let used = [
+            "hardpoints",
+            "hard_points",
+            "name",
+            "units",
+            "type",
+            "side",
+            "config",
+            "actuation",
+            "axle_config",
+            "scope",
+        ];
+        if !used.contains(&key.as_str()) {
+            notes.ignored(key, Some(*at));
+        }
+    }
+    if !known {
+        m.bodies.truncate(1);
+        m.joints.clear();
+        m.drivers.clear();
+        m.wheels.clear();
+    }
+    made.then_some(m)
+}
+
+fn units(root: &Tree, notes: &mut Notes) -> &'static str {
+    let Some(units) = root.get("units") else {
+        notes.approximated(
+            "units",
+            "",
+            Some(root.at),
+            "the file names none: lengths are taken for millimetres",
+        );
+        return "mm";
+    };
+    match units.text().unwrap_or_default().to_ascii_lowercase().as_str() {
+        "millimeters" | "millimetres" | "mm" => "mm",
+        "meters" | "metres" | "m" => "m",
+        "centimeters" | "centimetres" | "cm" => "cm",
+        "inches" | "inch" | "in" => "in",
+        other => {
+            let message = format!("`{other}` is no unit of length");
+            notes.problem_with(
+                "HP0804",
+                Some(units.at),
+                message,
+                "write `millimeters`, `meters` or `inches`",
+            );
+            "mm"
+        }
+    }
+}
+
+/// Steering, and the wheel.
+fn settings(root: &Tree, notes: &mut Notes) -> Corner {
+    let config = root.get("axle_config").or_else(|| root.get("config")).or_else(|| root.get("configuration"));
+    let steering = config.and_then(|c| c.get("steering"));
+    let kind = steering.and_then(|s| s.text_of("type").or(s.text())).unwrap_or("rack");
+    let tire = config.and_then(|c| c.get("wheel")).and_then(|w| w.get("tire").or_else(|| w.get("tyre")));
+    let number = |key: &str| tire.and_then(|t| t.get(key)).and_then(Tree::number);
+    let inches = |x: f64| {
+        if root.text_of("units").is_some_and(|u| u.starts_with("m") && !u.starts_with("mi") && u != "mm") {
+            x * 0.0254
+        } else {
+            x * 25.4
+        }
+    };
+    let radius = match (number("aspect_ratio"), number("section_width"), number("rim_diameter")) {
+        (Some(aspect), Some(width), Some(rim)) => Some(aspect * width + inches(rim) / 2.0),
+        _ => number("nominal_radius").or_else(|| number("radius")),
+    };
+    let offset = config.and_then(|c| c.get("wheel")).and_then(|w| w.get("offset"));
+    if let Some(offset) = offset.filter(|o| o.number().is_some_and(|x| x != 0.0)) {
+        notes.approximated(
+            "wheel",
+            "offset",
+            Some(offset.at),
+            "the wheel's centre is taken where the axle ends, without its offset",
+        );
+    }
+    if let Some(shim) = config.and_then(|c| c.get("camber_shim")) {
+        let same = shim.get("design_thickness").and_then(Tree::number)
+            == shim.get("setup_thickness").and_then(Tree::number);
+        if same {
+            notes.ignored("camber_shim", Some(shim.at));
+        } else {
+            notes.refused(
+                "camber_shim",
+                "",
+                Some(shim.at),
+                "the upright is taken as designed, without the shim of the setup",
+            );
+        }
+    }
+    Corner { rack: !kind.eq_ignore_ascii_case("none"), radius, ..Corner::default() }
+}
+
+/// What the rod or the coilover is on.
+fn mount(root: &Tree, corner: &mut Corner) {
+    let outer = root.get("axle_config").unwrap_or(root);
+    let Some(actuation) = outer.get("actuation") else { return };
+    let mount = actuation.text_of("mount").map(|mount| match plain(mount).as_str() {
+        "lower_wishbone" | "lower_arm" => Mount::Lower,
+        "upper_wishbone" | "upper_arm" => Mount::Upper,
+        "upright" | "trailing_arm" => Mount::Upright,
+        other => Mount::Nothing(other.to_owned()),
+    });
+    corner.rod_on = mount.clone();
+    corner.spring_on = mount;
+}
+
+/// The hardpoints of a corner, also where they are grouped.
+fn collect(
+    list: &Tree,
+    before: &str,
+    corner: &mut Corner,
+    m: &mut Mechanism,
+    notes: &mut Notes,
+    suffix: &str,
+) {
+    let mut links: Vec<(String, [Option<Vec3>; 2], At)> = Vec::new();
+    for (key, at, value) in list.entries() {
+        let name = if before.is_empty() { key.clone() } else { format!("{before}_{key}") };
+        let Some(v) = value.vector() else {
+            if value.entries().iter().any(|(.., v)| !v.entries().is_empty() || v.vector().is_some()) {
+                collect(value, &name, corner, m, notes, suffix);
+            } else {
+                let help = "write it as `{x: 0, y: 700, z: 850}`";
+                notes.problem_with("HP0804", Some(value.at), format!("`{name}` is three numbers"), help);
+            }
+            continue;
+        };
+        let v = Vec3::from(v);
+        m.hardpoints.push((format!("{name}{suffix}"), v));
+        notes.taken("hardpoint", &name, Some(*at));
+        let ends = [("_link_inboard", 0), ("_link_outboard", 1), ("_link_inner", 0), ("_link_outer", 1)];
+        match (role_of(&name), ends.iter().find_map(|(end, k)| Some((name.strip_suffix(end)?, *k)))) {
+            (Some(role), _) => {
+                corner.points.insert(role, v);
+            }
+            (None, Some((link, k))) => {
+                let link = format!("{link}_link");
+                match links.iter_mut().find(|(known, ..)| *known == link) {
+                    Some((_, ends, _)) => ends[k] = Some(v),
+                    None => {
+                        let mut ends = [None; 2];
+                        ends[k] = Some(v);
+                        links.push((link, ends, *at));
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    for (name, ends, at) in links {
+        match ends {
+            [Some(i), Some(j)] => corner.links.push(Link { name, ends: [i, j], at: Some(at) }),
+            _ => notes.problem_with(
+                "HP0803",
+                Some(at),
+                format!("`{name}` has one end"),
+                "give it `_inboard` and `_outboard`",
+            ),
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! What a source leaves open: bodies that nothing holds, motions that nothing drives.
+
+use std::collections::HashSet;
+
+use hardpoint::joint::ALL;
+use hardpoint::space::Vec3;
+use hardpoint::topology::TopologyFault;
+use hardpoint::{Analysis, Run};
+
+use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism};
+use hardpoint_file::Diagnostic;
+
+use crate::report::Notes;
+use crate::write;
+
+/// The one degree of freedom of a mechanism swings by this angle, in rad.
+const SWING: f64 = 0.2;
+/// Or along this part of the mechanism's size.
+const STROKE: f64 = 0.05;
+/// Output times at which such a swing is tried.
+const TRIED: usize = 20;
+/// Mechanisms with more motions left open than this are told as they are.
+const MOST_HELD: usize = 400;
+
+/// Holds what nothing holds, and drives what nothing drives. What remains wrong is handed back: the model is written all the same, for
+/// the user to mend.
+pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
+    ground(m, notes);
+    let moves = m.drivers.iter().any(|d| d.law != Law::Held);
+    let mut left = match freedom(m, notes) {
+        Ok(left) => left,
+        Err(fault) => return Some(fault),
+    };
+    let only_one = left.0 == 1 && !moves;
+    if left.0 > MOST_HELD {
+        return Some(notes.diagnostic(
+            "HP0808",
+            None,
+            format!("{} motions of it are driven by nothing", left.0),
+        ));
+    }
+    let mut tried = HashSet::new();
+    while left.0 > 0 {
+        let Some((name, drives)) = candidates(m, &left.1).find(|(name, _)| !tried.contains(name)) else {
+            let names: Vec<String> = left.1.iter().map(|j| format!("`{}`", m.joints[*j].name)).collect();
+            let message = format!("{} motions remain that no driver could be found for", left.0);
+            return Some(
+                notes
+                    .diagnostic("HP0808", None, message)
+                    .note(format!("joints that still move: {}", names.join(", "))),
+            );
+        };
+        tried.insert(name.clone());
+        m.driver(
+            &format!("{name}_held"),
+            "nothing drives it in the source: held as drawn".into(),
+            drives,
+            Law::Held,
+        );
+        match freedom(m, notes) {
+            Ok(now) if now.0 < left.0 => {
+                left = now;
+                if !only_one {
+                    notes.approximated(
+                        "motion",
+                        &name,
+                        None,
+                        "nothing drives it in the source: a driver holds it as drawn",
+                    );
+                }
+            }
+            _ => {
+                m.drivers.pop();
+            }
+        }
+    }
+    if only_one {
+        swing(m, notes);
+    }
+    None
+}
+
+/// Joins to the ground what no joint connects with it.
+fn ground(m: &mut Mechanism, notes: &mut Notes) {
+    // `root[b]`: the lowest body that joints connect `b` with.
+    let mut root: Vec<usize> = (0..m.bodies.len()).collect();
+    fn find(root: &mut [usize], mut b: usize) -> usize {
+        while root[b] != b {
+            root[b] = root[root[b]];
+            b = root[b];
+        }
+        b
+    }
+    for joint in &m.joints {
+        let [a, b] = joint.bodies.map(|b| find(&mut root, b));
+        root[a.max(b)] = a.min(b);
+    }
+    for b in 1..m.bodies.len() {
+        if find(&mut root, b) != b {
+            continue;
+        }
+        let body = &m.bodies[b];
+        let first = m.joints.iter().find(|j| j.bodies.contains(&b)).and_then(|j| j.at.first().copied());
+        let at = body.pose.map(|p| p.r).or(first).unwrap_or_else(|| Vec3::from([0.0; 3]));
+        let name = body.name.clone();
+        let why = "nothing connects it with the ground in the source: it is fixed there";
+        m.joint(Joint::new(&format!("{name}_fixed"), why.into(), "fixed", [GROUND, b], at));
+        notes.approximated("body", &name, None, why);
+    }
+}
+
+/// How many motions nothing drives, and the joints that move in them.
+fn freedom(m: &Mechanism, notes: &Notes) -> Result<(usize, Vec<usize>), Diagnostic> {
+    let refused = |message: String| {
+        notes.diagnostic("HP0808", None, format!("the imported mechanism does not work: {message}"))
+    };
+    if m.bodies.len() == 1 {
+        return Err(refused("it has no bodies".into()));
+    }
+    let file = parsed(m).map_err(refused)?;
+    match Analysis::new(&file.model) {
+        Ok(_) => Ok((0, Vec::new())),
+        Err(TopologyFault::UnderDriven { freedom, joints, .. }) => {
+            // Drivers that are no joint's coordinate are joints without a name, behind the others.
+            Ok((freedom, joints.iter().map(|j| j.0).filter(|j| *j < m.joints.len()).collect()))
+        }
+        Err(fault) => {
+            let message = refused(format!("{fault}"));
+            let message = fault.notes().into_iter().fold(message, |m, n| m.note(n));
+            Err(Diagnostic { code: fault.code(), ..message }.help(fault.help()))
+        }
+    }
+}
+
+/// The model without its meshes, which lie in files.
+fn parsed(m: &Mechanism) -> Result<hardpoint_file::ModelFile, String> {
+    let mut bare = m.clone();
+    bare.bodies.iter_mut().for_each(|b| b.mesh = None);
+    hardpoint_file::parse(&write::text(&bare, ""), "import").map_err(|d| {
+        d.list().first().map_or(String::new(), |d| [&[d.message.clone()], &d.notes[..]].concat().join("; "))
+    })
+}
+
+/// What could be held, best first: coordinates of the joints that move, then the turning of their bodies.
+fn candidates<'m>(m: &'m Mechanism, joints: &'m [usize]) -> impl Iterator<Item = (String, Drives)> + 'm {
+    let coordinates = joints.iter().flat_map(move |&joint| {
+        let j = &m.joints[joint];
+        let all = ALL.iter().find(|k| k.name == j.kind).map_or(&[][..], |k| k.coordinates);
+        let constant = ["distance", "revolute_spherical"].contains(&j.kind);
+        let free = all.iter().filter(move |_| !constant);
+        free.filter_map(move |c| {
+            let coordinate = Coordinate { joint, name: c.name };
+            let name = if all.len() == 1 { j.name.clone() } else { format!("{}_{}", j.name, c.name) };
+            (!m.is_driven(coordinate)).then_some((name, Drives::Coordinate(coordinate)))
+        })
+    });
+    let axes = [("x", [1.0, 0.0, 0.0]), ("y", [0.0, 1.0, 0.0]), ("z", [0.0, 0.0, 1.0])];
+    let turns = joints.iter().flat_map(move |&joint| {
+        let j = &m.joints[joint];
+        axes.map(|(letter, axis)| {
+            let drives = Drives::Heading { body: j.bodies[1], about: axis.into(), relative_to: j.bodies[0] };
+            (format!("{}_about_{letter}", j.name), drives)
+        })
+    });
+    let ways = joints.iter().flat_map(move |&joint| {
+        let j = &m.joints[joint];
+        let at = j.at.last().copied().unwrap_or_else(|| Vec3::from([0.0; 3]));
+        axes.map(|(letter, axis)| {
+            let drives = Drives::Way { body: j.bodies[1], at, along: axis.into() };
+            (format!("{}_along_{letter}", m.bodies[j.bodies[1]].name), drives)
+        })
+    });
+    coordinates.chain(turns).chain(ways)
+}
+
+/// The one degree of freedom is plainly the input: it swings, as far as it can.
+fn swing(m: &mut Mechanism, notes: &mut Notes) {
+    let Some(driver) = m.drivers.len().checked_sub(1) else { return };
+    let name = m.drivers[driver].name.clone();
+    let (is_angle, limits) = match m.drivers[driver].drives {
+        Drives::Coordinate(c) => (c.name.starts_with("angle"), m.joints[c.joint].limits),
+        Drives::Way { .. } => (false, None),
+        Drives::Heading { .. } => (true, None),
+    };
+    let per_rad = if m.angle == "deg" { 180.0 / std::f64::consts::PI } else { 1.0 };
+    let usual = if is_angle { SWING * per_rad } else { STROKE * m.size() };
+    let wanted = match limits.map(|[low, high]| (-low, high)) {
+        // Both ways, or the one way that there is.
+        Some((down, up)) if down > 0.0 && up > 0.0 => vec![(usual.min(down).min(up), false)],
+        Some((down, up)) if up > 0.0 && down <= 0.0 => vec![(usual.min(up), true)],
+        Some((down, _)) if down > 0.0 => vec![(-usual.min(down), true)],
+        _ => vec![(usual, false), (usual / 4.0, false), (usual / 4.0, true), (-usual / 4.0, true)],
+    };
+    for (amplitude, one_way) in wanted {
+        let a = rounded(amplitude);
+        let text = if one_way { format!("{a}*(1 - cos(2*pi*t))/2") } else { format!("{a}*sin(2*pi*t)") };
+        let d = &mut m.drivers[driver];
+        d.law = Law::Text(text.clone());
+        d.note = "nothing drives it in the source: as the only freedom it is the input".into();
+        let goes = parsed(m).is_ok_and(|mut file| {
+            file.model.times = (0..=TRIED).map(|k| k as f64 / TRIED as f64).collect();
+            Analysis::new(&file.model)
+                .is_ok_and(|a| a.solve(Run::new().without_sensitivities()).stop.is_none())
+        });
+        if goes {
+            let why =
+                format!("nothing drives it in the source: as the only freedom it is the input, law `{text}`");
+            notes.approximated("motion", &name, None, why);
+            let short = name.strip_suffix("_held").unwrap_or(&name).to_owned();
+            m.drivers[driver].name = format!("{short}_input");
+            return;
+        }
+    }
+    let d = &mut m.drivers[driver];
+    (d.law, d.note) = (Law::Held, "nothing drives it in the source: held as drawn".into());
+    notes.approximated(
+        "motion",
+        &name,
+        None,
+        "nothing drives it in the source, and it does not swing freely: a driver holds it as drawn",
+    );
+}
+
+/// To two digits, for people to read.
+fn rounded(x: f64) -> f64 {
+    if x == 0.0 || !x.is_finite() {
+        return x;
+    }
+    format!("{x:.1e}").parse().unwrap_or(x)
+}

@@ -1,0 +1,492 @@
+//! Documents of FreeCAD's Assembly workbench (`.FCStd`): parts where they stand, joints, grounded parts, motions of simulations.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::{Cursor, Read};
+
+use hardpoint::space::{Pose, Quat, Vec3};
+use roxmltree::Node;
+
+use crate::law::{self, Language};
+use crate::markers::{Called, Joined, Marker, carrying, counted, join, offset, way};
+use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Times};
+use crate::report::{At, Notes};
+use crate::turn::home;
+use crate::xml::{child, children, named};
+use crate::{Format, Input, LARGEST, xml};
+
+/// See the module.
+pub const FORMAT: Format = Format {
+    name: "freecad",
+    about: "FreeCAD Assembly document",
+    endings: &["fcstd"],
+    looks: |_| false,
+    read,
+    binary: true,
+};
+
+/// The types of joints, as documents that list no names for them count them.
+const TYPES: [&str; 13] = [
+    "Fixed",
+    "Revolute",
+    "Cylindrical",
+    "Slider",
+    "Ball",
+    "Distance",
+    "Parallel",
+    "Perpendicular",
+    "Angle",
+    "RackPinion",
+    "Screw",
+    "Gears",
+    "Belt",
+];
+/// Groups are nested so deep at most.
+const DEEPEST: usize = 40;
+
+fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+    let text = match document(input.bytes) {
+        Ok(text) => text,
+        Err(why) => {
+            let help = "save the document in FreeCAD again";
+            notes.problem_with("HP0802", None, format!("the file is no FreeCAD document: {why}"), help);
+            return None;
+        }
+    };
+    let number = notes.text("Document.xml", &text);
+    let document = xml::parse(&text, number, notes)?;
+    let root = document.root_element();
+    let mut objects = BTreeMap::new();
+    let types: BTreeMap<&str, &str> = child(root, "Objects")
+        .into_iter()
+        .flat_map(|list| named(list, "Object"))
+        .filter_map(|o| Some((o.attribute("name")?, o.attribute("type")?)))
+        .collect();
+    for node in child(root, "ObjectData").into_iter().flat_map(|list| named(list, "Object")) {
+        let Some(name) = node.attribute("name") else { continue };
+        let properties: BTreeMap<&str, Node<'_, '_>> = child(node, "Properties")
+            .into_iter()
+            .flat_map(|list| named(list, "Property"))
+            .filter_map(|p| Some((p.attribute("name")?, p)))
+            .collect();
+        let kind = types.get(name).copied().unwrap_or_default();
+        objects.insert(name, Object { name, node, kind, properties, text: number });
+    }
+    let mut reader = Reader {
+        m: Mechanism::new(input.stem, "mm", "rad"),
+        notes,
+        objects,
+        bodies: BTreeMap::new(),
+        joints: BTreeMap::new(),
+    };
+    reader.assembly();
+    let m = reader.m;
+    (m.bodies.len() > 1).then_some(m)
+}
+
+/// The text of the document in the zip.
+fn document(bytes: &[u8]) -> Result<String, String> {
+    let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| e.to_string())?;
+    let file = archive.by_name("Document.xml").map_err(|_| "there is no `Document.xml` in it".to_owned())?;
+    let mut text = String::new();
+    file.take(LARGEST as u64).read_to_string(&mut text).map_err(|e| format!("`Document.xml`: {e}"))?;
+    Ok(text)
+}
+
+/// An object of the document.
+struct Object<'a, 'i> {
+    name: &'a str,
+    node: Node<'a, 'i>,
+    kind: &'a str,
+    properties: BTreeMap<&'a str, Node<'a, 'i>>,
+    text: usize,
+}
+
+impl<'a, 'i> Object<'a, 'i> {
+    fn at(&self) -> Option<At> {
+        xml::attribute_at(self.text, self.node, "name")
+    }
+
+    /// The element in a property.
+    fn value(&self, property: &str) -> Option<Node<'a, 'i>> {
+        children(*self.properties.get(property)?).next()
+    }
+
+    fn text_of(&self, property: &str) -> Option<&'a str> {
+        self.value(property)?.attribute("value")
+    }
+
+    fn label(&self) -> &'a str {
+        self.text_of("Label").filter(|l| !l.trim().is_empty()).unwrap_or(self.name)
+    }
+
+    fn number(&self, property: &str) -> Option<f64> {
+        self.text_of(property)?.parse().ok().filter(|x: &f64| x.is_finite())
+    }
+
+    /// A property that is one of some words.
+    fn word(&self, property: &str) -> Option<String> {
+        let node = *self.properties.get(property)?;
+        let value = child(node, "Integer").and_then(|n| n.attribute("value"));
+        let Some(k) = value.and_then(|v| v.parse::<usize>().ok()) else {
+            return self.text_of(property).map(str::to_owned);
+        };
+        let listed = child(node, "CustomEnumList")
+            .and_then(|list| children(list).nth(k))
+            .and_then(|e| e.attribute("value"));
+        listed.or(TYPES.get(k).copied()).map(str::to_owned)
+    }
+
+    fn placement(&self, property: &str, notes: &mut Notes) -> Option<Pose> {
+        let node = self.value(property)?;
+        let number =
+            |key: &str| node.attribute(key).and_then(|v| v.parse().ok()).filter(|x: &f64| x.is_finite());
+        let r = [number("Px"), number("Py"), number("Pz")];
+        let q = [number("Q3"), number("Q0"), number("Q1"), number("Q2")];
+        let (true, true) = (r.iter().all(Option::is_some), q.iter().all(Option::is_some)) else {
+            let message = format!("`{property}` of `{}` is no placement", self.label());
+            notes.problem_with(
+                "HP0804",
+                xml::at(self.text, node),
+                message,
+                "save the document in FreeCAD again",
+            );
+            return None;
+        };
+        let rot = Quat::from_array(q.map(Option::unwrap_or_default))
+            .map_or_else(crate::turn::none, |q| q.rotation());
+        Some(Pose { rot, r: r.map(Option::unwrap_or_default).into() })
+    }
+
+    /// What a link names: the object, the first path in it, and another document's file.
+    fn link(&self, property: &str) -> Option<(&'a str, String, &'a str)> {
+        let node = self.value(property)?;
+        let name = node.attribute("name").or_else(|| node.attribute("value"))?;
+        let sub = node
+            .attribute("sub")
+            .or_else(|| children(node).find_map(|s| s.attribute("value")))
+            .unwrap_or_default();
+        Some((name, sub.to_owned(), node.attribute("file").unwrap_or_default()))
+    }
+
+    /// The objects in a group.
+    fn group(&self) -> Vec<&'a str> {
+        let list = self.value("Group").into_iter().flat_map(children);
+        list.filter_map(|n| n.attribute("value").or_else(|| n.attribute("name"))).collect()
+    }
+}
+
+struct Reader<'a, 'i, 'n> {
+    m: Mechanism,
+    notes: &'n mut Notes,
+    objects: BTreeMap<&'a str, Object<'a, 'i>>,
+    bodies: BTreeMap<&'a str, usize>,
+    joints: BTreeMap<&'a str, Joined>,
+}
+
+impl<'a, 'i> Reader<'a, 'i, '_> {
+    fn assembly(&mut self) {
+        let roots: Vec<&'a str> =
+            self.objects.values().filter(|o| o.kind == "Assembly::AssemblyObject").map(|o| o.name).collect();
+        // The one that is in no other.
+        let inner: BTreeSet<&'a str> = roots.iter().flat_map(|r| self.objects[r].group()).collect();
+        let Some(root) = roots.iter().copied().find(|r| !inner.contains(r)) else {
+            self.notes.problem_with(
+                "HP0803",
+                None,
+                "there is no assembly in the document",
+                "make one with FreeCAD's Assembly workbench",
+            );
+            return;
+        };
+        self.m.name = self.objects[root].label().to_owned();
+        let outer = self.objects[root].placement("Placement", self.notes).unwrap_or_else(home);
+        let mut joints = Vec::new();
+        let mut parts = Vec::new();
+        self.sort(root, &mut parts, &mut joints, 0);
+        let grounded: BTreeSet<&'a str> = joints
+            .iter()
+            .filter_map(|j| self.objects[j].link("ObjectToGround"))
+            .map(|(name, ..)| name)
+            .collect();
+        for part in parts {
+            let object = &self.objects[part];
+            let pose = outer.compose(object.placement("Placement", self.notes).unwrap_or_else(home));
+            let object = &self.objects[part];
+            let called = Called { kind: "part", name: object.label(), at: object.at() };
+            let body = if grounded.contains(part) {
+                GROUND
+            } else {
+                self.m.body(object.label(), called.note(self.notes), Some(pose))
+            };
+            self.notes.taken("part", called.name, called.at);
+            self.bodies.insert(part, body);
+        }
+        for joint in &joints {
+            self.joint(joint, root, outer);
+        }
+        for joint in &joints {
+            self.relation(joint, root, outer);
+        }
+        let motions: Vec<&'a str> = self
+            .objects
+            .values()
+            .filter(|o| o.properties.contains_key("Formula") && o.properties.contains_key("MotionType"))
+            .map(|o| o.name)
+            .collect();
+        for motion in motions {
+            let (label, at) = (self.objects[motion].label(), self.objects[motion].at());
+            if let Err(why) = self.motion(motion) {
+                self.notes.refused("motion", label, at, format!("{why}; what it drives is held as drawn"));
+            }
+        }
+        self.times();
+    }
+
+    /// The parts and joints in a group, and in the groups in it.
+    fn sort(&mut self, group: &'a str, parts: &mut Vec<&'a str>, joints: &mut Vec<&'a str>, depth: usize) {
+        let Some(object) = self.objects.get(group).filter(|_| depth < DEEPEST) else { return };
+        for name in object.group() {
+            let Some(inner) = self.objects.get(name) else { continue };
+            let is_joint =
+                inner.properties.contains_key("JointType") || inner.properties.contains_key("ObjectToGround");
+            let has_place = inner.properties.contains_key("Placement");
+            let (kind, at) = (inner.kind, inner.at());
+            if is_joint {
+                joints.push(name);
+            } else if [
+                "Assembly::JointGroup",
+                "App::DocumentObjectGroup",
+                "Assembly::ViewGroup",
+                "Assembly::SimulationGroup",
+            ]
+            .contains(&kind)
+            {
+                self.sort(name, parts, joints, depth + 1);
+            } else if has_place
+                && !kind.starts_with("App::Origin")
+                && !["App::Line", "App::Plane", "App::Point"].contains(&kind)
+            {
+                parts.push(name);
+            } else {
+                self.notes.ignored(kind, at);
+            }
+        }
+    }
+
+    /// The marker at one end of a joint.
+    fn marker(&mut self, joint: &'a str, k: usize, root: &'a str, outer: Pose) -> Option<Marker> {
+        let object = &self.objects[joint];
+        let (label, at) = (object.label(), object.at());
+        let inner = object.placement(&format!("Placement{k}"), self.notes).unwrap_or_else(home);
+        let object = &self.objects[joint];
+        let reference = object.link(&format!("Reference{k}")).or_else(|| object.link(&format!("Object{k}")));
+        let Some((name, sub, _)) = reference else {
+            let message = format!("`{label}` has no `Reference{k}`");
+            self.notes.problem_with("HP0803", at, message, "choose both ends of the joint in FreeCAD");
+            return None;
+        };
+        // The path from the assembly down; the last word of it is a face, an edge or a vertex.
+        let mut path: Vec<&str> = sub.split('.').collect();
+        path.pop();
+        if name != root {
+            path.insert(0, name);
+        }
+        let first = path.iter().position(|p| self.bodies.contains_key(*p));
+        let Some(first) = first else {
+            let message = format!("`{label}` refers to `{name}`, which is no part of the assembly");
+            self.notes.problem_with("HP0803", at, message, "choose both ends of the joint in FreeCAD");
+            return None;
+        };
+        let body = self.bodies[path[first]];
+        let mut pose = outer;
+        for part in &path[first..] {
+            if let Some(object) = self.objects.get(part) {
+                pose = pose.compose(object.placement("Placement", self.notes).unwrap_or_else(home));
+            }
+        }
+        Some(Marker { body, pose: pose.compose(inner) })
+    }
+
+    fn joint(&mut self, joint: &'a str, root: &'a str, outer: Pose) {
+        let object = &self.objects[joint];
+        let (label, at) = (object.label(), object.at());
+        if object.properties.contains_key("ObjectToGround") {
+            self.notes.taken("grounded", label, at);
+            return;
+        }
+        let kind = object.word("JointType").unwrap_or_default();
+        if object.text_of("Activated") == Some("false") || object.text_of("Suppressed") == Some("true") {
+            self.notes.refused(&kind, label, at, "it is not active");
+            return;
+        }
+        let limited = ["EnableLengthMin", "EnableLengthMax", "EnableAngleMin", "EnableAngleMax"];
+        let has_limits = limited.iter().any(|k| object.text_of(k) == Some("true"));
+        let (distance, lead) = (object.number("Distance"), object.number("Distance"));
+        if ["RackPinion", "Gears", "Belt"].contains(&kind.as_str()) {
+            return;
+        }
+        let type_name = match kind.as_str() {
+            "Fixed" => "fixed",
+            "Revolute" => "revolute",
+            "Cylindrical" => "cylindrical",
+            "Slider" => "translational",
+            "Ball" => "spherical",
+            "Parallel" => "parallel",
+            "Perpendicular" => "dot1",
+            "Angle" => "angle",
+            "Screw" => "screw",
+            "Distance" => "distance",
+            _ => {
+                let message = format!("`{label}` is of the unknown type `{kind}`");
+                self.notes.problem_with("HP0805", at, message, "save the document with FreeCAD 1.0 or later");
+                return;
+            }
+        };
+        let ends = [1, 2].map(|k| self.marker(joint, k, root, outer));
+        let [Some(i), Some(j)] = ends else { return };
+        let called = Called { kind: &kind, name: label, at };
+        let note = called.note(self.notes);
+        let number = match type_name {
+            "distance" if (j.pose.r - i.pose.r).norm() > 0.0 && i.body != j.body => {
+                let why = format!(
+                    "as a rod between two points, of {} mm as drawn; which surfaces were meant is not in the file",
+                    distance.unwrap_or(0.0)
+                );
+                self.notes.approximated(&kind, label, at, why);
+                Some(
+                    self.m.joint(
+                        Joint::new(label, note, "distance", [i.body, j.body], i.pose.r)
+                            .between(i.pose.r, j.pose.r),
+                    ),
+                )
+            }
+            "distance" => {
+                self.notes.approximated(&kind, label, at, "a distance of zero: as a ball joint");
+                join(&mut self.m, self.notes, called, "spherical", [i, j])
+            }
+            "angle" if i.z().cross(j.z()).norm() > 1e-6 && i.body != j.body => {
+                self.notes.taken(&kind, label, at);
+                Some(self.m.joint(
+                    Joint::new(label, note, "angle", [i.body, j.body], i.pose.r).with_axes(i.z(), j.z()),
+                ))
+            }
+            "angle" => join(&mut self.m, self.notes, called, "parallel", [i, j]),
+            other => join(&mut self.m, self.notes, called, other, [i, j]),
+        };
+        let Some(number) = number else { return };
+        if type_name == "screw" {
+            match lead.filter(|l| *l != 0.0) {
+                Some(lead) => self.m.joints[number].lead = Some(lead),
+                None => self.notes.problem_with(
+                    "HP0804",
+                    at,
+                    format!("the screw `{label}` has no pitch"),
+                    "give it a distance other than zero",
+                ),
+            }
+        }
+        if has_limits {
+            self.notes.refused("limits", label, at, "drivers prescribe what moves: nothing stops at a limit");
+        }
+        self.joints.insert(joint, Joined { number, kind: type_name, markers: [i, j] });
+    }
+
+    /// Racks, gears and belts: couplers of the joints that carry their parts.
+    fn relation(&mut self, joint: &'a str, root: &'a str, outer: Pose) {
+        let object = &self.objects[joint];
+        let (label, at) = (object.label(), object.at());
+        let kind = object.word("JointType").unwrap_or_default();
+        if !["RackPinion", "Gears", "Belt"].contains(&kind.as_str())
+            || object.text_of("Activated") == Some("false")
+        {
+            return;
+        }
+        let [first, second] =
+            [object.number("Distance"), object.number("Distance2")].map(|d| d.filter(|d| *d != 0.0));
+        let ends = [1, 2].map(|k| self.marker(joint, k, root, outer));
+        let [Some(i), Some(j)] = ends else { return };
+        let hinges = ["revolute", "cylindrical"];
+        let hinge = |m: Marker, axis: Vec3| {
+            carrying(self.joints.values(), m.body, &hinges, m.z()).map(|k| (k.number, way(k, m.body, axis)))
+        };
+        let slide = |m: Marker| {
+            carrying(self.joints.values(), m.body, &["translational"], m.z())
+                .map(|k| (k.number, way(k, m.body, m.z())))
+        };
+        let angle = |joint: usize| Coordinate { joint, name: "angle" };
+        let terms = if kind == "RackPinion" {
+            // Either end may be the rack.
+            let [a, b] =
+                [(i, j), (j, i)].map(|(rack, pinion)| Some((slide(rack)?, hinge(pinion, pinion.z())?)));
+            first.zip(a.or(b)).map(|(radius, ((rack, u), (pinion, v)))| {
+                vec![(Coordinate { joint: rack, name: "displacement" }, u), (angle(pinion), -radius * v)]
+            })
+        } else {
+            let sign = if kind == "Belt" { -1.0 } else { 1.0 };
+            match (first, second, hinge(i, i.z()), hinge(j, i.z())) {
+                (Some(ri), Some(rj), Some((a, u)), Some((b, v))) if a != b => {
+                    Some(vec![(angle(a), ri * u), (angle(b), sign * rj * v)])
+                }
+                _ => None,
+            }
+        };
+        match terms {
+            Some(terms) => {
+                let note = Called { kind: &kind, name: label, at }.note(self.notes);
+                self.m.coupler(label, note, terms);
+                self.notes.approximated(&kind, label, at, "a coupler of the joints that carry its two parts");
+            }
+            None => self.notes.refused(
+                &kind,
+                label,
+                at,
+                "no joints that carry its two parts along its axes, or no radii",
+            ),
+        }
+    }
+
+    fn motion(&mut self, motion: &'a str) -> Result<(), String> {
+        let object = &self.objects[motion];
+        let (label, at) = (object.label(), object.at());
+        let turns = object.word("MotionType").is_none_or(|t| t != "Linear");
+        let name = if turns { "angle" } else { "displacement" };
+        let joint = object.link("Joint").map(|(name, ..)| name).unwrap_or_default();
+        let function = object.text_of("Formula").unwrap_or_default();
+        let Some(joint) = self.joints.get(joint).copied() else {
+            return Err(format!("there is no joint `{joint}` that it could drive"));
+        };
+        let kind = hardpoint::joint::ALL.iter().find(|k| k.name == joint.kind);
+        if !kind.is_some_and(|k| k.coordinates.iter().any(|c| c.name == name)) {
+            return Err(format!("a joint of type {} has no {name}", joint.kind));
+        }
+        let coordinate = Coordinate { joint: joint.number, name };
+        if self.m.is_driven(coordinate) {
+            return Err("the joint is driven already".into());
+        }
+        let drawn = offset(&joint.markers[0], &joint.markers[1]);
+        let text = counted(
+            &law::translate(function, Language::FreeCad)?,
+            if turns { drawn.angle } else { drawn.displacement },
+            turns,
+        );
+        let law = if law::constant(&text) == Some(0.0) { Law::Held } else { Law::Text(text) };
+        let note = Called { kind: "motion", name: label, at }.note(self.notes);
+        self.m.driver(label, note, Drives::Coordinate(coordinate), law);
+        self.notes.taken("motion", label, at);
+        Ok(())
+    }
+
+    fn times(&mut self) {
+        let Some(simulation) = self.objects.values().find(|o| o.properties.contains_key("bTimeEnd")) else {
+            return;
+        };
+        let [start, end, step] = ["aTimeStart", "bTimeEnd", "cTimeStepOutput"].map(|k| simulation.number(k));
+        if let (start, Some(end), Some(step)) = (start.unwrap_or(0.0), end, step) {
+            let steps = ((end - start) / step).round();
+            if (1.0..=100_000.0).contains(&steps) {
+                self.m.times = Some(Times { start, end, steps: steps as usize });
+                self.notes.taken("simulation", simulation.label(), simulation.at());
+            }
+        }
+    }
+}

@@ -1,0 +1,394 @@
+//! Functions of the time in other programs' languages, as expressions of model files.
+
+/// Whose language it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// Adams/Solver: `30D` is an angle, `**` a power, names in any case.
+    Adams,
+    /// OndselSolver: `2.0d` is a number.
+    Ondsel,
+    /// FreeCAD's formulas of a simulation: as those of Ondsel.
+    FreeCad,
+}
+
+/// Expressions may be nested so deep.
+const DEEPEST: usize = 60;
+
+/// The expression of model files that says the same, in SI's radians.
+///
+/// # Errors
+/// Why there is none.
+pub fn translate(text: &str, language: Language) -> Result<String, String> {
+    translate_with(text, language, "t")
+}
+
+/// The same, where the source's time is another expression of seconds.
+///
+/// # Errors
+/// As there.
+pub fn translate_with(text: &str, language: Language, time: &'static str) -> Result<String, String> {
+    let mut parser = Parser { tokens: tokens(text, language)?, at: 0, depth: 0, language, time };
+    let out = parser.sum()?;
+    match parser.tokens.get(parser.at) {
+        None => Ok(out),
+        Some(extra) => Err(format!("`{}` is not expected there", extra.shown())),
+    }
+}
+
+/// The value of a translated expression that does not depend on the time.
+pub fn constant(text: &str) -> Option<f64> {
+    let law = hardpoint::law::Law::parse(text).ok()?;
+    let [a, b] = [0.0, 0.7311].map(|t| law.at(t).0[0]);
+    (a == b && a.is_finite()).then_some(a)
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Token {
+    Number(String),
+    Name(String),
+    Sign(&'static str),
+}
+
+impl Token {
+    fn shown(&self) -> &str {
+        match self {
+            Self::Number(s) | Self::Name(s) => s,
+            Self::Sign(s) => s,
+        }
+    }
+}
+
+fn tokens(text: &str, language: Language) -> Result<Vec<Token>, String> {
+    let bytes: Vec<char> = text.chars().collect();
+    let (mut out, mut k) = (Vec::new(), 0);
+    while k < bytes.len() {
+        let c = bytes[k];
+        let next = bytes.get(k + 1).copied().unwrap_or(' ');
+        if c.is_whitespace() {
+            k += 1;
+        } else if c.is_ascii_digit() || (c == '.' && next.is_ascii_digit()) {
+            let start = k;
+            while k < bytes.len() && (bytes[k].is_ascii_digit() || bytes[k] == '.') {
+                k += 1;
+            }
+            let mut number: String = bytes[start..k].iter().collect();
+            // 1.5e-3, and Fortran's 1.5D-3
+            let mark = bytes.get(k).map(char::to_ascii_lowercase);
+            let sign = usize::from(matches!(bytes.get(k + 1), Some('+' | '-')));
+            let digits = bytes.get(k + 1 + sign).is_some_and(char::is_ascii_digit);
+            if matches!(mark, Some('e' | 'd')) && digits {
+                let from = k + 1;
+                k += 1 + sign;
+                while bytes.get(k).is_some_and(char::is_ascii_digit) {
+                    k += 1;
+                }
+                number.push('e');
+                number.extend(&bytes[from..k]);
+            }
+            let value: f64 = number.parse().map_err(|_| format!("`{number}` is no number"))?;
+            if !value.is_finite() {
+                return Err(format!("`{number}` is too large a number"));
+            }
+            let after = bytes.get(k + 1).is_some_and(|c| c.is_alphanumeric() || *c == '_');
+            if mark_is(&bytes, k, 'd') && !after {
+                k += 1;
+                if language == Language::Adams {
+                    number = format!("({number}*pi/180)");
+                }
+            }
+            out.push(Token::Number(number));
+        } else if c.is_alphabetic() || c == '_' {
+            let start = k;
+            while k < bytes.len() && (bytes[k].is_alphanumeric() || bytes[k] == '_') {
+                k += 1;
+            }
+            out.push(Token::Name(bytes[start..k].iter().collect::<String>().to_lowercase()));
+        } else {
+            let sign = match (c, next) {
+                ('*', '*') => {
+                    k += 1;
+                    "^"
+                }
+                ('+', _) => "+",
+                ('-', _) => "-",
+                ('*', _) => "*",
+                ('/', _) => "/",
+                ('^', _) => "^",
+                ('(' | '{' | '[', _) => "(",
+                (')' | '}' | ']', _) => ")",
+                (',' | ';', _) => ",",
+                (':', _) => ":",
+                _ => return Err(format!("`{c}` is not expected there")),
+            };
+            k += 1;
+            out.push(Token::Sign(sign));
+        }
+    }
+    Ok(out)
+}
+
+fn mark_is(bytes: &[char], k: usize, letter: char) -> bool {
+    bytes.get(k).is_some_and(|c| c.eq_ignore_ascii_case(&letter))
+}
+
+struct Parser {
+    tokens: Vec<Token>,
+    at: usize,
+    depth: usize,
+    language: Language,
+    time: &'static str,
+}
+
+impl Parser {
+    fn sign(&self) -> Option<&'static str> {
+        match self.tokens.get(self.at) {
+            Some(Token::Sign(s)) => Some(s),
+            _ => None,
+        }
+    }
+
+    fn take(&mut self, sign: &str) -> Result<(), String> {
+        if self.sign() == Some(sign) {
+            self.at += 1;
+            return Ok(());
+        }
+        Err(match self.tokens.get(self.at) {
+            Some(found) => format!("`{sign}` is expected where `{}` stands", found.shown()),
+            None => format!("`{sign}` is missing at the end"),
+        })
+    }
+
+    fn sum(&mut self) -> Result<String, String> {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            return Err("it is nested too deep".into());
+        }
+        let mut out = self.product()?;
+        while let Some(sign @ ("+" | "-")) = self.sign() {
+            self.at += 1;
+            out = format!("{out} {sign} {}", self.product()?);
+        }
+        self.depth -= 1;
+        Ok(out)
+    }
+
+    fn product(&mut self) -> Result<String, String> {
+        let mut out = self.signed()?;
+        while let Some(sign @ ("*" | "/")) = self.sign() {
+            self.at += 1;
+            out = format!("{out}{sign}{}", self.signed()?);
+        }
+        Ok(out)
+    }
+
+    fn signed(&mut self) -> Result<String, String> {
+        let mut minus = false;
+        while let Some(sign @ ("+" | "-")) = self.sign() {
+            self.at += 1;
+            minus ^= sign == "-";
+        }
+        let out = self.power()?;
+        Ok(if minus { format!("(-{out})") } else { out })
+    }
+
+    fn power(&mut self) -> Result<String, String> {
+        let base = self.atom()?;
+        if self.sign() != Some("^") {
+            return Ok(base);
+        }
+        self.at += 1;
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            return Err("it is nested too deep".into());
+        }
+        let exponent = self.signed()?;
+        self.depth -= 1;
+        Ok(format!("({base}^{exponent})"))
+    }
+
+    fn atom(&mut self) -> Result<String, String> {
+        let Some(token) = self.tokens.get(self.at).cloned() else {
+            return Err("a value is missing at its end".into());
+        };
+        self.at += 1;
+        match token {
+            Token::Number(n) => Ok(n),
+            Token::Sign("(") => {
+                let inner = self.sum()?;
+                self.take(")")?;
+                Ok(format!("({inner})"))
+            }
+            Token::Sign(s) => Err(format!("`{s}` stands where a value is expected")),
+            Token::Name(name) if self.sign() == Some("(") => {
+                self.at += 1;
+                let mut arguments = Vec::new();
+                if self.sign() != Some(")") {
+                    loop {
+                        arguments.push(self.sum()?);
+                        // IF(e: a, b, c)
+                        match self.sign() {
+                            Some("," | ":") => self.at += 1,
+                            _ => break,
+                        }
+                    }
+                }
+                self.take(")")?;
+                self.call(&name, &arguments)
+            }
+            Token::Name(name) => match name.as_str() {
+                "time" | "t" => Ok(self.time.into()),
+                "pi" => Ok("pi".into()),
+                "dtor" => Ok("(pi/180)".into()),
+                "rtod" => Ok("(180/pi)".into()),
+                "e" if self.language != Language::Adams => Ok("exp(1)".into()),
+                other => Err(format!("`{other}` depends on more than the time, or is not known")),
+            },
+        }
+    }
+
+    /// A function of the source by those of model files.
+    fn call(&self, name: &str, x: &[String]) -> Result<String, String> {
+        let same = |to: &str, n: usize| {
+            if x.len() == n {
+                Ok(format!("{to}({})", x.join(", ")))
+            } else {
+                Err(format!("`{name}` takes {n} values, and has {}", x.len()))
+            }
+        };
+        // How far x has gone from x0 to x1: 0 before, 1 after.
+        let gone =
+            |x: &[String]| format!("min(1, max(0, (({}) - ({}))/(({}) - ({}))))", x[0], x[1], x[3], x[1]);
+        let degrees = |inner: &str| format!("{inner}(({})*pi/180)", x.first().map_or("0", String::as_str));
+        match (name, x.len()) {
+            (
+                "sin" | "cos" | "tan" | "asin" | "acos" | "atan" | "sinh" | "cosh" | "tanh" | "exp" | "sqrt"
+                | "abs" | "log10",
+                _,
+            ) => same(name, 1),
+            ("arcsin", _) => same("asin", 1),
+            ("arccos", _) => same("acos", 1),
+            ("arctan", _) => same("atan", 1),
+            ("log" | "ln", _) => same("ln", 1),
+            ("dsin", 1) => Ok(degrees("sin")),
+            ("dcos", 1) => Ok(degrees("cos")),
+            ("dtan", 1) => Ok(degrees("tan")),
+            ("atan2" | "arctan2" | "pow" | "power", 2) => same(
+                match name {
+                    "arctan2" => "atan2",
+                    "power" => "pow",
+                    other => other,
+                },
+                2,
+            ),
+            ("min" | "max", 2) => same(name, 2),
+            ("sign", 2) => Ok(format!("if(({}) < 0, -abs({}), abs({}))", x[1], x[0], x[0])),
+            ("dim", 2) => Ok(format!("max(0, ({}) - ({}))", x[0], x[1])),
+            ("step", 5) => same("step", 5),
+            // h0 + (h1 - h0) u^3 (10 - 15 u + 6 u^2)
+            ("step5", 5) => {
+                let u = gone(x);
+                Ok(format!(
+                    "(({h0}) + (({h1}) - ({h0}))*{u}^3*(10 - 15*{u} + 6*{u}^2))",
+                    h0 = x[2],
+                    h1 = x[4]
+                ))
+            }
+            // Half a sine from h0 to h1.
+            ("havsin", 5) => Ok(format!(
+                "((({h0}) + ({h1}))/2 - (({h1}) - ({h0}))/2*cos(pi*{u}))",
+                h0 = x[2],
+                h1 = x[4],
+                u = gone(x)
+            )),
+            // a sin(w (x - x0) - phi) + b
+            ("shf", 5 | 6) => {
+                let b = x.get(5).map_or("0", String::as_str);
+                Ok(format!("(({})*sin(({})*(({}) - ({})) - ({})) + ({b}))", x[2], x[3], x[0], x[1], x[4]))
+            }
+            ("if", 4) => Ok(format!("if(({e}) < 0, {}, if(0 < ({e}), {}, {}))", x[1], x[3], x[2], e = x[0])),
+            // a0 + a1 (x - x0) + a2 (x - x0)^2 + ...
+            ("poly", 3..) => {
+                let term = |(k, a): (usize, &String)| match k {
+                    0 => format!("({a})"),
+                    _ => format!("({a})*(({}) - ({}))^{k}", x[0], x[1]),
+                };
+                Ok(format!("({})", x[2..].iter().enumerate().map(term).collect::<Vec<_>>().join(" + ")))
+            }
+            // a0 + sum a_k sin (or cos) (k w (x - x0))
+            ("forsin" | "forcos", 4..) => {
+                let wave = if name == "forsin" { "sin" } else { "cos" };
+                let term = |(k, a): (usize, &String)| match k {
+                    0 => format!("({a})"),
+                    _ => format!("({a})*{wave}({k}*({})*(({}) - ({})))", x[2], x[0], x[1]),
+                };
+                Ok(format!("({})", x[3..].iter().enumerate().map(term).collect::<Vec<_>>().join(" + ")))
+            }
+            // The recurrence of Chebyshev's polynomials, written out as far as it is bearable.
+            ("cheby", 3..=7) => {
+                let u = format!("(({}) - ({}))", x[0], x[1]);
+                let t = [
+                    "1".to_owned(),
+                    u.clone(),
+                    format!("(2*{u}^2 - 1)"),
+                    format!("(4*{u}^3 - 3*{u})"),
+                    format!("(8*{u}^4 - 8*{u}^2 + 1)"),
+                ];
+                let terms: Vec<String> = x[2..].iter().zip(&t).map(|(a, t)| format!("({a})*{t}")).collect();
+                Ok(format!("({})", terms.join(" + ")))
+            }
+            _ => Err(format!("the function `{name}` with {} values has no equivalent", x.len())),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn functions_of_other_programs_keep_their_values() {
+        let at = |text: &str, language, t: f64| {
+            let out = translate(text, language).unwrap();
+            hardpoint::law::Law::parse(&out).unwrap_or_else(|e| panic!("{out}: {e:?}")).at(t).0[0]
+        };
+        let adams = |text, t| at(text, Language::Adams, t);
+        assert!((adams("360.0D*TIME", 0.5) - std::f64::consts::PI).abs() < 1e-15);
+        assert_eq!(adams("2.0D+1*time**2", 0.5), 5.0);
+        assert_eq!(adams("-2**2", 0.0), -4.0);
+        assert_eq!(adams("STEP(TIME, 0, 0, 1, 8)", 0.5), 4.0);
+        assert_eq!(adams("step5(time,0,1,2,3)", 1.0), 2.0);
+        assert_eq!(adams("step5(time,0,1,2,3)", 9.0), 3.0);
+        assert!((adams("HAVSIN(TIME, 0, -1, 1, 1)", 0.5)).abs() < 1e-15);
+        assert!(
+            (adams("SHF(TIME, 25D, PI, 360D, 0, 10)", 0.0)
+                - (10.0
+                    + std::f64::consts::PI * (-2.0 * std::f64::consts::PI * 25.0_f64.to_radians()).sin()))
+            .abs()
+                < 1e-12
+        );
+        assert_eq!(adams("IF(TIME-1: 10, 20, 30)", 0.0), 10.0);
+        assert_eq!(adams("IF(TIME-1: 10, 20, 30)", 1.0), 20.0);
+        assert_eq!(adams("IF(TIME-1: 10, 20, 30)", 2.0), 30.0);
+        assert_eq!(adams("POLY(TIME, 1, 2, 3, 4)", 3.0), 2.0 + 6.0 + 16.0);
+        assert_eq!(adams("CHEBY(TIME, 0, 1, 0, 1)", 2.0), 8.0);
+        assert!((at("2.0d*pi*time", Language::Ondsel, 1.0) - 2.0 * std::f64::consts::PI).abs() < 1e-15);
+        assert_eq!(constant(&translate("3*2", Language::Ondsel).unwrap()), Some(6.0));
+        assert_eq!(constant("t"), None);
+    }
+
+    #[test]
+    fn what_has_no_equivalent_is_named() {
+        for (text, word) in [
+            ("DX(1,2)", "dx"),
+            ("AKISPL(TIME", "`)`"),
+            ("2*", "missing"),
+            ("VARVAL", "varval"),
+            ("2 3", "`3`"),
+        ] {
+            let why = translate(text, Language::Adams).unwrap_err();
+            assert!(why.contains(word), "{why}");
+        }
+        assert!(translate(&"(".repeat(10_000), Language::Adams).is_err());
+        assert!(translate(&"2^".repeat(10_000), Language::Adams).is_err());
+    }
+}

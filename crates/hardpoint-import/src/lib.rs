@@ -1,0 +1,263 @@
+//! Mechanisms of other programs as model files of Hardpoint.
+//!
+//! Each format is one file that makes a [`Mechanism`] of a source and tells what became of each element of it ([`Report`]). One writer
+//! makes the model file; what the source leaves undriven is held, or driven where it plainly is the input, and the report says so.
+//!
+//! ```
+//! let urdf = r#"
+//! <robot name="door">
+//!   <link name="frame"/><link name="leaf"/>
+//!   <joint name="hinge" type="revolute">
+//!     <parent link="frame"/><child link="leaf"/><axis xyz="0 0 1"/>
+//!     <limit lower="0" upper="1.5" effort="1" velocity="1"/>
+//!   </joint>
+//! </robot>"#;
+//! let imported = hardpoint_import::import(urdf.as_bytes(), "door.urdf", &|_| None).unwrap();
+//! let file = hardpoint_file::parse(&imported.text, "door.toml").unwrap();
+//! assert_eq!(file.model.joints.len(), 2); // the hinge, and the frame that stands on the ground
+//! ```
+
+mod adams;
+mod asmt;
+mod chrono;
+mod corner;
+mod explorer;
+mod finish;
+mod freecad;
+mod law;
+mod lotus;
+mod markers;
+pub mod mechanism;
+mod mjcf;
+mod report;
+mod sdf;
+mod series;
+mod shapes;
+mod teimorbit;
+mod tree;
+mod turn;
+mod urdf;
+mod write;
+mod xml;
+
+pub use mechanism::Mechanism;
+pub use report::{At, Entry, Fate, Notes, Place, Problems, Report};
+pub use series::{Difference, Series, Stored};
+
+/// What a source says of other files: their bytes by the path that it names, where they can be read.
+pub type Resolve<'r> = &'r dyn Fn(&str) -> Option<Vec<u8>>;
+
+/// A mechanism of another program, as a model file.
+#[derive(Clone, Debug)]
+pub struct Imported {
+    /// The model file's text.
+    pub text: String,
+    /// What became of every element of the source.
+    pub report: Report,
+    /// Files that it refers to, by their paths from its folder.
+    pub files: Vec<(String, Vec<u8>)>,
+    /// The motion that the source has stored.
+    pub series: Option<Series>,
+    /// Why the model cannot be driven as it stands, if so. The text is there all the same, for somebody to mend it.
+    pub fault: Option<Problems>,
+}
+
+/// A source under way through its importer.
+pub struct Input<'s> {
+    /// Its bytes.
+    pub bytes: &'s [u8],
+    /// The text of it.
+    pub text: &'s str,
+    /// Its name without folder and ending.
+    pub stem: &'s str,
+    /// Other files that it names.
+    pub resolve: Resolve<'s>,
+    /// Shapes of bodies.
+    pub(crate) shapes: shapes::Shapes,
+    /// The motion that it has stored.
+    pub series: Option<Series>,
+}
+
+/// A format.
+#[derive(Clone, Copy)]
+pub struct Format {
+    /// The name by which it can be asked for.
+    pub name: &'static str,
+    /// What it is.
+    pub about: &'static str,
+    /// How names of its files end.
+    pub endings: &'static [&'static str],
+    /// Whether a text (the first part of it) looks like it.
+    looks: fn(&str) -> bool,
+    /// Makes a mechanism of it; problems go to the notes.
+    read: fn(&mut Input<'_>, &mut Notes) -> Option<Mechanism>,
+    /// Whether it is no text.
+    binary: bool,
+}
+
+impl std::fmt::Debug for Format {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+/// All formats.
+pub const FORMATS: &[Format] = &[
+    asmt::FORMAT,
+    adams::FORMAT,
+    urdf::FORMAT,
+    sdf::FORMAT,
+    mjcf::FORMAT,
+    explorer::FORMAT,
+    chrono::FORMAT,
+    lotus::FORMAT,
+    teimorbit::FORMAT,
+    freecad::FORMAT,
+];
+
+impl Format {
+    /// The format of that name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        FORMATS.iter().find(|f| f.name == name)
+    }
+
+    /// The format of a file, by what is in it and how its name ends; what is in it counts more.
+    pub fn of(bytes: &[u8], name: &str) -> Option<&'static Self> {
+        let ending = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
+        let by_name = |f: &&Self| f.endings.contains(&ending.as_str());
+        if bytes.starts_with(b"PK") {
+            return FORMATS.iter().find(|f| f.binary);
+        }
+        let head = String::from_utf8_lossy(&bytes[..bytes.len().min(LOOKED_AT)]);
+        let alike: Vec<&Self> = FORMATS.iter().filter(|f| !f.binary && (f.looks)(&head)).collect();
+        let by_look = alike.iter().copied().find(by_name).or(alike.first().copied());
+        by_look.or_else(|| FORMATS.iter().find(by_name))
+    }
+}
+
+/// So much of a file is looked at to tell its format.
+const LOOKED_AT: usize = 1 << 16;
+/// Larger sources are not read, bytes.
+pub const LARGEST: usize = 64 << 20;
+
+/// Makes a model file of a source, whose format shows. `resolve` gives the files that it names: includes, meshes.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn import(bytes: &[u8], name: &str, resolve: Resolve<'_>) -> Result<Imported, Problems> {
+    match Format::of(bytes, name) {
+        Some(format) => import_as(format, bytes, name, resolve),
+        None => {
+            let notes = Notes::new(name, "");
+            let known = FORMATS.iter().map(|f| format!("`{}` ({})", f.name, f.about)).collect::<Vec<_>>();
+            let message = notes.diagnostic("HP0801", None, "the format of the file is not recognised");
+            let message = message.note(format!("known are {}", known.join(", ")));
+            Err(notes.only(message.help("name the format, like `--format adams`")))
+        }
+    }
+}
+
+/// The same, of a format that is known.
+///
+/// # Errors
+/// As there.
+pub fn import_as(
+    format: &Format,
+    bytes: &[u8],
+    name: &str,
+    resolve: Resolve<'_>,
+) -> Result<Imported, Problems> {
+    let text = if format.binary { String::new() } else { decoded(bytes) };
+    let mut notes = Notes::new(name, &text);
+    let whole = |notes: &Notes, code, message: String, help: &str| {
+        Err(notes.only(notes.diagnostic(code, None, message).help(help)))
+    };
+    if bytes.len() > LARGEST {
+        let message = format!(
+            "the file is too large: {} MiB; at most {} MiB are read",
+            bytes.len() >> 20,
+            LARGEST >> 20
+        );
+        return whole(&notes, "HP0802", message, "export the mechanism without results");
+    }
+    if !format.binary && text.trim().is_empty() {
+        return whole(&notes, "HP0802", "the file is empty".into(), "export the mechanism again");
+    }
+    let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    let stem = base.rsplit_once('.').map_or(base, |(stem, _)| stem);
+    let stem = if stem.is_empty() { "model" } else { stem };
+    let shapes = shapes::Shapes::default();
+    let mut input = Input { bytes, text: &text, stem, resolve, shapes, series: None };
+    notes.report.format = report::printable(&format!("{base}: {}", format.about));
+    let mechanism = (format.read)(&mut input, &mut notes);
+    if let Some(problems) = notes.problems() {
+        return Err(problems);
+    }
+    let Some(mut m) = mechanism else {
+        let message = format!("there is no mechanism in the file; it was read as {}", format.about);
+        return whole(
+            &notes,
+            "HP0806",
+            message,
+            "name another format, like `--format urdf`, if it is of another",
+        );
+    };
+    let numbers = m.joints.iter().flat_map(|j| j.at.iter().chain(&j.axis).chain(&j.axis2));
+    if !numbers.chain(m.hardpoints.iter().map(|h| &h.1)).all(|v| v.is_finite()) {
+        let message = "places of joints are beyond all numbers".to_owned();
+        return whole(&notes, "HP0804", message, "correct the coordinates in the source");
+    }
+    let about = report::printable(&format!("Imported from {base} ({})", format.about));
+    let fault = if m.bodies.len() > 1 {
+        finish::finish(&mut m, &mut notes)
+    } else {
+        let message = "the topology is not recognised: only the hardpoints are written";
+        let help = "write bodies and joints between them, as in docs/file-format.md";
+        Some(notes.diagnostic("HP0807", None, message).help(help))
+    };
+    let files = input.shapes.files(&mut m, "meshes");
+    let fault = fault.map(|diagnostic| notes.only(diagnostic));
+    Ok(Imported { text: write::text(&m, &about), report: notes.report, files, series: input.series, fault })
+}
+
+/// The text of a file: UTF-8, or else Latin-1, as older programs write; without a byte order mark.
+fn decoded(bytes: &[u8]) -> String {
+    let text = match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),
+    };
+    text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text)
+}
+
+impl Input<'_> {
+    /// The bytes of a file that the source names, as it is written or without the folders before that only its author has.
+    fn file(&self, path: &str) -> Option<Vec<u8>> {
+        let local =
+            ["file://", "package://", "model://"].iter().find_map(|p| path.strip_prefix(p)).unwrap_or(path);
+        let parts: Vec<&str> = local.split(['/', '\\']).filter(|p| !matches!(*p, "" | ".")).collect();
+        let tails = (0..parts.len()).map(|k| parts[k..].join("/"));
+        std::iter::once(local.to_owned()).chain(tails).find_map(|p| (self.resolve)(&p))
+    }
+
+    /// Shows a mesh that the source names, or tells why not.
+    #[expect(clippy::too_many_arguments, reason = "what is shown, where, and what is told of it")]
+    fn mesh(
+        &mut self,
+        body: usize,
+        place: hardpoint::space::Pose,
+        scale: [f64; 3],
+        path: &str,
+        name: &str,
+        at: Option<At>,
+        notes: &mut Notes,
+    ) {
+        let shown = match self.file(path) {
+            Some(bytes) => self.shapes.file(body, place, scale, path, &bytes),
+            None => Err("there is no such file beside the source".into()),
+        };
+        match shown {
+            Ok(()) => notes.taken("mesh", name, at),
+            Err(why) => shapes::not_shown(notes, "mesh", name, at, &format!("`{path}`: {why}")),
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! Models of Lotus Suspension Analysis (`.shk`): one corner by the names of its points.
+
+use hardpoint::space::Vec3;
+
+use crate::corner::{Corner, Role, role_of};
+use crate::mechanism::Mechanism;
+use crate::report::{At, Notes};
+use crate::{Format, Input};
+
+/// See the module.
+pub const FORMAT: Format = Format {
+    name: "lotus",
+    about: "Lotus Suspension Analysis model",
+    endings: &["shk"],
+    looks: |text| text.lines().any(|l| l.trim() == "TEMP_SETTINGS"),
+    read,
+    binary: false,
+};
+
+/// A point is told in so many lines: its name, five of words, and three of numbers.
+const LINES_OF_A_POINT: usize = 9;
+/// A template has so many parts and points at most.
+const MOST: usize = 500;
+
+/// A line and where it stands.
+#[derive(Clone, Copy)]
+struct Line<'t> {
+    text: &'t str,
+    at: At,
+}
+
+impl Line<'_> {
+    /// Its numbers, if it has nothing else.
+    fn numbers(&self) -> Vec<f64> {
+        let words = self.text.split(|c: char| c.is_whitespace() || c == ',').filter(|w| !w.is_empty());
+        let list: Option<Vec<f64>> =
+            words.map(|w| w.replace(['D', 'd'], "e").parse().ok().filter(|x: &f64| x.is_finite())).collect();
+        list.unwrap_or_default()
+    }
+}
+
+fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+    let mut start = 0;
+    let lines: Vec<Line<'_>> = input
+        .text
+        .split_inclusive('\n')
+        .map(|whole| {
+            let text = whole.trim();
+            let from = start + whole.len() - whole.trim_start().len();
+            start += whole.len();
+            Line { text, at: At { text: 0, start: from, end: from + text.len() } }
+        })
+        .collect();
+    let Some(settings) = lines.iter().position(|l| l.text == "TEMP_SETTINGS") else {
+        notes.problem_with(
+            "HP0803",
+            None,
+            "there is no block `TEMP_SETTINGS`, which names the points",
+            "save the model from Lotus again",
+        );
+        return None;
+    };
+    let names = names(&lines, settings, notes)?;
+    let blocks: Vec<usize> = (0..lines.len())
+        .filter(|k| ["FRONT SUSPENSION", "REAR SUSPENSION"].contains(&lines[*k].text))
+        .collect();
+    let Some(block) = blocks.first() else {
+        let help = "save the model from Lotus again";
+        notes.problem_with("HP0803", None, "there is no block `FRONT SUSPENSION` or `REAR SUSPENSION`", help);
+        return None;
+    };
+    for other in &blocks[1..] {
+        notes.refused(
+            "block",
+            lines[*other].text,
+            Some(lines[*other].at),
+            "the points are named for one suspension: the first is taken",
+        );
+    }
+    let (mut places, mut scalars) = (Vec::new(), Vec::new());
+    for line in lines.iter().skip(block + 2) {
+        match line.numbers()[..] {
+            [x, y, z] => places.push(([x, y, z], line.at)),
+            [x] => scalars.push((x, line.at)),
+            _ => break,
+        }
+    }
+    if places.len() < names.len() {
+        let message = format!("there are {} names of points and {} places", names.len(), places.len());
+        notes.problem_with(
+            "HP0803",
+            Some(lines[*block].at),
+            message,
+            "each place is a line of three numbers below the block's second line",
+        );
+        return None;
+    }
+    let mut m = Mechanism::new(input.stem, "mm", "deg");
+    notes.approximated(
+        "axes",
+        "",
+        Some(lines[*block].at),
+        "turned half round about z, so that x points forward and y left",
+    );
+    let radius = scalars.first().map(|(x, _)| *x).filter(|r| *r > 0.0);
+    if let Some((radius, at)) = scalars.first() {
+        notes.approximated(
+            "radius",
+            &format!("{radius}"),
+            Some(*at),
+            "the first number behind the points is taken for the wheel's loaded radius",
+        );
+    }
+    let mut corner = Corner { at: Some(lines[*block].at), rack: true, radius, ..Corner::default() };
+    for (name, (place, at)) in names.iter().zip(&places) {
+        if name.contains("C of G") {
+            notes.ignored("centre of gravity", Some(*at));
+            continue;
+        }
+        let place = half_round(*place);
+        m.hardpoints.push((name.to_string(), place));
+        notes.taken("point", name, Some(*at));
+        if let Some(role) = role_of(name) {
+            corner.points.insert(role, place);
+        }
+    }
+    complete(&mut corner);
+    let mut rack = None;
+    corner.build(&mut m, notes, &mut rack);
+    (!m.hardpoints.is_empty()).then_some(m)
+}
+
+/// The names of the points: behind the template's name, the numbers of parts and points, and the names of the parts.
+fn names<'t>(lines: &[Line<'t>], settings: usize, notes: &mut Notes) -> Option<Vec<&'t str>> {
+    let header = lines.get(settings + 3);
+    let counts = header.map(Line::numbers).unwrap_or_default();
+    let (parts, points) = match counts[..] {
+        [parts, points, ..]
+            if (0.0..=MOST as f64).contains(&parts) && (1.0..=MOST as f64).contains(&points) =>
+        {
+            (parts as usize, points as usize)
+        }
+        _ => {
+            let at = header.map(|h| h.at);
+            let help = "three lines below `TEMP_SETTINGS` stand how many parts and points there are";
+            notes.problem_with("HP0804", at, "the numbers of parts and points cannot be read", help);
+            return None;
+        }
+    };
+    if let Some(template) = lines.get(settings + 2) {
+        notes.taken("template", template.text, Some(template.at));
+    }
+    let first = settings + 4 + parts;
+    let names: Vec<&str> =
+        (0..points).filter_map(|k| lines.get(first + k * LINES_OF_A_POINT)).map(|l| l.text).collect();
+    if names.len() < points || names.iter().any(|n| n.is_empty() || n.parse::<f64>().is_ok()) {
+        let at = Some(lines[settings].at);
+        notes.problem_with(
+            "HP0802",
+            at,
+            "the names of the points are not where they should be",
+            "save the model from Lotus again",
+        );
+        return None;
+    }
+    Some(names)
+}
+
+/// From x back, y right to x forward, y left.
+pub fn half_round([x, y, z]: [f64; 3]) -> Vec3 {
+    // Zero is written without a sign.
+    Vec3::from([0.0 - x, 0.0 - y, z])
+}
+
+/// The ball joint of a strut's arm may have its own name; a spindle point outboard of the centre is the axis all the same.
+fn complete(corner: &mut Corner) {
+    let [spindle, centre] = [Role::Spindle, Role::WheelCentre].map(|r| corner.points.get(&r).copied());
+    if let (Some(spindle), Some(centre)) = (spindle, centre)
+        && (spindle - centre).norm() == 0.0
+    {
+        corner.points.remove(&Role::Spindle);
+    }
+}

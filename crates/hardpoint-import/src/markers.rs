@@ -1,0 +1,202 @@
+//! Joints between two markers, each a frame on a body: as Adams, Ondsel and FreeCAD have them.
+
+use hardpoint::space::{Pose, Vec3};
+
+use crate::mechanism::{Joint, Mechanism};
+use crate::report::{At, Notes};
+use crate::turn::angle_about;
+
+/// Markers nearer than this part of the mechanism's size are at one place: files have about seven digits.
+const APART: f64 = 1e-7;
+/// Axes nearer than this, in rad, are one: files have about six digits.
+const AWRY: f64 = 1e-5;
+
+/// A frame on a body, as drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Marker {
+    /// The body.
+    pub body: usize,
+    /// The frame, global.
+    pub pose: Pose,
+}
+
+impl Marker {
+    /// Its z axis.
+    pub fn z(&self) -> Vec3 {
+        self.pose.rot.cols[2]
+    }
+
+    /// Its x axis.
+    pub fn x(&self) -> Vec3 {
+        self.pose.rot.cols[0]
+    }
+
+    /// Its y axis.
+    pub fn y(&self) -> Vec3 {
+        self.pose.rot.cols[1]
+    }
+}
+
+/// How the second marker stands to the first, as the coordinates of joints count.
+pub struct Offset {
+    /// Its turn about the first's z, in rad.
+    pub angle: f64,
+    /// Its way along the first's z.
+    pub displacement: f64,
+}
+
+/// See [`Offset`].
+pub fn offset(i: &Marker, j: &Marker) -> Offset {
+    Offset { angle: angle_about(i.z(), i.x(), j.x()), displacement: i.z().dot(j.pose.r - i.pose.r) }
+}
+
+/// What a joint is called and where it stands in the source.
+#[derive(Clone, Copy, Debug)]
+pub struct Called<'s> {
+    /// What it is in the source.
+    pub kind: &'s str,
+    /// Its name.
+    pub name: &'s str,
+    /// Where it stands.
+    pub at: Option<At>,
+}
+
+impl Called<'_> {
+    /// For a comment in the model file.
+    pub fn note(&self, notes: &Notes) -> String {
+        match self.at.and_then(|at| notes.place(at)) {
+            Some(place) => format!("{} {}, {place}", self.kind, self.name),
+            None => format!("{} {}", self.kind, self.name),
+        }
+    }
+}
+
+/// Adds a joint of a type whose geometry follows from two markers, body i's and body j's; its number. What is drawn open is told.
+pub fn join(
+    m: &mut Mechanism,
+    notes: &mut Notes,
+    called: Called<'_>,
+    kind: &'static str,
+    [i, j]: [Marker; 2],
+) -> Option<usize> {
+    if i.body == j.body {
+        notes.refused(called.kind, called.name, called.at, "both its markers are on the same body");
+        return None;
+    }
+    let reach = [i, j].iter().map(|k| k.pose.r.norm()).fold(m.size(), f64::max);
+    let gap = j.pose.r - i.pose.r;
+    let across = gap - i.z() * i.z().dot(gap);
+    let (mut open, mut awry) = (false, false);
+    let mut joint = Joint::new(called.name, called.note(notes), kind, [i.body, j.body], j.pose.r);
+    let parallel = |a: Vec3, b: Vec3| a.cross(b).norm() <= AWRY;
+    match kind {
+        "fixed" | "orientation" => {}
+        "spherical" => open = gap.norm() > APART * reach,
+        "revolute" => {
+            joint = joint.along(i.z());
+            open = gap.norm() > APART * reach;
+            awry = !parallel(i.z(), j.z());
+        }
+        "translational" | "cylindrical" | "screw" | "inline" => {
+            joint = joint.along(i.z());
+            open = across.norm() > APART * reach;
+            awry = kind != "inline" && !parallel(i.z(), j.z());
+        }
+        "planar" | "inplane" => {
+            joint = joint.with_axes(i.z(), i.x());
+            open = (gap - across).norm() > APART * reach;
+            awry = kind == "planar" && !parallel(i.z(), j.z());
+        }
+        "parallel" => {
+            joint = joint.along(i.z());
+            awry = !parallel(i.z(), j.z());
+        }
+        "universal" | "dot1" => {
+            let (a, b) = (i.z(), j.z());
+            let square = (b - a * a.dot(b)).unit();
+            let Some(square) = square else {
+                notes.refused(
+                    called.kind,
+                    called.name,
+                    called.at,
+                    "its two axes are parallel where they should be square",
+                );
+                return None;
+            };
+            awry = a.dot(b).abs() > AWRY;
+            joint = joint.with_axes(a, square);
+            open = kind == "universal" && gap.norm() > APART * reach;
+        }
+        "constant_velocity" => {
+            let b = if i.z().dot(j.z()) < 0.0 { -j.z() } else { j.z() };
+            joint = joint.with_axes(i.z(), b);
+            open = gap.norm() > APART * reach;
+        }
+        _ => {}
+    }
+    if open && ["revolute", "spherical", "universal", "constant_velocity"].contains(&kind) {
+        joint = joint.between(i.pose.r, j.pose.r);
+        let why = "its markers lie apart as drawn: the mechanism is assembled there before it moves";
+        notes.approximated(called.kind, called.name, called.at, why);
+    } else if open {
+        let why = "its markers do not meet as drawn: it is taken as closed where the bodies stand";
+        notes.approximated(called.kind, called.name, called.at, why);
+    } else if awry {
+        let why = "its markers' axes are turned against each other as drawn: the first marker's axis is taken for both";
+        notes.approximated(called.kind, called.name, called.at, why);
+    } else {
+        notes.taken(called.kind, called.name, called.at);
+    }
+    Some(m.joint(joint))
+}
+
+/// A joint that was made of two markers.
+#[derive(Clone, Copy, Debug)]
+pub struct Joined {
+    /// Its number.
+    pub number: usize,
+    /// Its type.
+    pub kind: &'static str,
+    /// The markers of body i and of body j.
+    pub markers: [Marker; 2],
+}
+
+/// The joint of one of these types that carries a body, its axis along this one.
+pub fn carrying<'j>(
+    mut joints: impl Iterator<Item = &'j Joined>,
+    body: usize,
+    kinds: &[&str],
+    axis: Vec3,
+) -> Option<&'j Joined> {
+    joints.find(|k| {
+        let is_on = k.markers.iter().any(|m| m.body == body);
+        is_on && kinds.contains(&k.kind) && k.markers[0].z().cross(axis).norm() <= AWRY
+    })
+}
+
+/// How a joint's coordinate counts for a body and an axis: up or down.
+pub fn way(joint: &Joined, body: usize, axis: Vec3) -> f64 {
+    let sign = if joint.markers[1].body == body { 1.0 } else { -1.0 };
+    sign * joint.markers[0].z().dot(axis).signum()
+}
+
+/// A law that counts from what it counts from in the source, made to count from the drawing; of angles, by the shorter way round.
+pub fn counted(text: &str, drawn: f64, turns: bool) -> String {
+    use std::f64::consts::TAU;
+    let begins = hardpoint::law::Law::parse(text).map_or(0.0_f64, |law| law.at(0.0).0[0]);
+    let rounds = if turns && begins.is_finite() { ((begins - drawn) / TAU).round() } else { 0.0 };
+    let drawn = if drawn.abs() < 1e-12 { 0.0 } else { drawn };
+    match drawn + rounds * TAU {
+        0.0 => text.to_owned(),
+        d if d > 0.0 => format!("{text} - {d}"),
+        d => format!("{text} + {}", -d),
+    }
+}
+
+impl Marker {
+    /// A frame at a place, its z along an axis; none where that has no direction.
+    pub fn along(body: usize, at: Vec3, axis: Vec3) -> Option<Self> {
+        let rot = crate::turn::from_z_and_x(axis, axis.any_square())?;
+        Some(Self { body, pose: Pose { rot, r: at } })
+    }
+}

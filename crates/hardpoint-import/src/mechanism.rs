@@ -1,0 +1,331 @@
+//! What every format says, in one form: bodies, joints, couplers, drivers as drawn. Importers fill it, one writer makes a model file of it.
+
+use std::collections::HashSet;
+
+use hardpoint::space::{Pose, Vec3};
+
+/// The body that does not move: the first of every mechanism.
+pub const GROUND: usize = 0;
+
+/// A mechanism between two formats. Coordinates are global, in the units that it names.
+#[derive(Clone, Debug)]
+pub struct Mechanism {
+    /// Its name, for headings.
+    pub name: String,
+    /// Unit of every length, as model files name it.
+    pub length: &'static str,
+    /// Unit of every angle, as model files name it.
+    pub angle: &'static str,
+    /// Places that the source names, whether anything is there or not.
+    pub hardpoints: Vec<(String, Vec3)>,
+    /// The bodies; the first is ground.
+    pub bodies: Vec<Body>,
+    /// The joints.
+    pub joints: Vec<Joint>,
+    /// Linear relations of joint coordinates.
+    pub couplers: Vec<Coupler>,
+    /// What is prescribed.
+    pub drivers: Vec<Driver>,
+    /// Points whose motion is wanted.
+    pub points: Vec<Point>,
+    /// Road wheels.
+    pub wheels: Vec<Wheel>,
+    /// The output times: when they end, and how many intervals there are.
+    pub times: Option<Times>,
+}
+
+/// Output times.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Times {
+    /// The first.
+    pub start: f64,
+    /// The last.
+    pub end: f64,
+    /// How many intervals.
+    pub steps: usize,
+}
+
+/// A body.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Its name in the model file.
+    pub name: String,
+    /// What the source calls it.
+    pub note: String,
+    /// Its reference frame as drawn.
+    pub pose: Option<Pose>,
+    /// Its shape.
+    pub mesh: Option<Mesh>,
+}
+
+/// The shape of a body.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    /// The file, from the model's folder; its coordinates are those of the body's frame, in the mechanism's unit.
+    pub file: String,
+}
+
+/// A joint.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    /// Its name in the model file.
+    pub name: String,
+    /// What the source calls it.
+    pub note: String,
+    /// The joint type, as model files name it.
+    pub kind: &'static str,
+    /// Bodies i and j.
+    pub bodies: [usize; 2],
+    /// Its place, or one on each body.
+    pub at: Vec<Vec3>,
+    /// Its axis.
+    pub axis: Option<Vec3>,
+    /// Two places that its axis goes through, where the source has it so: it follows them.
+    pub through: Option<[Vec3; 2]>,
+    /// Its second axis.
+    pub axis2: Option<Vec3>,
+    /// Advance of a screw per turn.
+    pub lead: Option<f64>,
+    /// Between which values the source lets its coordinate go.
+    pub limits: Option<[f64; 2]>,
+    /// What it is drawn as.
+    pub draw: Option<&'static str>,
+}
+
+/// A coordinate of a joint, by the joint's number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coordinate {
+    /// Which joint.
+    pub joint: usize,
+    /// Which of its coordinates.
+    pub name: &'static str,
+}
+
+/// A linear relation of joint coordinates: the sum of the terms is zero.
+#[derive(Clone, Debug)]
+pub struct Coupler {
+    /// Its name in the model file.
+    pub name: String,
+    /// What the source calls it.
+    pub note: String,
+    /// Coordinates and their coefficients, per unit of the mechanism.
+    pub terms: Vec<(Coordinate, f64)>,
+}
+
+/// A prescribed number.
+#[derive(Clone, Debug)]
+pub struct Driver {
+    /// Its name in the model file.
+    pub name: String,
+    /// What the source calls it.
+    pub note: String,
+    /// What it prescribes.
+    pub drives: Drives,
+    /// Over time, counted from the drawing.
+    pub law: Law,
+}
+
+/// What a driver prescribes.
+#[derive(Clone, Copy, Debug)]
+pub enum Drives {
+    /// A joint's coordinate.
+    Coordinate(Coordinate),
+    /// The way of a point of a body along a direction.
+    Way {
+        /// The body.
+        body: usize,
+        /// The point as drawn.
+        at: Vec3,
+        /// The direction.
+        along: Vec3,
+    },
+    /// The angle by which a body has turned against another, seen along a direction.
+    Heading {
+        /// The body.
+        body: usize,
+        /// The direction.
+        about: Vec3,
+        /// The other body.
+        relative_to: usize,
+    },
+}
+
+/// How a driven number goes over time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Law {
+    /// It stays as drawn.
+    Held,
+    /// By an expression of model files.
+    Text(String),
+    /// Through points of time and value.
+    Table(Vec<[f64; 2]>),
+}
+
+/// A point.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Its name in the model file.
+    pub name: String,
+    /// The body.
+    pub body: usize,
+    /// Where it is as drawn.
+    pub at: Vec3,
+}
+
+/// A road wheel.
+#[derive(Clone, Debug)]
+pub struct Wheel {
+    /// Its name in the model file.
+    pub name: String,
+    /// The body that it turns on.
+    pub body: usize,
+    /// Its centre.
+    pub centre: Vec3,
+    /// Its spin axis, outboard.
+    pub spin_axis: Vec3,
+    /// Whether that comes from this place to the centre.
+    pub spindle: Option<Vec3>,
+    /// From the centre to the ground.
+    pub radius: f64,
+    /// Two points of its steering axis, lower and upper, each on a body.
+    pub kingpin: Option<[(usize, Vec3); 2]>,
+    /// The driver that moves it up and down.
+    pub bump: usize,
+}
+
+impl Mechanism {
+    /// One with ground alone.
+    pub fn new(name: &str, length: &'static str, angle: &'static str) -> Self {
+        let ground = Body { name: "ground".into(), note: String::new(), pose: None, mesh: None };
+        Self {
+            name: name.into(),
+            length,
+            angle,
+            hardpoints: Vec::new(),
+            bodies: vec![ground],
+            joints: Vec::new(),
+            couplers: Vec::new(),
+            drivers: Vec::new(),
+            points: Vec::new(),
+            wheels: Vec::new(),
+            times: None,
+        }
+    }
+
+    /// A further body; its number.
+    pub fn body(&mut self, name: &str, note: String, pose: Option<Pose>) -> usize {
+        let taken = self.bodies.iter().map(|b| b.name.as_str()).collect();
+        let name = valid_name(name, "body", &taken);
+        self.bodies.push(Body { name, note, pose, mesh: None });
+        self.bodies.len() - 1
+    }
+
+    /// A further joint; its number.
+    pub fn joint(&mut self, joint: Joint) -> usize {
+        let taken = self.joints.iter().map(|j| j.name.as_str()).collect();
+        let name = valid_name(&joint.name, "joint", &taken);
+        self.joints.push(Joint { name, ..joint });
+        self.joints.len() - 1
+    }
+
+    /// A further coupler.
+    pub fn coupler(&mut self, name: &str, note: String, terms: Vec<(Coordinate, f64)>) {
+        let taken = self.couplers.iter().map(|c| c.name.as_str()).collect();
+        let name = valid_name(name, "coupler", &taken);
+        self.couplers.push(Coupler { name, note, terms });
+    }
+
+    /// A further driver; its number.
+    pub fn driver(&mut self, name: &str, note: String, drives: Drives, law: Law) -> usize {
+        let taken = self.drivers.iter().map(|d| d.name.as_str()).collect();
+        let name = valid_name(name, "driver", &taken);
+        self.drivers.push(Driver { name, note, drives, law });
+        self.drivers.len() - 1
+    }
+
+    /// A further point.
+    pub fn point(&mut self, name: &str, body: usize, at: Vec3) {
+        let taken = self.points.iter().map(|p| p.name.as_str()).collect();
+        let name = valid_name(name, "point", &taken);
+        self.points.push(Point { name, body, at });
+    }
+
+    /// Whether something prescribes this coordinate.
+    pub fn is_driven(&self, coordinate: Coordinate) -> bool {
+        self.drivers.iter().any(|d| matches!(d.drives, Drives::Coordinate(c) if c == coordinate))
+    }
+
+    /// How large it is: the greatest distance of two of its places along an axis, above zero.
+    pub fn size(&self) -> f64 {
+        let places = self.joints.iter().flat_map(|j| j.at.iter().copied());
+        let places: Vec<Vec3> = places.chain(self.hardpoints.iter().map(|h| h.1)).collect();
+        let spread = |k: usize| {
+            let along = places.iter().map(|p| p[k]);
+            along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+        };
+        let size = (0..3).map(spread).fold(0.0, f64::max);
+        if size > 0.0 { size } else { 1.0 }
+    }
+}
+
+impl Joint {
+    /// A joint at one place.
+    pub fn new(name: &str, note: String, kind: &'static str, bodies: [usize; 2], at: Vec3) -> Self {
+        Self {
+            name: name.into(),
+            note,
+            kind,
+            bodies,
+            at: vec![at],
+            axis: None,
+            through: None,
+            axis2: None,
+            lead: None,
+            limits: None,
+            draw: None,
+        }
+    }
+
+    /// With an axis.
+    #[must_use]
+    pub fn along(mut self, axis: Vec3) -> Self {
+        self.axis = Some(axis);
+        self
+    }
+
+    /// With an axis through two places.
+    #[must_use]
+    pub fn through(mut self, from: Vec3, to: Vec3) -> Self {
+        (self.axis, self.through) = (Some(to - from), Some([from, to]));
+        self
+    }
+
+    /// With two axes.
+    #[must_use]
+    pub fn with_axes(mut self, axis: Vec3, axis2: Vec3) -> Self {
+        (self.axis, self.axis2) = (Some(axis), Some(axis2));
+        self
+    }
+
+    /// With a place on each body.
+    #[must_use]
+    pub fn between(mut self, i: Vec3, j: Vec3) -> Self {
+        self.at = vec![i, j];
+        self
+    }
+}
+
+/// Names of model files have so many characters at most.
+const LONGEST_NAME: usize = 100;
+
+/// The name that comes nearest to the one that is wanted: without what no name may hold, and not taken.
+pub fn valid_name(wanted: &str, kind: &str, taken: &HashSet<&str>) -> String {
+    let clean: String = wanted.trim().chars().filter(|c| !c.is_control()).take(LONGEST_NAME - 8).collect();
+    let clean = if clean.is_empty() { kind.to_owned() } else { clean };
+    let free = |name: &str| !taken.contains(name) && name != "ground";
+    if free(&clean) {
+        return clean;
+    }
+    let numbered = (2..).map(|k| format!("{clean}_{k}"));
+    numbered.into_iter().find(|name| free(name)).unwrap_or(clean)
+}

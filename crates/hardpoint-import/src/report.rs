@@ -1,0 +1,277 @@
+//! What became of every element of the source, and what is wrong with it.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use hardpoint_file::{Diagnostic, Severity, Source};
+use serde::Serialize;
+
+/// So many entries of one kind are listed in a text; the others are counted.
+const LISTED: usize = 40;
+/// So many problems are shown; the others are counted.
+const SHOWN: usize = 50;
+
+/// What became of an element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Fate {
+    /// The model says the same.
+    Taken,
+    /// The model says nearly the same.
+    Approximated,
+    /// It does not concern how things move.
+    Ignored,
+    /// The model cannot say it.
+    Refused,
+}
+
+/// Where something stands: bytes of one of the texts that a source consists of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct At {
+    /// Which text: the file itself is the first, what it includes follows.
+    pub text: usize,
+    /// Its first byte.
+    pub start: usize,
+    /// The byte behind it.
+    pub end: usize,
+}
+
+/// Where something stands, for people.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Place {
+    /// The file's name.
+    pub file: String,
+    /// The line, from 1.
+    pub line: usize,
+    /// The column in characters, from 1.
+    pub column: usize,
+}
+
+/// What became of one element.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Entry {
+    /// What became of it.
+    pub fate: Fate,
+    /// What it is in the source: `joint`, `PART`.
+    pub kind: String,
+    /// Its name there, or none.
+    pub name: String,
+    /// Where it stands in the source.
+    pub place: Option<Place>,
+    /// Why, or how.
+    pub why: String,
+}
+
+/// What became of every element of a source.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Report {
+    /// In words, what the source is.
+    pub format: String,
+    /// In the order in which they were met.
+    pub entries: Vec<Entry>,
+}
+
+impl Report {
+    /// The entries of one fate.
+    pub fn of(&self, fate: Fate) -> impl Iterator<Item = &Entry> {
+        self.entries.iter().filter(move |e| e.fate == fate)
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.format)?;
+        for (fate, title) in [(Fate::Taken, "taken"), (Fate::Ignored, "does not concern the motion")] {
+            let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+            for e in self.of(fate) {
+                *counts.entry(&e.kind).or_default() += 1;
+            }
+            if !counts.is_empty() {
+                let list: Vec<String> = counts.iter().map(|(kind, n)| format!("{n} {kind}")).collect();
+                writeln!(f, "  {title}: {}", list.join(", "))?;
+            }
+        }
+        for (fate, title) in [(Fate::Approximated, "approximated or added"), (Fate::Refused, "refused")] {
+            let list: Vec<&Entry> = self.of(fate).collect();
+            if list.is_empty() {
+                continue;
+            }
+            writeln!(f, "  {title}:")?;
+            for e in list.iter().take(LISTED) {
+                writeln!(f, "    {e}")?;
+            }
+            if list.len() > LISTED {
+                writeln!(f, "    ... and {} more like these", list.len() - LISTED)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}:{}", self.file, self.line, self.column)
+    }
+}
+
+impl fmt::Display for Entry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(place) = &self.place {
+            write!(f, "{place}: ")?;
+        }
+        f.write_str(&self.kind)?;
+        if !self.name.is_empty() {
+            write!(f, " `{}`", self.name)?;
+        }
+        if !self.why.is_empty() {
+            write!(f, ": {}", self.why)?;
+        }
+        Ok(())
+    }
+}
+
+/// Everything that is wrong with a source, in the order of its text.
+#[derive(Clone, Debug)]
+pub struct Problems {
+    sources: Vec<Source>,
+    list: Vec<(usize, Diagnostic)>,
+}
+
+impl Problems {
+    /// The diagnostics, never none.
+    pub fn list(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.list.iter().map(|(_, d)| d)
+    }
+
+    /// All of it for a terminal; with `color`, ANSI escapes.
+    pub fn render(&self, color: bool) -> String {
+        let shown = self.list.iter().take(SHOWN);
+        let mut list: Vec<String> = shown.map(|(k, d)| self.sources[*k].render(d, color)).collect();
+        if self.list.len() > SHOWN {
+            list.push(format!("... and {} more like these", self.list.len() - SHOWN));
+        }
+        list.join("\n\n")
+    }
+}
+
+impl fmt::Display for Problems {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.render(false))
+    }
+}
+
+impl std::error::Error for Problems {}
+
+/// What an importer tells while it reads.
+#[derive(Debug)]
+pub struct Notes {
+    /// The texts that there are.
+    sources: Vec<Source>,
+    /// What became of what.
+    pub report: Report,
+    /// What is wrong; where there is any of it there is no model.
+    problems: Vec<(usize, Diagnostic)>,
+}
+
+impl Notes {
+    /// Of a file, as yet empty.
+    pub fn new(file: &str, text: &str) -> Self {
+        let sources = vec![Source::new(&printable(file), text)];
+        Self { sources, report: Report::default(), problems: Vec::new() }
+    }
+
+    /// A further text that the source includes; its number.
+    pub fn text(&mut self, file: &str, text: &str) -> usize {
+        self.sources.push(Source::new(&printable(file), text));
+        self.sources.len() - 1
+    }
+
+    /// Where that is, for people.
+    pub fn place(&self, at: At) -> Option<Place> {
+        let source = self.sources.get(at.text)?;
+        let (line, column) = source.line_column(at.start);
+        Some(Place { file: source.file.to_string(), line, column })
+    }
+
+    /// A diagnostic about a place, or about the file as a whole.
+    pub fn diagnostic(&self, code: &'static str, at: Option<At>, message: impl AsRef<str>) -> Diagnostic {
+        let source = &self.sources[at.map_or(0, |at| at.text)];
+        let span = at.map(|at| at.start..at.end);
+        source.diagnostic(Severity::Error, code, printable(message.as_ref()), span)
+    }
+
+    /// Something is wrong.
+    pub fn problem(&mut self, code: &'static str, at: Option<At>, message: impl AsRef<str>) {
+        let diagnostic = self.diagnostic(code, at, message);
+        self.tell(at.map_or(0, |at| at.text), diagnostic);
+    }
+
+    /// The same, with what to do.
+    pub fn problem_with(&mut self, code: &'static str, at: Option<At>, message: impl AsRef<str>, help: &str) {
+        let diagnostic = self.diagnostic(code, at, message).help(help);
+        self.tell(at.map_or(0, |at| at.text), diagnostic);
+    }
+
+    fn tell(&mut self, text: usize, diagnostic: Diagnostic) {
+        let known = self.problems.iter().any(|(k, d)| *k == text && *d == diagnostic);
+        if !known {
+            self.problems.push((text, diagnostic));
+        }
+    }
+
+    /// How much is wrong.
+    pub fn problem_count(&self) -> usize {
+        self.problems.len()
+    }
+
+    /// All that is wrong, if anything is.
+    pub fn problems(&mut self) -> Option<Problems> {
+        if self.problems.is_empty() {
+            return None;
+        }
+        let mut list = std::mem::take(&mut self.problems);
+        list.sort_by_key(|(k, d)| (*k, d.line, d.column));
+        Some(Problems { sources: self.sources.clone(), list })
+    }
+
+    /// One thing that is wrong with the file as a whole.
+    pub fn only(&self, diagnostic: Diagnostic) -> Problems {
+        Problems { sources: self.sources.clone(), list: vec![(0, diagnostic)] }
+    }
+
+    fn entry(&mut self, fate: Fate, kind: &str, name: &str, at: Option<At>, why: &str) {
+        let [kind, name, why] = [kind, name, why].map(printable);
+        let place = at.and_then(|at| self.place(at));
+        self.report.entries.push(Entry { fate, kind, name, place, why });
+    }
+
+    /// The model says the same.
+    pub fn taken(&mut self, kind: &str, name: &str, at: Option<At>) {
+        self.entry(Fate::Taken, kind, name, at, "");
+    }
+
+    /// The model says nearly the same, or what the source leaves open.
+    pub fn approximated(&mut self, kind: &str, name: &str, at: Option<At>, why: impl AsRef<str>) {
+        self.entry(Fate::Approximated, kind, name, at, why.as_ref());
+    }
+
+    /// It does not concern how things move.
+    pub fn ignored(&mut self, kind: &str, at: Option<At>) {
+        self.entry(Fate::Ignored, kind, "", at, "");
+    }
+
+    /// The model cannot say it.
+    pub fn refused(&mut self, kind: &str, name: &str, at: Option<At>, why: impl AsRef<str>) {
+        self.entry(Fate::Refused, kind, name, at, why.as_ref());
+    }
+}
+
+/// A text of the source for people: on one line, of bearable length.
+pub fn printable(text: &str) -> String {
+    const LONGEST: usize = 300;
+    let mut out: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(LONGEST).collect();
+    if text.chars().count() > LONGEST {
+        out.push_str("...");
+    }
+    out
+}

@@ -1,0 +1,71 @@
+//! The motion that a source has stored, for comparison.
+
+use hardpoint::Solution;
+use hardpoint::joint::Quantity;
+use hardpoint::model::BodyId;
+use hardpoint::space::{Pose, Vec3};
+use hardpoint_file::ModelFile;
+
+/// Times nearer than this, of a second or of themselves, are the same: files have about ten digits.
+const SAME_TIME: f64 = 1e-9;
+
+/// What a source says of how its bodies moved.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Series {
+    /// The times.
+    pub times: Vec<f64>,
+    /// By the bodies' names in the model file, all as long as the times; lengths in the file's unit.
+    pub bodies: Vec<(String, Vec<Stored>)>,
+}
+
+/// A body at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stored {
+    /// Where its frame is.
+    pub pose: Pose,
+    /// Velocity of the frame's origin, angular velocity, acceleration and angular acceleration, as far as they are stored.
+    pub rates: [Option<Vec3>; 4],
+}
+
+/// By how much a solution differs from what was stored, at most, over all bodies and times.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Difference {
+    /// How many times were compared.
+    pub times: usize,
+    /// Of places, in the file's unit.
+    pub place: f64,
+    /// Of orientations, rad.
+    pub turn: f64,
+    /// Of velocities, angular velocities, accelerations and angular accelerations, in the file's unit of length, rad and s.
+    pub rates: [f64; 4],
+    /// How large those are.
+    pub largest: [f64; 4],
+}
+
+impl Series {
+    /// Sets what a model's solution says beside it, at the times that both have.
+    pub fn compare(&self, file: &ModelFile, solution: &Solution) -> Difference {
+        let unit = file.units.of(Quantity::Length).1;
+        let mut out = Difference::default();
+        for step in 0..solution.motion.len() {
+            let time = file.model.times[step];
+            let same = |t: &f64| (t - time).abs() <= SAME_TIME * time.abs().max(1.0);
+            let Some(k) = self.times.iter().position(same) else { continue };
+            out.times += 1;
+            for (name, stored) in &self.bodies {
+                let body = file.model.bodies.iter().position(|b| b.name == *name);
+                let (Some(body), Some(stored)) = (body, stored.get(k)) else { continue };
+                let state = solution.body(step, BodyId(body));
+                out.place = out.place.max((state.r * unit - stored.pose.r).norm());
+                out.turn = out.turn.max(state.rotation.angle_to(stored.pose.rot));
+                let ours = [state.v * unit, state.omega, state.a * unit, state.alpha];
+                for (k, theirs) in stored.rates.iter().enumerate() {
+                    let Some(theirs) = theirs else { continue };
+                    out.rates[k] = out.rates[k].max((ours[k] - *theirs).norm());
+                    out.largest[k] = out.largest[k].max(theirs.norm());
+                }
+            }
+        }
+        out
+    }
+}

@@ -1,0 +1,154 @@
+//! Shapes of bodies: meshes that a source names, boxes, cylinders and balls; all of a body become one file of triangles.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use hardpoint::space::{Pose, Vec3};
+
+use crate::mechanism::{GROUND, Mechanism, Mesh};
+use crate::report::{At, Notes};
+
+/// A body is drawn with so many triangles at most.
+const MOST: usize = 200_000;
+/// Cylinders and balls have so many sides: round enough to look at.
+const SIDES: usize = 24;
+
+type Triangle = [Vec3; 3];
+
+/// The shapes of a mechanism, by body; in the body's frame and the mechanism's unit.
+#[derive(Debug, Default)]
+pub struct Shapes {
+    bodies: BTreeMap<usize, Vec<Triangle>>,
+}
+
+/// A simple shape, in the way of the robot formats: axes along z, the origin in the middle.
+#[derive(Clone, Copy, Debug)]
+pub enum Solid {
+    /// By its three sides.
+    Box([f64; 3]),
+    /// By its radius and length.
+    Cylinder(f64, f64),
+    /// By its radius and the length of the cylinder between its halves.
+    Capsule(f64, f64),
+    /// By its three half axes.
+    Ball([f64; 3]),
+}
+
+impl Shapes {
+    /// A simple shape, placed in its body.
+    pub fn solid(&mut self, body: usize, place: Pose, solid: Solid) {
+        let triangles = match solid {
+            Solid::Box(sides) => cuboid(sides),
+            Solid::Cylinder(radius, length) => {
+                let half = length / 2.0;
+                turned(&[[0.0, -half], [radius, -half], [radius, half], [0.0, half]])
+            }
+            Solid::Capsule(radius, length) => turned(&arc(radius, length / 2.0)),
+            Solid::Ball(axes) => {
+                let scaled = |p: Vec3| Vec3::from([p.x * axes[0], p.y * axes[1], p.z * axes[2]]);
+                turned(&arc(1.0, 0.0)).into_iter().map(|t| t.map(scaled)).collect()
+            }
+        };
+        self.push(body, place, [1.0; 3], triangles.into_iter());
+    }
+
+    /// A file of triangles, placed in its body, its coordinates times `scale`.
+    ///
+    /// # Errors
+    /// Why it cannot be shown.
+    pub fn file(
+        &mut self,
+        body: usize,
+        place: Pose,
+        scale: [f64; 3],
+        name: &str,
+        bytes: &[u8],
+    ) -> Result<(), String> {
+        let (vertices, triangles) = hardpoint_file::triangles(name, bytes)?;
+        let corner = |k: u32| vertices.get(k as usize).map_or_else(Vec3::zero, |v| Vec3::from(*v));
+        self.push(body, place, scale, triangles.into_iter().map(|t| t.map(corner)));
+        Ok(())
+    }
+
+    fn push(&mut self, body: usize, place: Pose, scale: [f64; 3], triangles: impl Iterator<Item = Triangle>) {
+        let list = self.bodies.entry(body).or_default();
+        let put = |p: Vec3| place.point(Vec3::from([p.x * scale[0], p.y * scale[1], p.z * scale[2]]));
+        list.extend(triangles.take(MOST.saturating_sub(list.len())).map(|t| t.map(put)));
+    }
+
+    /// A file for each body that has a shape, in a folder of that name; the mechanism's bodies refer to them.
+    pub fn files(&self, m: &mut Mechanism, folder: &str) -> Vec<(String, Vec<u8>)> {
+        let mut files: Vec<(String, Vec<u8>)> = Vec::new();
+        for (&body, triangles) in &self.bodies {
+            let finite = |t: &&Triangle| t.iter().all(|p| p.is_finite());
+            let triangles: Vec<&Triangle> = triangles.iter().filter(finite).collect();
+            if body == GROUND || triangles.is_empty() || m.bodies[body].pose.is_none() {
+                continue;
+            }
+            let kept = |c: char| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '_' };
+            let name: String = m.bodies[body].name.chars().map(kept).collect();
+            let taken = |file: &str| files.iter().any(|f| f.0.eq_ignore_ascii_case(file));
+            let wanted = format!("{folder}/{name}.stl");
+            let file = if taken(&wanted) { format!("{folder}/{name}_{body}.stl") } else { wanted };
+            m.bodies[body].mesh = Some(Mesh { file: file.clone() });
+            files.push((file, stl(&triangles)));
+        }
+        files
+    }
+}
+
+/// That the shape of something is not shown, and why.
+pub fn not_shown(notes: &mut Notes, kind: &str, name: &str, at: Option<At>, why: &str) {
+    notes.refused(kind, name, at, format!("the shape is not shown: {why}"));
+}
+
+/// A binary STL file.
+fn stl(triangles: &[&Triangle]) -> Vec<u8> {
+    let mut out = vec![b' '; 80];
+    let words = |v: Vec3| v.to_array().into_iter().flat_map(|x| (x as f32).to_le_bytes());
+    out.extend(u32::try_from(triangles.len()).unwrap_or(u32::MAX).to_le_bytes());
+    for [a, b, c] in triangles {
+        let normal = (*b - *a).cross(*c - *a);
+        out.extend(words(normal.unit().unwrap_or(normal)));
+        [a, b, c].into_iter().for_each(|p| out.extend(words(*p)));
+        out.extend([0, 0]);
+    }
+    out
+}
+
+fn cuboid(sides: [f64; 3]) -> Vec<Triangle> {
+    let corner = |k: usize| {
+        let side = |axis: usize| if k >> axis & 1 == 1 { sides[axis] / 2.0 } else { -sides[axis] / 2.0 };
+        Vec3::from([side(0), side(1), side(2)])
+    };
+    // Each face by its corners, seen from outside counter-clockwise.
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).map(|t| t.map(corner)).collect()
+}
+
+/// The outline of a ball whose halves stand apart: radius and height.
+fn arc(radius: f64, half: f64) -> Vec<[f64; 2]> {
+    let point = |k: usize| {
+        let angle = TAU * (k as f64 / SIDES as f64 - 0.25);
+        [radius * angle.cos().max(0.0), radius * angle.sin() + if 2 * k < SIDES / 2 { -half } else { half }]
+    };
+    (0..=SIDES / 2).map(point).collect()
+}
+
+/// An outline of radii and heights, turned about z.
+fn turned(outline: &[[f64; 2]]) -> Vec<Triangle> {
+    let at = |[r, z]: [f64; 2], k: usize| {
+        let (sin, cos) = (TAU * (k % SIDES) as f64 / SIDES as f64).sin_cos();
+        Vec3::from([r * cos, r * sin, z])
+    };
+    let mut out = Vec::new();
+    for (low, high) in outline.iter().zip(&outline[1..]) {
+        for k in 0..SIDES {
+            let [a, b, c, d] = [at(*low, k), at(*low, k + 1), at(*high, k + 1), at(*high, k)];
+            out.extend(
+                [[a, b, c], [a, c, d]].into_iter().filter(|[p, q, r]| (*q - *p).cross(*r - *p).norm() > 0.0),
+            );
+        }
+    }
+    out
+}

@@ -1,0 +1,195 @@
+//! Hardpoints in the TeimOrbit format of Adams/Car (`[HARDPOINT]` blocks of subsystems), left, right or single.
+
+use hardpoint::space::Vec3;
+
+use crate::corner::{Corner, role_of};
+use crate::lotus::half_round;
+use crate::mechanism::Mechanism;
+use crate::report::{At, Notes};
+use crate::{Format, Input};
+
+/// See the module.
+pub const FORMAT: Format = Format {
+    name: "teimorbit",
+    about: "TeimOrbit hardpoints",
+    endings: &["sub", "hpt", "txt", "teim"],
+    looks: |text| text.lines().any(|l| l.trim().eq_ignore_ascii_case("[HARDPOINT]")),
+    read,
+    binary: false,
+};
+
+/// What a row's columns are, where the block does not say.
+const COLUMNS: [&str; 5] = ["hardpoint_name", "symmetry", "x_value", "y_value", "z_value"];
+
+fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+    let mut m = Mechanism::new(input.stem, "mm", "deg");
+    // Left, right and single.
+    let mut corners = [Corner::default(), Corner::default(), Corner::default()];
+    let (mut section, mut columns) = (String::new(), COLUMNS.map(str::to_owned).to_vec());
+    let (mut start, mut block, mut has_units) = (0, None, false);
+    for whole in input.text.split_inclusive('\n') {
+        let line = whole.split(['$', '!']).next().unwrap_or_default().trim();
+        let from = start + whole.len() - whole.trim_start().len();
+        let at = At { text: 0, start: from, end: from + line.len() };
+        start += whole.len();
+        if line.is_empty() {
+            continue;
+        }
+        if let Some(name) = line.strip_prefix('[').and_then(|l| l.split(']').next()) {
+            section = name.trim().to_ascii_uppercase();
+            match section.as_str() {
+                "HARDPOINT" => {
+                    columns = COLUMNS.map(str::to_owned).to_vec();
+                    block = block.or(Some(at));
+                }
+                "UNITS" | "MDI_HEADER" => {}
+                other => notes.ignored(other, Some(at)),
+            }
+            continue;
+        }
+        match section.as_str() {
+            "UNITS" => has_units |= unit(&mut m, line, at, notes),
+            "HARDPOINT" => match line.strip_prefix('{') {
+                Some(header) => {
+                    let names = header.trim_end_matches('}').split_whitespace();
+                    columns = names.map(|n| n.to_ascii_lowercase()).collect();
+                }
+                None => row(&mut m, &mut corners, &columns, line, at, notes),
+            },
+            _ => {}
+        }
+    }
+    let Some(block) = block else {
+        notes.problem_with(
+            "HP0803",
+            None,
+            "there is no block `[HARDPOINT]`",
+            "import the file of a subsystem",
+        );
+        return None;
+    };
+    if !has_units {
+        notes.approximated("UNITS", "", None, "the file names no unit of length: millimetres are taken");
+    }
+    notes.approximated(
+        "axes",
+        "",
+        Some(block),
+        "turned half round about z, so that x points forward and y left",
+    );
+    let [left, right, single] = corners;
+    let mut rack = None;
+    let mut known = false;
+    for (corner, suffix) in [(left, "_left"), (right, "_right")] {
+        if !corner.points.is_empty() {
+            let mut corner = Corner { suffix: suffix.into(), at: Some(block), rack: true, ..corner };
+            for (role, place) in &single.points {
+                corner.points.entry(*role).or_insert(*place);
+            }
+            known |= corner.build(&mut m, notes, &mut rack);
+        }
+    }
+    if !known && !single.points.is_empty() {
+        let corner = Corner { at: Some(block), rack: true, ..single };
+        corner.build(&mut m, notes, &mut rack);
+    }
+    (!m.hardpoints.is_empty()).then_some(m)
+}
+
+/// Whether the line says the unit of length.
+fn unit(m: &mut Mechanism, line: &str, at: At, notes: &mut Notes) -> bool {
+    let Some((key, value)) = line.split_once('=') else { return false };
+    if !key.trim().eq_ignore_ascii_case("LENGTH") {
+        return false;
+    }
+    let word = value.trim().trim_matches(['\'', '"']).to_ascii_lowercase();
+    m.length = match word.as_str() {
+        "mm" | "millimeter" | "millimetre" => "mm",
+        "m" | "meter" | "metre" => "m",
+        "cm" | "centimeter" => "cm",
+        "inch" | "in" => "in",
+        _ => {
+            let help = "write 'mm', 'cm', 'meter' or 'inch'";
+            notes.problem_with("HP0804", Some(at), format!("`{word}` is no unit of length"), help);
+            "mm"
+        }
+    };
+    notes.taken("UNITS", "", Some(at));
+    true
+}
+
+/// The words of a row; those in quotes may have blanks in them.
+fn words(line: &str) -> Vec<String> {
+    let (mut out, mut quote, mut word) = (Vec::new(), None, String::new());
+    for c in line.chars() {
+        match (quote, c) {
+            (Some(q), c) if c == q => {
+                quote = None;
+                out.push(std::mem::take(&mut word));
+            }
+            (None, '\'' | '"') => quote = Some(c),
+            (None, c) if c.is_whitespace() || c == ',' => {
+                if !word.is_empty() {
+                    out.push(std::mem::take(&mut word));
+                }
+            }
+            (_, c) => word.push(c),
+        }
+    }
+    if !word.is_empty() {
+        out.push(word);
+    }
+    out
+}
+
+fn row(
+    m: &mut Mechanism,
+    corners: &mut [Corner; 3],
+    columns: &[String],
+    line: &str,
+    at: At,
+    notes: &mut Notes,
+) {
+    let words = words(line);
+    let column = |names: [&str; 2]| {
+        columns.iter().position(|c| names.contains(&c.as_str())).and_then(|k| words.get(k))
+    };
+    let name = column(["hardpoint_name", "name"]);
+    let value = |axis: [&str; 2]| {
+        column(axis)
+            .and_then(|w| w.to_ascii_lowercase().replace('d', "e").parse::<f64>().ok())
+            .filter(|x| x.is_finite())
+    };
+    let place = [value(["x_value", "x"]), value(["y_value", "y"]), value(["z_value", "z"])];
+    let (Some(name), [Some(x), Some(y), Some(z)]) = (name, place) else {
+        let help = format!("its columns are {}", columns.join(", "));
+        notes.problem_with("HP0804", Some(at), "the row is no hardpoint: a name and three numbers", &help);
+        return;
+    };
+    let symmetry = column(["symmetry", "symmetry"]).map_or("", String::as_str).to_ascii_lowercase();
+    let place = half_round([x, y, z]);
+    let mirrored = Vec3::from([place.x, -place.y, place.z]);
+    let (short, prefix) =
+        match ["hpl_", "hpr_", "hps_"].iter().find_map(|p| Some((name.strip_prefix(p)?, *p))) {
+            Some((short, prefix)) => (short, prefix),
+            None => (name.as_str(), ""),
+        };
+    let role = role_of(short);
+    let mut put = |k: usize, suffix: &str, place: Vec3| {
+        m.hardpoints.push((format!("{short}{suffix}"), place));
+        if let Some(role) = role {
+            corners[k].points.insert(role, place);
+        }
+    };
+    match (symmetry.as_str(), prefix) {
+        ("left/right" | "symmetric", _) => {
+            // Written is the left one, in Adams/Car at negative y.
+            put(0, "_left", place);
+            put(1, "_right", mirrored);
+        }
+        ("left", _) | ("", "hpl_") => put(0, "_left", place),
+        ("right", _) | ("", "hpr_") => put(1, "_right", place),
+        _ => put(2, "", place),
+    }
+    notes.taken("hardpoint", name, Some(at));
+}

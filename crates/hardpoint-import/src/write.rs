@@ -1,0 +1,345 @@
+//! The mechanism as a model file.
+
+use std::collections::HashSet;
+
+use hardpoint::space::{Quat, Vec3};
+use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value, value};
+
+use crate::mechanism::{Drives, GROUND, Law, Mechanism, valid_name};
+
+/// Places nearer to each other than this part of the mechanism's size are one hardpoint; coordinates that were typed agree to about this.
+pub(crate) const SAME_PLACE: f64 = 1e-9;
+/// Coordinates below this part of the mechanism's size are what rounding left of zero.
+const ROUND_OFF: f64 = 1e-13;
+/// A model with more hardpoints than this gets no design variables of its own accord: a page with three hundred helps nobody.
+const MOST_VARIED: usize = 24;
+/// Without output times of the source there are so many intervals in one second.
+const STEPS: i64 = 100;
+
+/// The text of a model file.
+pub fn text(mechanism: &Mechanism, about: &str) -> String {
+    Writer::new(mechanism).text(about)
+}
+
+struct Writer<'m> {
+    m: &'m Mechanism,
+    size: f64,
+    hardpoints: Vec<(String, Vec3)>,
+}
+
+impl<'m> Writer<'m> {
+    fn new(m: &'m Mechanism) -> Self {
+        let mut hardpoints: Vec<(String, Vec3)> = Vec::new();
+        for (name, at) in &m.hardpoints {
+            let name = free_name(name, &hardpoints);
+            hardpoints.push((name, *at));
+        }
+        Self { m, size: m.size(), hardpoints }
+    }
+
+    /// The hardpoint there, made where there is none yet.
+    fn hardpoint(&mut self, wanted: &str, at: Vec3) -> String {
+        let near = |p: &Vec3| (*p - at).norm() <= SAME_PLACE * self.size;
+        if let Some((name, _)) = self.hardpoints.iter().find(|(_, p)| near(p)) {
+            return name.clone();
+        }
+        let name = free_name(wanted, &self.hardpoints);
+        self.hardpoints.push((name.clone(), at));
+        name
+    }
+
+    fn text(mut self, about: &str) -> String {
+        let m = self.m;
+        let joints = self.joints();
+        let wheels = self.wheels();
+        let mut doc = DocumentMut::new();
+        doc["name"] = value(m.name.as_str());
+        doc["description"] = value(about);
+        let mut units = InlineTable::new();
+        units.insert("length", m.length.into());
+        units.insert("angle", m.angle.into());
+        doc["units"] = value(units);
+
+        let mut table = Table::new();
+        for (name, at) in &self.hardpoints {
+            table[name] = value(self.place(*at));
+        }
+        put(&mut doc, "hardpoints", table);
+        put(&mut doc, "bodies", self.bodies());
+        put(&mut doc, "joints", joints);
+        put(&mut doc, "couplers", self.couplers());
+        put(&mut doc, "drivers", self.drivers());
+        put(&mut doc, "design", self.design());
+        put(&mut doc, "points", self.points());
+        put(&mut doc, "wheels", wheels);
+        let mut time = Table::new();
+        match m.times {
+            Some(t) => {
+                if t.start != 0.0 {
+                    time["start"] = value(t.start);
+                }
+                time["end"] = value(t.end);
+                time["steps"] = value(i64::try_from(t.steps).unwrap_or(STEPS));
+            }
+            None => {
+                time["end"] = value(1.0);
+                time["steps"] = value(STEPS);
+            }
+        }
+        put(&mut doc, "time", time);
+        doc.to_string()
+    }
+
+    fn bodies(&self) -> Table {
+        let mut table = Table::new();
+        for body in &self.m.bodies[1..] {
+            let mut entry = InlineTable::new();
+            if let Some(pose) = body.pose {
+                let mut frame = InlineTable::new();
+                frame.insert("position", self.place(pose.r).into());
+                let q = Quat::from_rotation(pose.rot).to_array();
+                if q[1..].iter().any(|x| x.abs() > ROUND_OFF) {
+                    frame.insert("quaternion", numbers(&q.map(|x| clean(x, ROUND_OFF))).into());
+                }
+                entry.insert("frame", frame.into());
+            }
+            if let Some(mesh) = &body.mesh {
+                let mut m = InlineTable::new();
+                m.insert("file", mesh.file.as_str().into());
+                m.insert("frame", "body".into());
+                entry.insert("mesh", m.into());
+            }
+            table[&body.name] = value(entry);
+            if let Some(mut key) = table.key_mut(&body.name) {
+                key.leaf_decor_mut().set_prefix(comment(&body.note));
+            }
+        }
+        table
+    }
+
+    fn joints(&mut self) -> Table {
+        let m = self.m;
+        let mut table = Table::new();
+        for joint in &m.joints {
+            let mut t = Table::new();
+            t["type"] = value(joint.kind);
+            t["bodies"] = value(joint.bodies.iter().map(|b| m.bodies[*b].name.as_str()).collect::<Array>());
+            let kind = hardpoint::joint::ALL.iter().find(|k| k.name == joint.kind);
+            // Of joints of which only directions matter a place would be no mistake, and no help.
+            if kind.is_none_or(|k| k.places > 0) {
+                match joint.at[..] {
+                    [at] => t["at"] = value(self.hardpoint(&joint.name, at)),
+                    [i, j] => {
+                        let [i, j] = [("i", i), ("j", j)]
+                            .map(|(end, at)| self.hardpoint(&format!("{}_{end}", joint.name), at));
+                        t["at"] = value([i, j].into_iter().collect::<Array>());
+                    }
+                    _ => {}
+                }
+            }
+            match (joint.through, joint.axis) {
+                (Some(ends), _) => t["axis"] = value(self.through(&joint.name, ends)),
+                (None, Some(axis)) => t["axis"] = direction(axis),
+                (None, None) => {}
+            }
+            if let Some(axis) = joint.axis2 {
+                t["axis2"] = direction(axis);
+            }
+            if let Some(lead) = joint.lead {
+                t["lead"] = value(lead);
+            }
+            if let Some(draw) = joint.draw {
+                t["draw"] = value(draw);
+            }
+            decorate(&mut t, &joint.note);
+            table[&joint.name] = Item::Table(t);
+        }
+        table
+    }
+
+    /// A direction from one hardpoint to another.
+    fn through(&mut self, name: &str, [from, to]: [Vec3; 2]) -> InlineTable {
+        let ends = [("from", from), ("to", to)].map(|(end, at)| self.hardpoint(&format!("{name}_{end}"), at));
+        let mut axis = InlineTable::new();
+        axis.insert("through", ends.into_iter().collect::<Array>().into());
+        axis
+    }
+
+    fn couplers(&self) -> Table {
+        let mut table = Table::new();
+        for coupler in &self.m.couplers {
+            let mut t = Table::new();
+            t["type"] = value("linear");
+            let terms = coupler.terms.iter().map(|(c, factor)| {
+                let mut term = InlineTable::new();
+                term.insert("joint", self.m.joints[c.joint].name.as_str().into());
+                term.insert("coordinate", c.name.into());
+                term.insert("coefficient", (*factor).into());
+                term
+            });
+            t["terms"] = value(terms.collect::<Array>());
+            decorate(&mut t, &coupler.note);
+            table[&coupler.name] = Item::Table(t);
+        }
+        table
+    }
+
+    fn drivers(&self) -> Table {
+        let m = self.m;
+        let mut table = Table::new();
+        for driver in &m.drivers {
+            let mut t = Table::new();
+            match driver.drives {
+                Drives::Coordinate(c) => {
+                    t["joint"] = value(m.joints[c.joint].name.as_str());
+                    t["coordinate"] = value(c.name);
+                }
+                Drives::Way { body, at, along } => {
+                    let mut point = InlineTable::new();
+                    point.insert("body", m.bodies[body].name.as_str().into());
+                    let name = self.hardpoints.iter().find(|h| (h.1 - at).norm() <= SAME_PLACE * self.size);
+                    point.insert(
+                        "at",
+                        match name {
+                            Some((name, _)) => name.as_str().into(),
+                            None => Value::from(self.place(at)),
+                        },
+                    );
+                    t["point"] = value(point);
+                    t["along"] = direction(along);
+                }
+                Drives::Heading { body, about, relative_to } => {
+                    t["body"] = value(m.bodies[body].name.as_str());
+                    t["about"] = direction(about);
+                    if relative_to != GROUND {
+                        t["relative_to"] = value(m.bodies[relative_to].name.as_str());
+                    }
+                }
+            }
+            match &driver.law {
+                Law::Held => t["law"] = value(0),
+                Law::Text(text) => t["law"] = value(text.as_str()),
+                Law::Table(points) => {
+                    let mut law = InlineTable::new();
+                    law.insert("type", "table".into());
+                    law.insert(
+                        "points",
+                        points.iter().map(|p| Value::from(numbers(p))).collect::<Array>().into(),
+                    );
+                    law.insert("ends", "natural".into());
+                    t["law"] = value(law);
+                }
+            }
+            decorate(&mut t, &driver.note);
+            table[&driver.name] = Item::Table(t);
+        }
+        table
+    }
+
+    fn design(&self) -> Table {
+        let mut table = Table::new();
+        if self.hardpoints.len() > MOST_VARIED {
+            return table;
+        }
+        for (name, at) in &self.hardpoints {
+            // What nothing is at moves nothing.
+            let mut used = self.m.joints.iter().flat_map(|j| j.at.iter().chain(j.through.iter().flatten()));
+            if used.any(|p| (*p - *at).norm() <= SAME_PLACE * self.size) {
+                let mut entry = InlineTable::new();
+                entry.insert("move", name.as_str().into());
+                entry.insert("along", "xyz".into());
+                table[name] = value(entry);
+            }
+        }
+        table
+    }
+
+    fn points(&self) -> Table {
+        let mut table = Table::new();
+        for point in &self.m.points {
+            let mut entry = InlineTable::new();
+            entry.insert("body", self.m.bodies[point.body].name.as_str().into());
+            entry.insert("at", self.place(point.at).into());
+            table[&point.name] = value(entry);
+        }
+        table
+    }
+
+    fn wheels(&mut self) -> Table {
+        let m = self.m;
+        let mut table = Table::new();
+        for wheel in &m.wheels {
+            let mut t = Table::new();
+            t["body"] = value(m.bodies[wheel.body].name.as_str());
+            t["centre"] = value(self.hardpoint(&format!("{}_centre", wheel.name), wheel.centre));
+            t["spin_axis"] = match wheel.spindle {
+                Some(spindle) => {
+                    value(self.through(&format!("{}_spindle", wheel.name), [spindle, wheel.centre]))
+                }
+                None => direction(wheel.spin_axis),
+            };
+            t["radius"] = value(wheel.radius);
+            if let Some(kingpin) = wheel.kingpin {
+                let points = [("lower", kingpin[0]), ("upper", kingpin[1])].map(|(end, (body, at))| {
+                    let mut point = InlineTable::new();
+                    point.insert("body", m.bodies[body].name.as_str().into());
+                    point.insert("at", self.hardpoint(&format!("{}_kingpin_{end}", wheel.name), at).into());
+                    point
+                });
+                t["kingpin"] = value(points.into_iter().collect::<Array>());
+            }
+            t["bump"] = value(m.drivers[wheel.bump].name.as_str());
+            t["measures"] = value("all");
+            table[&wheel.name] = Item::Table(t);
+        }
+        table
+    }
+
+    fn place(&self, at: Vec3) -> Array {
+        numbers(&at.to_array().map(|x| clean(x, ROUND_OFF * self.size)))
+    }
+}
+
+fn free_name(wanted: &str, taken: &[(String, Vec3)]) -> String {
+    let taken: HashSet<&str> = taken.iter().map(|(name, _)| name.as_str()).collect();
+    valid_name(wanted, "point", &taken)
+}
+
+/// A table in the document, unless it is empty.
+fn put(doc: &mut DocumentMut, name: &str, mut table: Table) {
+    if table.is_empty() {
+        return;
+    }
+    // `[joints.NAME]` needs no `[joints]` before it.
+    table.set_implicit(true);
+    doc[name] = Item::Table(table);
+}
+
+fn decorate(table: &mut Table, note: &str) {
+    table.decor_mut().set_prefix(format!("\n{}", comment(note)));
+}
+
+fn comment(note: &str) -> String {
+    let note: String = note.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if note.is_empty() { String::new() } else { format!("# {note}\n") }
+}
+
+fn clean(x: f64, nothing: f64) -> f64 {
+    if x.abs() <= nothing { 0.0 } else { x }
+}
+
+fn numbers(list: &[f64]) -> Array {
+    list.iter().copied().collect()
+}
+
+/// A direction: by its letter where it is that of a global axis.
+fn direction(v: Vec3) -> Item {
+    let v = v.unit().unwrap_or(v).to_array().map(|x| clean(x, ROUND_OFF));
+    for (k, names) in [["x", "-x"], ["y", "-y"], ["z", "-z"]].iter().enumerate() {
+        let others = (0..3).filter(|c| *c != k).all(|c| v[c] == 0.0);
+        if others && v[k] != 0.0 {
+            return value(names[usize::from(v[k] < 0.0)]);
+        }
+    }
+    value(numbers(&v))
+}

@@ -1,0 +1,2 @@
+//! Files of other programs become models that run.
+mod try_it;
