@@ -254,6 +254,7 @@ fn remedy(code: &str) -> Option<&'static str> {
         "HP0112" => "correct that line of the file, or choose other `columns`",
         "HP0113" => "correct the underlined part; `docs/file-format.md` says what expressions may name",
         "HP0115" => "export the body again as STL, OBJ or GLB, as triangles",
+        "HP0116" => "correct `mirror`; `docs/file-format.md` says what it makes of what",
         "HP0201" => "choose another name",
         "HP0202" => "give finite numbers",
         "HP0203" => "declare a body besides `ground`, like `[bodies]` with `crank = {}`",

@@ -73,11 +73,17 @@ impl ModelFile {
     /// Whether the new text says the changed design.
     fn read_back(&self, text: &str, values: &[f64]) -> Result<(), Diagnostics> {
         let saved = parsed(Folder::Given(&self.texts), text, self.file_name())?;
-        let Some(what) = difference(&self.model, values, &saved.model) else { return Ok(()) };
+        let Some((what, name)) = difference(&self.model, values, &saved.model) else { return Ok(()) };
+        let message = "the changed design cannot be saved in this file";
         let d = self
-            .diagnostic(Severity::Error, CODE, "the changed design cannot be saved in this file", None)
-            .note(format!("a file with its numbers would have another {what}"))
-            .help("change what this is given by in the file itself");
+            .diagnostic(Severity::Error, CODE, message, None)
+            .note(format!("a file with its numbers would have another {what} `{name}`"));
+        let d = match self.origins.names.get(&name) {
+            Some(original) => d
+                .note(format!("`{name}` is the mirror image of `{original}`, and has no numbers of its own"))
+                .help(format!("change both alike, or write what is different of `{name}` by hand")),
+            None => d.help("change what this is given by in the file itself"),
+        };
         Err(Diagnostics::new(self.source.clone(), vec![d]))
     }
 }
@@ -111,6 +117,11 @@ impl Edit<'_> {
         let variables = self.file.model.variables.iter().zip(&self.values).enumerate();
         let changed = variables.filter(|(_, (_, value))| **value != 0.0);
         changed.flat_map(|(k, (v, value))| v.changes.iter().map(move |change| (k, change, *value)))
+    }
+
+    /// Whether a mirror makes this from something else: its numbers are written there, and are right if both change alike.
+    fn is_image(&self, name: &str) -> bool {
+        self.file.origins.names.contains_key(name)
     }
 
     /// The variables that do such a thing, for complaints.
@@ -159,7 +170,7 @@ impl Edit<'_> {
                     break;
                 }
                 let way = [Key("hardpoints"), Key(&hardpoint.name), At(axis)];
-                if !self.write(&way, Quantity::Length, old, new) {
+                if !self.write(&way, Quantity::Length, old, new) && !self.is_image(&hardpoint.name) {
                     let coordinate = format!("{}.{}", hardpoint.name, ["x", "y", "z"][axis]);
                     let why = format!("`{coordinate}` is given by an expression, which it does not move");
                     self.refuse(
@@ -188,7 +199,7 @@ impl Edit<'_> {
             let written = [&[Key("parameters"), name][..], &[Key("parameters"), name, Key("value")]]
                 .iter()
                 .any(|way| self.write(way, parameter.quantity, old, old + by));
-            if !written {
+            if !written && !self.is_image(&parameter.name) {
                 let by = self.of(|c| matches!(c, Change::Parameter(c) if c.parameter.0 == p));
                 let why = format!("parameter `{}` is given by an expression", parameter.name);
                 self.refuse(&by, why, "change the parameters that it follows");
@@ -215,7 +226,7 @@ impl Edit<'_> {
                         _ => None,
                     })
                     .sum();
-                if !self.write(&way, Quantity::Length, old, old + grows) {
+                if !self.write(&way, Quantity::Length, old, old + grows) && !self.is_image(&joint.name) {
                     let why = format!("the `length` of `{}` is given by an expression", joint.name);
                     self.refuse(&by, why, "change the parameters that the expression uses");
                 }
@@ -234,7 +245,7 @@ impl Edit<'_> {
                     self.units().from_si(Quantity::Length, length),
                 );
                 let added = joint_table(&mut self.document, &joint.name, &number);
-                if !added {
+                if !added && !self.is_image(&joint.name) {
                     let by = model
                         .variables
                         .iter()
@@ -277,7 +288,8 @@ impl Edit<'_> {
             let steps: Vec<Step<'_>> = name.split('.').map(|s| s.parse().map_or(Key(s), At)).collect();
             let start = [Key("drivers"), Key(&driver.name)];
             let ways = [[&start[..], &steps].concat(), [&start[..], &[Key("law")], &steps].concat()];
-            if !ways.iter().any(|way| self.write(way, quantity, old.value, new.value)) {
+            let written = ways.iter().any(|way| self.write(way, quantity, old.value, new.value));
+            if !written && !self.is_image(&driver.name) {
                 let by = self.of(|c| matches!(c, Change::Law(c) if c.driver.0 == d && c.parameter == p));
                 let why = format!(
                     "the law of driver `{}` has no number `{}` of its own in the file",
@@ -342,7 +354,8 @@ impl Edit<'_> {
                     continue;
                 }
                 let Some(new) = new.first().filter(|n| (**n - old).norm() > ROUND_OFF) else { continue };
-                if !self.direction(&[Key("joints"), Key(&joint.name), Key(key)], *new) {
+                let way = [Key("joints"), Key(&joint.name), Key(key)];
+                if !self.direction(&way, *new) && !self.is_image(&joint.name) {
                     let why = format!("joint `{}` has no `{key}` in the file", joint.name);
                     self.refuse(&by, why, "write the joint with its direction in a table of its own");
                 }
@@ -520,22 +533,23 @@ fn shortest(target: f64, near: f64, to_si: impl Fn(f64) -> f64, exact: f64) -> S
     format!("{}", if found == 0.0 { 0.0 } else { found })
 }
 
-/// What differs between a changed design and the nominal design of another model; none where nothing does.
-fn difference(model: &Model, values: &[f64], saved: &Model) -> Option<String> {
+/// What differs between a changed design and the nominal design of another model, and of which thing; none where nothing does.
+fn difference(model: &Model, values: &[f64], saved: &Model) -> Option<(String, String)> {
+    let found = |what: &str, name: &str| Some((what.to_owned(), name.to_owned()));
     let size = model.size();
     let near = |a: Vec3, b: Vec3, size: f64| (a - b).norm() <= SAME * size;
     let far = model.distance_from_origin() + size;
     for (place, hardpoint) in model.hardpoint_places(values).into_iter().zip(&model.hardpoints) {
         let other = saved.hardpoints.iter().find(|h| h.name == hardpoint.name);
         if other.is_some_and(|other| !near(place, other.position, far)) {
-            return Some(format!("place of hardpoint `{}`", hardpoint.name));
+            return found("place of hardpoint", &hardpoint.name);
         }
     }
     let (changed, again) = (model.geometry(values), saved.geometry(&[]));
     for (j, joint) in model.joints.iter().enumerate() {
         let [a, b] = [&changed, &again].map(|g| g.kept[j].distance);
         if !((a - b).abs() <= SAME * size) {
-            return Some(format!("length of joint `{}`", joint.name));
+            return found("length of joint", &joint.name);
         }
         let world = |m: &Model, g: &hardpoint::design::Geometry, e: usize| {
             m.bodies[joint.bodies[e].0].frame.compose(g.markers[j][e])
@@ -543,17 +557,17 @@ fn difference(model: &Model, values: &[f64], saved: &Model) -> Option<String> {
         for e in [0, 1] {
             let [a, b] = [world(model, &changed, e), world(saved, &again, e)];
             if !near(a.r, b.r, far) {
-                return Some(format!("place of joint `{}`", joint.name));
+                return found("place of joint", &joint.name);
             }
             if joint.axis.is_some() && !near(a.rot.cols[2], b.rot.cols[2], 1.0) {
-                return Some(format!("axis of joint `{}`", joint.name));
+                return found("axis of joint", &joint.name);
             }
         }
     }
     for ((a, b), driver) in model.laws(values).iter().zip(saved.laws(&[])).zip(&model.drivers) {
         for (a, b) in a.parameters().iter().zip(b.parameters()) {
             if !((a.value - b.value).abs() <= SAME * a.value.abs().max(1.0)) {
-                return Some(format!("`{}` of driver `{}`", a.name, driver.name));
+                return found(&format!("`{}` of driver", a.name), &driver.name);
             }
         }
     }

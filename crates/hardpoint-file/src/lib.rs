@@ -41,6 +41,7 @@ mod read;
 mod schema;
 mod tree;
 mod units;
+mod walk;
 
 use std::path::Path;
 
@@ -58,6 +59,7 @@ pub use units::{AngleUnit, LengthUnit, Units};
 
 use diagnostic::{Source, closest, shown};
 use places::Places;
+use read::mirror::{Origins, opposites, told_once, with_origin};
 pub use tree::Texts;
 use tree::{Folder, Reader};
 
@@ -83,6 +85,8 @@ pub struct ModelFile {
     pub remarks: Vec<Diagnostic>,
     /// The texts that the model names files of: tables of laws, curves that are wanted, lists of designs.
     pub texts: Texts,
+    /// What a mirror made from something else, by name.
+    origins: Origins,
     /// The case that the model was made of, where the file has cases and only one of them is meant.
     pub case: Option<String>,
     source: Source,
@@ -191,7 +195,7 @@ impl ModelFile {
         about: Option<(Section, usize)>,
     ) -> Diagnostic {
         let span = about.and_then(|(section, index)| self.span(section, index));
-        self.source.diagnostic(severity, code, message, span)
+        with_origin(self.source.diagnostic(severity, code, message, span), &self.origins)
     }
 
     /// A diagnostic about this file as text for a terminal; with `color`, ANSI escapes.
@@ -363,9 +367,23 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
         return Err(Diagnostics::new(source, list));
     }
     let mut reader = Reader::new(&source, folder);
-    let raw = reader.model(document.get_ref());
-    let (units, texts) = (reader.units, reader.texts);
-    let (mut found, remarks) = (reader.found, diagnostic::in_order(reader.remarks));
+    let numbers = opposites(document.get_ref());
+    let mirrored = reader.both_sides(document.get_ref(), &numbers);
+    if !reader.found.is_empty() {
+        // What it would have made is missing everywhere.
+        let found = std::mem::take(&mut reader.found);
+        let note = "the rest of the model is checked when the mirror is right";
+        let list = found.into_iter().map(|d| d.note(note)).collect();
+        return Err(Diagnostics::new(source.clone(), list));
+    }
+    let no_twins = Default::default();
+    let raw = match &mirrored {
+        Some(both) => reader.model(&both.table, &both.twins),
+        None => reader.model(document.get_ref(), &no_twins),
+    };
+    let (units, texts, origins) = (reader.units, reader.texts, reader.origins);
+    let remarks = diagnostic::in_order(told_once(reader.remarks, &origins));
+    let mut found = reader.found;
     let model = match Model::from_draft(&raw.draft) {
         Ok(model) => Some(model),
         Err(faults) => {
@@ -373,11 +391,24 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
             None
         }
     };
+    drop(mirrored);
     drop(document);
+    let found = told_once(found, &origins);
     match model {
         Some(model) if found.is_empty() => {
             let (description, drawing, places) = (raw.description, raw.drawing, raw.places);
-            Ok(ModelFile { model, units, description, drawing, remarks, texts, case: None, source, places })
+            Ok(ModelFile {
+                model,
+                units,
+                description,
+                drawing,
+                remarks,
+                texts,
+                origins,
+                case: None,
+                source,
+                places,
+            })
         }
         _ => Err(Diagnostics::new(source, found)),
     }

@@ -15,6 +15,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Diagnostic, Severity, Source, closest, shown};
 use crate::format::{HARDPOINT, Key, LENGTH, NUMBER, Need, Shape, THREE_NUMBERS, Table, table};
+use crate::read::mirror::Origins;
 use crate::units::Units;
 
 pub(crate) type Value<'a> = Spanned<DeValue<'a>>;
@@ -137,6 +138,8 @@ pub(crate) struct Reader<'s> {
     pub units: Units,
     /// What the file's parameters are, as soon as they are read.
     pub nominal: Nominal,
+    /// What was made from something else, by name.
+    pub origins: Origins,
     /// The parameters of the law that is being read which expressions give, and those expressions.
     pub law_formulas: Vec<(String, Expression)>,
     pub found: Vec<Diagnostic>,
@@ -149,8 +152,8 @@ pub(crate) struct Reader<'s> {
 impl<'s> Reader<'s> {
     pub fn new(source: &'s Source, folder: Folder<'s>) -> Self {
         let (units, nominal) = (Units::default(), Nominal::default());
-        let (texts, law_formulas, found, unread, remarks) = Default::default();
-        Self { source, folder, texts, units, nominal, law_formulas, found, unread, remarks }
+        let (texts, origins, law_formulas, found, unread, remarks) = Default::default();
+        Self { source, folder, texts, units, nominal, origins, law_formulas, found, unread, remarks }
     }
 }
 

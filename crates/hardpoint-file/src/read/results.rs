@@ -226,7 +226,7 @@ fn key(field: &MeasureField) -> Key {
         FieldKind::Output => (OUTPUT, "\"toe\""),
         FieldKind::Driver => (DRIVER, "\"bump\""),
         FieldKind::Body => (BODY, "\"knuckle\""),
-        FieldKind::Expression => (Shape::Text, "\"left.toe + right.toe\""),
+        FieldKind::Expression => (Shape::Expression, "\"left.toe + right.toe\""),
     };
     let need = if field.required { Need::Required } else { Need::Optional };
     Key { key: field.key, shape, need, example, doc: field.summary }

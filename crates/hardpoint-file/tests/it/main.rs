@@ -12,6 +12,7 @@ mod grids;
 mod measures;
 mod meshes;
 mod metrics;
+mod mirror;
 mod models;
 mod motions;
 mod optimize;

@@ -1,0 +1,898 @@
+//! The other side of a symmetric mechanism, made from the one that is written.
+//!
+//! It is made of the text's values before they are read: what is made so has names of its own, and the places in the text of what it
+//! was made of. Whatever moves as a mirror image then has the same joint coordinates and measures as its original: directions to go
+//! along are mirrored as arrows are, and directions to turn about the other way round, as turns are.
+
+use std::borrow::Cow;
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use hardpoint::joint;
+use toml::Spanned;
+use toml::de::{DeArray, DeTable, DeValue};
+
+use crate::diagnostic::{Diagnostic, closest, shown};
+use crate::format::{Shape, Table, table};
+use crate::tree::{Reader, Value, axis_named};
+use crate::walk::{Leaf, in_expression, list_of, table_of, walk};
+
+use super::MODEL;
+
+pub(crate) const MIRROR: Table = table! {
+    /// What the file says of one side is said of the other side as well.
+    "Mirror":
+    /// The global axis square to the mirror, a plane through the origin: `"y"` between left and right.
+    or("\"y\"") "across": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
+    /// Words in names, and the words that stand for them on the other side. A word ends where the name does, or at `_`, `-` or a blank.
+    or("{ \"left\": \"right\" }") "names": Shape::Entries("a word", &Shape::Text), "{ left = \"right\" }";
+    /// What design variables do.
+    or("\"both\"") "variables": VARIABLES, "\"each\"";
+    /// Names of things that are on one side only.
+    may "except": Shape::list(&Shape::Name("a thing")), "[\"left_damper\"]";
+    /// Names of drivers that do the opposite on the other side, as steering does.
+    may "opposite": Shape::list(&crate::format::DRIVER), "[\"left_steer\"]";
+};
+const VARIABLES: Shape = Shape::Words(&[
+    ("both", "Each changes both sides alike."),
+    ("each", "Those with such a word in their names have one of their own on the other side."),
+]);
+/// Sections whose entries are mirrored; of parameters and design variables, where each side has its own.
+pub(crate) const SECTIONS: [&str; 12] = [
+    "parameters",
+    "hardpoints",
+    "bodies",
+    "joints",
+    "couplers",
+    "drivers",
+    "design",
+    "points",
+    "wheels",
+    "axles",
+    "measures",
+    "metrics",
+];
+/// Joint types whose `axis` says what they turn about, or which side of a plane is up, so that it is mirrored as a turn. A cylindrical
+/// joint and a screw turn about what they slide along: their displacement stays, and their angle changes its sign.
+const TURNED: [&str; 7] =
+    ["revolute", "universal", "planar", "pin_in_slot", "inplane", "parallel", "heading"];
+const HANDED: [&str; 2] = ["cylindrical", "screw"];
+
+/// A model's table with all that it has on both sides.
+pub(crate) struct Mirrored<'a> {
+    pub table: DeTable<'a>,
+    /// What design variables also change, by their names.
+    pub twins: HashMap<String, Value<'a>>,
+}
+
+/// Where a mirror's images come from.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Origins {
+    /// The names of what was made from something else, and the names of that.
+    pub names: BTreeMap<String, String>,
+    /// The words that are exchanged in names.
+    words: Vec<(String, String)>,
+}
+
+/// What the mirror is, and what passes it.
+struct Rule<'n> {
+    numbers: &'n Opposites,
+    across: usize,
+    words: Vec<(String, String)>,
+    /// Names that are the same on both sides.
+    kept: HashSet<String>,
+    /// The same of parameters.
+    shared: HashSet<String>,
+}
+
+impl<'n> Rule<'n> {
+    /// The name with its words exchanged, if it has any of them; `back` exchanges them either way.
+    fn exchanged(&self, name: &str, back: bool) -> Option<String> {
+        let there = self.words.iter().map(|(one, other)| (one, other));
+        exchanged(name, there.chain(self.words.iter().filter(|_| back).map(|(one, other)| (other, one))))
+    }
+
+    /// The name of what is made of something with this name.
+    fn twin(&self, name: &str) -> Option<String> {
+        if self.kept.contains(name) { None } else { self.exchanged(name, false) }
+    }
+
+    /// What a name, or a measure's like `left.toe`, is on the other side.
+    fn said(&self, name: &str) -> Option<String> {
+        let base = name.split('.').next().unwrap_or(name);
+        if self.kept.contains(base) || self.kept.contains(name) { None } else { self.exchanged(name, true) }
+    }
+
+    /// The names and vectors of a value on the other side; `turns` says under which keys a vector is a turn. Says whether there was any name.
+    fn mirror(&self, shape: Shape, value: &mut Value<'n>, turns: &dyn Fn(&str) -> bool) -> bool {
+        let mut named = false;
+        let axes = ["x", "y", "z"];
+        walk("", shape, value, &mut |key, leaf| match leaf {
+            Leaf::Name("a column" | "a parameter" | "a parameter of the law", _) => {}
+            Leaf::Name(_, name) => {
+                if let Some(said) = self.said(name) {
+                    *name = Cow::Owned(said);
+                    named = true;
+                }
+            }
+            Leaf::Expression(text) => in_expression(text, |word| {
+                if self.shared.contains(word) {
+                    return None;
+                }
+                let said = self.said(word)?;
+                let turned = said.split_once('.').is_some_and(|(_, c)| c == axes[self.across]);
+                Some(if turned { format!("(-{said})") } else { said })
+            }),
+            Leaf::Axis(word) => {
+                let letter = word.trim_start_matches(['+', '-']);
+                if (letter == axes[self.across]) != turns(key) && axis_named(word).is_some() {
+                    let minus = if word.starts_with('-') { "" } else { "-" };
+                    *word = Cow::Owned(format!("{minus}{letter}"));
+                }
+            }
+            Leaf::Vector(list) => {
+                let turned = turns(key);
+                each(list, self.numbers, |k| (k == self.across) != turned);
+            }
+            // R = Rz(a) Rx(b) Rz(c) between two mirrors: turns about the mirror's axis stay, all others go the other way.
+            Leaf::Angles(list) => each(list, self.numbers, |k| (if k == 1 { 0 } else { 2 }) != self.across),
+            Leaf::Quaternion(list) => each(list, self.numbers, |k| k > 0 && k - 1 != self.across),
+        });
+        named
+    }
+}
+
+/// A name with the second of each pair of words in place of the first, if it has any of them.
+fn exchanged<'w>(
+    name: &str,
+    words: impl Iterator<Item = (&'w String, &'w String)> + Clone,
+) -> Option<String> {
+    let is_word = |c: char| c.is_alphanumeric();
+    let (mut out, mut rest, mut changed) = (String::new(), name, false);
+    while let Some(first) = rest.chars().next() {
+        let end = match is_word(first) {
+            true => rest.find(|c| !is_word(c)).unwrap_or(rest.len()),
+            false => first.len_utf8(),
+        };
+        let (word, after) = rest.split_at(end);
+        let said = words.clone().find(|(from, _)| *from == word).map(|w| w.1);
+        changed |= said.is_some();
+        out += said.map_or(word, String::as_str);
+        rest = after;
+    }
+    changed.then_some(out)
+}
+
+/// Changes the signs of some numbers in a list.
+fn each<'a>(list: &mut DeArray<'a>, numbers: &'a Opposites, turned: impl Fn(usize) -> bool) {
+    list.iter_mut().enumerate().filter(|(k, _)| turned(*k)).for_each(|(_, value)| turn_sign(value, numbers));
+}
+
+/// Numbers as they are written, and the same with the other sign.
+pub(crate) type Opposites = HashMap<String, String>;
+
+/// The numbers of a model that has a mirror, with the other sign.
+pub(crate) fn opposites(model: &DeTable<'_>) -> Opposites {
+    let mut all = Opposites::new();
+    if model.contains_key("mirror") {
+        model.values().for_each(|value| opposites_in(value, &mut all));
+    }
+    all
+}
+
+fn opposites_in(value: &Value<'_>, all: &mut Opposites) {
+    let text = match value.get_ref() {
+        DeValue::Array(list) => return list.iter().for_each(|value| opposites_in(value, all)),
+        DeValue::Table(table) => return table.values().for_each(|value| opposites_in(value, all)),
+        DeValue::Integer(i) if i.radix() == 10 => i.as_str(),
+        DeValue::Float(f) => f.as_str(),
+        _ => return,
+    };
+    let turned = match text.strip_prefix('-') {
+        Some(rest) => rest.to_owned(),
+        // No -0.
+        None if text.parse() == Ok(0.0) => return,
+        None => format!("-{}", text.trim_start_matches('+')),
+    };
+    all.insert(text.to_owned(), turned);
+}
+
+/// A number or an expression with the other sign.
+fn turn_sign<'a>(value: &mut Value<'a>, numbers: &'a Opposites) {
+    let turned = match value.get_ref() {
+        DeValue::String(text) => DeValue::String(Cow::Owned(format!("-({text})"))),
+        DeValue::Integer(i) => match numbers.get(i.as_str()).map(|text| DeValue::parse(text)) {
+            Some(Ok(turned)) => turned.into_inner(),
+            _ => return,
+        },
+        DeValue::Float(f) => match numbers.get(f.as_str()).map(|text| DeValue::parse(text)) {
+            Some(Ok(turned)) => turned.into_inner(),
+            _ => return,
+        },
+        _ => return,
+    };
+    *value = Spanned::new(value.span(), turned);
+}
+
+fn text<'a>(text: impl Into<String>, at: &Value<'_>) -> Value<'a> {
+    Spanned::new(at.span(), DeValue::String(Cow::Owned(text.into())))
+}
+
+/// Puts a value into a table under a key that stands where the value does.
+fn put<'a>(table: &mut DeTable<'a>, key: &'static str, value: Value<'a>) {
+    table.insert(Spanned::new(value.span(), Cow::Borrowed(key)), value);
+}
+
+fn word<'t>(table: &'t DeTable<'_>, key: &str) -> Option<&'t str> {
+    table.get(key)?.get_ref().as_str()
+}
+
+/// A joint's type, whatever it is called in the file.
+fn type_of(joint: &DeTable<'_>) -> &'static str {
+    word(joint, "type").and_then(joint::named).map_or("", |kind| kind.name)
+}
+
+/// Lines through two points that are turned about go from the second to the first.
+fn turn_lines(value: &mut Value<'_>, turns: &dyn Fn(&str) -> bool) {
+    if let Some(list) = list_of(value) {
+        list.iter_mut().for_each(|value| turn_lines(value, turns));
+        return;
+    }
+    let Some(table) = table_of(value) else { return };
+    for (key, value) in table.iter_mut() {
+        let line = table_of(value).filter(|_| turns(key.get_ref()));
+        match line.and_then(|line| list_of(line.get_mut("through")?)) {
+            Some(points) if points.len() == 2 => {
+                let mut points = points.iter_mut();
+                if let (Some(a), Some(b)) = (points.next(), points.next()) {
+                    std::mem::swap(a, b);
+                }
+            }
+            _ => turn_lines(value, turns),
+        }
+    }
+}
+
+/// A law with the other sign; whether it could be said.
+fn turn_law<'a>(value: &mut Value<'a>, numbers: &'a Opposites) -> bool {
+    let Some(table) = table_of(value) else {
+        turn_sign(value, numbers);
+        return true;
+    };
+    if table.contains_key("file") {
+        return false;
+    }
+    let keys = [
+        "amplitude",
+        "offset",
+        "speed",
+        "from",
+        "to",
+        "start_speed",
+        "end_speed",
+        "start_acceleration",
+        "end_acceleration",
+        "law",
+    ];
+    let mut whole = true;
+    for (key, value) in table.iter_mut() {
+        match &**key.get_ref() {
+            "law" => whole &= turn_law(value, numbers),
+            key if keys.contains(&key) => turn_sign(value, numbers),
+            "coefficients" => list_of(value).into_iter().for_each(|l| each(l, numbers, |_| true)),
+            "points" => list_of(value)
+                .into_iter()
+                .flat_map(|list| list.iter_mut())
+                .for_each(|p| list_of(p).into_iter().for_each(|p| each(p, numbers, |k| k == 1))),
+            "pieces" => {
+                let pieces = list_of(value).into_iter().flat_map(|list| list.iter_mut());
+                for piece in pieces {
+                    let law = table_of(piece).and_then(|t| t.get_mut("law"));
+                    whole &= law.is_none_or(|law| turn_law(law, numbers));
+                }
+            }
+            _ => {}
+        }
+    }
+    whole
+}
+
+impl Reader<'_> {
+    /// The table of the model with what its `mirror` makes of it; none where there is no mirror, or where that cannot be read, which is told.
+    pub fn both_sides<'a>(&mut self, model: &DeTable<'a>, numbers: &'a Opposites) -> Option<Mirrored<'a>> {
+        let value = model.get("mirror")?;
+        let Some(said) = value.get_ref().as_table() else {
+            let message = "`mirror` must be a table";
+            self.report("HP0105", value.span(), message).help =
+                Some("for example `mirror = { across = \"y\", names = { left = \"right\" } }`".into());
+            return None;
+        };
+        let before = self.found.len();
+        let fields = self.fields("`mirror`", value.span(), said, MIRROR.keys());
+        let across = self.word_of(&fields, "across");
+        let each_its_own = self.word_of(&fields, "variables") == Some(1);
+        let words = match fields.get("names") {
+            None => vec![("left".to_owned(), "right".to_owned())],
+            Some(f) => self.words_of(f.value),
+        };
+        let mut listed = |key: &str| -> Vec<(String, std::ops::Range<usize>)> {
+            let subject = fields.subject(key);
+            let Some(f) = fields.get(key) else { return Vec::new() };
+            let list = self.list(f.value, &subject, "a list of names").into_iter().flatten();
+            list.filter_map(|v| Some((self.name(v, &subject, "a name in quotes")?, v.span()))).collect()
+        };
+        let (except, opposite) = (listed("except"), listed("opposite"));
+        if self.found.len() > before {
+            return None;
+        }
+        let mut rule = Rule { numbers, across: across?, words, kept: HashSet::new(), shared: HashSet::new() };
+        let entries = |section: &str| model.get(section).and_then(|v| v.get_ref().as_table());
+        let named = |name: &str| SECTIONS.iter().any(|s| entries(s).is_some_and(|t| t.contains_key(name)));
+        let has_driver = |name: &str| entries("drivers").is_some_and(|t| t.contains_key(name));
+        let all: Vec<&str> =
+            SECTIONS.iter().filter_map(|s| entries(s)).flatten().map(|(k, _)| &**k.get_ref()).collect();
+        for (name, at) in &except {
+            if !named(name) {
+                self.unknown(at.clone(), &format!("nothing is named `{}`", shown(name)), name, &all);
+            }
+        }
+        for (name, at) in opposite.iter().filter(|(name, _)| !has_driver(name)) {
+            self.unknown(at.clone(), &format!("there is no driver named `{}`", shown(name)), name, &all);
+        }
+        rule.kept.extend(except.into_iter().map(|e| e.0));
+        // A parameter is the same on both sides, unless it has a counterpart there.
+        if let (Some(parameters), false) = (entries("parameters"), each_its_own) {
+            let alone =
+                |name: &&str| rule.exchanged(name, true).is_none_or(|n| !parameters.contains_key(&*n));
+            let names = parameters.iter().map(|(name, _)| &**name.get_ref());
+            let kept: Vec<String> = names.filter(alone).map(str::to_owned).collect();
+            rule.shared.extend(kept);
+        }
+        let opposite = opposite.into_iter().map(|o| o.0).collect();
+        let mut side = Side { rule, model, opposite, made: HashMap::new(), refused: Vec::new() };
+        let mut table = model.clone();
+        for section in SECTIONS.into_iter().filter(|s| each_its_own || !["parameters", "design"].contains(s))
+        {
+            if let Some(entries) = table.get_mut(section).and_then(|v| table_of(v)) {
+                side.add(section, entries);
+            }
+        }
+        let cases = table.get_mut("cases").and_then(|v| table_of(v));
+        cases.into_iter().for_each(|cases| side.cases(cases));
+        let mut twins = HashMap::new();
+        if let (false, Some(design)) = (each_its_own, table.get_mut("design").and_then(|v| table_of(v))) {
+            side.design(design, &mut twins);
+        }
+        let Side { rule, made, refused, .. } = side;
+        for (at, message, help) in refused {
+            self.report("HP0116", at, message).help = Some(help);
+        }
+        if made.is_empty() {
+            let words: Vec<String> = rule.words.iter().map(|w| format!("`{}`", w.0)).collect();
+            let message = format!("the mirror makes nothing: no name has the word {}", words.join(" or "));
+            self.report("HP0116", value.span(), message).help = Some(
+                "say under `names` which word of the names says the side, like `names = { l = \"r\" }`"
+                    .into(),
+            );
+        }
+        self.origins.names = made.into_iter().map(|((_, name), of)| (name, of)).collect();
+        self.origins.words = rule.words;
+        Some(Mirrored { table, twins })
+    }
+
+    /// The words that are exchanged.
+    fn words_of(&mut self, value: &Value<'_>) -> Vec<(String, String)> {
+        let Some(table) = value.get_ref().as_table() else {
+            self.report("HP0105", value.span(), "`names` of `mirror` must be a table of words").help =
+                Some("for example `names = { left = \"right\" }`".into());
+            return Vec::new();
+        };
+        let is_word = |w: &str| !w.is_empty() && w.chars().all(char::is_alphanumeric);
+        let mut words: Vec<(String, String)> = Vec::new();
+        for (from, to) in table {
+            let at = from.span().start..to.span().end;
+            let other = to.get_ref().as_str().filter(|to| is_word(to) && is_word(from.get_ref()));
+            let Some(other) = other.filter(|to| *to != &**from.get_ref()) else {
+                let message = format!("`{}` of `names` is not one word for another", shown(from.get_ref()));
+                self.report("HP0116", at, message).help = Some(
+                    "write words of letters and digits without what stands between them, like `l = \"r\"` for `arm_l`".into(),
+                );
+                continue;
+            };
+            words.push((from.get_ref().to_string(), other.to_owned()));
+        }
+        words
+    }
+
+    fn unknown(&mut self, at: std::ops::Range<usize>, message: &str, name: &str, all: &[&str]) {
+        let close = closest(name, all.iter().copied());
+        self.report("HP0204", at, message).help = close.map(|c| format!("did you mean `{c}`?"));
+    }
+}
+
+/// The other side while it is made.
+struct Side<'m, 'a> {
+    rule: Rule<'a>,
+    /// As it is written.
+    model: &'m DeTable<'a>,
+    opposite: HashSet<String>,
+    /// What was made, by its section and name, and the name of its original.
+    made: HashMap<(&'static str, String), String>,
+    /// What cannot be made: where, why, and what to do.
+    refused: Vec<(std::ops::Range<usize>, String, String)>,
+}
+
+impl<'a> Side<'_, 'a> {
+    fn entry(&self, section: &str, name: &str) -> Option<&DeTable<'a>> {
+        self.model.get(section)?.get_ref().as_table()?.get(name)?.get_ref().as_table()
+    }
+
+    /// The mirror images of a section's entries, behind these; what is written there by hand counts more.
+    fn add(&mut self, section: &'static str, entries: &mut DeTable<'a>) {
+        let shape = MODEL.keys().find(|k| k.key == section).map(|k| k.shape);
+        let Some(Shape::Entries(_, of)) = shape else { return };
+        let originals: Vec<_> = entries
+            .iter()
+            .filter_map(|(k, v)| {
+                Some((k.get_ref().to_string(), self.rule.twin(k.get_ref())?, k.span(), v.clone()))
+            })
+            .collect();
+        for (name, twin, at, mut value) in originals {
+            self.mirror(section, *of, &name, &mut value);
+            if let Some(hand) = entries.get_mut(&*twin) {
+                let Some(hand) = table_of(hand).filter(|hand| !stands_alone(*of, hand)) else {
+                    continue;
+                };
+                let Some(made) = table_of(&mut value) else { continue };
+                for (key, value) in std::mem::take(made) {
+                    if !hand.contains_key(&**key.get_ref()) {
+                        hand.insert(key, value);
+                    }
+                }
+            } else {
+                entries.insert(Spanned::new(at, Cow::Owned(twin.clone())), value);
+            }
+            self.made.insert((section, twin), name);
+        }
+    }
+
+    /// One entry on the other side.
+    fn mirror(&mut self, section: &str, of: Shape, name: &str, value: &mut Value<'a>) -> bool {
+        let kind = value.get_ref().as_table().map_or("", |table| match section {
+            "joints" => type_of(table),
+            _ if word(table, "type") == Some("angular_velocity") => "angular_velocity",
+            _ => "",
+        });
+        let turns = move |key: &str| match (section, key) {
+            (_, "about" | "rotate" | "turn") => true,
+            ("joints", "axis") => TURNED.contains(&kind),
+            ("joints", "axis2") => kind == "universal",
+            ("measures", "along") => kind == "angular_velocity",
+            _ => false,
+        };
+        let first = |value: &Value<'a>| {
+            Some(
+                value
+                    .get_ref()
+                    .as_table()?
+                    .get("axis")?
+                    .get_ref()
+                    .as_table()?
+                    .get("through")?
+                    .get_ref()
+                    .as_array()?
+                    .first()?
+                    .clone(),
+            )
+        };
+        let named = self.rule.mirror(of, value, &turns);
+        let through = first(value);
+        turn_lines(value, &turns);
+        let span = value.span();
+        let Some(table) = table_of(value) else { return named };
+        match section {
+            "joints" => {
+                table.get_mut("lead").into_iter().for_each(|v| turn_sign(v, self.rule.numbers));
+                // It is at the first point of its axis, whichever way that goes.
+                if let (Some(at), false) =
+                    (through.filter(|at| turns("axis") && at.get_ref().is_str()), table.contains_key("at"))
+                {
+                    put(table, "at", at);
+                }
+            }
+            "bodies" => self.mesh(table),
+            "wheels" => {
+                let ends = [("side", ["left", "right"], 1), ("end", ["front", "rear"], 0)];
+                for (key, [one, other], axis) in ends {
+                    let Some(value) = table.get_mut(key).filter(|_| self.rule.across == axis) else {
+                        continue;
+                    };
+                    let turned = match value.get_ref().as_str() {
+                        Some(w) if w == one => other,
+                        Some(w) if w == other => one,
+                        _ => continue,
+                    };
+                    *value = text(turned, value);
+                }
+            }
+            "couplers" => self.coupler(name, table, span),
+            "drivers" => {
+                if let (true, Some(law)) = (self.is_turned(name), table.get_mut("law")) {
+                    let at = law.span();
+                    if !turn_law(law, self.rule.numbers) {
+                        self.no_law(at, name);
+                    }
+                }
+            }
+            "design" => {
+                self.fields(table);
+                // Its three variables move as the images of the three of the original.
+                let moved = table.get("move").filter(|_| word(table, "along") == Some("xyz")).cloned();
+                if let (Some(moved), false) = (moved, table.contains_key("mirror")) {
+                    let axis = DeValue::String(Cow::Borrowed(["x", "y", "z"][self.rule.across]));
+                    put(table, "mirror", Spanned::new(moved.span(), axis));
+                    put(table, "move", Spanned::new(moved.span(), DeValue::Array(DeArray::new())));
+                    put(table, "mirrored", moved);
+                }
+            }
+            _ => {}
+        }
+        named
+    }
+
+    /// Whether a driver's law has the other sign on the other side while the first does what it does.
+    fn is_turned(&self, driver: &str) -> bool {
+        self.opposite.contains(driver) != self.is_handed(driver)
+    }
+
+    /// Whether a driver's coordinate changes its sign in the mirror.
+    fn is_handed(&self, driver: &str) -> bool {
+        let drives = self.entry("drivers", driver);
+        let joint = drives.and_then(|d| word(d, "joint").zip(word(d, "coordinate")));
+        joint.is_some_and(|(joint, coordinate)| {
+            coordinate == "angle" && self.entry("joints", joint).is_some_and(|j| HANDED.contains(&type_of(j)))
+        })
+    }
+
+    fn no_law(&mut self, at: std::ops::Range<usize>, driver: &str) {
+        let other = self.rule.twin(driver).unwrap_or_default();
+        self.refused.push((
+            at,
+            format!("the law of driver `{driver}` lies in a file, and is not turned round for `{other}`"),
+            format!("write the law of `{other}` as well, with a file of its own"),
+        ));
+    }
+
+    /// The shape of a body in the mirror.
+    fn mesh(&self, body: &mut DeTable<'a>) {
+        let by_points = body.get("frame").is_some_and(|f| is_by_points(f.get_ref().as_table()));
+        let Some(mesh) = body.get_mut("mesh") else { return };
+        if mesh.get_ref().is_str() {
+            let file = mesh.clone();
+            *mesh = Spanned::new(mesh.span(), DeValue::Table(DeTable::new()));
+            table_of(mesh).into_iter().for_each(|table| put(table, "file", file.clone()));
+        }
+        let span = mesh.span();
+        let Some(table) = table_of(mesh) else { return };
+        let in_body = word(table, "frame") == Some("body");
+        let axis = ["x", "y", "z"][if by_points && in_body { 2 } else { self.rule.across }];
+        put(table, "mirror", Spanned::new(span, DeValue::String(Cow::Borrowed(axis))));
+    }
+
+    /// A coupler holds the same relation between coordinates of joints that are mirrored; of others, and of joints whose angle changes
+    /// its sign, it goes by these signs.
+    fn coupler(&mut self, name: &str, coupler: &mut DeTable<'a>, at: std::ops::Range<usize>) {
+        // The entry is mirrored already: the originals stand in the model.
+        let Some(original) = self.entry("couplers", name) else { return };
+        let list = |key: &str| -> Vec<String> {
+            let list = original.get(key).and_then(|v| v.get_ref().as_array());
+            list.into_iter().flatten().filter_map(|v| Some(v.get_ref().as_str()?.to_owned())).collect()
+        };
+        let (mut signs, mut asked) = (Vec::new(), Vec::new());
+        match word(original, "type") {
+            Some("gear" | "bevel" | "belt") => {
+                asked.extend(list("joints").into_iter().map(|j| (j, "angle".to_owned())))
+            }
+            Some("rack" | "rack_and_pinion") => {
+                asked.extend(word(original, "rack").map(|j| (j.to_owned(), "displacement".to_owned())));
+                asked.extend(word(original, "pinion").map(|j| (j.to_owned(), "angle".to_owned())));
+            }
+            _ => {
+                let terms = original.get("terms").and_then(|v| v.get_ref().as_array()).into_iter().flatten();
+                for term in terms.filter_map(|t| t.get_ref().as_table()) {
+                    let joint = word(term, "joint").unwrap_or_default();
+                    asked.push((joint.to_owned(), word(term, "coordinate").unwrap_or_default().to_owned()));
+                }
+            }
+        }
+        for (joint, coordinate) in &asked {
+            match self.sign(joint, coordinate) {
+                Some(sign) => signs.push(sign),
+                None => {
+                    let twin = self.rule.twin(name).unwrap_or_default();
+                    let message = format!(
+                        "coupler `{name}` cannot be mirrored: the axis of joint `{joint}` is neither square to the mirror nor in it"
+                    );
+                    let help =
+                        format!("write `{twin}` by hand with a `type`, or put `{name}` under `except`");
+                    self.refused.push((at, message, help));
+                    return;
+                }
+            }
+        }
+        let odd = signs.iter().filter(|s| **s).count() % 2 == 1;
+        let mut toggle = |key: &'static str| {
+            let on = coupler.get(key).and_then(|v| v.get_ref().as_bool()).unwrap_or(false);
+            put(coupler, key, Spanned::new(at.clone(), DeValue::Boolean(!on)));
+        };
+        match word(original, "type") {
+            Some("gear" | "bevel") if odd => toggle("internal"),
+            Some("belt") if odd => toggle("crossed"),
+            Some("rack" | "rack_and_pinion") if odd => {
+                coupler.get_mut("radius").into_iter().for_each(|v| turn_sign(v, self.rule.numbers))
+            }
+            Some("linear") => {
+                let terms = coupler.get_mut("terms").and_then(|v| list_of(v));
+                for (term, _) in
+                    terms.into_iter().flat_map(|l| l.iter_mut()).zip(signs).filter(|(_, sign)| *sign)
+                {
+                    let factor = table_of(term).and_then(|t| t.get_mut("coefficient"));
+                    factor.into_iter().for_each(|v| turn_sign(v, self.rule.numbers));
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Whether a coordinate of a joint changes its sign in the mirror; none where it becomes another one.
+    fn sign(&self, joint: &str, coordinate: &str) -> Option<bool> {
+        // What is not known is told when it is read.
+        let Some(table) = self.entry("joints", joint) else { return Some(false) };
+        let kind = word(table, "type").and_then(joint::named);
+        let Some(kind) = kind else { return Some(false) };
+        let angle = coordinate.starts_with("angle")
+            || coordinate.is_empty() && kind.coordinates.iter().any(|c| c.name == "angle");
+        if self.rule.twin(joint).is_some() {
+            return Some(angle && HANDED.contains(&kind.name));
+        }
+        // It is shared: its axis has to be its own image, or the opposite of that.
+        let at = |name: &str| -> Option<[f64; 3]> {
+            let list = self.model.get("hardpoints")?.get_ref().as_table()?.get(name)?.get_ref().as_array()?;
+            numbers(list)
+        };
+        let axis = table.get(if coordinate == "angle2" { "axis2" } else { "axis" });
+        let Some(axis) = axis else { return Some(false) };
+        let direction = match axis.get_ref() {
+            DeValue::String(word) => axis_named(word).map(|v| [v.x, v.y, v.z]),
+            DeValue::Array(list) => numbers(list),
+            DeValue::Table(table) => {
+                let ends = table.get("through").and_then(|v| v.get_ref().as_array());
+                let ends: Vec<_> =
+                    ends.into_iter().flatten().filter_map(|v| at(v.get_ref().as_str()?)).collect();
+                match ends.as_slice() {
+                    [a, b] => Some([b[0] - a[0], b[1] - a[1], b[2] - a[2]]),
+                    _ => None,
+                }
+            }
+            _ => return Some(false),
+        }?;
+        let out = direction[self.rule.across] != 0.0;
+        let in_plane = (0..3).any(|k| k != self.rule.across && direction[k] != 0.0);
+        // An arrow square to the mirror is turned round; a turn is where the arrow is not.
+        if out && in_plane { None } else { Some(out != angle) }
+    }
+
+    /// Velocity fields count in the frames of bodies, which have another axis in the mirror where points give them.
+    fn fields(&self, variable: &mut DeTable<'a>) {
+        let list = variable.get_mut("fields").and_then(|v| list_of(v));
+        for field in list.into_iter().flat_map(|l| l.iter_mut()).filter_map(table_of) {
+            let body = word(field, "body").and_then(|b| self.rule.said(b)).unwrap_or_default();
+            let frame = self.entry("bodies", &body).and_then(|b| b.get("frame"));
+            if !is_by_points(frame.and_then(|f| f.get_ref().as_table())) {
+                continue;
+            }
+            // Mirrored across the one axis already, and to be across z.
+            let across = self.rule.across;
+            let changed = |k: usize| (k == across) != (k == 2);
+            let angles = |axis: usize, k: usize| (if k == 1 { 0 } else { 2 }) != axis;
+            for (key, value) in field.iter_mut() {
+                let Some(list) = list_of(value) else { continue };
+                match &**key.get_ref() {
+                    "V" => each(list, self.rule.numbers, changed),
+                    "U" => each(list, self.rule.numbers, |k| angles(across, k) != angles(2, k)),
+                    _ => {}
+                }
+            }
+        }
+    }
+
+    /// Cases of one side become cases of the other; in all others a driver's law is that of its image as well.
+    fn cases(&mut self, cases: &mut DeTable<'a>) {
+        for (name, case) in cases.iter_mut() {
+            if self
+                .rule
+                .exchanged(name.get_ref(), true)
+                .is_some_and(|_| !self.rule.kept.contains(&**name.get_ref()))
+            {
+                continue;
+            }
+            let laws = table_of(case).and_then(|case| table_of(case.get_mut("laws")?));
+            let Some(laws) = laws else { continue };
+            let originals: Vec<_> =
+                laws.iter().map(|(k, v)| (k.get_ref().to_string(), k.span(), v.clone())).collect();
+            for (driver, at, mut law) in originals {
+                let Some(twin) = self.rule.twin(&driver) else { continue };
+                if !self.made.contains_key(&("drivers", twin.clone())) || laws.contains_key(&*twin) {
+                    continue;
+                }
+                self.rule.mirror(super::law::LAW, &mut law, &|_| false);
+                if self.is_turned(&driver) && !turn_law(&mut law, self.rule.numbers) {
+                    self.no_law(at.clone(), &driver);
+                }
+                laws.insert(Spanned::new(at, Cow::Owned(twin)), law);
+            }
+        }
+        let originals: Vec<_> = cases
+            .iter()
+            .filter_map(|(k, v)| {
+                Some((k.get_ref().to_string(), self.rule.twin(k.get_ref())?, k.span(), v.clone()))
+            })
+            .collect();
+        for (name, twin, at, mut case) in originals {
+            if self.entry("cases", &twin).is_some() {
+                continue;
+            }
+            self.rule.mirror(Shape::Table(&super::cases::CASE), &mut case, &|_| false);
+            let laws = table_of(&mut case).and_then(|case| table_of(case.get_mut("laws")?));
+            for (driver, law) in laws.into_iter().flat_map(|laws| laws.iter_mut()) {
+                // A driver of one side does what its image did; one that both share, as steering, may do the opposite.
+                let original =
+                    self.rule.said(driver.get_ref()).unwrap_or_else(|| driver.get_ref().to_string());
+                let shared = original == **driver.get_ref();
+                let turned =
+                    if shared { self.opposite.contains(&original) } else { self.is_handed(&original) };
+                if turned && !turn_law(law, self.rule.numbers) {
+                    self.no_law(driver.span(), &original);
+                }
+            }
+            cases.insert(Spanned::new(at, Cow::Owned(twin.clone())), case);
+            self.made.insert(("cases", twin), name);
+        }
+    }
+
+    /// Each design variable also does on the other side what it does on this one.
+    fn design(&mut self, design: &mut DeTable<'a>, twins: &mut HashMap<String, Value<'a>>) {
+        let shape = Shape::Kinds(&super::design::VARIABLE);
+        let kept: Vec<String> = self.rule.kept.iter().cloned().collect();
+        for (name, value) in
+            design.iter_mut().filter(|(name, _)| !kept.iter().any(|k| *k == **name.get_ref()))
+        {
+            let Some(table) = table_of(value) else { continue };
+            if let Some(moved) = table.get("move") {
+                if table.contains_key("mirror") || table.contains_key("mirrored") {
+                    continue;
+                }
+                let list = match moved.get_ref() {
+                    DeValue::Array(list) => list.iter().collect(),
+                    _ => vec![moved],
+                };
+                let names: Vec<&str> = list.iter().filter_map(|v| v.get_ref().as_str()).collect();
+                let images: Vec<Value<'a>> = list
+                    .iter()
+                    .filter_map(|v| Some((v, self.rule.twin(v.get_ref().as_str()?)?)))
+                    .filter(|(_, twin)| {
+                        self.made.contains_key(&("hardpoints", twin.clone())) && !names.contains(&&**twin)
+                    })
+                    .map(|(v, twin)| text(twin, v))
+                    .collect();
+                if !images.is_empty() {
+                    let at = moved.span();
+                    let images = Spanned::new(at.clone(), DeValue::Array(images.into_iter().collect()));
+                    let axis = DeValue::String(Cow::Borrowed(["x", "y", "z"][self.rule.across]));
+                    put(table, "mirror", Spanned::new(at, axis));
+                    put(table, "mirrored", images);
+                }
+                continue;
+            }
+            let mut twin = value.clone();
+            let driver = twin.get_ref().as_table().and_then(|t| Some(word(t, "driver")?.to_owned()));
+            let turned = driver.is_some_and(|d| self.rule.twin(&d).is_some() && self.is_turned(&d));
+            if !self.mirror("design", shape, name.get_ref(), &mut twin) {
+                continue;
+            }
+            if turned {
+                let message = format!("`{}` cannot change two laws of opposite signs", shown(name.get_ref()));
+                let help = "put it under `except`, or use a parameter in the law".to_owned();
+                self.refused.push((name.span(), message, help));
+                continue;
+            }
+            // What is on both sides already, or shared, is not to change twice.
+            if let (Some(twin), Some(original)) = (table_of(&mut twin), value.get_ref().as_table()) {
+                for key in ["shape", "fields", "markers"] {
+                    let old = original.get(key).and_then(|v| v.get_ref().as_array());
+                    let (Some(old), Some(new)) = (old, twin.get_mut(key).and_then(|v| list_of(v))) else {
+                        continue;
+                    };
+                    let said = |v: &Value<'_>| match v.get_ref() {
+                        DeValue::Table(t) => word(t, "joint").map(str::to_owned),
+                        v => v.as_str().map(str::to_owned),
+                    };
+                    let old: Vec<_> = old.iter().map(said).collect();
+                    let kept: Vec<Value<'a>> =
+                        new.iter().filter(|v| !old.contains(&said(v))).cloned().collect();
+                    *new = kept.into_iter().collect();
+                }
+            }
+            twins.insert(name.get_ref().to_string(), twin);
+        }
+    }
+}
+
+fn is_by_points(frame: Option<&DeTable<'_>>) -> bool {
+    frame.is_some_and(|frame| frame.contains_key("origin"))
+}
+
+fn numbers(list: &DeArray<'_>) -> Option<[f64; 3]> {
+    let number = |v: &Value<'_>| match v.get_ref() {
+        DeValue::Integer(i) => i.as_str().parse().ok(),
+        DeValue::Float(f) => f.as_str().parse().ok(),
+        _ => None,
+    };
+    list.iter().map(number).collect::<Option<Vec<f64>>>()?.try_into().ok()
+}
+
+/// Whether what is written by hand says all of an entry: its `type`, or what leads one of its kinds.
+fn stands_alone(shape: Shape, hand: &DeTable<'_>) -> bool {
+    let leads = match shape {
+        Shape::Kinds(kinds) if !kinds.typed => (kinds.tables)().iter().map(|t| t.keys[0].key).collect(),
+        _ => vec!["type"],
+    };
+    leads.iter().any(|key| hand.contains_key(*key))
+}
+
+/// What is wrong with something that was written once is told once, in its own name; and of what was made, from what.
+pub(crate) fn told_once(list: Vec<Diagnostic>, origins: &Origins) -> Vec<Diagnostic> {
+    if origins.words.is_empty() {
+        return list;
+    }
+    let key = |d: &Diagnostic| {
+        let (message, made) = in_original_names(&d.message, origins);
+        ((d.code, d.span.as_ref().map(|s| (s.start, s.end)), message), made)
+    };
+    let own: HashSet<_> = list.iter().map(key).filter(|(_, made)| made.is_none()).map(|k| k.0).collect();
+    let mut told = HashSet::new();
+    let keeps = |d: &Diagnostic| {
+        let (key, made) = key(d);
+        (made.is_none() || !own.contains(&key)) && told.insert(key)
+    };
+    let mut keeps = keeps;
+    list.into_iter().filter(|d| keeps(d)).map(|d| with_origin(d, origins)).collect()
+}
+
+/// With a note if it speaks of what was made from something else.
+pub(crate) fn with_origin(diagnostic: Diagnostic, origins: &Origins) -> Diagnostic {
+    match in_original_names(&diagnostic.message, origins).1.filter(|made| origins.names.contains_key(made)) {
+        Some(made) => {
+            let note = format!("`{made}` is the mirror image of `{}`", origins.names[&made]);
+            diagnostic.note(note)
+        }
+        None => diagnostic,
+    }
+}
+
+/// A message about what it was made from, and the first name in it of what was made.
+fn in_original_names(message: &str, origins: &Origins) -> (String, Option<String>) {
+    let mut made = None;
+    let parts = message.split('`').enumerate().map(|(k, part)| {
+        let base = part.split('.').next().unwrap_or(part);
+        let back = origins.words.iter().map(|(one, other)| (other, one));
+        match exchanged(part, back).filter(|_| k % 2 == 1) {
+            Some(original) => {
+                made = made.take().or(Some(base.to_owned()));
+                original
+            }
+            None => part.to_owned(),
+        }
+    });
+    let said = parts.collect::<Vec<_>>().join("`");
+    (said, made)
+}
