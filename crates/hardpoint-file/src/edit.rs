@@ -7,6 +7,7 @@ use hardpoint::space::{Mat3, Vec3};
 use toml_edit::{DocumentMut, Item, Value};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
+use crate::read::planar;
 use crate::units::Units;
 use crate::{Folder, ModelFile, parsed};
 
@@ -124,6 +125,18 @@ impl Edit<'_> {
         self.file.origins.names.contains_key(name)
     }
 
+    /// What is written in another file cannot be saved in this one: whether that was told.
+    fn is_elsewhere(&mut self, variables: &str, name: &str) -> bool {
+        let Some(file) = self.file.origins.included.get(name) else { return false };
+        let why = format!("`{name}` stands in the included file `{file}`");
+        self.refuse(
+            variables,
+            why,
+            "change it there, or write it in this file as well, where it counts more",
+        );
+        true
+    }
+
     /// The variables that do such a thing, for complaints.
     fn of(&self, does: impl Fn(&Change) -> bool) -> String {
         let mut names: Vec<&str> = Vec::new();
@@ -170,7 +183,10 @@ impl Edit<'_> {
                     break;
                 }
                 let way = [Key("hardpoints"), Key(&hardpoint.name), At(axis)];
-                if !self.write(&way, Quantity::Length, old, new) && !self.is_image(&hardpoint.name) {
+                if !self.write(&way, Quantity::Length, old, new)
+                    && !self.is_image(&hardpoint.name)
+                    && !self.is_elsewhere(&by, &hardpoint.name)
+                {
                     let coordinate = format!("{}.{}", hardpoint.name, ["x", "y", "z"][axis]);
                     let why = format!("`{coordinate}` is given by an expression, which it does not move");
                     self.refuse(
@@ -199,8 +215,8 @@ impl Edit<'_> {
             let written = [&[Key("parameters"), name][..], &[Key("parameters"), name, Key("value")]]
                 .iter()
                 .any(|way| self.write(way, parameter.quantity, old, old + by));
-            if !written && !self.is_image(&parameter.name) {
-                let by = self.of(|c| matches!(c, Change::Parameter(c) if c.parameter.0 == p));
+            let by = self.of(|c| matches!(c, Change::Parameter(c) if c.parameter.0 == p));
+            if !written && !self.is_image(&parameter.name) && !self.is_elsewhere(&by, &parameter.name) {
                 let why = format!("parameter `{}` is given by an expression", parameter.name);
                 self.refuse(&by, why, "change the parameters that it follows");
             }
@@ -226,7 +242,10 @@ impl Edit<'_> {
                         _ => None,
                     })
                     .sum();
-                if !self.write(&way, Quantity::Length, old, old + grows) && !self.is_image(&joint.name) {
+                if !self.write(&way, Quantity::Length, old, old + grows)
+                    && !self.is_image(&joint.name)
+                    && !self.is_elsewhere(&by, &joint.name)
+                {
                     let why = format!("the `length` of `{}` is given by an expression", joint.name);
                     self.refuse(&by, why, "change the parameters that the expression uses");
                 }
@@ -289,8 +308,8 @@ impl Edit<'_> {
             let start = [Key("drivers"), Key(&driver.name)];
             let ways = [[&start[..], &steps].concat(), [&start[..], &[Key("law")], &steps].concat()];
             let written = ways.iter().any(|way| self.write(way, quantity, old.value, new.value));
-            if !written && !self.is_image(&driver.name) {
-                let by = self.of(|c| matches!(c, Change::Law(c) if c.driver.0 == d && c.parameter == p));
+            let by = self.of(|c| matches!(c, Change::Law(c) if c.driver.0 == d && c.parameter == p));
+            if !written && !self.is_image(&driver.name) && !self.is_elsewhere(&by, &driver.name) {
                 let why = format!(
                     "the law of driver `{}` has no number `{}` of its own in the file",
                     driver.name, old.name
@@ -355,7 +374,10 @@ impl Edit<'_> {
                 }
                 let Some(new) = new.first().filter(|n| (**n - old).norm() > ROUND_OFF) else { continue };
                 let way = [Key("joints"), Key(&joint.name), Key(key)];
-                if !self.direction(&way, *new) && !self.is_image(&joint.name) {
+                if !self.direction(&way, *new)
+                    && !self.is_image(&joint.name)
+                    && !self.is_elsewhere(&by, &joint.name)
+                {
                     let why = format!("joint `{}` has no `{key}` in the file", joint.name);
                     self.refuse(&by, why, "write the joint with its direction in a table of its own");
                 }
@@ -422,7 +444,8 @@ impl Edit<'_> {
     /// Writes a number in place of another one; false where there is none.
     fn write(&mut self, way: &[Step<'_>], quantity: Quantity, old: f64, new: f64) -> bool {
         let units = self.units();
-        let Some(value) = value_at(&mut self.document, way) else { return false };
+        let way = self.written_way(way);
+        let Some(value) = value_at(&mut self.document, &way) else { return false };
         let Some(point) = number_style(value) else { return false };
         let near = ROUND_OFF * old.abs().max(new.abs());
         let mut text = shortest(new, near, |x| units.to_si(quantity, x), units.from_si(quantity, new));
@@ -431,6 +454,18 @@ impl Edit<'_> {
         }
         replace(value, &text);
         true
+    }
+
+    /// The way to a number of a hardpoint that has two coordinates only.
+    fn written_way<'w>(&self, way: &[Step<'w>]) -> Vec<Step<'w>> {
+        let mut way = way.to_vec();
+        if let ([Key("hardpoints"), Key(name), At(axis)], Some(normal)) = (&mut way[..], self.file.plane) {
+            let list = self.document.get("hardpoints").and_then(|t| t.get(*name)?.as_array());
+            if list.is_some_and(|list| list.len() == 2) {
+                *axis = planar::coordinate(normal, *axis).unwrap_or(usize::MAX);
+            }
+        }
+        way
     }
 
     /// Writes a direction in place of another one, with the length that this is written with.

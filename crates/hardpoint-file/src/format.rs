@@ -125,6 +125,8 @@ impl Kinds {
 #[derive(Clone, Copy)]
 pub(crate) enum Shape {
     Text,
+    /// The name of a file in the model's folder or below it.
+    File,
     /// A text that is an expression or a law, with names of parameters, coordinates or measures in it.
     Expression,
     /// The name of something, as in "a joint".

@@ -5,12 +5,14 @@ mod couplers;
 mod data;
 mod design;
 mod drivers;
+pub(crate) mod include;
 mod law;
 pub(crate) mod measured;
 mod mesh;
 pub(crate) mod mirror;
 mod optimize;
 mod parameters;
+pub(crate) mod planar;
 mod results;
 pub(crate) mod sweep;
 mod tolerance;
@@ -30,7 +32,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{closest, shown};
 use crate::drawing::{Drawing, FORMS, Form};
-use crate::format::{self, ANGLE, Key, Kinds, LENGTH, NUMBER, Need, Shape, Table, table};
+use crate::format::{self, ANGLE, HARDPOINT, Key, Kinds, LENGTH, NUMBER, Need, Shape, Table, table};
 use crate::places::{EntryPlace, Places};
 use crate::tree::{Field, Fields, LINE, MOST_ENTRIES, PLACE, Reader, Subject, Value, above_tables, quoted};
 use crate::units::{AngleUnit, LengthUnit};
@@ -54,7 +56,7 @@ pub(crate) const MODEL: Table = table! {
     /// coordinates of others, like `"-left.y"`.
     may "hardpoints": Shape::Entries("a hardpoint", &Shape::exactly(3, &LENGTH)), "{ A = [0, 0, 0] }";
     /// Rigid bodies. `ground` is always there and is not declared.
-    must "bodies": Shape::Entries("a body", &Shape::Table(&BODY)), "{ crank = {} }";
+    must "bodies": Shape::Entries("a body", &BODY_SHAPE), "{ crank = {} }";
     /// Joints between two bodies.
     may "joints": Shape::Entries("a joint", &Shape::Table(&JOINT)), "{}";
     /// Gears, racks, belts and other linear relations between joint coordinates.
@@ -79,6 +81,10 @@ pub(crate) const MODEL: Table = table! {
     may "time": Shape::Kinds(&results::TIME), "{ end = 1.0, steps = 100 }";
     /// Several motions of the mechanism, in place of the one that the drivers' own laws make.
     may "cases": Shape::Entries("a case", &Shape::Table(&cases::CASE)), "{}";
+    /// The plane that all of it lies in: points may have two coordinates, and pins need no axis.
+    may "planar": planar::PLANAR, "\"xy\"";
+    /// Other files, of which all is taken that this one does not say itself.
+    may "include": include::INCLUDE, "[\"corner.toml\"]";
     /// What is said of one side holds for the other side as well.
     may "mirror": Shape::Table(&mirror::MIRROR), "{ across = \"y\", names = { left = \"right\" } }";
     /// What the design is to be optimised for, and within which limits.
@@ -111,6 +117,11 @@ const UNIT_WORDS: [(&str, &str); 12] = [
     ("radian", "rad"),
     ("radians", "rad"),
 ];
+const BODY_SHAPE: Shape = Shape::Any(
+    "BodyOrPoints",
+    "A body; in a planar model also a list of its hardpoints.",
+    &[Shape::Table(&BODY), Shape::list(&HARDPOINT)],
+);
 const BODY: Table = table! {
     /// A body; `{}` is enough.
     "Body":
@@ -221,8 +232,9 @@ fn coordinates() -> Vec<(&'static str, String)> {
 
 /// The tables that `docs/file-format.md` shows, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 34] {
+pub(crate) fn tables() -> [(&'static str, Shape); 35] {
     [
+        ("include", Shape::Table(&include::INCLUDE_TABLE)),
         ("mirror", Shape::Table(&mirror::MIRROR)),
         ("parameters", Shape::Table(&parameters::PARAMETER_TABLE)),
         ("frames", Shape::Kinds(&FRAME)),
@@ -289,7 +301,8 @@ impl Reader<'_> {
         let mut raw = Raw::default();
         let fields = self.fields("the model", 0..0, table, MODEL.keys());
         let place = EntryPlace::of(&fields);
-        for f in fields.iter().filter(|f| !matches!(fields.key(f.key).shape, Shape::Text)) {
+        let is_table = |s: Shape| matches!(s, Shape::Table(_) | Shape::Kinds(_) | Shape::Entries(..));
+        for f in fields.iter().filter(|f| is_table(fields.key(f.key).shape)) {
             if f.value.get_ref().as_table().is_none_or(|t| t.len() > MOST_ENTRIES) {
                 self.unread.push(f.key);
             }

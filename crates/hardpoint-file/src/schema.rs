@@ -28,10 +28,9 @@ pub fn schema() -> String {
     text
 }
 
-/// In a file with a mirror, an entry of the other side may say only what is different of an image.
+/// In a file with a mirror or included files an entry may say only what is different of an image, or of what is included.
 fn images(root: &mut Value, definitions: &mut Definitions) {
-    let different =
-        json!({ "type": "object", "description": "What is different of the image that the mirror makes." });
+    let different = json!({ "type": "object", "description": "What is different of the image that the mirror makes, or of what is included." });
     definitions.0.insert("Different".to_owned(), different);
     let mut whole = BTreeMap::new();
     for section in SECTIONS.into_iter().filter(|s| !["parameters", "hardpoints"].contains(s)) {
@@ -40,8 +39,10 @@ fn images(root: &mut Value, definitions: &mut Definitions) {
         *entries = json!({ "anyOf": [entry, { "$ref": "#/$defs/Different" }] });
         whole.insert(section, json!({ "additionalProperties": entry }));
     }
-    root["if"] = json!({ "required": ["mirror"] });
-    root["else"] = json!({ "properties": whole });
+    root["if"] = json!({ "anyOf": [{ "required": ["mirror"] }, { "required": ["include"] }] });
+    let required = root["required"].take();
+    root["else"] = json!({ "properties": whole, "required": required });
+    root["required"] = json!(["name"]);
 }
 
 /// What the schema defines under a name of its own.
@@ -77,7 +78,7 @@ impl Definitions {
 
     fn shape(&mut self, shape: Shape) -> Value {
         match shape {
-            Shape::Text | Shape::Expression | Shape::Name(_) => json!({ "type": "string" }),
+            Shape::Text | Shape::File | Shape::Expression | Shape::Name(_) => json!({ "type": "string" }),
             Shape::Number(_) => self.named("Number", |_| {
                 json!({
                     "type": ["number", "string"],

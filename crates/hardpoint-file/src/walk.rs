@@ -13,12 +13,16 @@ use crate::tree::Value;
 pub(crate) enum Leaf<'v, 'a> {
     /// The name of such a thing, like "a joint".
     Name(&'static str, &'v mut Cow<'a, str>),
+    /// The name of a file.
+    File(&'v mut Cow<'a, str>),
     /// An expression in a text.
     Expression(&'v mut Cow<'a, str>),
     /// A global axis by its name, like `-x`.
     Axis(&'v mut Cow<'a, str>),
     /// Three numbers that are no angles: a place or a direction.
     Vector(&'v mut DeArray<'a>),
+    /// Two of the numbers of a vector, where three are wanted.
+    Pair(&'v mut DeArray<'a>),
     /// Three angles.
     Angles(&'v mut DeArray<'a>),
     /// The four numbers of a quaternion.
@@ -37,6 +41,7 @@ pub(crate) fn walk<'a>(key: &str, shape: Shape, value: &mut Value<'a>, visit: &m
             let is = |wanted: fn(&Shape) -> bool| all.iter().any(wanted);
             match name {
                 Some(kind) => visit(key, Leaf::Name(kind, text)),
+                None if is(|s| matches!(s, Shape::File)) => visit(key, Leaf::File(text)),
                 None if is(|s| matches!(s, Shape::Expression | Shape::Number(_))) => {
                     visit(key, Leaf::Expression(text));
                 }
@@ -47,6 +52,15 @@ pub(crate) fn walk<'a>(key: &str, shape: Shape, value: &mut Value<'a>, visit: &m
             }
         }
         DeValue::Array(list) => {
+            let is_vector = |s: &Shape| {
+                let of = if let Shape::List(of, [3, 3]) = s { of } else { return false };
+                matches!(of, Shape::Number(Quantity::Length | Quantity::Number) | Shape::Plain(_))
+            };
+            let is_number = |v: &Value<'_>| matches!(v.get_ref(), DeValue::Integer(_) | DeValue::Float(_));
+            let pairs = all.iter().any(|s| matches!(s, Shape::List(_, [2, 2])));
+            if list.len() == 2 && all.iter().any(is_vector) && (!pairs || list.iter().any(is_number)) {
+                visit(key, Leaf::Pair(list));
+            }
             // Of what may be a list, one that has the right length is meant before one of any length.
             let fits = |shape: &&Shape| match shape {
                 Shape::List(_, [least, most]) => (*least..=*most).contains(&list.len()),

@@ -22,7 +22,7 @@ fn words(shape: Shape) -> String {
         if one.ends_with('s') { one } else { format!("{one}s") }
     };
     match shape {
-        Shape::Text | Shape::Expression => "text".into(),
+        Shape::Text | Shape::File | Shape::Expression => "text".into(),
         Shape::Name(one) => format!("{}'s name", noun(one)),
         Shape::Number(Quantity::Length) => "length".into(),
         Shape::Number(Quantity::Angle) => "angle".into(),

@@ -120,7 +120,7 @@ static TYPES: &[(Table, Read)] = &[
             /// Pairs of time in s and value in the driver's unit, in the order of time. Either these or `file`.
             may "points": Shape::list(&TWO_NUMBERS), "[[0, 0], [1, 5], [2, 0]]";
             /// A CSV file in the model's folder or below it: times in s and values in the driver's unit.
-            may "file": Shape::Text, "\"travel.csv\"";
+            may "file": Shape::File, "\"travel.csv\"";
             /// The file's columns of time and value, by name or by number from 1. Default: the first two.
             may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
             /// The degree of the spline.

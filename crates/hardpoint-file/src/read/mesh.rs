@@ -19,13 +19,13 @@ use super::data::{DataError, Wanted, bytes_of};
 /// More triangles than this make a page slow to open and to turn, and show no more.
 const MOST_TRIANGLES: usize = 200_000;
 
-pub(super) const MESH: Shape = Shape::Any("Mesh", "", &[Shape::Text, Shape::Table(&MESH_TABLE)]);
+pub(super) const MESH: Shape = Shape::Any("Mesh", "", &[Shape::File, Shape::Table(&MESH_TABLE)]);
 pub(super) const MESH_TABLE: Table = table! {
     /// The shape of a body.
     "MeshFile":
     /// A file of triangles in the model's folder or below it: `.stl`, `.obj`, `.glb` or `.gltf`. Of a glTF file the transforms of
     /// its nodes are applied, its axes are taken as they are, and its data has to be in the file itself.
-    must "file": Shape::Text, "\"knuckle.stl\"";
+    must "file": Shape::File, "\"knuckle.stl\"";
     /// What its coordinates count from.
     or("\"world\"") "frame": Shape::Words(MESH_FRAMES), "\"body\"";
     /// The unit of its coordinates, in the model's length unit: 0.001 for a file in mm beside a model in m.

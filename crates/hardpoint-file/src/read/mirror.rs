@@ -17,6 +17,7 @@ use crate::tree::{Reader, Value, axis_named};
 use crate::walk::{Leaf, in_expression, list_of, table_of, walk};
 
 use super::MODEL;
+use super::include::lay_under;
 
 pub(crate) const MIRROR: Table = table! {
     /// What the file says of one side is said of the other side as well.
@@ -58,7 +59,7 @@ const TURNED: [&str; 7] =
 const HANDED: [&str; 2] = ["cylindrical", "screw"];
 
 /// A model's table with all that it has on both sides.
-pub(crate) struct Mirrored<'a> {
+pub(crate) struct Both<'a> {
     pub table: DeTable<'a>,
     /// What design variables also change, by their names.
     pub twins: HashMap<String, Value<'a>>,
@@ -71,6 +72,17 @@ pub(crate) struct Origins {
     pub names: BTreeMap<String, String>,
     /// The words that are exchanged in names.
     words: Vec<(String, String)>,
+    /// The names of what stands in another file than the first, and in which.
+    pub included: BTreeMap<String, String>,
+}
+
+impl Origins {
+    /// The same where these names have a prefix.
+    pub fn renamed(&mut self, prefix: &str, own: &HashSet<String>) {
+        let say = |name: String| if own.contains(&name) { format!("{prefix}{name}") } else { name };
+        self.names = std::mem::take(&mut self.names).into_iter().map(|(a, b)| (say(a), say(b))).collect();
+        self.included = std::mem::take(&mut self.included).into_iter().map(|(a, b)| (say(a), b)).collect();
+    }
 }
 
 /// What the mirror is, and what passes it.
@@ -107,7 +119,9 @@ impl<'n> Rule<'n> {
         let mut named = false;
         let axes = ["x", "y", "z"];
         walk("", shape, value, &mut |key, leaf| match leaf {
-            Leaf::Name("a column" | "a parameter" | "a parameter of the law", _) => {}
+            Leaf::Name("a column" | "a parameter" | "a parameter of the law", _)
+            | Leaf::File(_)
+            | Leaf::Pair(_) => {}
             Leaf::Name(_, name) => {
                 if let Some(said) = self.said(name) {
                     *name = Cow::Owned(said);
@@ -170,11 +184,11 @@ fn each<'a>(list: &mut DeArray<'a>, numbers: &'a Opposites, turned: impl Fn(usiz
 /// Numbers as they are written, and the same with the other sign.
 pub(crate) type Opposites = HashMap<String, String>;
 
-/// The numbers of a model that has a mirror, with the other sign.
-pub(crate) fn opposites(model: &DeTable<'_>) -> Opposites {
+/// The numbers of files of which one has a mirror, with the other sign.
+pub(crate) fn opposites<'t>(files: impl Iterator<Item = &'t DeTable<'t>> + Clone) -> Opposites {
     let mut all = Opposites::new();
-    if model.contains_key("mirror") {
-        model.values().for_each(|value| opposites_in(value, &mut all));
+    if files.clone().any(|table| table.contains_key("mirror")) {
+        files.flat_map(DeTable::values).for_each(|value| opposites_in(value, &mut all));
     }
     all
 }
@@ -298,7 +312,7 @@ fn turn_law<'a>(value: &mut Value<'a>, numbers: &'a Opposites) -> bool {
 
 impl Reader<'_> {
     /// The table of the model with what its `mirror` makes of it; none where there is no mirror, or where that cannot be read, which is told.
-    pub fn both_sides<'a>(&mut self, model: &DeTable<'a>, numbers: &'a Opposites) -> Option<Mirrored<'a>> {
+    pub fn both_sides<'a>(&mut self, model: &DeTable<'a>, numbers: &'a Opposites) -> Option<Both<'a>> {
         let value = model.get("mirror")?;
         let Some(said) = value.get_ref().as_table() else {
             let message = "`mirror` must be a table";
@@ -374,9 +388,9 @@ impl Reader<'_> {
                     .into(),
             );
         }
-        self.origins.names = made.into_iter().map(|((_, name), of)| (name, of)).collect();
-        self.origins.words = rule.words;
-        Some(Mirrored { table, twins })
+        self.origins.names.extend(made.into_iter().map(|((_, name), of)| (name, of)));
+        self.origins.words.extend(rule.words);
+        Some(Both { table, twins })
     }
 
     /// The words that are exchanged.
@@ -438,18 +452,9 @@ impl<'a> Side<'_, 'a> {
             .collect();
         for (name, twin, at, mut value) in originals {
             self.mirror(section, *of, &name, &mut value);
-            if let Some(hand) = entries.get_mut(&*twin) {
-                let Some(hand) = table_of(hand).filter(|hand| !stands_alone(*of, hand)) else {
-                    continue;
-                };
-                let Some(made) = table_of(&mut value) else { continue };
-                for (key, value) in std::mem::take(made) {
-                    if !hand.contains_key(&**key.get_ref()) {
-                        hand.insert(key, value);
-                    }
-                }
-            } else {
-                entries.insert(Spanned::new(at, Cow::Owned(twin.clone())), value);
+            let (key, at) = (Cow::Owned(twin.clone()), at);
+            if !lay_under(*of, entries, Spanned::new(at, key), value) {
+                continue;
             }
             self.made.insert((section, twin), name);
         }
@@ -838,15 +843,6 @@ fn numbers(list: &DeArray<'_>) -> Option<[f64; 3]> {
         _ => None,
     };
     list.iter().map(number).collect::<Option<Vec<f64>>>()?.try_into().ok()
-}
-
-/// Whether what is written by hand says all of an entry: its `type`, or what leads one of its kinds.
-fn stands_alone(shape: Shape, hand: &DeTable<'_>) -> bool {
-    let leads = match shape {
-        Shape::Kinds(kinds) if !kinds.typed => (kinds.tables)().iter().map(|t| t.keys[0].key).collect(),
-        _ => vec!["type"],
-    };
-    leads.iter().any(|key| hand.contains_key(*key))
 }
 
 /// What is wrong with something that was written once is told once, in its own name; and of what was made, from what.
