@@ -89,6 +89,48 @@ impl ModelFile {
     }
 }
 
+/// The hardpoints of a model's text whose coordinates are plain numbers, in their order.
+pub fn hardpoints_in(text: &str) -> Vec<String> {
+    let document: DocumentMut = text.parse().unwrap_or_default();
+    let entries = document.get("hardpoints").and_then(Item::as_table_like);
+    let is_plain =
+        |item: &Item| item.as_array().is_some_and(|list| list.iter().all(|v| v.is_integer() || v.is_float()));
+    let entries = entries.into_iter().flat_map(toml_edit::TableLike::iter);
+    entries.filter(|(_, item)| is_plain(item)).map(|(name, _)| name.to_owned()).collect()
+}
+
+/// A model's text under another name and with hardpoints in other places, in the text's unit of length. Comments and layout stay; of
+/// points with two coordinates those in the plane are written.
+///
+/// ```
+/// let text = "name = \"x\"\nplanar = \"zx\"\n[hardpoints]\nA = [0, 0] # here\n";
+/// let placed = hardpoint_file::placed(text, "y", &[("A".to_owned(), [1.0, 2.0, 3.5])]);
+/// assert_eq!(placed, "name = \"y\"\nplanar = \"zx\"\n[hardpoints]\nA = [3.5, 1] # here\n");
+/// ```
+pub fn placed(text: &str, name: &str, places: &[(String, [f64; 3])]) -> String {
+    let mut document: DocumentMut = text.parse().unwrap_or_default();
+    let normal = document.get("planar").and_then(Item::as_str).and_then(planar::normal_of);
+    if let Some(value) = value_at(&mut document, &[Key("name")]) {
+        let decor = value.decor().clone();
+        *value = name.into();
+        *value.decor_mut() = decor;
+    }
+    for (hardpoint, place) in places {
+        for (axis, x) in place.iter().enumerate() {
+            let list = document.get("hardpoints").and_then(|t| t.get(hardpoint)?.as_array());
+            let k = match (list.map(toml_edit::Array::len), normal) {
+                (Some(2), Some(normal)) => planar::coordinate(normal, axis),
+                _ => Some(axis),
+            };
+            let Some(k) = k else { continue };
+            if let Some(value) = value_at(&mut document, &[Key("hardpoints"), Key(hardpoint), At(k)]) {
+                replace(value, &format!("{}", if *x == 0.0 { 0.0 } else { *x }));
+            }
+        }
+    }
+    document.to_string()
+}
+
 /// A change that the file has no number for.
 const CODE: &str = "HP0505";
 

@@ -56,6 +56,7 @@ use toml::de::DeTable;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use drawing::{Drawing, Form, Mesh, MeshFrame};
+pub use edit::{hardpoints_in, placed};
 pub use measured::Measured;
 pub use schema::schema;
 pub use units::{AngleUnit, LengthUnit, Units};
@@ -398,7 +399,8 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
         return Err(Diagnostics::new(source, list));
     }
     let numbers = opposites(tables.iter().map(|file| &file.1));
-    let files = Files { tables, numbers: &numbers };
+    let sizes = (0..tables.len()).map(|file| source.range(file).len() as u64).collect();
+    let files = Files { tables, numbers: &numbers, sizes };
     let mut reader = Reader::new(&source, folder);
     reader.texts = include::texts(&parts);
     let whole = reader.whole(files);

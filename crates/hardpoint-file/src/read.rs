@@ -657,10 +657,7 @@ impl Reader<'_> {
         let hardpoints = &raw.draft.hardpoints;
         let found = raw.hardpoint_numbers.get(name).map(|k| &hardpoints[*k]);
         if found.is_none() && !raw.draft.unread.has(Section::Model, 0, "hardpoints") {
-            // Past the problems that anybody reads, and among more names than that, a guess would only cost time.
-            let names = hardpoints.iter().map(|h| h.name.as_str());
-            let guess = self.found.len() < 50 && hardpoints.len() <= 5000;
-            let close = if guess { closest(name, names) } else { None };
+            let close = self.guess(name, hardpoints.iter().map(|h| h.name.as_str()));
             self.report("HP0204", f.value.span(), format!("there is no hardpoint named `{name}`")).help =
                 close.map(|c| format!("did you mean `{c}`?"));
         }

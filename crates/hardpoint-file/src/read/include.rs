@@ -3,14 +3,15 @@
 //! All files of a model are one [`Source`], whose values are put together before they are read; each keeps its place there.
 
 use std::borrow::Cow;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::ops::Range;
 use std::path::Path;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::diagnostic::{closest, shown};
+use crate::LARGEST_FILE;
+use crate::diagnostic::shown;
 use crate::format::{NUMBER, Shape, Table, table};
 use crate::tree::{Folder, Reader, Texts, Value};
 use crate::walk::{Leaf, in_expression, table_of, walk};
@@ -35,6 +36,9 @@ pub(super) const INCLUDE_TABLE: Table = table! {
 };
 /// More files than this are surely a slip.
 const MOST_FILES: usize = 100;
+/// Each inclusion counts as so many bytes at least of what all files of a model may have together, so that files that include others over
+/// and over end somewhere.
+const LEAST_BYTES: u64 = 64 << 10;
 const WANTED: Wanted<'static> = Wanted {
     purpose: "model",
     kind: "a model file",
@@ -61,7 +65,7 @@ pub(crate) struct Hindrance {
 /// All files that a text includes, and those include, each once.
 pub(crate) fn parts(folder: Folder<'_>, text: &str) -> (Vec<Part>, Vec<Hindrance>) {
     let (mut parts, mut hindrances): (Vec<Part>, Vec<Hindrance>) = Default::default();
-    let mut file = 0;
+    let (mut file, mut bytes) = (0, text.len() as u64);
     while file <= parts.len() {
         let (name, text) = match file.checked_sub(1) {
             None => ("", text),
@@ -81,14 +85,20 @@ pub(crate) fn parts(folder: Folder<'_>, text: &str) -> (Vec<Part>, Vec<Hindrance
             }
             let read = bytes_of(folder, &name, &WANTED).and_then(|bytes| text_from(bytes, &name));
             let error = match read {
-                Ok(text) if parts.len() < MOST_FILES => {
-                    parts.push(Part { name, text });
-                    continue;
-                }
-                Ok(_) => DataError::unreadable(
+                Ok(_) if parts.len() == MOST_FILES => DataError::unreadable(
                     format!("the model has more than {MOST_FILES} files"),
                     "put some of them together",
                 ),
+                Ok(text) if bytes + text.len() as u64 > LARGEST_FILE => {
+                    let limit = LARGEST_FILE >> 20;
+                    let message = format!("the files of the model have more than {limit} MiB together");
+                    DataError::unreadable(message, WANTED.too_large)
+                }
+                Ok(text) => {
+                    bytes += text.len() as u64;
+                    parts.push(Part { name, text });
+                    continue;
+                }
                 Err(error) => error,
             };
             hindrances.push(Hindrance { file, at, error });
@@ -144,6 +154,8 @@ pub(crate) struct Files<'a> {
     /// Their tables, each with the name that it has; the first has none.
     pub tables: Vec<(String, DeTable<'a>)>,
     pub numbers: &'a Opposites,
+    /// How many bytes each has.
+    pub sizes: Vec<u64>,
 }
 
 impl Reader<'_> {
@@ -165,8 +177,8 @@ impl Reader<'_> {
         }
         let mut both = Both { table: DeTable::new(), twins: HashMap::new() };
         for value in self.includes(written) {
-            if let Some(part) = self.included(files, &value, name, above) {
-                self.units_of(&mut own, &part.table, &value);
+            if let Some(part) = self.included(files, value, name, above) {
+                self.units_of(&mut own, &part.table, value);
                 merge(&mut both.table, part.table);
                 both.twins.extend(part.twins);
             }
@@ -207,7 +219,7 @@ impl Reader<'_> {
         above: &mut Vec<usize>,
     ) -> Option<Both<'a>> {
         let at = value.span();
-        let (mut prefix, mut shared, mut parameters) = (String::new(), HashSet::new(), None);
+        let (mut prefix, mut shared, mut parameters) = (String::new(), BTreeSet::new(), None);
         let asked = match value.get_ref() {
             DeValue::String(name) => name.to_string(),
             DeValue::Table(table) => {
@@ -243,12 +255,19 @@ impl Reader<'_> {
             self.report("HP0117", at, message).notes.push(format!("by way of {}", way.join(", ")));
             return None;
         }
+        self.included += files.sizes[k].max(LEAST_BYTES);
+        if self.included > LARGEST_FILE {
+            let message = "files are included in files too many times".to_owned();
+            self.report("HP0117", at, message).help =
+                Some("include each of them where it is needed only".into());
+            return None;
+        }
         above.push(k);
         let mut part = self.put_together(files, k, above);
         above.pop();
-        let all: HashSet<String> = declared(&part.table).into_iter().map(str::to_owned).collect();
+        let all: BTreeSet<String> = declared(&part.table).into_iter().map(str::to_owned).collect();
         for name in shared.iter().filter(|name| !all.contains(*name)) {
-            let close = closest(name, all.iter().map(String::as_str));
+            let close = self.guess(name, all.iter().map(String::as_str));
             let message = format!("`{}` has nothing named `{}`", shown(&asked), shown(name));
             self.report("HP0204", at.clone(), message).help = close.map(|c| format!("did you mean `{c}`?"));
         }
@@ -276,7 +295,8 @@ impl Reader<'_> {
                         .into_iter()
                         .flat_map(DeTable::keys)
                         .map(|k| k.get_ref().strip_prefix(&*prefix).unwrap_or(k.get_ref()));
-                    let close = closest(name.get_ref(), names);
+                    let names: Vec<&str> = names.collect();
+                    let close = self.guess(name.get_ref(), names.into_iter());
                     let message =
                         format!("`{}` has no parameter named `{}`", shown(&asked), shown(name.get_ref()));
                     self.report("HP0204", name.span(), message).help =

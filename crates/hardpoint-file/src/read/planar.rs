@@ -3,6 +3,7 @@
 //! All of it is made of the text's values before they are read; what is made stands where the text is that says it.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::ops::Range;
 
 use hardpoint::joint;
@@ -30,8 +31,12 @@ const PINS: [&str; 5] = ["revolute", "planar", "pin_in_slot", "point_on_curve", 
 
 /// The axis square to the plane of a planar model.
 pub(crate) fn normal(model: &DeTable<'_>) -> Option<usize> {
-    let word = model.get("planar")?.get_ref().as_str()?;
-    PLANES.iter().position(|plane| *plane == word)
+    normal_of(model.get("planar")?.get_ref().as_str()?)
+}
+
+/// The axis square to a plane.
+pub(crate) fn normal_of(plane: &str) -> Option<usize> {
+    PLANES.iter().position(|p| *p == plane)
 }
 
 /// Which of a point's two coordinates in the text is the one along this axis; none for the one out of the plane.
@@ -117,6 +122,7 @@ impl Reader<'_> {
         /// A hardpoint, where it is listed, and the bodies on it.
         type Pin<'a> = (Cow<'a, str>, Range<usize>, Vec<Value<'a>>);
         let mut pins: Vec<Pin<'a>> = Vec::new();
+        let mut numbers: HashMap<String, usize> = HashMap::new();
         let mut ground = None;
         for (name, value) in bodies.iter_mut() {
             let DeValue::Array(points) = value.get_ref().clone() else { continue };
@@ -129,10 +135,11 @@ impl Reader<'_> {
                     continue;
                 };
                 let body = text(name.get_ref().clone(), name.span());
-                match pins.iter_mut().find(|pin| pin.0 == at) {
-                    Some(pin) => pin.2.push(body),
-                    None => pins.push((Cow::Owned(at.to_owned()), point.span(), vec![body])),
+                let pin = *numbers.entry(at.to_owned()).or_insert(pins.len());
+                if pin == pins.len() {
+                    pins.push((Cow::Owned(at.to_owned()), point.span(), Vec::new()));
                 }
+                pins[pin].2.push(body);
             }
             *value = Spanned::new(value.span(), DeValue::Table(DeTable::new()));
             if **name.get_ref() == *"ground" {
