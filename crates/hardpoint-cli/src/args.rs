@@ -14,6 +14,7 @@ pub const MOST_SWEPT: u32 = 1_000_000_000;
 
 const AFTER: &str = "\
 Examples:
+  hardpoint new strut --template macpherson
   hardpoint check models/macpherson.toml
   hardpoint import four_bar.asmt -o four_bar.toml
   hardpoint run models/macpherson.toml -o results/macpherson
@@ -57,6 +58,8 @@ pub struct Arguments {
 /// The subcommands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Begin a model from a template that runs at once, with your own hardpoints if you have them in a table
+    New(New),
     /// Solve the motion and its sensitivities; write CSV files, a summary and a report
     Run(Run),
     /// Examine a model: mobility, loops, redundancy, margins, and whether its design variables can be followed
@@ -120,6 +123,50 @@ impl Common {
     pub fn formulation(&self) -> Formulation {
         if self.absolute { Formulation::Absolute } else { Formulation::Relative }
     }
+}
+
+const AFTER_NEW: &str = "\
+The file is a commented model with cases, measures, targets and variables. Nothing that is
+there already is overwritten.
+
+A table of hardpoints has a name, x, y and z on each line; its first line may name these
+columns. Its names are those of the template, capitals and hyphens or not. All coordinates
+are in one unit, and the directions of its axes are said as
+
+  iso      x forward, y left, z up (ISO 8855)
+  sae      x forward, y right, z down (SAE J670)
+  adams    x back, y right, z up
+  lotus    x back, y right, z up
+  or in words, like \"x back, z up, y right\"
+
+Examples:
+  hardpoint new --list
+  hardpoint new front --template double-wishbone
+  hardpoint new front --template macpherson --hardpoints points.csv --units mm --axes sae
+  hardpoint new rear -t five-link --hardpoints points.xlsx --units in --axes \"x back, y right, z up\"";
+
+/// Options of `new`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_NEW)]
+pub struct New {
+    /// The name of the model, and of its file unless that ends with `.toml`
+    #[arg(value_name = "NAME", required_unless_present = "list")]
+    pub name: Option<PathBuf>,
+    /// What to begin from; without it, it is asked for on a terminal
+    #[arg(short, long, value_name = "TEMPLATE")]
+    pub template: Option<String>,
+    /// List the templates
+    #[arg(long)]
+    pub list: bool,
+    /// A table with the places of the hardpoints: CSV or .xlsx
+    #[arg(long, value_name = "FILE")]
+    pub hardpoints: Option<PathBuf>,
+    /// The unit of the table: mm, cm, m or in
+    #[arg(long, value_name = "UNIT", requires = "hardpoints")]
+    pub units: Option<String>,
+    /// The axes of the table, by name or in words
+    #[arg(long, value_name = "AXES", requires = "hardpoints")]
+    pub axes: Option<String>,
 }
 
 const AFTER_RUN: &str = "\

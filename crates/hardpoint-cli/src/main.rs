@@ -10,6 +10,7 @@ mod journal;
 mod long_table;
 mod maps;
 mod meter;
+mod new;
 mod optimize;
 mod outcome;
 mod pages;
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
         }
     };
     let outcome = match arguments.command {
+        Command::New(options) => new::run(&options),
         Command::Run(options) => run::run(&options),
         Command::Check(options) => check::check(&options),
         Command::Import(options) => import::import(&options),

@@ -478,6 +478,12 @@ impl Session {
         Outcome::Misunderstood
     }
 
+    /// Tells that a model cannot be begun.
+    pub fn not_begun(&self, what: &str, why: &str, help: &str) -> Outcome {
+        self.refuse("HP0605", what, None, why, help);
+        Outcome::Misunderstood
+    }
+
     /// Says what is worth knowing before the work; not where stdout is a document for machines.
     pub fn remark(&self, what: &str) {
         if self.is_for_reading() {

@@ -138,7 +138,8 @@ impl Serialize for Diagnostics {
     }
 }
 
-/// A file's name and text, with its lines counted: what knows where in it a diagnostic is.
+/// A file's name and text, with its lines counted; behind it the files that it includes, so that a place in the text says in which file
+/// it is. It knows where in it a diagnostic is.
 #[derive(Clone, Debug)]
 pub struct Source {
     /// The name as it was given.
@@ -147,20 +148,46 @@ pub struct Source {
     pub text: Arc<str>,
     /// Where each line begins.
     lines: Arc<[usize]>,
+    /// The names of all files, and where each begins and ends.
+    files: Arc<[(String, Range<usize>)]>,
 }
 
 impl Source {
     /// Of a name and a text.
     pub fn new(file: &str, text: &str) -> Self {
-        let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(k, _)| k + 1)).collect();
-        Self { file: printable(file.to_owned()).into(), text: text.into(), lines }
+        Self::of_files(file, text, std::iter::empty())
     }
 
-    /// Line and column of a byte, both from 1, the column in characters.
+    /// A file with those that it includes, by name and text.
+    pub fn of_files<'t>(file: &str, text: &str, others: impl Iterator<Item = (String, &'t str)>) -> Self {
+        let file = printable(file.to_owned());
+        let (mut all, mut files) = (text.to_owned(), vec![(file.clone(), 0..text.len())]);
+        for (name, text) in others {
+            all.push('\n');
+            files.push((printable(name), all.len()..all.len() + text.len()));
+            all += text;
+        }
+        let lines = std::iter::once(0).chain(all.match_indices('\n').map(|(k, _)| k + 1)).collect();
+        Self { file: file.into(), text: all.into(), lines, files: files.into() }
+    }
+
+    /// Where a file of all begins and ends; the first is the one that was asked for.
+    pub fn range(&self, file: usize) -> Range<usize> {
+        self.files[file].1.clone()
+    }
+
+    /// The name of the file that a byte is in, and where that begins.
+    fn file_at(&self, at: usize) -> (&str, usize) {
+        let k = self.files.partition_point(|(_, range)| range.start <= at).saturating_sub(1);
+        (&self.files[k].0, self.files[k].1.start)
+    }
+
+    /// Line and column of a byte in its file, both from 1, the column in characters.
     pub fn line_column(&self, at: usize) -> (usize, usize) {
         let at = self.boundary(at);
         let line = self.lines.partition_point(|&start| start <= at) - 1;
-        (line + 1, self.text[self.lines[line]..at].chars().count() + 1)
+        let first = self.lines.partition_point(|&start| start <= self.file_at(at).1) - 1;
+        (line - first + 1, self.text[self.lines[line]..at].chars().count() + 1)
     }
 
     /// A diagnostic at a range of the text, or about the file as a whole.
@@ -180,7 +207,7 @@ impl Source {
             severity,
             code,
             message: printable(message.into()),
-            file: self.file.to_string(),
+            file: span.as_ref().map_or(&*self.file, |s| self.file_at(s.start).0).to_owned(),
             line,
             column,
             span,
@@ -203,19 +230,19 @@ impl Source {
         group = match (window, d.line, d.column) {
             (Some((span, window)), Some(line), Some(column)) => {
                 if window.len() > LONG_LINE {
-                    group.element(Origin::path(&*self.file).line(line).char_column(column))
+                    group.element(Origin::path(d.file.as_str()).line(line).char_column(column))
                 } else {
                     let inside = span.start - window.start..span.end.min(window.end) - window.start;
                     let annotation = AnnotationKind::Primary.span(inside).label(d.label.as_deref());
                     group.element(
                         Snippet::source(&self.text[window])
-                            .path(&*self.file)
+                            .path(d.file.as_str())
                             .line_start(line)
                             .annotation(annotation),
                     )
                 }
             }
-            _ => group.element(Origin::path(&*self.file)),
+            _ => group.element(Origin::path(d.file.as_str())),
         };
         group = group.elements(d.notes.iter().map(|n| Level::NOTE.message(n.as_str())));
         group = group.elements(d.help.iter().map(|h| Level::HELP.message(h.as_str())));
@@ -257,6 +284,8 @@ fn remedy(code: &str) -> Option<&'static str> {
         "HP0112" => "correct that line of the file, or choose other `columns`",
         "HP0113" => "correct the underlined part; `docs/file-format.md` says what expressions may name",
         "HP0115" => "export the body again as STL, OBJ or GLB, as triangles",
+        "HP0116" => "correct `mirror`; `docs/file-format.md` says what it makes of what",
+        "HP0117" => "include each file where it is needed, and none in itself",
         "HP0201" => "choose another name",
         "HP0202" => "give finite numbers",
         "HP0203" => "declare a body besides `ground`, like `[bodies]` with `crank = {}`",

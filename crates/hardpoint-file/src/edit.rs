@@ -7,6 +7,7 @@ use hardpoint::space::{Mat3, Vec3};
 use toml_edit::{DocumentMut, Item, Value};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
+use crate::read::planar;
 use crate::units::Units;
 use crate::{Folder, ModelFile, parsed};
 
@@ -73,13 +74,61 @@ impl ModelFile {
     /// Whether the new text says the changed design.
     fn read_back(&self, text: &str, values: &[f64]) -> Result<(), Diagnostics> {
         let saved = parsed(Folder::Given(&self.texts), text, self.file_name())?;
-        let Some(what) = difference(&self.model, values, &saved.model) else { return Ok(()) };
+        let Some((what, name)) = difference(&self.model, values, &saved.model) else { return Ok(()) };
+        let message = "the changed design cannot be saved in this file";
         let d = self
-            .diagnostic(Severity::Error, CODE, "the changed design cannot be saved in this file", None)
-            .note(format!("a file with its numbers would have another {what}"))
-            .help("change what this is given by in the file itself");
+            .diagnostic(Severity::Error, CODE, message, None)
+            .note(format!("a file with its numbers would have another {what} `{name}`"));
+        let d = match self.origins.names.get(&name) {
+            Some(original) => d
+                .note(format!("`{name}` is the mirror image of `{original}`, and has no numbers of its own"))
+                .help(format!("change both alike, or write what is different of `{name}` by hand")),
+            None => d.help("change what this is given by in the file itself"),
+        };
         Err(Diagnostics::new(self.source.clone(), vec![d]))
     }
+}
+
+/// The hardpoints of a model's text whose coordinates are plain numbers, in their order.
+pub fn hardpoints_in(text: &str) -> Vec<String> {
+    let document: DocumentMut = text.parse().unwrap_or_default();
+    let entries = document.get("hardpoints").and_then(Item::as_table_like);
+    let is_plain =
+        |item: &Item| item.as_array().is_some_and(|list| list.iter().all(|v| v.is_integer() || v.is_float()));
+    let entries = entries.into_iter().flat_map(toml_edit::TableLike::iter);
+    entries.filter(|(_, item)| is_plain(item)).map(|(name, _)| name.to_owned()).collect()
+}
+
+/// A model's text under another name and with hardpoints in other places, in the text's unit of length. Comments and layout stay; of
+/// points with two coordinates those in the plane are written.
+///
+/// ```
+/// let text = "name = \"x\"\nplanar = \"zx\"\n[hardpoints]\nA = [0, 0] # here\n";
+/// let placed = hardpoint_file::placed(text, "y", &[("A".to_owned(), [1.0, 2.0, 3.5])]);
+/// assert_eq!(placed, "name = \"y\"\nplanar = \"zx\"\n[hardpoints]\nA = [3.5, 1] # here\n");
+/// ```
+pub fn placed(text: &str, name: &str, places: &[(String, [f64; 3])]) -> String {
+    let mut document: DocumentMut = text.parse().unwrap_or_default();
+    let normal = document.get("planar").and_then(Item::as_str).and_then(planar::normal_of);
+    if let Some(value) = value_at(&mut document, &[Key("name")]) {
+        let decor = value.decor().clone();
+        *value = name.into();
+        *value.decor_mut() = decor;
+    }
+    for (hardpoint, place) in places {
+        for (axis, x) in place.iter().enumerate() {
+            let list = document.get("hardpoints").and_then(|t| t.get(hardpoint)?.as_array());
+            let k = match (list.map(toml_edit::Array::len), normal) {
+                (Some(2), Some(normal)) => planar::coordinate(normal, axis),
+                _ => Some(axis),
+            };
+            let Some(k) = k else { continue };
+            if let Some(value) = value_at(&mut document, &[Key("hardpoints"), Key(hardpoint), At(k)]) {
+                replace(value, &format!("{}", if *x == 0.0 { 0.0 } else { *x }));
+            }
+        }
+    }
+    document.to_string()
 }
 
 /// A change that the file has no number for.
@@ -111,6 +160,23 @@ impl Edit<'_> {
         let variables = self.file.model.variables.iter().zip(&self.values).enumerate();
         let changed = variables.filter(|(_, (_, value))| **value != 0.0);
         changed.flat_map(|(k, (v, value))| v.changes.iter().map(move |change| (k, change, *value)))
+    }
+
+    /// Whether a mirror makes this from something else: its numbers are written there, and are right if both change alike.
+    fn is_image(&self, name: &str) -> bool {
+        self.file.origins.names.contains_key(name)
+    }
+
+    /// What is written in another file cannot be saved in this one: whether that was told.
+    fn is_elsewhere(&mut self, variables: &str, name: &str) -> bool {
+        let Some(file) = self.file.origins.included.get(name) else { return false };
+        let why = format!("`{name}` stands in the included file `{file}`");
+        self.refuse(
+            variables,
+            why,
+            "change it there, or write it in this file as well, where it counts more",
+        );
+        true
     }
 
     /// The variables that do such a thing, for complaints.
@@ -159,7 +225,10 @@ impl Edit<'_> {
                     break;
                 }
                 let way = [Key("hardpoints"), Key(&hardpoint.name), At(axis)];
-                if !self.write(&way, Quantity::Length, old, new) {
+                if !self.write(&way, Quantity::Length, old, new)
+                    && !self.is_image(&hardpoint.name)
+                    && !self.is_elsewhere(&by, &hardpoint.name)
+                {
                     let coordinate = format!("{}.{}", hardpoint.name, ["x", "y", "z"][axis]);
                     let why = format!("`{coordinate}` is given by an expression, which it does not move");
                     self.refuse(
@@ -188,8 +257,8 @@ impl Edit<'_> {
             let written = [&[Key("parameters"), name][..], &[Key("parameters"), name, Key("value")]]
                 .iter()
                 .any(|way| self.write(way, parameter.quantity, old, old + by));
-            if !written {
-                let by = self.of(|c| matches!(c, Change::Parameter(c) if c.parameter.0 == p));
+            let by = self.of(|c| matches!(c, Change::Parameter(c) if c.parameter.0 == p));
+            if !written && !self.is_image(&parameter.name) && !self.is_elsewhere(&by, &parameter.name) {
                 let why = format!("parameter `{}` is given by an expression", parameter.name);
                 self.refuse(&by, why, "change the parameters that it follows");
             }
@@ -215,7 +284,10 @@ impl Edit<'_> {
                         _ => None,
                     })
                     .sum();
-                if !self.write(&way, Quantity::Length, old, old + grows) {
+                if !self.write(&way, Quantity::Length, old, old + grows)
+                    && !self.is_image(&joint.name)
+                    && !self.is_elsewhere(&by, &joint.name)
+                {
                     let why = format!("the `length` of `{}` is given by an expression", joint.name);
                     self.refuse(&by, why, "change the parameters that the expression uses");
                 }
@@ -234,7 +306,7 @@ impl Edit<'_> {
                     self.units().from_si(Quantity::Length, length),
                 );
                 let added = joint_table(&mut self.document, &joint.name, &number);
-                if !added {
+                if !added && !self.is_image(&joint.name) {
                     let by = model
                         .variables
                         .iter()
@@ -277,8 +349,9 @@ impl Edit<'_> {
             let steps: Vec<Step<'_>> = name.split('.').map(|s| s.parse().map_or(Key(s), At)).collect();
             let start = [Key("drivers"), Key(&driver.name)];
             let ways = [[&start[..], &steps].concat(), [&start[..], &[Key("law")], &steps].concat()];
-            if !ways.iter().any(|way| self.write(way, quantity, old.value, new.value)) {
-                let by = self.of(|c| matches!(c, Change::Law(c) if c.driver.0 == d && c.parameter == p));
+            let written = ways.iter().any(|way| self.write(way, quantity, old.value, new.value));
+            let by = self.of(|c| matches!(c, Change::Law(c) if c.driver.0 == d && c.parameter == p));
+            if !written && !self.is_image(&driver.name) && !self.is_elsewhere(&by, &driver.name) {
                 let why = format!(
                     "the law of driver `{}` has no number `{}` of its own in the file",
                     driver.name, old.name
@@ -342,7 +415,11 @@ impl Edit<'_> {
                     continue;
                 }
                 let Some(new) = new.first().filter(|n| (**n - old).norm() > ROUND_OFF) else { continue };
-                if !self.direction(&[Key("joints"), Key(&joint.name), Key(key)], *new) {
+                let way = [Key("joints"), Key(&joint.name), Key(key)];
+                if !self.direction(&way, *new)
+                    && !self.is_image(&joint.name)
+                    && !self.is_elsewhere(&by, &joint.name)
+                {
                     let why = format!("joint `{}` has no `{key}` in the file", joint.name);
                     self.refuse(&by, why, "write the joint with its direction in a table of its own");
                 }
@@ -409,7 +486,8 @@ impl Edit<'_> {
     /// Writes a number in place of another one; false where there is none.
     fn write(&mut self, way: &[Step<'_>], quantity: Quantity, old: f64, new: f64) -> bool {
         let units = self.units();
-        let Some(value) = value_at(&mut self.document, way) else { return false };
+        let way = self.written_way(way);
+        let Some(value) = value_at(&mut self.document, &way) else { return false };
         let Some(point) = number_style(value) else { return false };
         let near = ROUND_OFF * old.abs().max(new.abs());
         let mut text = shortest(new, near, |x| units.to_si(quantity, x), units.from_si(quantity, new));
@@ -418,6 +496,18 @@ impl Edit<'_> {
         }
         replace(value, &text);
         true
+    }
+
+    /// The way to a number of a hardpoint that has two coordinates only.
+    fn written_way<'w>(&self, way: &[Step<'w>]) -> Vec<Step<'w>> {
+        let mut way = way.to_vec();
+        if let ([Key("hardpoints"), Key(name), At(axis)], Some(normal)) = (&mut way[..], self.file.plane) {
+            let list = self.document.get("hardpoints").and_then(|t| t.get(*name)?.as_array());
+            if list.is_some_and(|list| list.len() == 2) {
+                *axis = planar::coordinate(normal, *axis).unwrap_or(usize::MAX);
+            }
+        }
+        way
     }
 
     /// Writes a direction in place of another one, with the length that this is written with.
@@ -520,22 +610,23 @@ fn shortest(target: f64, near: f64, to_si: impl Fn(f64) -> f64, exact: f64) -> S
     format!("{}", if found == 0.0 { 0.0 } else { found })
 }
 
-/// What differs between a changed design and the nominal design of another model; none where nothing does.
-fn difference(model: &Model, values: &[f64], saved: &Model) -> Option<String> {
+/// What differs between a changed design and the nominal design of another model, and of which thing; none where nothing does.
+fn difference(model: &Model, values: &[f64], saved: &Model) -> Option<(String, String)> {
+    let found = |what: &str, name: &str| Some((what.to_owned(), name.to_owned()));
     let size = model.size();
     let near = |a: Vec3, b: Vec3, size: f64| (a - b).norm() <= SAME * size;
     let far = model.distance_from_origin() + size;
     for (place, hardpoint) in model.hardpoint_places(values).into_iter().zip(&model.hardpoints) {
         let other = saved.hardpoints.iter().find(|h| h.name == hardpoint.name);
         if other.is_some_and(|other| !near(place, other.position, far)) {
-            return Some(format!("place of hardpoint `{}`", hardpoint.name));
+            return found("place of hardpoint", &hardpoint.name);
         }
     }
     let (changed, again) = (model.geometry(values), saved.geometry(&[]));
     for (j, joint) in model.joints.iter().enumerate() {
         let [a, b] = [&changed, &again].map(|g| g.kept[j].distance);
         if !((a - b).abs() <= SAME * size) {
-            return Some(format!("length of joint `{}`", joint.name));
+            return found("length of joint", &joint.name);
         }
         let world = |m: &Model, g: &hardpoint::design::Geometry, e: usize| {
             m.bodies[joint.bodies[e].0].frame.compose(g.markers[j][e])
@@ -543,17 +634,17 @@ fn difference(model: &Model, values: &[f64], saved: &Model) -> Option<String> {
         for e in [0, 1] {
             let [a, b] = [world(model, &changed, e), world(saved, &again, e)];
             if !near(a.r, b.r, far) {
-                return Some(format!("place of joint `{}`", joint.name));
+                return found("place of joint", &joint.name);
             }
             if joint.axis.is_some() && !near(a.rot.cols[2], b.rot.cols[2], 1.0) {
-                return Some(format!("axis of joint `{}`", joint.name));
+                return found("axis of joint", &joint.name);
             }
         }
     }
     for ((a, b), driver) in model.laws(values).iter().zip(saved.laws(&[])).zip(&model.drivers) {
         for (a, b) in a.parameters().iter().zip(b.parameters()) {
             if !((a.value - b.value).abs() <= SAME * a.value.abs().max(1.0)) {
-                return Some(format!("`{}` of driver `{}`", a.name, driver.name));
+                return found(&format!("`{}` of driver", a.name), &driver.name);
             }
         }
     }

@@ -125,6 +125,10 @@ impl Kinds {
 #[derive(Clone, Copy)]
 pub(crate) enum Shape {
     Text,
+    /// The name of a file in the model's folder or below it.
+    File,
+    /// A text that is an expression or a law, with names of parameters, coordinates or measures in it.
+    Expression,
     /// The name of something, as in "a joint".
     Name(&'static str),
     /// A number, or an expression over parameters; in the file's unit of what it measures.
@@ -142,8 +146,8 @@ pub(crate) enum Shape {
     OneOf(&'static [u32]),
     /// A list of at least and at most so many.
     List(&'static Shape, [usize; 2]),
-    /// A table with one entry for each name.
-    Entries(&'static Shape),
+    /// A table with one entry for each name of such a thing, like "a joint".
+    Entries(&'static str, &'static Shape),
     Table(&'static Table),
     Kinds(&'static Kinds),
     /// Any of these; with a name in the schema and what it is.

@@ -26,10 +26,12 @@
 //!   not TOML is not looked at further.
 //! * No text makes this crate panic, and none keeps it busy for long: names, tables and lists have limits
 //!   far above any mechanism.
+//! * A model may include others in its folder, and be made of one side only. Both are put together of the texts' values before these
+//!   are read (`read/include.rs`, `read/mirror.rs`), so that nothing behind knows of it but what writes numbers back.
 //! * A driver's table may lie in a CSV file in the model's folder, and a body's shape in a file of triangles; that is all that is
-//!   read besides the model file.
+//!   read besides model files.
 //!
-//! What is not here: includes, and coordinates of hardpoints in expressions that no change of the design moves.
+//! What is not here: coordinates of hardpoints in expressions that no change of the design moves.
 
 mod diagnostic;
 mod drawing;
@@ -41,7 +43,9 @@ mod read;
 mod schema;
 mod tree;
 mod units;
+mod walk;
 
+use std::ops::Range;
 use std::path::Path;
 
 use hardpoint::{
@@ -52,6 +56,7 @@ use toml::de::DeTable;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, Source};
 pub use drawing::{Drawing, Form, Mesh, MeshFrame};
+pub use edit::{hardpoints_in, placed};
 pub use measured::Measured;
 pub use read::triangles;
 pub use schema::schema;
@@ -59,6 +64,9 @@ pub use units::{AngleUnit, LengthUnit, Units};
 
 use diagnostic::{closest, shown};
 use places::Places;
+use read::include::{self, Files, Hindrance, shifted};
+use read::mirror::{Origins, opposites, told_once, with_origin};
+use read::planar;
 pub use tree::Texts;
 use tree::{Folder, Reader};
 
@@ -84,6 +92,10 @@ pub struct ModelFile {
     pub remarks: Vec<Diagnostic>,
     /// The texts that the model names files of: tables of laws, curves that are wanted, lists of designs.
     pub texts: Texts,
+    /// The axis square to the plane of a planar model: 0, 1 or 2 for x, y or z.
+    pub plane: Option<usize>,
+    /// What a mirror made from something else, by name.
+    origins: Origins,
     /// The case that the model was made of, where the file has cases and only one of them is meant.
     pub case: Option<String>,
     source: Source,
@@ -105,7 +117,7 @@ impl ModelFile {
 
     /// The text of the file.
     pub fn text(&self) -> &str {
-        &self.source.text
+        &self.source.text[self.source.range(0)]
     }
 
     /// Line and column, from 1, of the name of an entry: `index` counts as in the lists of [`Model`].
@@ -115,7 +127,7 @@ impl ModelFile {
         self.span(section, index).map(|s| self.source.line_column(s.start))
     }
 
-    fn span(&self, section: Section, index: usize) -> Option<std::ops::Range<usize>> {
+    fn span(&self, section: Section, index: usize) -> Option<Range<usize>> {
         // Ground is the model's first body and is not in the file.
         let index = if section == Section::Bodies { index.checked_sub(1)? } else { index };
         let at = hardpoint::draft::Locus { section, index, key: "", item: None };
@@ -192,7 +204,7 @@ impl ModelFile {
         about: Option<(Section, usize)>,
     ) -> Diagnostic {
         let span = about.and_then(|(section, index)| self.span(section, index));
-        self.source.diagnostic(severity, code, message, span)
+        with_origin(self.source.diagnostic(severity, code, message, span), &self.origins)
     }
 
     /// A diagnostic about this file as text for a terminal; with `color`, ANSI escapes.
@@ -357,16 +369,54 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
             .help("a model has `name`, `units`, `[hardpoints]`, `[bodies]`, `[joints]` and `[time]`");
         return Err(Diagnostics::new(source, vec![d]));
     }
-    let (document, errors) = DeTable::parse_recoverable(&source.text);
-    if !errors.is_empty() {
-        let list = syntax_errors(&source, &errors);
-        drop(document);
+    let (parts, hindrances) = include::parts(folder, text);
+    let beside = |name: &str| match Path::new(file_name).parent() {
+        Some(folder) => folder.join(name).display().to_string(),
+        None => name.to_owned(),
+    };
+    let others = parts.iter().map(|part| (beside(&part.name), part.text.as_str()));
+    let source = Source::of_files(file_name, text, others);
+    let mut list = Vec::new();
+    for Hindrance { file, at, error } in hindrances {
+        let start = source.range(file).start;
+        let at = at.start + start..at.end + start;
+        let d = source.diagnostic(Severity::Error, error.code, error.message, Some(at));
+        let d = error.notes.into_iter().fold(d, Diagnostic::note);
+        list.push(error.help.into_iter().fold(d, Diagnostic::help));
+    }
+    let mut tables = Vec::new();
+    for file in 0..=parts.len() {
+        let range = source.range(file);
+        let (document, errors) = DeTable::parse_recoverable(&source.text[range.clone()]);
+        list.extend(syntax_errors(&source, &errors, &range));
+        let mut table = document.into_inner();
+        if file > 0 {
+            shifted(&mut table, range.start);
+        }
+        tables.push((file.checked_sub(1).map_or(String::new(), |k| parts[k].name.clone()), table));
+    }
+    if !list.is_empty() {
+        drop(tables);
         return Err(Diagnostics::new(source, list));
     }
+    let numbers = opposites(tables.iter().map(|file| &file.1));
+    let sizes = (0..tables.len()).map(|file| source.range(file).len() as u64).collect();
+    let files = Files { tables, numbers: &numbers, sizes };
     let mut reader = Reader::new(&source, folder);
-    let raw = reader.model(document.get_ref());
-    let (units, texts) = (reader.units, reader.texts);
-    let (mut found, remarks) = (reader.found, diagnostic::in_order(reader.remarks));
+    reader.texts = include::texts(&parts);
+    let whole = reader.whole(files);
+    if !reader.found.is_empty() {
+        // What it would have made is missing everywhere.
+        let found = std::mem::take(&mut reader.found);
+        let note = "the rest of the model is checked when this is right";
+        let list = found.into_iter().map(|d| d.note(note)).collect();
+        return Err(Diagnostics::new(source.clone(), list));
+    }
+    let plane = planar::normal(&whole.table);
+    let raw = reader.model(&whole.table, &whole.twins);
+    let (units, texts, origins) = (reader.units, reader.texts, reader.origins);
+    let remarks = diagnostic::in_order(told_once(reader.remarks, &origins));
+    let mut found = reader.found;
     let model = match Model::from_draft(&raw.draft) {
         Ok(model) => Some(model),
         Err(faults) => {
@@ -374,21 +424,34 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
             None
         }
     };
-    drop(document);
+    let found = told_once(found, &origins);
     match model {
         Some(model) if found.is_empty() => {
             let (description, drawing, places) = (raw.description, raw.drawing, raw.places);
-            Ok(ModelFile { model, units, description, drawing, remarks, texts, case: None, source, places })
+            Ok(ModelFile {
+                plane,
+                model,
+                units,
+                description,
+                drawing,
+                remarks,
+                texts,
+                origins,
+                case: None,
+                source,
+                places,
+            })
         }
         _ => Err(Diagnostics::new(source, found)),
     }
 }
 
-fn syntax_errors(source: &Source, errors: &[toml::de::Error]) -> Vec<Diagnostic> {
+/// What is no TOML in the file that stands there.
+fn syntax_errors(source: &Source, errors: &[toml::de::Error], file: &Range<usize>) -> Vec<Diagnostic> {
     let mut list: Vec<Diagnostic> = Vec::new();
     let mut last = (0, "");
     for error in errors {
-        let span = error.span().unwrap_or(source.text.len()..source.text.len());
+        let span = error.span().map_or(file.end..file.end, |s| s.start + file.start..s.end + file.start);
         let line = source.line_column(span.start).0;
         // The same complaint on this or the next lines follows from the first.
         let follows =

@@ -5,11 +5,14 @@ mod couplers;
 mod data;
 mod design;
 mod drivers;
+pub(crate) mod include;
 mod law;
 pub(crate) mod measured;
 mod mesh;
+pub(crate) mod mirror;
 mod optimize;
 mod parameters;
+pub(crate) mod planar;
 mod results;
 pub(crate) mod sweep;
 mod tolerance;
@@ -29,7 +32,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{closest, shown};
 use crate::drawing::{Drawing, FORMS, Form};
-use crate::format::{self, ANGLE, Key, Kinds, LENGTH, NUMBER, Need, Shape, Table, table};
+use crate::format::{self, ANGLE, HARDPOINT, Key, Kinds, LENGTH, NUMBER, Need, Shape, Table, table};
 use crate::places::{EntryPlace, Places};
 use crate::tree::{Field, Fields, LINE, MOST_ENTRIES, PLACE, Reader, Subject, Value, above_tables, quoted};
 use crate::units::{AngleUnit, LengthUnit};
@@ -50,36 +53,42 @@ pub(crate) const MODEL: Table = table! {
     must "units": Shape::Table(&UNITS), "{ length = \"mm\", angle = \"deg\" }";
     /// Named numbers, which expressions in quotes may use wherever a number stands. Each is a design variable, unless it says
     /// otherwise or is itself given by an expression.
-    may "parameters": Shape::Entries(&parameters::PARAMETER), "{ hub = { value = 60, unit = \"length\" } }";
+    may "parameters": Shape::Entries("a parameter", &parameters::PARAMETER), "{ hub = { value = 60, unit = \"length\" } }";
     /// Named points of the design configuration: `name = [x, y, z]`, global, in the length unit. Expressions may use
     /// coordinates of others, like `"-left.y"`.
-    may "hardpoints": Shape::Entries(&Shape::exactly(3, &LENGTH)), "{ A = [0, 0, 0] }";
+    may "hardpoints": Shape::Entries("a hardpoint", &Shape::exactly(3, &LENGTH)), "{ A = [0, 0, 0] }";
     /// Rigid bodies. `ground` is always there and is not declared.
-    must "bodies": Shape::Entries(&Shape::Table(&BODY)), "{ crank = {} }";
+    must "bodies": Shape::Entries("a body", &BODY_SHAPE), "{ crank = {} }";
     /// Joints between two bodies.
-    may "joints": Shape::Entries(&Shape::Table(&JOINT)), "{}";
+    may "joints": Shape::Entries("a joint", &Shape::Table(&JOINT)), "{}";
     /// Gears, racks, belts and other linear relations between joint coordinates.
-    may "couplers": Shape::Entries(&Shape::Kinds(&couplers::COUPLER)), "{}";
+    may "couplers": Shape::Entries("a coupler", &Shape::Kinds(&couplers::COUPLER)), "{}";
     /// Prescribed motions: of joint coordinates, points, distances and orientations.
-    may "drivers": Shape::Entries(&Shape::Kinds(&drivers::DRIVER)), "{}";
+    may "drivers": Shape::Entries("a driver", &Shape::Kinds(&drivers::DRIVER)), "{}";
     /// Design variables: what may change in the design, and how everything else follows.
-    may "design": Shape::Entries(&Shape::Kinds(&design::VARIABLE)), "{}";
+    may "design": Shape::Entries("a design variable", &Shape::Kinds(&design::VARIABLE)), "{}";
     /// Points of bodies to follow.
-    may "points": Shape::Entries(&Shape::Table(&results::POINT)), "{}";
+    may "points": Shape::Entries("a point", &Shape::Table(&results::POINT)), "{}";
     /// What is known of the vehicle, for anti-dive and Ackermann.
     may "vehicle": Shape::Table(&wheels::VEHICLE), "{ wheelbase = 2600 }";
     /// Road wheels, for what is measured at them.
-    may "wheels": Shape::Entries(&Shape::Table(&wheels::WHEEL)), "{}";
+    may "wheels": Shape::Entries("a wheel", &Shape::Table(&wheels::WHEEL)), "{}";
     /// Pairs of wheels, for what is measured at both.
-    may "axles": Shape::Entries(&Shape::Table(&wheels::AXLE)), "{}";
+    may "axles": Shape::Entries("an axle", &Shape::Table(&wheels::AXLE)), "{}";
     /// Numbers to compute from the motion, with their sensitivities.
-    may "measures": Shape::Entries(&results::MEASURE), "{}";
+    may "measures": Shape::Entries("a measure", &results::MEASURE), "{}";
     /// Numbers that sum measures up over the motion, with their sensitivities.
-    may "metrics": Shape::Entries(&Shape::Table(&results::METRIC)), "{}";
+    may "metrics": Shape::Entries("a metric", &Shape::Table(&results::METRIC)), "{}";
     /// The output times. Where every case has its own, they may be left out.
     may "time": Shape::Kinds(&results::TIME), "{ end = 1.0, steps = 100 }";
     /// Several motions of the mechanism, in place of the one that the drivers' own laws make.
-    may "cases": Shape::Entries(&Shape::Table(&cases::CASE)), "{}";
+    may "cases": Shape::Entries("a case", &Shape::Table(&cases::CASE)), "{}";
+    /// The plane that all of it lies in: points may have two coordinates, and pins need no axis.
+    may "planar": planar::PLANAR, "\"xy\"";
+    /// Other files, of which all is taken that this one does not say itself.
+    may "include": include::INCLUDE, "[\"corner.toml\"]";
+    /// What is said of one side holds for the other side as well.
+    may "mirror": Shape::Table(&mirror::MIRROR), "{ across = \"y\", names = { left = \"right\" } }";
     /// What the design is to be optimised for, and within which limits.
     may "optimize": Shape::Table(&optimize::OPTIMIZE), "{ goals = { toe = { metric = \"toe_error\" } } }";
     /// How far off the design may be made, and what that must keep.
@@ -110,6 +119,11 @@ const UNIT_WORDS: [(&str, &str); 12] = [
     ("radian", "rad"),
     ("radians", "rad"),
 ];
+const BODY_SHAPE: Shape = Shape::Any(
+    "BodyOrPoints",
+    "A body; in a planar model also a list of its hardpoints.",
+    &[Shape::Table(&BODY), Shape::list(&HARDPOINT)],
+);
 const BODY: Table = table! {
     /// A body; `{}` is enough.
     "Body":
@@ -220,8 +234,10 @@ fn coordinates() -> Vec<(&'static str, String)> {
 
 /// The tables that `docs/file-format.md` shows, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 33] {
+pub(crate) fn tables() -> [(&'static str, Shape); 35] {
     [
+        ("include", Shape::Table(&include::INCLUDE_TABLE)),
+        ("mirror", Shape::Table(&mirror::MIRROR)),
         ("parameters", Shape::Table(&parameters::PARAMETER_TABLE)),
         ("frames", Shape::Kinds(&FRAME)),
         ("meshes", Shape::Table(&mesh::MESH_TABLE)),
@@ -283,11 +299,12 @@ impl Raw {
 }
 
 impl Reader<'_> {
-    pub fn model<'a>(&mut self, table: &'a DeTable<'a>) -> Raw {
+    pub fn model<'a>(&mut self, table: &'a DeTable<'a>, twins: &HashMap<String, Value<'_>>) -> Raw {
         let mut raw = Raw::default();
         let fields = self.fields("the model", 0..0, table, MODEL.keys());
         let place = EntryPlace::of(&fields);
-        for f in fields.iter().filter(|f| !matches!(fields.key(f.key).shape, Shape::Text)) {
+        let is_table = |s: Shape| matches!(s, Shape::Table(_) | Shape::Kinds(_) | Shape::Entries(..));
+        for f in fields.iter().filter(|f| is_table(fields.key(f.key).shape)) {
             if f.value.get_ref().as_table().is_none_or(|t| t.len() > MOST_ENTRIES) {
                 self.unread.push(f.key);
             }
@@ -305,7 +322,7 @@ impl Reader<'_> {
         self.couplers(&fields, &mut raw);
         self.measures(&fields, &mut raw);
         self.drivers(&fields, &mut raw);
-        self.design(&fields, &mut raw);
+        self.design(&fields, &mut raw, twins);
         self.points(&fields, &mut raw);
         self.vehicle(&fields, &mut raw);
         self.wheels(&fields, &mut raw);
@@ -642,10 +659,7 @@ impl Reader<'_> {
         let hardpoints = &raw.draft.hardpoints;
         let found = raw.hardpoint_numbers.get(name).map(|k| &hardpoints[*k]);
         if found.is_none() && !raw.draft.unread.has(Section::Model, 0, "hardpoints") {
-            // Past the problems that anybody reads, and among more names than that, a guess would only cost time.
-            let names = hardpoints.iter().map(|h| h.name.as_str());
-            let guess = self.found.len() < 50 && hardpoints.len() <= 5000;
-            let close = if guess { closest(name, names) } else { None };
+            let close = self.guess(name, hardpoints.iter().map(|h| h.name.as_str()));
             self.report("HP0204", f.value.span(), format!("there is no hardpoint named `{name}`")).help =
                 close.map(|c| format!("did you mean `{c}`?"));
         }

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use crate::format::{Key, Kinds, Need, Shape, Table};
 use crate::read::MODEL;
+use crate::read::mirror::SECTIONS;
 
 /// The JSON Schema of model files, as `models/hardpoint.schema.json` has it.
 ///
@@ -16,6 +17,7 @@ use crate::read::MODEL;
 pub fn schema() -> String {
     let mut definitions = Definitions::default();
     let mut root = definitions.object(None, MODEL.keys());
+    images(&mut root, &mut definitions);
     root["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
     root["title"] = MODEL.name.into();
     root["description"] = MODEL.doc.into();
@@ -24,6 +26,23 @@ pub fn schema() -> String {
         .expect("a schema is plain JSON");
     text.push('\n');
     text
+}
+
+/// In a file with a mirror or included files an entry may say only what is different of an image, or of what is included.
+fn images(root: &mut Value, definitions: &mut Definitions) {
+    let different = json!({ "type": "object", "description": "What is different of the image that the mirror makes, or of what is included." });
+    definitions.0.insert("Different".to_owned(), different);
+    let mut whole = BTreeMap::new();
+    for section in SECTIONS.into_iter().filter(|s| !["parameters", "hardpoints"].contains(s)) {
+        let entries = &mut root["properties"][section]["additionalProperties"];
+        let entry = entries.take();
+        *entries = json!({ "anyOf": [entry, { "$ref": "#/$defs/Different" }] });
+        whole.insert(section, json!({ "additionalProperties": entry }));
+    }
+    root["if"] = json!({ "anyOf": [{ "required": ["mirror"] }, { "required": ["include"] }] });
+    let required = root["required"].take();
+    root["else"] = json!({ "properties": whole, "required": required });
+    root["required"] = json!(["name"]);
 }
 
 /// What the schema defines under a name of its own.
@@ -59,7 +78,7 @@ impl Definitions {
 
     fn shape(&mut self, shape: Shape) -> Value {
         match shape {
-            Shape::Text | Shape::Name(_) => json!({ "type": "string" }),
+            Shape::Text | Shape::File | Shape::Expression | Shape::Name(_) => json!({ "type": "string" }),
             Shape::Number(_) => self.named("Number", |_| {
                 json!({
                     "type": ["number", "string"],
@@ -85,7 +104,7 @@ impl Definitions {
                 }
                 list
             }
-            Shape::Entries(of) => json!({ "type": "object", "additionalProperties": self.shape(*of) }),
+            Shape::Entries(_, of) => json!({ "type": "object", "additionalProperties": self.shape(*of) }),
             Shape::Table(table) => self.table(table),
             Shape::Kinds(kinds) => self.named(kinds.name, |all| all.kinds(kinds)),
             Shape::Any(name, doc, shapes) => self.named(name, |all| {

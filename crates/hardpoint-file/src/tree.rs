@@ -15,12 +15,16 @@ use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Diagnostic, Severity, Source, closest, shown};
 use crate::format::{HARDPOINT, Key, LENGTH, NUMBER, Need, Shape, THREE_NUMBERS, Table, table};
+use crate::read::mirror::Origins;
 use crate::units::Units;
 
 pub(crate) type Value<'a> = Spanned<DeValue<'a>>;
 
 /// Names longer than this are surely not meant as names.
 const LONGEST_NAME: usize = 100;
+/// What was meant is guessed of so many problems, and among so many names.
+const GUESSED_PROBLEMS: usize = 50;
+const GUESSED_NAMES: usize = 5000;
 /// The most entries that a table or list may have. It bounds the time that any text can take.
 pub(crate) const MOST_ENTRIES: usize = 200_000;
 
@@ -137,6 +141,10 @@ pub(crate) struct Reader<'s> {
     pub units: Units,
     /// What the file's parameters are, as soon as they are read.
     pub nominal: Nominal,
+    /// How many bytes of included files it has been made of.
+    pub included: u64,
+    /// What was made from something else, by name.
+    pub origins: Origins,
     /// The parameters of the law that is being read which expressions give, and those expressions.
     pub law_formulas: Vec<(String, Expression)>,
     pub found: Vec<Diagnostic>,
@@ -149,8 +157,20 @@ pub(crate) struct Reader<'s> {
 impl<'s> Reader<'s> {
     pub fn new(source: &'s Source, folder: Folder<'s>) -> Self {
         let (units, nominal) = (Units::default(), Nominal::default());
-        let (texts, law_formulas, found, unread, remarks) = Default::default();
-        Self { source, folder, texts, units, nominal, law_formulas, found, unread, remarks }
+        let (texts, origins, law_formulas, found, unread, remarks) = Default::default();
+        Self {
+            source,
+            folder,
+            texts,
+            units,
+            nominal,
+            included: 0,
+            origins,
+            law_formulas,
+            found,
+            unread,
+            remarks,
+        }
     }
 }
 
@@ -268,6 +288,13 @@ impl Reader<'_> {
             let message = format!("`{key}` has no meaning in {}", fields.what);
             self.report("HP0107", field.at.0..field.at.1, message).notes.push(why.into());
         }
+    }
+
+    /// The name that was probably meant. Past the problems that anybody reads, and among more names than that, a guess would only cost time.
+    pub fn guess<'n>(&self, name: &str, names: impl Iterator<Item = &'n str> + Clone) -> Option<&'n str> {
+        let worth = self.found.len() < GUESSED_PROBLEMS
+            && names.clone().take(GUESSED_NAMES + 1).count() <= GUESSED_NAMES;
+        if worth { closest(name, names) } else { None }
     }
 
     pub fn too_many(&mut self, at: Range<usize>, what: &str, count: usize) {

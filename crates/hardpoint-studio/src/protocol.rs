@@ -243,12 +243,18 @@ impl Message {
     /// A diagnostic of this text.
     pub(crate) fn of(text: &str, d: &Diagnostic) -> Self {
         let length = d.span.as_ref().and_then(|span| text.get(span.clone())).map(|part| part.chars().count());
+        // What stands in an included file has no place in the text that the page shows.
+        let is_here = d.span.is_none() || length.is_some();
+        let message = match (is_here, d.line) {
+            (false, Some(line)) => format!("{}, line {line}: {}", d.file, d.message),
+            _ => d.message.clone(),
+        };
         Self {
             severity: format!("{:?}", d.severity).to_lowercase(),
             code: d.code.into(),
-            message: d.message.clone(),
-            line: d.line,
-            column: d.column,
+            message,
+            line: d.line.filter(|_| is_here),
+            column: d.column.filter(|_| is_here),
             length,
             label: d.label.clone(),
             notes: d.notes.clone(),

@@ -24,6 +24,7 @@ fn help_has_examples_and_exit_codes() {
     let bench = Bench::with(&[]);
     for command in [
         "",
+        "new",
         "run",
         "check",
         "verify",

@@ -22,7 +22,7 @@ fn words(shape: Shape) -> String {
         if one.ends_with('s') { one } else { format!("{one}s") }
     };
     match shape {
-        Shape::Text => "text".into(),
+        Shape::Text | Shape::File | Shape::Expression => "text".into(),
         Shape::Name(one) => format!("{}'s name", noun(one)),
         Shape::Number(Quantity::Length) => "length".into(),
         Shape::Number(Quantity::Angle) => "angle".into(),
@@ -40,7 +40,7 @@ fn words(shape: Shape) -> String {
         Shape::List(of, [4, 4]) => format!("four {}", many(*of)),
         Shape::List(Shape::List(of, _), _) => format!("list of pairs of {}", many(**of)),
         Shape::List(of, _) => format!("list of {}", many(*of)),
-        Shape::Entries(of) => format!("table of names and {}", many(*of)),
+        Shape::Entries(_, of) => format!("table of names and {}", many(*of)),
         Shape::Table(_) | Shape::Kinds(_) => "table".into(),
         Shape::Any(_, "", shapes) => shapes.iter().map(|s| words(*s)).collect::<Vec<_>>().join(" or "),
         // A word of the text.

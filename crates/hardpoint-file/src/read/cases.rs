@@ -20,14 +20,14 @@ pub(crate) const CASE: Table = table! {
     /// A motion of the mechanism, with laws and output times of its own.
     "Case":
     /// The laws of the drivers that it moves, by the drivers' names; each as the `law` of a driver.
-    or("{}") "laws": Shape::Entries(&law::LAW), "{ bump = \"40*sin(2*pi*t)\" }";
+    or("{}") "laws": Shape::Entries("a driver", &law::LAW), "{ bump = \"40*sin(2*pi*t)\" }";
     /// What all other drivers do.
     or("\"held\"") "rest": REST, "\"as_above\"";
     /// Its output times, as `[time]` has them. Default: those of `[time]`.
     may "time": Shape::Kinds(&TIME), "{ end = 1.0, steps = 100 }";
     /// In place of all these, two drivers by name and where each of them stands: every position of the one with every position of the
     /// other. All others are held as drawn.
-    may "grid": Shape::Entries(&Shape::Kinds(&SWEEP)), "{ bump = { from = -80, to = 80, steps = 8 }, steering = { from = -15, to = 15, steps = 6 } }";
+    may "grid": Shape::Entries("a driver", &Shape::Kinds(&SWEEP)), "{ bump = { from = -80, to = 80, steps = 8 }, steering = { from = -15, to = 15, steps = 6 } }";
 };
 pub(crate) const SWEEP: Kinds = Kinds {
     name: "Sweep",

@@ -1,5 +1,6 @@
 //! Design variables.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use hardpoint::draft::{ChangeDraft, Section, ShapeDraft, VariableDraft};
@@ -12,7 +13,7 @@ use crate::format::{
     ANGLE, BODY, DRIVER, HARDPOINT, JOINT, Key, Kinds, LENGTH, NUMBER, Shape, TWO_NUMBERS, Table, keys, table,
 };
 use crate::places::EntryPlace;
-use crate::tree::{AXES, DIRECTION, Fields, LINE, Reader, axis_named};
+use crate::tree::{AXES, DIRECTION, Fields, LINE, Reader, Value, axis_named};
 
 use super::Raw;
 
@@ -280,13 +281,22 @@ fn one(name: &str, change: ChangeDraft) -> Option<Changes> {
 }
 
 impl Reader<'_> {
-    pub(super) fn design(&mut self, model: &Fields<'_>, raw: &mut Raw) {
+    /// `twins` is what variables also change, by their names.
+    pub(super) fn design(&mut self, model: &Fields<'_>, raw: &mut Raw, twins: &HashMap<String, Value<'_>>) {
         for entry in self.entries(model, "design", "design variable") {
             let fields = self.entry("design variable", &entry, VARIABLE.keys());
             let mut place = EntryPlace::of(&fields);
             let fixed_length = self.flag_of(&fields, "fixed_length");
             let kind = self.led_by(&fields, KINDS, ["what it changes", "this variable is given"]);
-            let variables = kind.and_then(|(_, read)| read(self, &fields, &entry.0, raw, &mut place));
+            let mut variables = kind.and_then(|(_, read)| read(self, &fields, &entry.0, raw, &mut place));
+            if let (Some((_, read)), Some(all), Some(twin)) = (kind, &mut variables, twins.get(&entry.0)) {
+                let twin = (entry.0.clone(), entry.1.clone(), twin);
+                let fields = self.entry("design variable", &twin, VARIABLE.keys());
+                let others = read(self, &fields, &twin.0, raw, &mut EntryPlace::of(&fields));
+                for (one, other) in all.iter_mut().zip(others.into_iter().flatten()) {
+                    one.1.extend(other.1);
+                }
+            }
             if variables.is_none() {
                 self.unread.push("name");
             }

@@ -23,7 +23,7 @@ pub(crate) const LAW: Shape = Shape::Any(
     "Law",
     "A law of motion: an expression in `t` (seconds) such as `30*sin(2*pi*t)`, a number, or a table with a `type`; in the file's \
      unit of what is driven.",
-    &[Shape::Text, Shape::Plain(Quantity::Number), Shape::Kinds(&LAW_TABLE)],
+    &[Shape::Expression, Shape::Plain(Quantity::Number), Shape::Kinds(&LAW_TABLE)],
 );
 pub(crate) const LAW_TABLE: Kinds =
     Kinds { name: "LawTable", doc: "", typed: true, tables: || TYPES.iter().map(|t| &t.0).collect() };
@@ -120,7 +120,7 @@ static TYPES: &[(Table, Read)] = &[
             /// Pairs of time in s and value in the driver's unit, in the order of time. Either these or `file`.
             may "points": Shape::list(&TWO_NUMBERS), "[[0, 0], [1, 5], [2, 0]]";
             /// A CSV file in the model's folder or below it: times in s and values in the driver's unit.
-            may "file": Shape::Text, "\"travel.csv\"";
+            may "file": Shape::File, "\"travel.csv\"";
             /// The file's columns of time and value, by name or by number from 1. Default: the first two.
             may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
             /// The degree of the spline.
@@ -152,9 +152,9 @@ static TYPES: &[(Table, Read)] = &[
             /// An expression with named parameters.
             "expression":
             /// The expression, in `t` and the parameters.
-            must "law": Shape::Text, "\"a*sin(w*t)\"";
+            must "law": Shape::Expression, "\"a*sin(w*t)\"";
             /// Names and values of the parameters.
-            or("{}") "parameters": Shape::Entries(&NUMBER), "{ a = 25, w = 6.28 }";
+            or("{}") "parameters": Shape::Entries("a parameter of the law", &NUMBER), "{ a = 25, w = 6.28 }";
         },
         |r, of, fields| r.expression_with_parameters(of, fields),
     ),

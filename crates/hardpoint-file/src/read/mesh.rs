@@ -19,17 +19,19 @@ use super::data::{DataError, Wanted, bytes_of};
 /// More triangles than this make a page slow to open and to turn, and show no more.
 const MOST_TRIANGLES: usize = 200_000;
 
-pub(super) const MESH: Shape = Shape::Any("Mesh", "", &[Shape::Text, Shape::Table(&MESH_TABLE)]);
+pub(super) const MESH: Shape = Shape::Any("Mesh", "", &[Shape::File, Shape::Table(&MESH_TABLE)]);
 pub(super) const MESH_TABLE: Table = table! {
     /// The shape of a body.
     "MeshFile":
     /// A file of triangles in the model's folder or below it: `.stl`, `.obj`, `.glb` or `.gltf`. Of a glTF file the transforms of
     /// its nodes are applied, its axes are taken as they are, and its data has to be in the file itself.
-    must "file": Shape::Text, "\"knuckle.stl\"";
+    must "file": Shape::File, "\"knuckle.stl\"";
     /// What its coordinates count from.
     or("\"world\"") "frame": Shape::Words(MESH_FRAMES), "\"body\"";
     /// The unit of its coordinates, in the model's length unit: 0.001 for a file in mm beside a model in m.
     or("1.0") "scale": NUMBER, "0.001";
+    /// The axis of these coordinates across which the shape is mirrored. Default: it is shown as it is.
+    may "mirror": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
 };
 
 /// Reads the triangles of a file.
@@ -143,8 +145,8 @@ pub fn triangles(name: &str, bytes: &[u8]) -> Result<(Vec<[f64; 3]>, Vec<[u32; 3
 impl Reader<'_> {
     /// The shape of a body: a file's name, or a table with it.
     pub(super) fn mesh(&mut self, body: &Fields<'_>, f: Field<'_>) -> Option<Mesh> {
-        let (name, at, frame, scale) = if f.value.get_ref().is_str() {
-            (self.text(body, f)?, f.value.span(), MeshFrame::World, 1.0)
+        let (name, at, frame, scale, mirror) = if f.value.get_ref().is_str() {
+            (self.text(body, f)?, f.value.span(), MeshFrame::World, 1.0, None)
         } else {
             let subject = body.subject(f.key);
             let table = self.table(f.value, &subject, "the name of a file, or a table with it")?;
@@ -152,6 +154,7 @@ impl Reader<'_> {
             let fields = self.fields(what, f.value.span(), table, MESH_TABLE.keys());
             let frame = self.word_of(&fields, "frame").map(|k| MeshFrame::ALL[k]);
             let scale = self.number_of(&fields, "scale");
+            let mirror = self.word_of(&fields, "mirror");
             let file = self.need(&fields, "file");
             let name = file.and_then(|file| self.text(&fields, file));
             if let (Some(x), Some(f)) = (scale.filter(|x| !(*x > 0.0)), fields.get("scale")) {
@@ -161,7 +164,7 @@ impl Reader<'_> {
                 );
                 return None;
             }
-            (name?, file?.value.span(), frame?, scale?)
+            (name?, file?.value.span(), frame?, scale?, mirror)
         };
         // It changes no result, and whoever gives the text has drawn it already: the engine of a page does without the readers of meshes.
         if cfg!(target_family = "wasm") || matches!(self.folder, Folder::Given(_)) {
@@ -170,9 +173,15 @@ impl Reader<'_> {
         match triangles_of(self.folder, &name) {
             Ok(found) => {
                 let metres = |x: f64| self.units.length.metres(x * scale);
-                let vertex = |&[x, y, z]: &[f64; 3]| Vec3::new(x, y, z).map(metres);
+                let vertex = |&[x, y, z]: &[f64; 3]| {
+                    let at = Vec3::new(x, y, z).map(metres);
+                    mirror.map_or(at, |axis| at.mirrored(Vec3::AXES[axis]))
+                };
                 let vertices = found.vertices.iter().map(vertex).collect();
-                Some(Mesh { file: name, frame, vertices, triangles: found.triangles })
+                // Seen in a mirror, corners go round the other way.
+                let corners = |[a, b, c]: [u32; 3]| if mirror.is_some() { [a, c, b] } else { [a, b, c] };
+                let triangles = found.triangles.into_iter().map(corners).collect();
+                Some(Mesh { file: name, frame, vertices, triangles })
             }
             Err(e) => {
                 let d = self.report(e.code, at, e.message);

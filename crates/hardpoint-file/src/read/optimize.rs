@@ -21,9 +21,9 @@ pub(crate) const OPTIMIZE: Table = table! {
     /// Names of the design variables that may change, each within its `bounds`. Default: all that have bounds.
     may "variables": Shape::some(&VARIABLE), "[\"tie_rod_outer_y\"]";
     /// What is made as small as possible: the sum of all goals.
-    must "goals": Shape::Entries(&Shape::Table(&GOAL)), "{ toe = { metric = \"toe_error\" } }";
+    must "goals": Shape::Entries("a metric", &Shape::Table(&GOAL)), "{ toe = { metric = \"toe_error\" } }";
     /// What must hold.
-    may "limits": Shape::Entries(&Shape::Kinds(&LIMIT)), "{ rod = { length = \"tie_rod\", max = 300 } }";
+    may "limits": Shape::Entries("a metric", &Shape::Kinds(&LIMIT)), "{ rod = { length = \"tie_rod\", max = 300 } }";
     /// No motion may come nearer to a singular position than this margin, above 0 and below 1. Default: it may.
     may "margin": NUMBER, "0.02";
     /// From how many designs the search starts: that of the file, and others spread within the bounds.

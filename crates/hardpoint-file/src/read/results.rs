@@ -91,12 +91,12 @@ pub(crate) const METRIC: Table = table! {
     may "case": CASE, "\"bump\"";
 };
 const TARGET: Shape =
-    Shape::Any("Target", "", &[Shape::list(&TWO_NUMBERS), Shape::Text, Shape::Table(&TARGET_FILE)]);
+    Shape::Any("Target", "", &[Shape::list(&TWO_NUMBERS), Shape::File, Shape::Table(&TARGET_FILE)]);
 pub(super) const TARGET_FILE: Table = table! {
     /// A curve in a CSV file.
     "TargetFile":
     /// A CSV file in the model's folder or below it: abscissas and values, in the units of the model file.
-    must "file": Shape::Text, "\"target.csv\"";
+    must "file": Shape::File, "\"target.csv\"";
     /// The file's columns of abscissa and value, by name or by number from 1. Default: the first two.
     may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
 };
@@ -226,7 +226,7 @@ fn key(field: &MeasureField) -> Key {
         FieldKind::Output => (OUTPUT, "\"toe\""),
         FieldKind::Driver => (DRIVER, "\"bump\""),
         FieldKind::Body => (BODY, "\"knuckle\""),
-        FieldKind::Expression => (Shape::Text, "\"left.toe + right.toe\""),
+        FieldKind::Expression => (Shape::Expression, "\"left.toe + right.toe\""),
     };
     let need = if field.required { Need::Required } else { Need::Optional };
     Key { key: field.key, shape, need, example, doc: field.summary }

@@ -23,7 +23,7 @@ pub(crate) const SWEEP: Table = table! {
     "SweepStudy":
     /// How far design variables go, by their names, in their units: of a parameter its values, of all others changes of the design as drawn,
     /// like `bounds`. All others stay as drawn. Default: all variables with `bounds`, within these.
-    may "variables": Shape::Entries(&ENTRY), "{ lca_front_z = [-5, 5], radius = { from = 90, to = 110, levels = 5 } }";
+    may "variables": Shape::Entries("a design variable", &ENTRY), "{ lca_front_z = [-5, 5], radius = { from = 90, to = 110, levels = 5 } }";
     /// How designs are chosen.
     or("\"sobol\"") "method": METHOD, "\"factorial\"";
     /// So many designs; with `method = "indices"` so many pairs of designs.

@@ -22,19 +22,19 @@ pub(crate) const TOLERANCE: Table = table! {
     "Tolerance":
     /// Tolerances by name of the design variable, in its unit, over those that the variables have themselves. The name of an entry of
     /// `[design]` that makes several coordinates means the point: it lies within a sphere of that radius (or a disc, of two).
-    may "variables": Shape::Entries(&ENTRY), "{ B = 0.1, C_x = { tolerance = 0.2, distribution = \"uniform\" } }";
+    may "variables": Shape::Entries("a design variable", &ENTRY), "{ B = 0.1, C_x = { tolerance = 0.2, distribution = \"uniform\" } }";
     /// How deviations scatter, where a variable says nothing else.
     or("\"normal\"") "distribution": DISTRIBUTION, "\"uniform\"";
     /// A tolerance is so many standard deviations of the normal distribution.
     or("3.0") "sigmas": NUMBER, "2";
     /// Which normal variables go together.
-    may "correlations": Shape::Entries(&Shape::Table(&CORRELATION)), "{ jig = { between = [\"left_z\", \"right_z\"], coefficient = 0.9 } }";
+    may "correlations": Shape::Entries("a correlation", &Shape::Table(&CORRELATION)), "{ jig = { between = [\"left_z\", \"right_z\"], coefficient = 0.9 } }";
     /// Names of the metrics that are looked at. Default: all.
     may "metrics": Shape::list(&METRIC), "[\"toe_range\"]";
     /// Names of the measures whose whole curves are looked at. Default: all.
     may "curves": Shape::list(&OUTPUT), "[\"toe\"]";
     /// What must hold of metrics.
-    may "limits": Shape::Entries(&Shape::Table(&LIMIT)), "{ toe = { metric = \"toe_range\", max = 0.5 } }";
+    may "limits": Shape::Entries("a metric", &Shape::Table(&LIMIT)), "{ toe = { metric = \"toe_range\", max = 0.5 } }";
     /// So many designs are drawn and solved exactly.
     or("10000") "samples": Shape::Count(MOST_SAMPLES), "100000";
     /// What they are drawn from: the same number gives the same designs.

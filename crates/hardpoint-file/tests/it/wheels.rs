@@ -83,7 +83,7 @@ fn solved(file: &ModelFile) -> Solution {
 /// The models of this test: suspensions with what they carry.
 fn suspensions() -> [(&'static str, String); 5] {
     [
-        ("front_axle", with_all(&text("front_axle"))),
+        ("front_axle", with_all(include_str!("../models/front_axle_by_hand.toml"))),
         ("macpherson", text("macpherson") + STRUT),
         ("double_wishbone", text("double_wishbone") + WISHBONES),
         ("rack_steering", text("rack_steering") + &of_a_rack(AXLE)),
@@ -345,7 +345,7 @@ fn listed_measures_have_the_wheels_name_and_their_own_place() {
 #[test]
 fn slopes_are_those_of_runs_whose_driver_is_shifted() {
     const H: f64 = 1e-2; // mm; the error is its square
-    let text = with_all(&text("front_axle")).replace("2*sin", "10*sin");
+    let text = with_all(include_str!("../models/front_axle_by_hand.toml")).replace("2*sin", "10*sin");
     let law = "law = \"60*sin(4*pi*t)\"";
     assert!(text.contains(law));
     let shifted = |by: f64| solved(&parsed(&text.replace(law, &format!("law = \"60*sin(4*pi*t) + {by}\""))));

@@ -259,6 +259,7 @@ impl Facts {
     /// The facts of a planned mechanism; without a solution nothing is said over the motion.
     pub fn new(file: &ModelFile, topology: &Topology, solution: Option<&Solution>) -> Self {
         let (model, units) = (&file.model, file.units);
+        let in_plane = made_by_plane(file, topology);
         Self {
             name: model.name.clone(),
             description: file.description.clone(),
@@ -268,14 +269,14 @@ impl Facts {
                 Formulation::Relative => "relative",
                 Formulation::Absolute => "absolute",
             },
-            counts: counts(model, topology),
+            counts: counts(model, topology, &in_plane),
             bodies: bodies(model, topology),
             joints: joints(model, topology),
             couplers: couplers(model, units),
             drivers: drivers(model, units),
-            blocks: blocks(model, topology),
-            redundant: redundant(model, topology),
-            redundancy: redundancy::redundancy(model, topology),
+            blocks: blocks(model, topology, &in_plane),
+            redundant: redundant(model, topology, &in_plane),
+            redundancy: redundancy::redundancy(model, topology, file.plane.is_some()),
             variables: variables(model, units, solution),
             conditions: conditions(model, units),
             measures: measures(model, units),
@@ -294,7 +295,17 @@ impl Facts {
     }
 }
 
-fn counts(model: &Model, topology: &Topology) -> Counts {
+/// Redundant constraints of a planar model that only say that it stays in its plane: in coordinates that lie in the plane they follow from
+/// nothing else.
+fn made_by_plane(file: &ModelFile, topology: &Topology) -> Vec<RowId> {
+    if file.plane.is_none() || topology.formulation == Formulation::Absolute {
+        return Vec::new();
+    }
+    let all = topology.redundancies(&file.model).into_iter();
+    all.filter(|r| r.implied_by.is_empty()).map(|r| r.row).collect()
+}
+
+fn counts(model: &Model, topology: &Topology, in_plane: &[RowId]) -> Counts {
     let bodies = model.bodies.len() - 1;
     let joints = model.named_joints().count();
     Counts {
@@ -304,8 +315,8 @@ fn counts(model: &Model, topology: &Topology) -> Counts {
         drivers: model.drivers.len(),
         mobility: topology.mobility,
         joint_constraints: model.named_joints().map(|(_, j)| j.kind.rows.len()).sum(),
-        cut_constraints: topology.rows.iter().filter(|r| !r.is_term).count(),
-        redundant_constraints: topology.redundant().count(),
+        cut_constraints: topology.rows.iter().filter(|r| !r.is_term).count() - in_plane.len(),
+        redundant_constraints: topology.redundant().count() - in_plane.len(),
         // Every joint beyond those of a spanning tree closes one.
         loops: joints.saturating_sub(bodies),
         coordinates: topology.coordinates.len(),
@@ -468,7 +479,7 @@ fn driven_text(model: &Model, joint: &Joint, points: &Points<'_>) -> String {
     }
 }
 
-fn blocks(model: &Model, topology: &Topology) -> Vec<BlockFact> {
+fn blocks(model: &Model, topology: &Topology, in_plane: &[RowId]) -> Vec<BlockFact> {
     let fact = |(k, block): (usize, &Block)| {
         let links = block.unknowns.iter().map(|&c| &topology[topology[c].link]);
         let mut joints: Vec<String> = links
@@ -493,13 +504,13 @@ fn blocks(model: &Model, topology: &Topology) -> Vec<BlockFact> {
             joints,
             closes: closes.collect(),
             places: block.link_ids().map(|k| model.bodies[topology[k].child.0].name.clone()).collect(),
-            redundant: rows.filter(|&r| topology[r].is_redundant()).count(),
+            redundant: rows.filter(|r| topology[*r].is_redundant() && !in_plane.contains(r)).count(),
         }
     };
     topology.blocks.iter().enumerate().map(fact).collect()
 }
 
-fn redundant(model: &Model, topology: &Topology) -> Vec<RedundantFact> {
+fn redundant(model: &Model, topology: &Topology, in_plane: &[RowId]) -> Vec<RedundantFact> {
     let fact = |r: RowId| {
         let closure = topology.closure_of(r);
         RedundantFact {
@@ -509,7 +520,7 @@ fn redundant(model: &Model, topology: &Topology) -> Vec<RedundantFact> {
             constraint: topology.constraint(r).describe(),
         }
     };
-    topology.redundant().map(fact).collect()
+    topology.redundant().filter(|row| !in_plane.contains(row)).map(fact).collect()
 }
 
 fn variables(model: &Model, units: Units, solution: Option<&Solution>) -> Vec<VariableFact> {

@@ -46,8 +46,9 @@ enum Part {
     Driver(usize),
 }
 
-/// All redundant constraints, those among the same parts together, in the order of the file.
-pub(super) fn redundancy(model: &Model, topology: &Topology) -> Vec<RedundancyFact> {
+/// All redundant constraints, those among the same parts together, in the order of the file; of a planar model without those that the
+/// plane makes.
+pub(super) fn redundancy(model: &Model, topology: &Topology, planar: bool) -> Vec<RedundancyFact> {
     /// Where every joint is cut the sets are exact, but the search is cubic in six unknowns per body.
     const MOST_BODIES: usize = 50;
     let left_out = topology.redundant().count();
@@ -59,9 +60,11 @@ pub(super) fn redundancy(model: &Model, topology: &Topology) -> Vec<RedundancyFa
         .then(|| Topology::of(model, Formulation::Absolute).ok())
         .flatten()
         .filter(|t| t.redundant().count() == left_out);
-    let plan = all_cut.as_ref().unwrap_or(topology);
+    // In a tree whose coordinates lie in the plane, a constraint that follows from nothing else is one that the plane makes.
+    let in_plane = planar.then(|| Topology::of(model, Formulation::Relative).ok()).flatten();
+    let plan = in_plane.as_ref().or(all_cut.as_ref()).unwrap_or(topology);
     let mut groups: BTreeMap<Vec<Part>, usize> = BTreeMap::new();
-    for redundancy in plan.redundancies(model) {
+    for redundancy in plan.redundancies(model).into_iter().filter(|r| !planar || !r.implied_by.is_empty()) {
         *groups.entry(parts(model, plan, &redundancy)).or_default() += 1;
     }
     let mut freed = Freed { model: model.clone(), redundant: left_out, mobility: topology.mobility };

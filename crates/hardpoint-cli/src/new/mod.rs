@@ -1,0 +1,241 @@
+//! `hardpoint new`: a model from a template, with the user's own hardpoints.
+
+mod axes;
+mod table;
+
+use std::io::{BufRead, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+use hardpoint::draft::did_you_mean;
+use hardpoint_file::LengthUnit;
+
+use crate::args::New;
+use crate::folder::Folder;
+use crate::outcome::Outcome;
+use crate::session::Session;
+use crate::text;
+
+use axes::Axes;
+
+/// A model to begin from.
+struct Template {
+    name: &'static str,
+    what: &'static str,
+    text: &'static str,
+    /// Whether its axes are those of a vehicle.
+    is_vehicle: bool,
+}
+
+macro_rules! templates {
+    ($($name:literal: $what:literal, $is_vehicle:literal;)*) => {
+        &[$(Template {
+            name: $name,
+            what: $what,
+            text: include_str!(concat!("../../templates/", $name, ".toml")),
+            is_vehicle: $is_vehicle,
+        }),*]
+    };
+}
+
+static TEMPLATES: &[Template] = templates! {
+    "double-wishbone": "front suspension on two wishbones, with a rack", true;
+    "macpherson": "front suspension on a strut, with a rack", true;
+    "five-link": "rear suspension on five rods", true;
+    "solid-axle": "live axle on three links and a Panhard rod, both sides", true;
+    "four-bar": "crank, coupler and rocker in a plane", false;
+    "slider-crank": "crank, rod and slider in a plane", false;
+    "stewart": "platform on six legs", false;
+    "delta": "Delta robot, by its dimensions as parameters", false;
+};
+
+/// Writes the model, or says why not.
+pub fn run(options: &New) -> Outcome {
+    let session = Session::begin(false);
+    if options.list {
+        text::print(&list());
+        return Outcome::Done;
+    }
+    begun(&session, options).unwrap_or_else(|outcome| outcome)
+}
+
+fn list() -> String {
+    let rows: Vec<(&str, String)> = TEMPLATES.iter().map(|t| (t.name, t.what.to_owned())).collect();
+    text::pairs(&rows)
+}
+
+fn begun(session: &Session, options: &New) -> Result<Outcome, Outcome> {
+    let given = options.name.as_deref().unwrap_or(Path::new(""));
+    let (path, name) = file_of(given).ok_or_else(|| {
+        session.misunderstood(&format!("`{}` names no file", text::shown(&given.display().to_string())))
+    })?;
+    if path.exists() {
+        return Err(exists(session, &path));
+    }
+    let template = template(session, options.template.as_deref())?;
+    let places = match &options.hardpoints {
+        Some(table) => places(session, template, table, options)?,
+        None => Vec::new(),
+    };
+    let model = hardpoint_file::placed(template.text, &name, &places);
+    // With the user's places it is read as it will be, so that what is wrong with them is told.
+    let problems = hardpoint_file::parse(&model, &path.display().to_string()).err();
+    write(session, &path, &model)?;
+    if let Some(problems) = problems {
+        session.not_read(&problems);
+        return Ok(Outcome::BadModel);
+    }
+    let shown = path.display();
+    text::print(&format!(
+        "{shown}: {}\n\n  hardpoint run {shown}\n  hardpoint studio {shown}\n",
+        template.what
+    ));
+    Ok(Outcome::Done)
+}
+
+/// The file for a name, and the name of the model in it.
+fn file_of(given: &Path) -> Option<(PathBuf, String)> {
+    let is_toml = given.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+    let file = given.file_name()?.to_str()?;
+    let name = if is_toml { given.file_stem()?.to_str()? } else { file };
+    Some((
+        if is_toml { given.to_owned() } else { given.with_file_name(format!("{file}.toml")) },
+        name.to_owned(),
+    ))
+}
+
+fn exists(session: &Session, path: &Path) -> Outcome {
+    let what = format!("there is a file `{}` already", path.display());
+    session.not_begun(&what, "nothing was written", "choose another name")
+}
+
+fn write(session: &Session, path: &Path, model: &str) -> Result<(), Outcome> {
+    let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let written = Folder::open(parent).and_then(|mut folder| {
+        folder.write(&name, |out| out.write_all(model.as_bytes()))?;
+        folder.commit_new()
+    });
+    written.map_err(|e| match e.error.kind() {
+        std::io::ErrorKind::AlreadyExists => exists(session, path),
+        _ => session.not_written(&e),
+    })
+}
+
+/// The template of that name; without a name, the one that is answered.
+fn template(session: &Session, name: Option<&str>) -> Result<&'static Template, Outcome> {
+    let name = match name {
+        Some(name) => name.to_owned(),
+        None => asked(&format!("{}\ntemplate: ", list())).ok_or_else(|| {
+            session.misunderstood("no template is named; give one with `--template`, of those that `hardpoint new --list` shows")
+        })?,
+    };
+    let wanted = plain(&name);
+    TEMPLATES.iter().find(|t| plain(t.name) == wanted).ok_or_else(|| {
+        let near = did_you_mean(&name, TEMPLATES.iter().map(|t| t.name));
+        let near = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+        let all: Vec<&str> = TEMPLATES.iter().map(|t| t.name).collect();
+        let what = format!("there is no template `{}`{near}", text::shown(&name));
+        session.not_begun(&what, &format!("the templates: {}", all.join(", ")), "name one of them")
+    })
+}
+
+/// What somebody answers on a terminal; none where nobody is there.
+fn asked(question: &str) -> Option<String> {
+    if !(std::io::stdin().is_terminal() && std::io::stderr().is_terminal()) {
+        return None;
+    }
+    text::complain(question);
+    let mut answer = String::new();
+    std::io::stdin().lock().read_line(&mut answer).ok()?;
+    Some(answer.trim().to_owned()).filter(|answer| !answer.is_empty())
+}
+
+/// A name without capitals, hyphens and the like.
+fn plain(name: &str) -> String {
+    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+}
+
+/// The places of the template's hardpoints out of a table, in mm and in the template's axes.
+fn places(
+    session: &Session,
+    template: &Template,
+    file: &Path,
+    options: &New,
+) -> Result<Vec<(String, [f64; 3])>, Outcome> {
+    let shown = text::shown(&file.display().to_string()).into_owned();
+    let refused = |what: &str, why: &str, help: &str| session.not_begun(what, why, help);
+    let wanted = hardpoint_file::hardpoints_in(template.text);
+    if wanted.is_empty() {
+        let what = format!("the template `{}` has no hardpoints to place", template.name);
+        return Err(refused(
+            &what,
+            "all of them follow its parameters",
+            "leave `--hardpoints` out, and change these",
+        ));
+    }
+    let unit = options.units.clone().or_else(|| asked("unit of the table (mm, cm, m, in): "));
+    let unit =
+        unit.ok_or_else(|| session.misunderstood("of the table no unit is said; give one with `--units`"))?;
+    let unit = LengthUnit::ALL.into_iter().find(|u| u.symbol() == unit).ok_or_else(|| {
+        session.misunderstood(&format!("`--units {}`: a unit is mm, cm, m or in", text::shown(&unit)))
+    })?;
+    let axes = match (&options.axes, template.is_vehicle) {
+        (Some(axes), _) => Some(axes.clone()),
+        (None, true) => {
+            asked("axes of the table (iso, sae, adams, lotus, or like \"x back, y right, z up\"): ")
+        }
+        (None, false) => Some("iso".to_owned()),
+    };
+    let axes = axes.ok_or_else(|| {
+        session.misunderstood(
+            "of the table no axes are said; give them with `--axes`, like `iso` or \"x back, y right, z up\"",
+        )
+    })?;
+    let axes: Axes =
+        axes.parse().map_err(|why: String| session.misunderstood(&format!("`--axes`: {why}")))?;
+    let rows = table::read(file).map_err(|problem| {
+        refused(
+            &format!("`{shown}` is no table of hardpoints"),
+            &problem,
+            "give a name, x, y and z on each line",
+        )
+    })?;
+    let mut places: Vec<(String, [f64; 3])> = Vec::new();
+    let mut unknown = Vec::new();
+    for row in rows {
+        let Some(name) = wanted.iter().find(|w| plain(w) == plain(&row.name)) else {
+            unknown.push(row.name);
+            continue;
+        };
+        if places.iter().any(|p| p.0 == *name) {
+            let what = format!("`{shown}` has the hardpoint `{name}` twice");
+            return Err(refused(
+                &what,
+                &format!("the second one stands on line {}", row.line),
+                "remove one of them",
+            ));
+        }
+        // Round-off of the conversion is no digit of a place.
+        let round = |x: f64| (unit.metres(x) * 1e9).round() / 1e6;
+        places.push((name.clone(), axes.turned(row.place).map(round)));
+    }
+    let missing: Vec<&str> =
+        wanted.iter().map(String::as_str).filter(|w| !places.iter().any(|p| p.0 == **w)).collect();
+    for name in &unknown {
+        let near = did_you_mean(name, missing.iter().copied());
+        let near = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+        session
+            .remark(&format!("the template has no hardpoint `{}`: it is not used{near}", text::shown(name)));
+    }
+    if !missing.is_empty() {
+        let names: Vec<String> = missing.iter().map(|n| format!("`{n}`")).collect();
+        let what = format!("`{shown}` has no place of {}", names.join(", "));
+        let help = "add them, or name what is meant as the template does; a template without a table shows what each of them is";
+        return Err(refused(
+            &what,
+            "a model with some hardpoints of the template and some of the table would mean nothing",
+            help,
+        ));
+    }
+    Ok(places)
+}

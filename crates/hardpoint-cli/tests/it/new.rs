@@ -1,0 +1,226 @@
+//! Models that are begun from templates.
+
+use std::path::Path;
+
+use hardpoint::Analysis;
+use hardpoint::model::{Hardpoint, Model, Side};
+use rust_xlsxwriter::Workbook;
+
+use crate::bench::Bench;
+
+fn templates() -> Vec<String> {
+    let output = Bench::with(&[]).run(&["new", "--list"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    text.lines().filter_map(|l| Some(l.split_whitespace().next()?.to_owned())).collect()
+}
+
+/// What is told, without the folder that it was in.
+fn said(bench: &Bench, arguments: &[&str]) -> (Option<i32>, String) {
+    let output = bench.run(arguments);
+    (output.status.code(), String::from_utf8(output.stderr).unwrap())
+}
+
+#[test]
+fn every_template_is_a_model_with_everything_that_checks_and_runs_at_once() {
+    let all = templates();
+    assert_eq!(all.len(), 8, "{all:?}");
+    for template in &all {
+        let bench = Bench::with(&[]);
+        assert_eq!(bench.run(&["new", "mine", "--template", template]).status.code(), Some(0), "{template}");
+        let text = bench.text("mine.toml");
+        assert!(text.contains("\nname = \"mine\"") && text.starts_with("# "), "{template}");
+        let file =
+            hardpoint_file::read(&bench.path("mine.toml")).unwrap_or_else(|e| panic!("{template}: {e}"));
+        let model = &file.model;
+        assert!(
+            model.cases.len() >= 2 && !model.measures.is_empty() && !model.metrics.is_empty(),
+            "{template}"
+        );
+        assert!(model.variables.len() >= 4 && model.optimization.is_some(), "{template}");
+        let output = bench.run(&["check", "mine.toml"]);
+        assert_eq!(output.status.code(), Some(0), "{template}");
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(!told.contains("warning"), "{template}: {told}");
+        // Pins in a plane say the same about what is square to it; nothing else does.
+        let redundant = Analysis::new(model).unwrap().topology().redundant().count();
+        assert!(redundant == 0 || text.contains("\nplanar = "), "{template}");
+        let output = bench.run(&["run", "mine.toml", "-o", "results"]);
+        assert_eq!(output.status.code(), Some(0), "{template}");
+        for case in &model.cases {
+            assert!(
+                bench.list(&format!("results/{}", case.name)).contains(&"report.html".to_owned()),
+                "{template}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_a_template_is_to_be_optimised_for_can_be_reached() {
+    for template in templates() {
+        let bench = Bench::with(&[]);
+        bench.run(&["new", "mine", "-t", &template]);
+        let (code, told) = said(&bench, &["optimize", "mine.toml"]);
+        assert_eq!(code, Some(0), "{template}: {told}");
+    }
+}
+
+#[test]
+fn a_table_places_the_hardpoints_in_its_units_and_axes() {
+    let bench = Bench::with(&[]);
+    // The template itself, in inches, with x back, y right and z up.
+    bench.run(&["new", "plain", "-t", "macpherson"]);
+    let plain = hardpoint_file::read(&bench.path("plain.toml")).unwrap();
+    let mut csv = "Name; X [in]; Y [in]; Z [in]\n".to_owned();
+    let mut book = Workbook::new();
+    let sheet = book.add_worksheet();
+    for (row, hardpoint) in (0..).zip(plain.model.hardpoints.iter().filter(|h| !h.unnamed)) {
+        let p = hardpoint.position;
+        let place = [-p.x, -p.y, p.z].map(|x| x / 0.0254);
+        let name = hardpoint.name.replace('_', "-").to_uppercase();
+        csv += &format!("{name}; {}; {}; {}\n", place[0], place[1], place[2]);
+        sheet.write(row + 2, 0, name).unwrap();
+        for (column, x) in (1..).zip(place) {
+            sheet.write(row + 2, column, x).unwrap();
+        }
+    }
+    bench.put("points.csv", &csv);
+    book.save(bench.path("points.xlsx")).unwrap();
+    for (table, axes) in [("points.csv", "adams"), ("points.xlsx", "x back, z up, y right")] {
+        let name = table.replace('.', "_");
+        let told = said(
+            &bench,
+            &["new", &name, "-t", "macpherson", "--hardpoints", table, "--units", "in", "--axes", axes],
+        );
+        assert_eq!(told, (Some(0), String::new()));
+        let placed = bench.text(&format!("{name}.toml"));
+        assert_eq!(placed, bench.text("plain.toml").replace("\"plain\"", &format!("\"{name}\"")));
+    }
+    // A plane has two coordinates.
+    bench.put("bar.csv", "A,0,0,0\nB,35,61,0\nC,250,190,0\nD,300,0,0\nP,130,200,0\n");
+    let told = said(&bench, &["new", "bar", "-t", "four-bar", "--hardpoints", "bar.csv", "--units", "mm"]);
+    assert_eq!(told, (Some(0), String::new()));
+    assert!(bench.text("bar.toml").contains("B = [35, 61] "));
+}
+
+#[test]
+fn a_table_of_the_right_side_makes_a_right_wheel() {
+    let bench = Bench::with(&[]);
+    bench.run(&["new", "left", "-t", "double-wishbone"]);
+    let left = hardpoint_file::read(&bench.path("left.toml")).unwrap().model;
+    let place = |h: &Hardpoint| [h.position.x, -h.position.y, h.position.z].map(|x| x * 1e3);
+    let line = |h: &Hardpoint| format!("{},{}\n", h.name, place(h).map(|x| x.to_string()).join(","));
+    bench.put("right.csv", &left.hardpoints.iter().filter(|h| !h.unnamed).map(line).collect::<String>());
+    let table = ["--hardpoints", "right.csv", "--units", "mm", "--axes", "iso"];
+    let told = said(&bench, &[&["new", "right", "-t", "double-wishbone"], &table[..]].concat());
+    assert_eq!(told, (Some(0), String::new()));
+    let right = hardpoint_file::read(&bench.path("right.toml")).unwrap().model;
+    assert_eq!([&left, &right].map(|m| m.wheels[0].side), [Side::Left, Side::Right]);
+    let camber = |m: &Model| {
+        let solution = Analysis::new(m).unwrap().run();
+        solution.measured.value(0, solution.measured.index("wheel.camber").unwrap())[0]
+    };
+    assert!((camber(&left) - camber(&right)).abs() < 1e-9 && camber(&left).abs() > 1e-3);
+}
+
+#[test]
+fn the_page_about_it_says_what_works() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/new.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let bench = Bench::with(&[]);
+    bench.put("points.csv", page.split("```csv\n").nth(1).unwrap().split("```").next().unwrap());
+    let commands: Vec<&str> = page.lines().filter_map(|l| l.strip_prefix("    hardpoint ")).collect();
+    assert_eq!(commands.len(), 4, "{commands:?}");
+    for command in commands {
+        let told = said(&bench, &command.split(' ').collect::<Vec<_>>());
+        assert_eq!(told.0, Some(0), "{command}: {}", told.1);
+    }
+    assert!(bench.text("press.toml").contains("C = [228.6, 12.7] "));
+    let output = bench.run(&["new", "--list"]);
+    for line in String::from_utf8(output.stdout).unwrap().lines() {
+        let (name, what) = line.trim().split_once("  ").unwrap();
+        assert!(page.contains(&format!("| `{name}` | {} |", what.trim())), "{line}");
+    }
+}
+
+#[test]
+fn what_cannot_be_begun_is_told_and_leaves_nothing() {
+    let bench = Bench::with(&[]);
+    bench.put("mine.toml", "there\n");
+    bench.put("points.csv", "A,0,0,0\nB,35,60,0\nC,250,190,0\nE,300,0,0\nPP,130,200,0\n");
+    bench.put("slip.csv", "A,0,0,0\nB,30,40,0\nC,200,10,0\nrial,300,10,0\n");
+    bench.put("twice.csv", "A,0,0,0\na,30,40,0\n");
+    bench.put("words.csv", "A,0,0,0\nB,35,sixty,0\n");
+    let table = ["-t", "four-bar", "--hardpoints"];
+    for (arguments, code, parts) in [
+        (vec!["new", "mine", "-t", "four-bar"], 2, vec!["there is a file `mine.toml` already"]),
+        (vec!["new", "mine.toml", "-t", "four-bar"], 2, vec!["there is a file `mine.toml` already"]),
+        (vec!["new", "other", "-t", "fourbar2"], 2, vec!["did you mean `four-bar`?", "slider-crank"]),
+        (vec!["new", "other"], 2, vec!["--template", "--list"]),
+        (
+            vec!["new", "other", "-t", "delta", "--hardpoints", "points.csv"],
+            2,
+            vec!["no hardpoints to place"],
+        ),
+        ([&["new", "other"], &table[..], &["points.csv"]].concat(), 2, vec!["--units"]),
+        (
+            [&["new", "other"], &table[..], &["points.csv", "--units", "ft"]].concat(),
+            2,
+            vec!["mm, cm, m or in"],
+        ),
+        (
+            [&["new", "other"], &table[..], &["points.csv", "--units", "mm"]].concat(),
+            2,
+            vec!["no hardpoint `E`", "no hardpoint `PP`: it is not used", "no place of `D`, `P`"],
+        ),
+        (
+            vec!["new", "other", "-t", "slider-crank", "--hardpoints", "slip.csv", "--units", "mm"],
+            2,
+            vec!["no hardpoint `rial`: it is not used; did you mean `rail`?", "no place of `rail`"],
+        ),
+        (
+            vec!["new", "other", "-t", "slider-crank", "--hardpoints", "twice.csv", "--units", "mm"],
+            2,
+            vec!["has the hardpoint `A` twice", "line 2"],
+        ),
+        (
+            [&["new", "other"], &table[..], &["words.csv", "--units", "mm"]].concat(),
+            2,
+            vec!["line 2: `sixty` is no number for y"],
+        ),
+        ([&["new", "other"], &table[..], &["none.csv", "--units", "mm"]].concat(), 2, vec!["`none.csv`"]),
+        (
+            vec![
+                "new",
+                "other",
+                "-t",
+                "stewart",
+                "--hardpoints",
+                "points.csv",
+                "--units",
+                "mm",
+                "--axes",
+                "x up",
+            ],
+            2,
+            vec!["--axes", "three axes"],
+        ),
+        (
+            vec!["new", "other", "-t", "macpherson", "--hardpoints", "points.csv", "--units", "mm"],
+            2,
+            vec!["--axes"],
+        ),
+    ] {
+        let (found, told) = said(&bench, &arguments);
+        assert_eq!(found, Some(code), "{arguments:?}: {told}");
+        for part in parts {
+            assert!(told.contains(part), "{arguments:?}: {told}");
+        }
+        assert_eq!(
+            bench.list("."),
+            ["mine.toml", "points.csv", "slip.csv", "twice.csv", "words.csv"],
+            "{arguments:?}"
+        );
+    }
+    assert_eq!(bench.text("mine.toml"), "there\n");
+}

@@ -1,0 +1,325 @@
+//! The other side of a symmetric mechanism, made from the one that is written.
+//!
+//! It is made of the text's values before they are read: what is made so has names of its own, and the places in the text of what it
+//! was made of. Whatever moves as a mirror image then has the same joint coordinates and measures as its original: directions to go
+//! along are mirrored as arrows are, and directions to turn about the other way round, as turns are.
+
+mod origins;
+mod side;
+
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
+
+use toml::Spanned;
+use toml::de::{DeArray, DeTable, DeValue};
+
+use crate::diagnostic::shown;
+use crate::format::{Shape, Table, table};
+use crate::tree::{Reader, Value, axis_named};
+use crate::walk::{Leaf, in_expression, table_of, walk};
+
+pub(crate) use origins::{Origins, told_once, with_origin};
+use side::Side;
+
+pub(crate) const MIRROR: Table = table! {
+    /// What the file says of one side is said of the other side as well.
+    "Mirror":
+    /// The global axis square to the mirror, a plane through the origin: `"y"` between left and right.
+    or("\"y\"") "across": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
+    /// Words in names, and the words that stand for them on the other side. A word ends where the name does, or at `_`, `-` or a blank.
+    or("{ \"left\": \"right\" }") "names": Shape::Entries("a word", &Shape::Text), "{ left = \"right\" }";
+    /// What design variables do.
+    or("\"both\"") "variables": VARIABLES, "\"each\"";
+    /// Names of things that are on one side only.
+    may "except": Shape::list(&Shape::Name("a thing")), "[\"left_damper\"]";
+    /// Names of drivers that do the opposite on the other side, as steering does.
+    may "opposite": Shape::list(&crate::format::DRIVER), "[\"left_steer\"]";
+};
+const VARIABLES: Shape = Shape::Words(&[
+    ("both", "Each changes both sides alike."),
+    ("each", "Those with such a word in their names have one of their own on the other side."),
+]);
+/// Sections whose entries are mirrored; of parameters and design variables, where each side has its own.
+pub(crate) const SECTIONS: [&str; 12] = [
+    "parameters",
+    "hardpoints",
+    "bodies",
+    "joints",
+    "couplers",
+    "drivers",
+    "design",
+    "points",
+    "wheels",
+    "axles",
+    "measures",
+    "metrics",
+];
+/// More words than these say no sides.
+const MOST_WORDS: usize = 20;
+
+/// A model's table with all that it has on both sides.
+pub(crate) struct Both<'a> {
+    pub table: DeTable<'a>,
+    /// What design variables also change, by their names.
+    pub twins: HashMap<String, Value<'a>>,
+}
+
+/// What the mirror is, and what passes it.
+struct Rule<'n> {
+    numbers: &'n Opposites,
+    across: usize,
+    words: Vec<(String, String)>,
+    /// Names that are the same on both sides.
+    kept: HashSet<String>,
+    /// The same of parameters.
+    shared: HashSet<String>,
+}
+
+impl<'n> Rule<'n> {
+    /// The name with its words exchanged, if it has any of them; `back` exchanges them either way.
+    fn exchanged(&self, name: &str, back: bool) -> Option<String> {
+        let there = self.words.iter().map(|(one, other)| (one, other));
+        exchanged(name, there.chain(self.words.iter().filter(|_| back).map(|(one, other)| (other, one))))
+    }
+
+    /// The name of what is made of something with this name.
+    fn twin(&self, name: &str) -> Option<String> {
+        if self.kept.contains(name) { None } else { self.exchanged(name, false) }
+    }
+
+    /// What a name, or a measure's like `left.toe`, is on the other side.
+    fn said(&self, name: &str) -> Option<String> {
+        let base = name.split('.').next().unwrap_or(name);
+        if self.kept.contains(base) || self.kept.contains(name) { None } else { self.exchanged(name, true) }
+    }
+
+    /// The names and vectors of a value on the other side; `turns` says under which keys a vector is a turn. Says whether there was any name.
+    fn mirror(&self, shape: Shape, value: &mut Value<'n>, turns: &dyn Fn(&str) -> bool) -> bool {
+        let mut named = false;
+        let axes = ["x", "y", "z"];
+        walk("", shape, value, &mut |key, leaf| match leaf {
+            Leaf::Name("a column" | "a parameter" | "a parameter of the law", _)
+            | Leaf::File(_)
+            | Leaf::Pair(_) => {}
+            Leaf::Name(_, name) => {
+                if let Some(said) = self.said(name) {
+                    *name = Cow::Owned(said);
+                    named = true;
+                }
+            }
+            Leaf::Expression(text) => in_expression(text, |word| {
+                if self.shared.contains(word) {
+                    return None;
+                }
+                let said = self.said(word)?;
+                let turned = said.split_once('.').is_some_and(|(_, c)| c == axes[self.across]);
+                Some(if turned { format!("(-{said})") } else { said })
+            }),
+            Leaf::Axis(word) => {
+                let letter = word.trim_start_matches(['+', '-']);
+                if (letter == axes[self.across]) != turns(key) && axis_named(word).is_some() {
+                    let minus = if word.starts_with('-') { "" } else { "-" };
+                    *word = Cow::Owned(format!("{minus}{letter}"));
+                }
+            }
+            Leaf::Vector(list) => {
+                let turned = turns(key);
+                each(list, self.numbers, |k| (k == self.across) != turned);
+            }
+            // R = Rz(a) Rx(b) Rz(c) between two mirrors: turns about the mirror's axis stay, all others go the other way.
+            Leaf::Angles(list) => each(list, self.numbers, |k| (if k == 1 { 0 } else { 2 }) != self.across),
+            Leaf::Quaternion(list) => each(list, self.numbers, |k| k > 0 && k - 1 != self.across),
+        });
+        named
+    }
+}
+
+/// A name with the second of each pair of words in place of the first, if it has any of them.
+fn exchanged<'w>(
+    name: &str,
+    words: impl Iterator<Item = (&'w String, &'w String)> + Clone,
+) -> Option<String> {
+    let is_word = |c: char| c.is_alphanumeric();
+    let (mut out, mut rest, mut changed) = (String::new(), name, false);
+    while let Some(first) = rest.chars().next() {
+        let end = match is_word(first) {
+            true => rest.find(|c| !is_word(c)).unwrap_or(rest.len()),
+            false => first.len_utf8(),
+        };
+        let (word, after) = rest.split_at(end);
+        let said = words.clone().find(|(from, _)| *from == word).map(|w| w.1);
+        changed |= said.is_some();
+        out += said.map_or(word, String::as_str);
+        rest = after;
+    }
+    changed.then_some(out)
+}
+
+/// Changes the signs of some numbers in a list.
+fn each<'a>(list: &mut DeArray<'a>, numbers: &'a Opposites, turned: impl Fn(usize) -> bool) {
+    list.iter_mut().enumerate().filter(|(k, _)| turned(*k)).for_each(|(_, value)| turn_sign(value, numbers));
+}
+
+/// Numbers as they are written, and the same with the other sign.
+pub(crate) type Opposites = HashMap<String, String>;
+
+/// The numbers of files of which one has a mirror, with the other sign.
+pub(crate) fn opposites<'t>(files: impl Iterator<Item = &'t DeTable<'t>> + Clone) -> Opposites {
+    let mut all = Opposites::new();
+    if files.clone().any(|table| table.contains_key("mirror")) {
+        files.flat_map(DeTable::values).for_each(|value| opposites_in(value, &mut all));
+    }
+    all
+}
+
+fn opposites_in(value: &Value<'_>, all: &mut Opposites) {
+    let text = match value.get_ref() {
+        DeValue::Array(list) => return list.iter().for_each(|value| opposites_in(value, all)),
+        DeValue::Table(table) => return table.values().for_each(|value| opposites_in(value, all)),
+        DeValue::Integer(i) if i.radix() == 10 => i.as_str(),
+        DeValue::Float(f) => f.as_str(),
+        _ => return,
+    };
+    let turned = match text.strip_prefix('-') {
+        Some(rest) => rest.to_owned(),
+        // No -0.
+        None if text.parse() == Ok(0.0) => return,
+        None => format!("-{}", text.trim_start_matches('+')),
+    };
+    all.insert(text.to_owned(), turned);
+}
+
+/// A number or an expression with the other sign.
+fn turn_sign<'a>(value: &mut Value<'a>, numbers: &'a Opposites) {
+    let turned = match value.get_ref() {
+        DeValue::String(text) => DeValue::String(Cow::Owned(format!("-({text})"))),
+        DeValue::Integer(i) => match numbers.get(i.as_str()).map(|text| DeValue::parse(text)) {
+            Some(Ok(turned)) => turned.into_inner(),
+            _ => return,
+        },
+        DeValue::Float(f) => match numbers.get(f.as_str()).map(|text| DeValue::parse(text)) {
+            Some(Ok(turned)) => turned.into_inner(),
+            _ => return,
+        },
+        _ => return,
+    };
+    *value = Spanned::new(value.span(), turned);
+}
+
+impl Reader<'_> {
+    /// The table of the model with what its `mirror` makes of it; none where there is no mirror, or where that cannot be read, which is told.
+    pub fn both_sides<'a>(&mut self, model: &DeTable<'a>, numbers: &'a Opposites) -> Option<Both<'a>> {
+        let value = model.get("mirror")?;
+        let Some(said) = value.get_ref().as_table() else {
+            let message = "`mirror` must be a table";
+            self.report("HP0105", value.span(), message).help =
+                Some("for example `mirror = { across = \"y\", names = { left = \"right\" } }`".into());
+            return None;
+        };
+        let before = self.found.len();
+        let fields = self.fields("`mirror`", value.span(), said, MIRROR.keys());
+        let across = self.word_of(&fields, "across");
+        let each_its_own = self.word_of(&fields, "variables") == Some(1);
+        let words = match fields.get("names") {
+            None => vec![("left".to_owned(), "right".to_owned())],
+            Some(f) => self.words_of(f.value),
+        };
+        let mut listed = |key: &str| -> Vec<(String, std::ops::Range<usize>)> {
+            let subject = fields.subject(key);
+            let Some(f) = fields.get(key) else { return Vec::new() };
+            let list = self.list(f.value, &subject, "a list of names").into_iter().flatten();
+            list.filter_map(|v| Some((self.name(v, &subject, "a name in quotes")?, v.span()))).collect()
+        };
+        let (except, opposite) = (listed("except"), listed("opposite"));
+        if self.found.len() > before {
+            return None;
+        }
+        let mut rule = Rule { numbers, across: across?, words, kept: HashSet::new(), shared: HashSet::new() };
+        let entries = |section: &str| model.get(section).and_then(|v| v.get_ref().as_table());
+        let named = |name: &str| SECTIONS.iter().any(|s| entries(s).is_some_and(|t| t.contains_key(name)));
+        let has_driver = |name: &str| entries("drivers").is_some_and(|t| t.contains_key(name));
+        let all: Vec<&str> =
+            SECTIONS.iter().filter_map(|s| entries(s)).flatten().map(|(k, _)| &**k.get_ref()).collect();
+        for (name, at) in &except {
+            if !named(name) {
+                self.unknown(at.clone(), &format!("nothing is named `{}`", shown(name)), name, &all);
+            }
+        }
+        for (name, at) in opposite.iter().filter(|(name, _)| !has_driver(name)) {
+            self.unknown(at.clone(), &format!("there is no driver named `{}`", shown(name)), name, &all);
+        }
+        rule.kept.extend(except.into_iter().map(|e| e.0));
+        // A parameter is the same on both sides, unless it has a counterpart there.
+        if let (Some(parameters), false) = (entries("parameters"), each_its_own) {
+            let alone =
+                |name: &&str| rule.exchanged(name, true).is_none_or(|n| !parameters.contains_key(&*n));
+            let names = parameters.iter().map(|(name, _)| &**name.get_ref());
+            let kept: Vec<String> = names.filter(alone).map(str::to_owned).collect();
+            rule.shared.extend(kept);
+        }
+        let opposite = opposite.into_iter().map(|o| o.0).collect();
+        let mut side = Side { rule, model, opposite, made: HashMap::new(), refused: Vec::new() };
+        let mut table = model.clone();
+        for section in SECTIONS.into_iter().filter(|s| each_its_own || !["parameters", "design"].contains(s))
+        {
+            if let Some(entries) = table.get_mut(section).and_then(|v| table_of(v)) {
+                side.add(section, entries);
+            }
+        }
+        let cases = table.get_mut("cases").and_then(|v| table_of(v));
+        cases.into_iter().for_each(|cases| side.cases(cases));
+        let mut twins = HashMap::new();
+        if let (false, Some(design)) = (each_its_own, table.get_mut("design").and_then(|v| table_of(v))) {
+            side.design(design, &mut twins);
+        }
+        let Side { rule, made, refused, .. } = side;
+        for (at, message, help) in refused {
+            self.report("HP0116", at, message).help = Some(help);
+        }
+        if made.is_empty() {
+            let words: Vec<String> = rule.words.iter().map(|w| format!("`{}`", w.0)).collect();
+            let message = format!("the mirror makes nothing: no name has the word {}", words.join(" or "));
+            self.report("HP0116", value.span(), message).help = Some(
+                "say under `names` which word of the names says the side, like `names = { l = \"r\" }`"
+                    .into(),
+            );
+        }
+        self.origins.names.extend(made.into_iter().map(|((_, name), of)| (name, of)));
+        self.origins.words.extend(rule.words);
+        Some(Both { table, twins })
+    }
+
+    /// The words that are exchanged.
+    fn words_of(&mut self, value: &Value<'_>) -> Vec<(String, String)> {
+        let Some(table) = value.get_ref().as_table() else {
+            self.report("HP0105", value.span(), "`names` of `mirror` must be a table of words").help =
+                Some("for example `names = { left = \"right\" }`".into());
+            return Vec::new();
+        };
+        if table.len() > MOST_WORDS {
+            let message = format!("`names` of `mirror` has {} words", table.len());
+            self.report("HP0116", value.span(), message).help = Some(format!("give at most {MOST_WORDS}"));
+            return Vec::new();
+        }
+        let is_word = |w: &str| !w.is_empty() && w.chars().all(char::is_alphanumeric);
+        let mut words: Vec<(String, String)> = Vec::new();
+        for (from, to) in table {
+            let at = from.span().start..to.span().end;
+            let other = to.get_ref().as_str().filter(|to| is_word(to) && is_word(from.get_ref()));
+            let Some(other) = other.filter(|to| *to != &**from.get_ref()) else {
+                let message = format!("`{}` of `names` is not one word for another", shown(from.get_ref()));
+                self.report("HP0116", at, message).help = Some(
+                    "write words of letters and digits without what stands between them, like `l = \"r\"` for `arm_l`".into(),
+                );
+                continue;
+            };
+            words.push((from.get_ref().to_string(), other.to_owned()));
+        }
+        words
+    }
+
+    fn unknown(&mut self, at: std::ops::Range<usize>, message: &str, name: &str, all: &[&str]) {
+        let close = self.guess(name, all.iter().copied());
+        self.report("HP0204", at, message).help = close.map(|c| format!("did you mean `{c}`?"));
+    }
+}

@@ -1,0 +1,75 @@
+//! What was made from what, for messages: an image has no text of its own.
+
+use std::collections::{BTreeMap, HashSet};
+
+use crate::diagnostic::Diagnostic;
+
+use super::exchanged;
+
+/// Where a mirror's images come from.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Origins {
+    /// The names of what was made from something else, and the names of that.
+    pub names: BTreeMap<String, String>,
+    /// The words that are exchanged in names.
+    pub(super) words: Vec<(String, String)>,
+    /// The names of what stands in another file than the first, and in which.
+    pub included: BTreeMap<String, String>,
+}
+
+impl Origins {
+    /// The same where these names have a prefix.
+    pub fn renamed(&mut self, prefix: &str, own: &HashSet<String>) {
+        let say = |name: String| if own.contains(&name) { format!("{prefix}{name}") } else { name };
+        self.names = std::mem::take(&mut self.names).into_iter().map(|(a, b)| (say(a), say(b))).collect();
+        self.included = std::mem::take(&mut self.included).into_iter().map(|(a, b)| (say(a), b)).collect();
+    }
+}
+
+/// What is wrong with something that was written once is told once, in its own name; and of what was made, from what.
+pub(crate) fn told_once(list: Vec<Diagnostic>, origins: &Origins) -> Vec<Diagnostic> {
+    if origins.words.is_empty() {
+        return list;
+    }
+    let key = |d: &Diagnostic| {
+        let (message, made) = in_original_names(&d.message, origins);
+        ((d.code, d.span.as_ref().map(|s| (s.start, s.end)), message), made)
+    };
+    let own: HashSet<_> = list.iter().map(key).filter(|(_, made)| made.is_none()).map(|k| k.0).collect();
+    let mut told = HashSet::new();
+    let keeps = |d: &Diagnostic| {
+        let (key, made) = key(d);
+        (made.is_none() || !own.contains(&key)) && told.insert(key)
+    };
+    let mut keeps = keeps;
+    list.into_iter().filter(|d| keeps(d)).map(|d| with_origin(d, origins)).collect()
+}
+
+/// With a note if it speaks of what was made from something else.
+pub(crate) fn with_origin(diagnostic: Diagnostic, origins: &Origins) -> Diagnostic {
+    match in_original_names(&diagnostic.message, origins).1.filter(|made| origins.names.contains_key(made)) {
+        Some(made) => {
+            let note = format!("`{made}` is the mirror image of `{}`", origins.names[&made]);
+            diagnostic.note(note)
+        }
+        None => diagnostic,
+    }
+}
+
+/// A message about what it was made from, and the first name in it of what was made.
+fn in_original_names(message: &str, origins: &Origins) -> (String, Option<String>) {
+    let mut made = None;
+    let parts = message.split('`').enumerate().map(|(k, part)| {
+        let base = part.split('.').next().unwrap_or(part);
+        let back = origins.words.iter().map(|(one, other)| (other, one));
+        match exchanged(part, back).filter(|_| k % 2 == 1) {
+            Some(original) => {
+                made = made.take().or(Some(base.to_owned()));
+                original
+            }
+            None => part.to_owned(),
+        }
+    });
+    let said = parts.collect::<Vec<_>>().join("`");
+    (said, made)
+}

@@ -1,0 +1,527 @@
+//! What a mirror makes of each kind of thing.
+
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+
+use hardpoint::joint;
+use toml::Spanned;
+use toml::de::{DeArray, DeTable, DeValue};
+
+use crate::diagnostic::shown;
+use crate::format::Shape;
+use crate::read::include::lay_under;
+use crate::read::{MODEL, cases, design, law};
+use crate::tree::{Value, axis_named};
+use crate::walk::{list_of, table_of};
+
+use super::{Opposites, Rule, each, turn_sign};
+
+/// Joint types whose `axis` says what they turn about, or which side of a plane is up, so that it is mirrored as a turn. A cylindrical
+/// joint and a screw turn about what they slide along: their displacement stays, and their angle changes its sign.
+const TURNED: [&str; 7] =
+    ["revolute", "universal", "planar", "pin_in_slot", "inplane", "parallel", "heading"];
+const HANDED: [&str; 2] = ["cylindrical", "screw"];
+
+/// The other side while it is made.
+pub(super) struct Side<'m, 'a> {
+    pub rule: Rule<'a>,
+    /// As it is written.
+    pub model: &'m DeTable<'a>,
+    pub opposite: HashSet<String>,
+    /// What was made, by its section and name, and the name of its original.
+    pub made: HashMap<(&'static str, String), String>,
+    /// What cannot be made: where, why, and what to do.
+    pub refused: Vec<(Range<usize>, String, String)>,
+}
+
+impl<'a> Side<'_, 'a> {
+    fn entry(&self, section: &str, name: &str) -> Option<&DeTable<'a>> {
+        self.model.get(section)?.get_ref().as_table()?.get(name)?.get_ref().as_table()
+    }
+
+    /// The mirror images of a section's entries, behind these; what is written there by hand counts more.
+    pub fn add(&mut self, section: &'static str, entries: &mut DeTable<'a>) {
+        let shape = MODEL.keys().find(|k| k.key == section).map(|k| k.shape);
+        let Some(Shape::Entries(_, of)) = shape else { return };
+        let originals: Vec<_> = entries
+            .iter()
+            .filter_map(|(k, v)| {
+                Some((k.get_ref().to_string(), self.rule.twin(k.get_ref())?, k.span(), v.clone()))
+            })
+            .collect();
+        for (name, twin, at, mut value) in originals {
+            self.mirror(section, *of, &name, &mut value);
+            let (key, at) = (Cow::Owned(twin.clone()), at);
+            if !lay_under(*of, entries, Spanned::new(at, key), value) {
+                continue;
+            }
+            self.made.insert((section, twin), name);
+        }
+    }
+
+    /// One entry on the other side.
+    fn mirror(&mut self, section: &str, of: Shape, name: &str, value: &mut Value<'a>) -> bool {
+        let kind = value.get_ref().as_table().map_or("", |table| match section {
+            "joints" => type_of(table),
+            _ if word(table, "type") == Some("angular_velocity") => "angular_velocity",
+            _ => "",
+        });
+        let turns = move |key: &str| match (section, key) {
+            (_, "about" | "rotate" | "turn") => true,
+            ("joints", "axis") => TURNED.contains(&kind),
+            ("joints", "axis2") => kind == "universal",
+            ("measures", "along") => kind == "angular_velocity",
+            _ => false,
+        };
+        let first = |value: &Value<'a>| {
+            Some(
+                value
+                    .get_ref()
+                    .as_table()?
+                    .get("axis")?
+                    .get_ref()
+                    .as_table()?
+                    .get("through")?
+                    .get_ref()
+                    .as_array()?
+                    .first()?
+                    .clone(),
+            )
+        };
+        let named = self.rule.mirror(of, value, &turns);
+        let through = first(value);
+        turn_lines(value, &turns);
+        let span = value.span();
+        let Some(table) = table_of(value) else { return named };
+        match section {
+            "joints" => {
+                table.get_mut("lead").into_iter().for_each(|v| turn_sign(v, self.rule.numbers));
+                // It is at the first point of its axis, whichever way that goes.
+                if let (Some(at), false) =
+                    (through.filter(|at| turns("axis") && at.get_ref().is_str()), table.contains_key("at"))
+                {
+                    put(table, "at", at);
+                }
+            }
+            "bodies" => self.mesh(table),
+            "wheels" => {
+                let ends = [("side", ["left", "right"], 1), ("end", ["front", "rear"], 0)];
+                for (key, [one, other], axis) in ends {
+                    let Some(value) = table.get_mut(key).filter(|_| self.rule.across == axis) else {
+                        continue;
+                    };
+                    let turned = match value.get_ref().as_str() {
+                        Some(w) if w == one => other,
+                        Some(w) if w == other => one,
+                        _ => continue,
+                    };
+                    *value = text(turned, value);
+                }
+            }
+            "couplers" => self.coupler(name, table, span),
+            "drivers" => {
+                if let (true, Some(law)) = (self.is_turned(name), table.get_mut("law")) {
+                    let at = law.span();
+                    if !turn_law(law, self.rule.numbers) {
+                        self.no_law(at, name);
+                    }
+                }
+            }
+            "design" => {
+                self.fields(table);
+                // Its three variables move as the images of the three of the original.
+                let moved = table.get("move").filter(|_| word(table, "along") == Some("xyz")).cloned();
+                if let (Some(moved), false) = (moved, table.contains_key("mirror")) {
+                    let axis = DeValue::String(Cow::Borrowed(["x", "y", "z"][self.rule.across]));
+                    put(table, "mirror", Spanned::new(moved.span(), axis));
+                    put(table, "move", Spanned::new(moved.span(), DeValue::Array(DeArray::new())));
+                    put(table, "mirrored", moved);
+                }
+            }
+            _ => {}
+        }
+        named
+    }
+
+    /// Whether a driver's law has the other sign on the other side while the first does what it does.
+    fn is_turned(&self, driver: &str) -> bool {
+        self.opposite.contains(driver) != self.is_handed(driver)
+    }
+
+    /// Whether a driver's coordinate changes its sign in the mirror.
+    fn is_handed(&self, driver: &str) -> bool {
+        let drives = self.entry("drivers", driver);
+        let joint = drives.and_then(|d| word(d, "joint").zip(word(d, "coordinate")));
+        joint.is_some_and(|(joint, coordinate)| {
+            coordinate == "angle" && self.entry("joints", joint).is_some_and(|j| HANDED.contains(&type_of(j)))
+        })
+    }
+
+    fn no_law(&mut self, at: Range<usize>, driver: &str) {
+        let other = self.rule.twin(driver).unwrap_or_default();
+        self.refused.push((
+            at,
+            format!("the law of driver `{driver}` lies in a file, and is not turned round for `{other}`"),
+            format!("write the law of `{other}` as well, with a file of its own"),
+        ));
+    }
+
+    /// The shape of a body in the mirror.
+    fn mesh(&self, body: &mut DeTable<'a>) {
+        let by_points = body.get("frame").is_some_and(|f| is_by_points(f.get_ref().as_table()));
+        let Some(mesh) = body.get_mut("mesh") else { return };
+        if mesh.get_ref().is_str() {
+            let file = mesh.clone();
+            *mesh = Spanned::new(mesh.span(), DeValue::Table(DeTable::new()));
+            table_of(mesh).into_iter().for_each(|table| put(table, "file", file.clone()));
+        }
+        let span = mesh.span();
+        let Some(table) = table_of(mesh) else { return };
+        let in_body = word(table, "frame") == Some("body");
+        let axis = ["x", "y", "z"][if by_points && in_body { 2 } else { self.rule.across }];
+        put(table, "mirror", Spanned::new(span, DeValue::String(Cow::Borrowed(axis))));
+    }
+
+    /// A coupler holds the same relation between coordinates of joints that are mirrored; of others, and of joints whose angle changes
+    /// its sign, it goes by these signs.
+    fn coupler(&mut self, name: &str, coupler: &mut DeTable<'a>, at: Range<usize>) {
+        // The entry is mirrored already: the originals stand in the model.
+        let Some(original) = self.entry("couplers", name) else { return };
+        let list = |key: &str| -> Vec<String> {
+            let list = original.get(key).and_then(|v| v.get_ref().as_array());
+            list.into_iter().flatten().filter_map(|v| Some(v.get_ref().as_str()?.to_owned())).collect()
+        };
+        let (mut signs, mut asked) = (Vec::new(), Vec::new());
+        match word(original, "type") {
+            Some("gear" | "bevel" | "belt") => {
+                asked.extend(list("joints").into_iter().map(|j| (j, "angle".to_owned())))
+            }
+            Some("rack" | "rack_and_pinion") => {
+                asked.extend(word(original, "rack").map(|j| (j.to_owned(), "displacement".to_owned())));
+                asked.extend(word(original, "pinion").map(|j| (j.to_owned(), "angle".to_owned())));
+            }
+            _ => {
+                let terms = original.get("terms").and_then(|v| v.get_ref().as_array()).into_iter().flatten();
+                for term in terms.filter_map(|t| t.get_ref().as_table()) {
+                    let joint = word(term, "joint").unwrap_or_default();
+                    asked.push((joint.to_owned(), word(term, "coordinate").unwrap_or_default().to_owned()));
+                }
+            }
+        }
+        for (joint, coordinate) in &asked {
+            match self.sign(joint, coordinate) {
+                Some(sign) => signs.push(sign),
+                None => {
+                    let twin = self.rule.twin(name).unwrap_or_default();
+                    let message = format!(
+                        "coupler `{name}` cannot be mirrored: the axis of joint `{joint}` is neither square to the mirror nor in it"
+                    );
+                    let help =
+                        format!("write `{twin}` by hand with a `type`, or put `{name}` under `except`");
+                    self.refused.push((at, message, help));
+                    return;
+                }
+            }
+        }
+        let odd = signs.iter().filter(|s| **s).count() % 2 == 1;
+        let mut toggle = |key: &'static str| {
+            let on = coupler.get(key).and_then(|v| v.get_ref().as_bool()).unwrap_or(false);
+            put(coupler, key, Spanned::new(at.clone(), DeValue::Boolean(!on)));
+        };
+        match word(original, "type") {
+            Some("gear" | "bevel") if odd => toggle("internal"),
+            Some("belt") if odd => toggle("crossed"),
+            Some("rack" | "rack_and_pinion") if odd => {
+                coupler.get_mut("radius").into_iter().for_each(|v| turn_sign(v, self.rule.numbers))
+            }
+            Some("linear") => {
+                let terms = coupler.get_mut("terms").and_then(|v| list_of(v));
+                for (term, _) in
+                    terms.into_iter().flat_map(|l| l.iter_mut()).zip(signs).filter(|(_, sign)| *sign)
+                {
+                    let factor = table_of(term).and_then(|t| t.get_mut("coefficient"));
+                    factor.into_iter().for_each(|v| turn_sign(v, self.rule.numbers));
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Whether a coordinate of a joint changes its sign in the mirror; none where it becomes another one.
+    fn sign(&self, joint: &str, coordinate: &str) -> Option<bool> {
+        // What is not known is told when it is read.
+        let Some(table) = self.entry("joints", joint) else { return Some(false) };
+        let kind = word(table, "type").and_then(joint::named);
+        let Some(kind) = kind else { return Some(false) };
+        let angle = coordinate.starts_with("angle")
+            || coordinate.is_empty() && kind.coordinates.iter().any(|c| c.name == "angle");
+        if self.rule.twin(joint).is_some() {
+            return Some(angle && HANDED.contains(&kind.name));
+        }
+        // It is shared: its axis has to be its own image, or the opposite of that.
+        let at = |name: &str| -> Option<[f64; 3]> {
+            let list = self.model.get("hardpoints")?.get_ref().as_table()?.get(name)?.get_ref().as_array()?;
+            numbers(list)
+        };
+        let axis = table.get(if coordinate == "angle2" { "axis2" } else { "axis" });
+        let Some(axis) = axis else { return Some(false) };
+        let direction = match axis.get_ref() {
+            DeValue::String(word) => axis_named(word).map(|v| [v.x, v.y, v.z]),
+            DeValue::Array(list) => numbers(list),
+            DeValue::Table(table) => {
+                let ends = table.get("through").and_then(|v| v.get_ref().as_array());
+                let ends: Vec<_> =
+                    ends.into_iter().flatten().filter_map(|v| at(v.get_ref().as_str()?)).collect();
+                match ends.as_slice() {
+                    [a, b] => Some([b[0] - a[0], b[1] - a[1], b[2] - a[2]]),
+                    _ => None,
+                }
+            }
+            _ => return Some(false),
+        }?;
+        let out = direction[self.rule.across] != 0.0;
+        let in_plane = (0..3).any(|k| k != self.rule.across && direction[k] != 0.0);
+        // An arrow square to the mirror is turned round; a turn is where the arrow is not.
+        if out && in_plane { None } else { Some(out != angle) }
+    }
+
+    /// Velocity fields count in the frames of bodies, which have another axis in the mirror where points give them.
+    fn fields(&self, variable: &mut DeTable<'a>) {
+        let list = variable.get_mut("fields").and_then(|v| list_of(v));
+        for field in list.into_iter().flat_map(|l| l.iter_mut()).filter_map(table_of) {
+            let body = word(field, "body").and_then(|b| self.rule.said(b)).unwrap_or_default();
+            let frame = self.entry("bodies", &body).and_then(|b| b.get("frame"));
+            if !is_by_points(frame.and_then(|f| f.get_ref().as_table())) {
+                continue;
+            }
+            // Mirrored across the one axis already, and to be across z.
+            let across = self.rule.across;
+            let changed = |k: usize| (k == across) != (k == 2);
+            let angles = |axis: usize, k: usize| (if k == 1 { 0 } else { 2 }) != axis;
+            for (key, value) in field.iter_mut() {
+                let Some(list) = list_of(value) else { continue };
+                match &**key.get_ref() {
+                    "V" => each(list, self.rule.numbers, changed),
+                    "U" => each(list, self.rule.numbers, |k| angles(across, k) != angles(2, k)),
+                    _ => {}
+                }
+            }
+        }
+    }
+
+    /// Cases of one side become cases of the other; in all others a driver's law is that of its image as well.
+    pub fn cases(&mut self, cases: &mut DeTable<'a>) {
+        for (name, case) in cases.iter_mut() {
+            if self
+                .rule
+                .exchanged(name.get_ref(), true)
+                .is_some_and(|_| !self.rule.kept.contains(&**name.get_ref()))
+            {
+                continue;
+            }
+            let laws = table_of(case).and_then(|case| table_of(case.get_mut("laws")?));
+            let Some(laws) = laws else { continue };
+            let originals: Vec<_> =
+                laws.iter().map(|(k, v)| (k.get_ref().to_string(), k.span(), v.clone())).collect();
+            for (driver, at, mut law) in originals {
+                let Some(twin) = self.rule.twin(&driver) else { continue };
+                if !self.made.contains_key(&("drivers", twin.clone())) || laws.contains_key(&*twin) {
+                    continue;
+                }
+                self.rule.mirror(law::LAW, &mut law, &|_| false);
+                if self.is_turned(&driver) && !turn_law(&mut law, self.rule.numbers) {
+                    self.no_law(at.clone(), &driver);
+                }
+                laws.insert(Spanned::new(at, Cow::Owned(twin)), law);
+            }
+        }
+        let originals: Vec<_> = cases
+            .iter()
+            .filter_map(|(k, v)| {
+                Some((k.get_ref().to_string(), self.rule.twin(k.get_ref())?, k.span(), v.clone()))
+            })
+            .collect();
+        for (name, twin, at, mut case) in originals {
+            if self.entry("cases", &twin).is_some() {
+                continue;
+            }
+            self.rule.mirror(Shape::Table(&cases::CASE), &mut case, &|_| false);
+            let laws = table_of(&mut case).and_then(|case| table_of(case.get_mut("laws")?));
+            for (driver, law) in laws.into_iter().flat_map(|laws| laws.iter_mut()) {
+                // A driver of one side does what its image did; one that both share, as steering, may do the opposite.
+                let original =
+                    self.rule.said(driver.get_ref()).unwrap_or_else(|| driver.get_ref().to_string());
+                let shared = original == **driver.get_ref();
+                let turned =
+                    if shared { self.opposite.contains(&original) } else { self.is_handed(&original) };
+                if turned && !turn_law(law, self.rule.numbers) {
+                    self.no_law(driver.span(), &original);
+                }
+            }
+            cases.insert(Spanned::new(at, Cow::Owned(twin.clone())), case);
+            self.made.insert(("cases", twin), name);
+        }
+    }
+
+    /// Each design variable also does on the other side what it does on this one.
+    pub fn design(&mut self, design: &mut DeTable<'a>, twins: &mut HashMap<String, Value<'a>>) {
+        let shape = Shape::Kinds(&design::VARIABLE);
+        let kept = self.rule.kept.clone();
+        for (name, value) in design.iter_mut().filter(|(name, _)| !kept.contains(&**name.get_ref())) {
+            let Some(table) = table_of(value) else { continue };
+            if let Some(moved) = table.get("move") {
+                if table.contains_key("mirror") || table.contains_key("mirrored") {
+                    continue;
+                }
+                let list = match moved.get_ref() {
+                    DeValue::Array(list) => list.iter().collect(),
+                    _ => vec![moved],
+                };
+                let names: Vec<&str> = list.iter().filter_map(|v| v.get_ref().as_str()).collect();
+                let images: Vec<Value<'a>> = list
+                    .iter()
+                    .filter_map(|v| Some((v, self.rule.twin(v.get_ref().as_str()?)?)))
+                    .filter(|(_, twin)| {
+                        self.made.contains_key(&("hardpoints", twin.clone())) && !names.contains(&&**twin)
+                    })
+                    .map(|(v, twin)| text(twin, v))
+                    .collect();
+                if !images.is_empty() {
+                    let at = moved.span();
+                    let images = Spanned::new(at.clone(), DeValue::Array(images.into_iter().collect()));
+                    let axis = DeValue::String(Cow::Borrowed(["x", "y", "z"][self.rule.across]));
+                    put(table, "mirror", Spanned::new(at, axis));
+                    put(table, "mirrored", images);
+                }
+                continue;
+            }
+            let mut twin = value.clone();
+            let driver = twin.get_ref().as_table().and_then(|t| Some(word(t, "driver")?.to_owned()));
+            let turned = driver.is_some_and(|d| self.rule.twin(&d).is_some() && self.is_turned(&d));
+            if !self.mirror("design", shape, name.get_ref(), &mut twin) {
+                continue;
+            }
+            if turned {
+                let message = format!("`{}` cannot change two laws of opposite signs", shown(name.get_ref()));
+                let help = "put it under `except`, or use a parameter in the law".to_owned();
+                self.refused.push((name.span(), message, help));
+                continue;
+            }
+            // What is on both sides already, or shared, is not to change twice.
+            if let (Some(twin), Some(original)) = (table_of(&mut twin), value.get_ref().as_table()) {
+                for key in ["shape", "fields", "markers"] {
+                    let old = original.get(key).and_then(|v| v.get_ref().as_array());
+                    let (Some(old), Some(new)) = (old, twin.get_mut(key).and_then(|v| list_of(v))) else {
+                        continue;
+                    };
+                    let said = |v: &Value<'_>| match v.get_ref() {
+                        DeValue::Table(t) => word(t, "joint").map(str::to_owned),
+                        v => v.as_str().map(str::to_owned),
+                    };
+                    let old: Vec<_> = old.iter().map(said).collect();
+                    let kept: Vec<Value<'a>> =
+                        new.iter().filter(|v| !old.contains(&said(v))).cloned().collect();
+                    *new = kept.into_iter().collect();
+                }
+            }
+            twins.insert(name.get_ref().to_string(), twin);
+        }
+    }
+}
+
+fn is_by_points(frame: Option<&DeTable<'_>>) -> bool {
+    frame.is_some_and(|frame| frame.contains_key("origin"))
+}
+
+fn numbers(list: &DeArray<'_>) -> Option<[f64; 3]> {
+    let number = |v: &Value<'_>| match v.get_ref() {
+        DeValue::Integer(i) => i.as_str().parse().ok(),
+        DeValue::Float(f) => f.as_str().parse().ok(),
+        _ => None,
+    };
+    list.iter().map(number).collect::<Option<Vec<f64>>>()?.try_into().ok()
+}
+
+fn text<'a>(text: impl Into<String>, at: &Value<'_>) -> Value<'a> {
+    Spanned::new(at.span(), DeValue::String(Cow::Owned(text.into())))
+}
+
+/// Puts a value into a table under a key that stands where the value does.
+fn put<'a>(table: &mut DeTable<'a>, key: &'static str, value: Value<'a>) {
+    table.insert(Spanned::new(value.span(), Cow::Borrowed(key)), value);
+}
+
+fn word<'t>(table: &'t DeTable<'_>, key: &str) -> Option<&'t str> {
+    table.get(key)?.get_ref().as_str()
+}
+
+/// A joint's type, whatever it is called in the file.
+fn type_of(joint: &DeTable<'_>) -> &'static str {
+    word(joint, "type").and_then(joint::named).map_or("", |kind| kind.name)
+}
+
+/// Lines through two points that are turned about go from the second to the first.
+fn turn_lines(value: &mut Value<'_>, turns: &dyn Fn(&str) -> bool) {
+    if let Some(list) = list_of(value) {
+        list.iter_mut().for_each(|value| turn_lines(value, turns));
+        return;
+    }
+    let Some(table) = table_of(value) else { return };
+    for (key, value) in table.iter_mut() {
+        let line = table_of(value).filter(|_| turns(key.get_ref()));
+        match line.and_then(|line| list_of(line.get_mut("through")?)) {
+            Some(points) if points.len() == 2 => {
+                let mut points = points.iter_mut();
+                if let (Some(a), Some(b)) = (points.next(), points.next()) {
+                    std::mem::swap(a, b);
+                }
+            }
+            _ => turn_lines(value, turns),
+        }
+    }
+}
+
+/// A law with the other sign; whether it could be said.
+fn turn_law<'a>(value: &mut Value<'a>, numbers: &'a Opposites) -> bool {
+    let Some(table) = table_of(value) else {
+        turn_sign(value, numbers);
+        return true;
+    };
+    if table.contains_key("file") {
+        return false;
+    }
+    let keys = [
+        "amplitude",
+        "offset",
+        "speed",
+        "from",
+        "to",
+        "start_speed",
+        "end_speed",
+        "start_acceleration",
+        "end_acceleration",
+        "law",
+    ];
+    let mut whole = true;
+    for (key, value) in table.iter_mut() {
+        match &**key.get_ref() {
+            "law" => whole &= turn_law(value, numbers),
+            key if keys.contains(&key) => turn_sign(value, numbers),
+            "coefficients" => list_of(value).into_iter().for_each(|l| each(l, numbers, |_| true)),
+            "points" => list_of(value)
+                .into_iter()
+                .flat_map(|list| list.iter_mut())
+                .for_each(|p| list_of(p).into_iter().for_each(|p| each(p, numbers, |k| k == 1))),
+            "pieces" => {
+                let pieces = list_of(value).into_iter().flat_map(|list| list.iter_mut());
+                for piece in pieces {
+                    let law = table_of(piece).and_then(|t| t.get_mut("law"));
+                    whole &= law.is_none_or(|law| turn_law(law, numbers));
+                }
+            }
+            _ => {}
+        }
+    }
+    whole
+}
