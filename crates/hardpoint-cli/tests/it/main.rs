@@ -4,6 +4,7 @@ mod bench;
 mod calibrate;
 mod client;
 mod golden;
+mod import;
 mod optimize;
 mod results;
 mod studio;
