@@ -248,15 +248,22 @@ fn units(statements: &[Statement], notes: &mut Notes) -> (f64, &'static str, &'s
         return out;
     };
     let at = Some(units.at);
+    match units.text("SYSTEM").map(str::to_ascii_uppercase).as_deref() {
+        Some("MKS" | "SI") => out = (1.0, "m", "t"),
+        Some("CGS") => out = (1.0, "cm", "t"),
+        Some("IPS") => out = (1.0, "in", "t"),
+        Some("FPS") => out = (12.0, "in", "t"),
+        _ => {}
+    }
     if let Some(word) = units.text("LENGTH") {
-        let known = match word.to_ascii_uppercase().as_str() {
-            "MILLIMETER" | "MM" => Some((1.0, "mm")),
+        let known = match word.to_ascii_uppercase().trim_end_matches('S') {
+            "MILLIMETER" | "MILLIMETRE" | "MM" => Some((1.0, "mm")),
             "CENTIMETER" | "CM" => Some((1.0, "cm")),
-            "METER" | "M" => Some((1.0, "m")),
+            "METER" | "METRE" | "M" => Some((1.0, "m")),
             "KILOMETER" | "KM" => Some((1000.0, "m")),
             "MICROMETER" | "UM" => Some((1e-3, "mm")),
-            "INCH" | "IN" => Some((1.0, "in")),
-            "FOOT" | "FT" => Some((12.0, "in")),
+            "INCH" | "INCHE" | "IN" => Some((1.0, "in")),
+            "FOOT" | "FEET" | "FT" => Some((12.0, "in")),
             "YARD" => Some((36.0, "in")),
             "MILE" => Some((63_360.0, "in")),
             _ => None,

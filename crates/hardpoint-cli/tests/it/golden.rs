@@ -26,6 +26,8 @@ fn help_has_examples_and_exit_codes() {
         "",
         "run",
         "check",
+        "import",
+        "export",
         "verify",
         "optimize",
         "tolerance",

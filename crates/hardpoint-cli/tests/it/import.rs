@@ -27,7 +27,9 @@ fn an_imported_model_passes_check_and_has_its_shapes_beside_it() {
     let folder = with("door.urdf", ROBOT);
     let out =
         hardpoint(folder.path()).args(["import", "door.urdf", "-o", "models/door.toml"]).assert().success();
-    insta::assert_snapshot!(String::from_utf8_lossy(&out.get_output().stdout));
+    insta::with_settings!({ prepend_module_to_snapshot => false, snapshot_path => "../snapshots" }, {
+        insta::assert_snapshot!("import", String::from_utf8_lossy(&out.get_output().stdout));
+    });
     assert!(folder.path().join("models/meshes/leaf.stl").exists());
     hardpoint(folder.path()).args(["check", "models/door.toml"]).assert().success();
 }
@@ -71,4 +73,16 @@ fn the_formats_are_listed_and_an_unknown_one_is_named() {
     let out = hardpoint(folder.path()).args(args).assert().code(2);
     assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("there are asmt, adams"));
     hardpoint(folder.path()).args(["import", "door.urdf"]).assert().code(2);
+}
+
+#[test]
+fn an_exported_model_is_imported_again_and_what_it_does_not_say_is_named() {
+    let folder = with("door.urdf", ROBOT);
+    hardpoint(folder.path()).args(["import", "door.urdf", "-o", "door.toml"]).assert().success();
+    let out = hardpoint(folder.path()).args(["export", "door.toml", "-o", "again.urdf"]).assert().success();
+    let told = String::from_utf8_lossy(&out.get_output().stdout).into_owned();
+    assert!(told.contains("driver `hinge_input`: URDF has no motions"), "{told}");
+    hardpoint(folder.path()).args(["import", "again.urdf", "-o", "again.toml"]).assert().success();
+    let out = hardpoint(folder.path()).args(["export", "door.toml", "-o", "door.step"]).assert().code(2);
+    assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("csv, teimorbit, urdf, mjcf"));
 }
