@@ -64,6 +64,8 @@ pub enum Command {
     Run(Run),
     /// Examine a model: mobility, loops, redundancy, margins, and whether its design variables can be followed
     Check(Check),
+    /// Write a model as a file of another program, and say what that cannot say
+    Export(Export),
     /// Make a model file of a mechanism of another program, and check it
     Import(Import),
     /// Compare the sensitivities with re-solved designs
@@ -432,6 +434,38 @@ pub struct Optimize {
     /// Search from several starts on so many threads; what is found does not depend on it [default: one for each core]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZero<usize>>,
+}
+
+const AFTER_EXPORT: &str = "\
+The ending of the file tells the format; `--list` names the formats. What a format cannot
+say, as motions in URDF, is named; the file is written all the same (docs/import.md).
+The motion itself is written by `hardpoint run`.
+
+Examples:
+  hardpoint export models/four_bar.toml -o four_bar.urdf
+  hardpoint export models/double_wishbone.toml -o hardpoints.csv
+  hardpoint export models/double_wishbone.toml -o front.sub --json | jq '.unsaid[]'
+  hardpoint export --list";
+
+/// `hardpoint export`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_EXPORT)]
+pub struct Export {
+    /// The model file (TOML)
+    #[arg(required_unless_present = "list")]
+    pub model: Option<PathBuf>,
+    /// Write this file
+    #[arg(short, long, value_name = "FILE", required_unless_present = "list")]
+    pub output: Option<PathBuf>,
+    /// Write it as this format [default: as its ending tells]
+    #[arg(long, value_name = "NAME")]
+    pub format: Option<String>,
+    /// List the formats
+    #[arg(long, conflicts_with_all = ["model", "output", "format"])]
+    pub list: bool,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    pub json: bool,
 }
 
 const AFTER_IMPORT: &str = "\

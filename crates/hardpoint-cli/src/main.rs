@@ -4,6 +4,7 @@ mod args;
 mod calibrate;
 mod check;
 mod compare;
+mod export;
 mod folder;
 mod import;
 mod journal;
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
         Command::New(options) => new::run(&options),
         Command::Run(options) => run::run(&options),
         Command::Check(options) => check::check(&options),
+        Command::Export(options) => export::export(&options),
         Command::Import(options) => import::import(&options),
         Command::Verify(options) => verify::verify(&options),
         Command::Whatif(options) => whatif::whatif(&options),

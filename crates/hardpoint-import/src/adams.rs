@@ -1,6 +1,6 @@
 //! Adams/Solver datasets (`.adm`): parts, markers, joints, primitives, motions, couplers, gears.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 
@@ -29,6 +29,12 @@ pub const FORMAT: Format = Format {
     binary: false,
 };
 
+/// Words may be cut short to so many letters.
+const SHORTEST: usize = 3;
+/// The statements whose names may be cut short, first those that are often so.
+const NAMES: [&str; 10] =
+    ["PART", "MARKER", "JOINT", "JPRIM", "MOTION", "COUPLER", "GEAR", "UNITS", "SPLINE", "FLEX_BODY"];
+
 /// Where a statement was continued: a blank, or in the middle of a function perhaps a comma.
 const SEAM: char = '\u{1}';
 
@@ -45,8 +51,11 @@ struct Statement {
 }
 
 impl Statement {
+    /// What stands behind a key, which may be cut short as far as it is clear.
     fn text(&self, key: &str) -> Option<&str> {
-        self.keys.iter().find(|(k, _)| k == key).map(|(_, v)| v.as_str())
+        let short = |k: &str| k.len() >= SHORTEST && key.starts_with(k);
+        let found = self.keys.iter().find(|(k, _)| k == key);
+        found.or_else(|| self.keys.iter().find(|(k, v)| !v.is_empty() && short(k))).map(|(_, v)| v.as_str())
     }
 
     fn has(&self, key: &str) -> bool {
@@ -117,6 +126,7 @@ fn read(source: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         time,
         parts: BTreeMap::new(),
         markers: BTreeMap::new(),
+        faulty: BTreeSet::new(),
         joints: BTreeMap::new(),
         splines: BTreeMap::new(),
     };
@@ -168,7 +178,10 @@ fn statement(at: At, code: &str, label: &str) -> Option<Statement> {
         // A title, `END`.
         return None;
     };
-    let mut out = Statement { name: name.to_ascii_uppercase(), at, ..Statement::default() };
+    let name = name.to_ascii_uppercase();
+    let whole = NAMES.iter().find(|n| name.len() >= SHORTEST && n.starts_with(name.as_str()));
+    let name = whole.map_or(name.clone(), |n| (*n).to_owned());
+    let mut out = Statement { name, at, ..Statement::default() };
     for part in parts_of(rest) {
         let part = part.trim_matches(|c: char| c.is_whitespace() || c == SEAM);
         let keyed = part.split_once('=').filter(|(key, _)| {
@@ -184,7 +197,9 @@ fn statement(at: At, code: &str, label: &str) -> Option<Statement> {
             // A further value of the key before, or a flag.
             let is_value = part.chars().next().is_some_and(|c| c.is_ascii_digit() || "+-.(".contains(c));
             match out.keys.last_mut() {
-                Some((key, text)) if !text.is_empty() && (is_value || key == "FUNCTION") => {
+                Some((key, text))
+                    if !text.is_empty() && (is_value || "FUNCTION".starts_with(key.as_str())) =>
+                {
                     text.push(',');
                     text.push_str(part);
                 }
@@ -233,15 +248,22 @@ fn units(statements: &[Statement], notes: &mut Notes) -> (f64, &'static str, &'s
         return out;
     };
     let at = Some(units.at);
+    match units.text("SYSTEM").map(str::to_ascii_uppercase).as_deref() {
+        Some("MKS" | "SI") => out = (1.0, "m", "t"),
+        Some("CGS") => out = (1.0, "cm", "t"),
+        Some("IPS") => out = (1.0, "in", "t"),
+        Some("FPS") => out = (12.0, "in", "t"),
+        _ => {}
+    }
     if let Some(word) = units.text("LENGTH") {
-        let known = match word.to_ascii_uppercase().as_str() {
-            "MILLIMETER" | "MM" => Some((1.0, "mm")),
+        let known = match word.to_ascii_uppercase().trim_end_matches('S') {
+            "MILLIMETER" | "MILLIMETRE" | "MM" => Some((1.0, "mm")),
             "CENTIMETER" | "CM" => Some((1.0, "cm")),
-            "METER" | "M" => Some((1.0, "m")),
+            "METER" | "METRE" | "M" => Some((1.0, "m")),
             "KILOMETER" | "KM" => Some((1000.0, "m")),
             "MICROMETER" | "UM" => Some((1e-3, "mm")),
-            "INCH" | "IN" => Some((1.0, "in")),
-            "FOOT" | "FT" => Some((12.0, "in")),
+            "INCH" | "INCHE" | "IN" => Some((1.0, "in")),
+            "FOOT" | "FEET" | "FT" => Some((12.0, "in")),
             "YARD" => Some((36.0, "in")),
             "MILE" => Some((63_360.0, "in")),
             _ => None,
@@ -270,6 +292,8 @@ struct Reader<'n> {
     time: &'static str,
     parts: BTreeMap<String, usize>,
     markers: BTreeMap<String, Marker>,
+    /// Markers that could not be read.
+    faulty: BTreeSet<String>,
     joints: BTreeMap<String, Joined>,
     splines: BTreeMap<String, Vec<[f64; 2]>>,
 }
@@ -382,6 +406,7 @@ impl Reader<'_> {
             };
             let Some(body) = body else {
                 let what = named.map_or("no part before it".into(), |(kind, id)| format!("no {kind}/{id}"));
+                self.faulty.insert(s.id.clone());
                 self.notes.problem(
                     "HP0803",
                     Some(s.at),
@@ -403,6 +428,8 @@ impl Reader<'_> {
             let id = s.reference(key);
             match id.and_then(|id| self.markers.get(id)) {
                 Some(marker) => found.push(*marker),
+                // That is told already.
+                None if id.is_some_and(|id| self.faulty.contains(id)) => {}
                 None => {
                     let what = id.map_or(format!("has no `{key}`"), |id| {
                         format!("names MARKER/{id} as `{key}`, which is not there")
@@ -445,7 +472,7 @@ impl Reader<'_> {
             return;
         }
         // Words may be cut short as far as they are clear.
-        let written = s.keys.iter().filter(|(k, v)| v.is_empty() && k.len() >= 3).map(|(k, _)| k);
+        let written = s.keys.iter().filter(|(k, v)| v.is_empty() && k.len() >= SHORTEST).map(|(k, _)| k);
         let kind =
             written.into_iter().find_map(|k| KINDS.iter().find(|(name, _)| name.starts_with(k.as_str())));
         let Some((name, kind)) = kind else {
@@ -488,7 +515,7 @@ impl Reader<'_> {
             ("PARALLEL_AXES", "parallel"),
             ("PERPENDICULAR", "dot1"),
         ];
-        let written = s.keys.iter().filter(|(k, v)| v.is_empty() && k.len() >= 3).map(|(k, _)| k);
+        let written = s.keys.iter().filter(|(k, v)| v.is_empty() && k.len() >= SHORTEST).map(|(k, _)| k);
         let kind =
             written.into_iter().find_map(|k| KINDS.iter().find(|(name, _)| name.starts_with(k.as_str())));
         match kind {
@@ -589,7 +616,7 @@ impl Reader<'_> {
             let turns = s
                 .keys
                 .iter()
-                .any(|(k, v)| v.is_empty() && k.len() >= 3 && "ROTATIONAL".starts_with(k.as_str()));
+                .any(|(k, v)| v.is_empty() && k.len() >= SHORTEST && "ROTATIONAL".starts_with(k.as_str()));
             let (name, drawn, scale) = if turns {
                 ("angle", drawn.angle, 1.0)
             } else {

@@ -30,6 +30,9 @@ const DEEPEST: usize = 64;
 /// So many output times at most; more are asked for in no file.
 const MOST_TIMES: f64 = 100_000.0;
 
+/// Lines as they are, and where they stand.
+type Lines<'t> = Vec<(&'t str, At)>;
+
 /// A line and what is indented under it.
 #[derive(Debug)]
 struct Node<'t> {
@@ -60,9 +63,16 @@ impl<'t> Node<'t> {
         let numbers: Option<Vec<f64>> = words.map(number).collect();
         let exact = numbers.and_then(|n| <[f64; N]>::try_from(n).ok());
         if exact.is_none() {
-            let s = if N == 1 { "number stands" } else { "numbers stand" };
-            let help = "export the assembly again, or correct the lines below it";
-            notes.problem_with("HP0804", Some(list.at), format!("below `{name}`, {N} {s}"), help);
+            let s = if N == 1 { "number" } else { "numbers" };
+            let found: Vec<&str> = list.children.iter().map(|c| c.text).collect();
+            let message = format!("`{name}` is {N} {s}, not `{}`", found.join(" "));
+            let at = list.children.first().map_or(list.at, |c| c.at);
+            notes.problem_with(
+                "HP0804",
+                Some(at),
+                message,
+                "export the assembly again, or correct the lines below it",
+            );
         }
         exact
     }
@@ -128,9 +138,9 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
 }
 
 /// The lines by their tabs, and where the stored series begin.
-fn tree<'t>(text: &'t str, notes: &mut Notes) -> Option<(Vec<Node<'t>>, Option<Vec<(&'t str, At)>>)> {
+fn tree<'t>(text: &'t str, notes: &mut Notes) -> Option<(Vec<Node<'t>>, Option<Lines<'t>>)> {
     let mut open: Vec<Node<'t>> = vec![Node { text: "", at: At::default(), children: Vec::new() }];
-    let mut series: Option<Vec<(&str, At)>> = None;
+    let mut series: Option<Lines<'_>> = None;
     let mut start = 0;
     for whole in text.split_inclusive('\n') {
         let line = whole.trim_end();
@@ -178,7 +188,7 @@ fn times(assembly: &Node<'_>, notes: &mut Notes) -> Option<Times> {
     let [start, end, step] = ["tstart", "tend", "hout"].map(|k| s.numbers::<1>(k, notes).map(|[x]| x));
     let (start, end, step) = (start.unwrap_or(0.0), end?, step?);
     let steps = ((end - start) / step).round();
-    let fits = steps >= 1.0 && steps <= MOST_TIMES && ((end - start) / step - steps).abs() < 1e-6 * steps;
+    let fits = (1.0..=MOST_TIMES).contains(&steps) && ((end - start) / step - steps).abs() < 1e-6 * steps;
     if !fits {
         notes.approximated(
             "SimulationParameters",

@@ -85,7 +85,8 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
                 [Role::SpringChassis, Role::SpringMoving],
                 &["Location Link", "Location Upright"],
             );
-            reader.corner.spring_on = Some(Mount::Nothing("link".into()));
+            reader.corner.spring_on = Some(Mount::Nothing("trailing_link".into()));
+            reader.corner.damper_on = Some(Mount::Upright);
         }
         "SemiTrailingArm" => {
             reader.arm(

@@ -348,6 +348,8 @@ pub struct Corner {
     pub rod_on: Option<Mount>,
     /// What the coilover, or the spring and damper, are on.
     pub spring_on: Option<Mount>,
+    /// What the damper is on, where that is something else.
+    pub damper_on: Option<Mount>,
     /// Whether a rack moves the tie rod.
     pub rack: bool,
     /// From the wheel's centre to the ground.
@@ -595,7 +597,8 @@ impl Corner {
             let Some([top, bottom]) = self.all(ends).filter(|[a, b]| !done && a != b) else { continue };
             let name = format!("{base}{}", self.suffix);
             let guess = if self.get(LowerOuter).is_some() { Mount::Lower } else { Mount::Upright };
-            let mount = self.spring_on.clone().unwrap_or(guess);
+            let own = self.damper_on.clone().filter(|_| base == "damper");
+            let mount = own.or_else(|| self.spring_on.clone()).unwrap_or(guess);
             let carrier = if base == "coilover" { on(&mount) } else { rocker.or_else(|| on(&mount)) };
             let Some(carrier) = carrier else {
                 notes.refused(base, &name, self.at, "what its lower end is on has no body here");

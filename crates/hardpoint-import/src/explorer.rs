@@ -18,6 +18,9 @@ pub const FORMAT: Format = Format {
     binary: false,
 };
 
+/// Types whose parts follow from the names of their hardpoints.
+const TYPES: [&str; 5] = ["double_wishbone", "macpherson", "macpherson_strut", "multi_link", "trailing_arm"];
+
 fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     let root = tree::yaml(input.text, notes)?;
     let points = root.get("hardpoints").or_else(|| root.get("hard_points"));
@@ -28,6 +31,12 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     };
     let name = root.text_of("name").filter(|n| !n.trim().is_empty()).unwrap_or(input.stem);
     let mut m = Mechanism::new(name, units(&root, notes), "deg");
+    if let Some(kind) =
+        root.get("type").filter(|t| !t.text().is_some_and(|t| TYPES.contains(&plain(t).as_str())))
+    {
+        let why = "the type is not known here: built from the names of its hardpoints alone";
+        notes.approximated("type", kind.text().unwrap_or_default(), Some(kind.at), why);
+    }
     let sides: Vec<&str> = ["left", "right"].into_iter().filter(|s| points.get(s).is_some()).collect();
     let mut rack = None;
     let mut known = true;
@@ -229,7 +238,10 @@ fn collect(
                     }
                 }
             }
-            _ => {}
+            _ => {
+                let why = "what is at it does not follow from its name: it stands in the list alone";
+                notes.approximated("hardpoint", &name, Some(*at), why);
+            }
         }
     }
     for (name, ends, at) in links {

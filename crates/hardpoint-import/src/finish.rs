@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use hardpoint::joint::ALL;
+use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
 use hardpoint::topology::TopologyFault;
 use hardpoint::{Analysis, Run};
@@ -19,6 +20,8 @@ const SWING: f64 = 0.2;
 const STROKE: f64 = 0.05;
 /// Output times at which such a swing is tried.
 const TRIED: usize = 20;
+/// So many output times show which design variables are followed.
+const MOST_TIMES: usize = 200;
 /// Mechanisms with more motions left open than this are told as they are.
 const MOST_HELD: usize = 400;
 
@@ -29,7 +32,7 @@ pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
     let moves = m.drivers.iter().any(|d| d.law != Law::Held);
     let mut left = match freedom(m, notes) {
         Ok(left) => left,
-        Err(fault) => return Some(fault),
+        Err(fault) => return Some(*fault),
     };
     let only_one = left.0 == 1 && !moves;
     if left.0 > MOST_HELD {
@@ -58,7 +61,8 @@ pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
             Law::Held,
         );
         match freedom(m, notes) {
-            Ok(now) if now.0 < left.0 => {
+            // A body that would only spin idly is none of the freedoms, and one once its spin is held.
+            Ok(now) if now.0 < left.0 || (now.0 == left.0 && now.1.len() < left.1.len()) => {
                 left = now;
                 if !only_one {
                     notes.approximated(
@@ -77,7 +81,29 @@ pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
     if only_one {
         swing(m, notes);
     }
+    unfollowed(m, notes);
     None
+}
+
+/// Leaves out the design variables that the mechanism cannot follow: a plane loop, say, whose hinge would leave the plane.
+fn unfollowed(m: &mut Mechanism, notes: &mut Notes) {
+    let Ok(mut file) = parsed(m) else { return };
+    let times = &mut file.model.times;
+    if times.len() > MOST_TIMES {
+        let every = times.len().div_ceil(MOST_TIMES);
+        *times = times.iter().copied().step_by(every).collect();
+    }
+    let Ok(analysis) = Analysis::new(&file.model) else { return };
+    let found = analysis.solve(Run::new()).sensitivities.admissibility;
+    let resists = |a: &Admissibility| matches!(a, Admissibility::CannotFollow { .. });
+    let names =
+        file.model.variables.iter().zip(&found).filter(|(_, a)| resists(a)).map(|(v, _)| v.name.clone());
+    m.unfollowed = names.collect();
+    if !m.unfollowed.is_empty() {
+        let names: Vec<String> = m.unfollowed.iter().map(|n| format!("`{n}`")).collect();
+        let why = format!("the mechanism cannot follow them, so they are left out: {}", names.join(", "));
+        notes.approximated("design variables", "", None, why);
+    }
 }
 
 /// Joins to the ground what no joint connects with it.
@@ -110,14 +136,14 @@ fn ground(m: &mut Mechanism, notes: &mut Notes) {
 }
 
 /// How many motions nothing drives, and the joints that move in them.
-fn freedom(m: &Mechanism, notes: &Notes) -> Result<(usize, Vec<usize>), Diagnostic> {
+fn freedom(m: &Mechanism, notes: &Notes) -> Result<(usize, Vec<usize>), Box<Diagnostic>> {
     let refused = |message: String| {
         notes.diagnostic("HP0808", None, format!("the imported mechanism does not work: {message}"))
     };
     if m.bodies.len() == 1 {
-        return Err(refused("it has no bodies".into()));
+        return Err(Box::new(refused("it has no bodies".into())));
     }
-    let file = parsed(m).map_err(refused)?;
+    let file = parsed(m).map_err(|why| Box::new(refused(why)))?;
     match Analysis::new(&file.model) {
         Ok(_) => Ok((0, Vec::new())),
         Err(TopologyFault::UnderDriven { freedom, joints, .. }) => {
@@ -127,7 +153,7 @@ fn freedom(m: &Mechanism, notes: &Notes) -> Result<(usize, Vec<usize>), Diagnost
         Err(fault) => {
             let message = refused(format!("{fault}"));
             let message = fault.notes().into_iter().fold(message, |m, n| m.note(n));
-            Err(Diagnostic { code: fault.code(), ..message }.help(fault.help()))
+            Err(Box::new(Diagnostic { code: fault.code(), ..message }.help(fault.help())))
         }
     }
 }
@@ -137,7 +163,9 @@ fn parsed(m: &Mechanism) -> Result<hardpoint_file::ModelFile, String> {
     let mut bare = m.clone();
     bare.bodies.iter_mut().for_each(|b| b.mesh = None);
     hardpoint_file::parse(&write::text(&bare, ""), "import").map_err(|d| {
-        d.list().first().map_or(String::new(), |d| [&[d.message.clone()], &d.notes[..]].concat().join("; "))
+        d.list()
+            .first()
+            .map_or(String::new(), |d| [std::slice::from_ref(&d.message), &d.notes[..]].concat().join("; "))
     })
 }
 

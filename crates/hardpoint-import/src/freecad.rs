@@ -136,6 +136,12 @@ impl<'a, 'i> Object<'a, 'i> {
         listed.or(TYPES.get(k).copied()).map(str::to_owned)
     }
 
+    /// Where it stands in what it is in.
+    fn pose(&self, notes: &mut Notes) -> Pose {
+        let of_link = self.placement("LinkPlacement", notes);
+        self.placement("Placement", notes).or(of_link).unwrap_or_else(home)
+    }
+
     fn placement(&self, property: &str, notes: &mut Notes) -> Option<Pose> {
         let node = self.value(property)?;
         let number =
@@ -199,7 +205,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             return;
         };
         self.m.name = self.objects[root].label().to_owned();
-        let outer = self.objects[root].placement("Placement", self.notes).unwrap_or_else(home);
+        let outer = self.objects[root].pose(self.notes);
         let mut joints = Vec::new();
         let mut parts = Vec::new();
         self.sort(root, &mut parts, &mut joints, 0);
@@ -210,7 +216,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             .collect();
         for part in parts {
             let object = &self.objects[part];
-            let pose = outer.compose(object.placement("Placement", self.notes).unwrap_or_else(home));
+            let pose = outer.compose(object.pose(self.notes));
             let object = &self.objects[part];
             let called = Called { kind: "part", name: object.label(), at: object.at() };
             let body = if grounded.contains(part) {
@@ -249,7 +255,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let Some(inner) = self.objects.get(name) else { continue };
             let is_joint =
                 inner.properties.contains_key("JointType") || inner.properties.contains_key("ObjectToGround");
-            let has_place = inner.properties.contains_key("Placement");
+            let has_place = ["Placement", "LinkPlacement"].iter().any(|p| inner.properties.contains_key(p));
             let (kind, at) = (inner.kind, inner.at());
             if is_joint {
                 joints.push(name);
@@ -301,7 +307,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let mut pose = outer;
         for part in &path[first..] {
             if let Some(object) = self.objects.get(part) {
-                pose = pose.compose(object.placement("Placement", self.notes).unwrap_or_else(home));
+                pose = pose.compose(object.pose(self.notes));
             }
         }
         Some(Marker { body, pose: pose.compose(inner) })

@@ -30,6 +30,8 @@ pub struct Mechanism {
     pub points: Vec<Point>,
     /// Road wheels.
     pub wheels: Vec<Wheel>,
+    /// Design variables that it cannot follow, by the names that the writer would give them.
+    pub unfollowed: Vec<String>,
     /// The output times: when they end, and how many intervals there are.
     pub times: Option<Times>,
 }
@@ -208,6 +210,7 @@ impl Mechanism {
             drivers: Vec::new(),
             points: Vec::new(),
             wheels: Vec::new(),
+            unfollowed: Vec::new(),
             times: None,
         }
     }

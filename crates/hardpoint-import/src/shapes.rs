@@ -64,9 +64,8 @@ impl Shapes {
         name: &str,
         bytes: &[u8],
     ) -> Result<(), String> {
-        let (vertices, triangles) = hardpoint_file::triangles(name, bytes)?;
-        let corner = |k: u32| vertices.get(k as usize).map_or_else(Vec3::zero, |v| Vec3::from(*v));
-        self.push(body, place, scale, triangles.into_iter().map(|t| t.map(corner)));
+        let triangles = hardpoint_file::triangles(name, bytes)?;
+        self.push(body, place, scale, triangles.into_iter().map(|t| t.map(Vec3::from)));
         Ok(())
     }
 

@@ -25,6 +25,8 @@ struct Writer<'m> {
     m: &'m Mechanism,
     size: f64,
     hardpoints: Vec<(String, Vec3)>,
+    /// Those that something is at.
+    named: HashSet<String>,
 }
 
 impl<'m> Writer<'m> {
@@ -34,17 +36,19 @@ impl<'m> Writer<'m> {
             let name = free_name(name, &hardpoints);
             hardpoints.push((name, *at));
         }
-        Self { m, size: m.size(), hardpoints }
+        Self { m, size: m.size(), hardpoints, named: HashSet::new() }
     }
 
     /// The hardpoint there, made where there is none yet.
     fn hardpoint(&mut self, wanted: &str, at: Vec3) -> String {
         let near = |p: &Vec3| (*p - at).norm() <= SAME_PLACE * self.size;
         if let Some((name, _)) = self.hardpoints.iter().find(|(_, p)| near(p)) {
+            self.named.insert(name.clone());
             return name.clone();
         }
         let name = free_name(wanted, &self.hardpoints);
         self.hardpoints.push((name.clone(), at));
+        self.named.insert(name.clone());
         name
     }
 
@@ -241,14 +245,22 @@ impl<'m> Writer<'m> {
         if self.hardpoints.len() > MOST_VARIED {
             return table;
         }
-        for (name, at) in &self.hardpoints {
+        for (name, _) in &self.hardpoints {
             // What nothing is at moves nothing.
-            let mut used = self.m.joints.iter().flat_map(|j| j.at.iter().chain(j.through.iter().flatten()));
-            if used.any(|p| (*p - *at).norm() <= SAME_PLACE * self.size) {
+            if !self.named.contains(name) {
+                continue;
+            }
+            let variable = |axes: &str| {
                 let mut entry = InlineTable::new();
                 entry.insert("move", name.as_str().into());
-                entry.insert("along", "xyz".into());
-                table[name] = value(entry);
+                entry.insert("along", axes.into());
+                value(entry)
+            };
+            let followed = |axis: &&str| !self.m.unfollowed.contains(&format!("{name}_{axis}"));
+            let axes: Vec<&str> = ["x", "y", "z"].into_iter().filter(followed).collect();
+            match axes[..] {
+                [_, _, _] => table[name] = variable("xyz"),
+                _ => axes.iter().for_each(|axis| table[&format!("{name}_{axis}")] = variable(axis)),
             }
         }
         table

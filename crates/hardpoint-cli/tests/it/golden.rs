@@ -27,6 +27,8 @@ fn help_has_examples_and_exit_codes() {
         "new",
         "run",
         "check",
+        "import",
+        "export",
         "verify",
         "optimize",
         "tolerance",

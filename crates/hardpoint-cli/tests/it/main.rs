@@ -4,6 +4,7 @@ mod bench;
 mod calibrate;
 mod client;
 mod golden;
+mod import;
 mod new;
 mod optimize;
 mod results;

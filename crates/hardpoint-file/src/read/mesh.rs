@@ -123,22 +123,21 @@ fn triangles_of(folder: Folder<'_>, name: &str) -> Result<Triangles, DataError> 
     Ok(triangles)
 }
 
-/// The triangles in the bytes of a mesh file, whose kind the ending of its name tells: vertices as they are written, and three of
-/// them for each triangle.
+/// The triangles in the bytes of a mesh file, whose kind the ending of its name tells: three corners each, as they are written.
 ///
 /// # Errors
 /// Why there are none.
-pub fn triangles(name: &str, bytes: &[u8]) -> Result<(Vec<[f64; 3]>, Vec<[u32; 3]>), String> {
+pub fn triangles(name: &str, bytes: &[u8]) -> Result<Vec<[[f64; 3]; 3]>, String> {
     let ending = Path::new(name).extension().and_then(|e| e.to_str()).unwrap_or_default();
     let Some((_, kind, load)) = KINDS.iter().find(|kind| kind.0.eq_ignore_ascii_case(ending)) else {
         return Err("it is none of `.stl`, `.obj`, `.glb` and `.gltf`".into());
     };
-    let mut triangles = Triangles::default();
-    load(bytes, &mut triangles).map_err(|why| format!("it cannot be read as {kind}: {why}"))?;
-    match triangles.count {
+    let mut read = Triangles::default();
+    load(bytes, &mut read).map_err(|why| format!("it cannot be read as {kind}: {why}"))?;
+    match read.count {
         0 => Err("it has no triangles".into()),
         n if n > MOST_TRIANGLES => Err(format!("it has {n} triangles; at most {MOST_TRIANGLES} are drawn")),
-        _ => Ok((triangles.vertices, triangles.triangles)),
+        _ => Ok(read.triangles.iter().map(|t| t.map(|k| read.vertices[k as usize])).collect()),
     }
 }
 

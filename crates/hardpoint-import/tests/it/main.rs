@@ -1,2 +1,76 @@
 //! Files of other programs become models that run.
-mod try_it;
+
+mod broken;
+mod four_bars;
+mod fuzz;
+mod models;
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use hardpoint_import::{Imported, Problems};
+
+/// The folder of sources made in the manner of their programs, one folder for each format.
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models")
+}
+
+/// The sources of all formats, by format and name; parts of others are left out.
+fn sources() -> Vec<(String, PathBuf)> {
+    const PARTS: [&str; 3] = ["finger.xml", "assets", "hook"];
+    let mut out = Vec::new();
+    for format in listed(&folder()) {
+        for file in listed(&format) {
+            let name = file.file_name().unwrap().to_string_lossy().into_owned();
+            if !PARTS.contains(&name.as_str()) && name != "meshes" {
+                out.push((format.file_name().unwrap().to_string_lossy().into_owned(), file));
+            }
+        }
+    }
+    out
+}
+
+fn listed(folder: &Path) -> Vec<PathBuf> {
+    let mut list: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    list.sort();
+    list
+}
+
+/// The bytes of a source; of a folder, the document that FreeCAD would make of it.
+fn bytes(path: &Path) -> Vec<u8> {
+    if path.is_dir() {
+        document(&std::fs::read(path.join("Document.xml")).unwrap())
+    } else {
+        std::fs::read(path).unwrap()
+    }
+}
+
+/// A FreeCAD document.
+fn document(xml: &[u8]) -> Vec<u8> {
+    let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    zip.start_file("Document.xml", zip::write::SimpleFileOptions::default()).unwrap();
+    zip.write_all(xml).unwrap();
+    zip.start_file("GuiDocument.xml", zip::write::SimpleFileOptions::default()).unwrap();
+    zip.write_all(b"<Document/>").unwrap();
+    zip.finish().unwrap().into_inner()
+}
+
+/// Imports a source with what lies beside it.
+fn import(path: &Path) -> Result<Imported, Problems> {
+    let folder = path.parent().unwrap().to_owned();
+    let name = path.file_name().unwrap().to_string_lossy().into_owned();
+    hardpoint_import::import(&bytes(path), &name, &|p| std::fs::read(folder.join(p)).ok())
+}
+
+/// The model of an import, its files beside it.
+fn model(imported: &Imported) -> hardpoint_file::ModelFile {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in &imported.files {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, bytes).unwrap();
+    }
+    let path = folder.path().join("model.toml");
+    std::fs::write(&path, &imported.text).unwrap();
+    hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}\n{}", imported.text))
+}

@@ -25,14 +25,18 @@ const ROOMS: [&str; 17] = [
 ];
 
 /// Which of our own crates each crate may depend on.
-const CRATES: [(&str, &[&str]); 11] = [
+const CRATES: [(&str, &[&str]); 12] = [
     ("hardpoint-tape", &[]),
     ("hardpoint-code", &["hardpoint-tape"]),
     ("hardpoint", &["hardpoint-tape", "hardpoint-code"]),
     ("hardpoint-file", &["hardpoint"]),
     ("hardpoint-report", &["hardpoint", "hardpoint-file"]),
     ("hardpoint-import", &["hardpoint", "hardpoint-file"]),
-    ("hardpoint-cli", &["hardpoint", "hardpoint-file", "hardpoint-import", "hardpoint-report"]),
+    ("hardpoint-export", &["hardpoint", "hardpoint-file"]),
+    (
+        "hardpoint-cli",
+        &["hardpoint", "hardpoint-file", "hardpoint-export", "hardpoint-import", "hardpoint-report"],
+    ),
     ("hardpoint-bench", &["hardpoint", "hardpoint-file"]),
     ("hardpoint-python", &["hardpoint", "hardpoint-file", "hardpoint-report"]),
     ("hardpoint-studio", &["hardpoint", "hardpoint-file", "hardpoint-report"]),

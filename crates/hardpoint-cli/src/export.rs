@@ -1,0 +1,71 @@
+//! `hardpoint export`.
+
+use std::io::Write;
+use std::path::Path;
+
+use hardpoint_export::{Exported, FORMATS, Format};
+use hardpoint_report::GENERATOR;
+use serde_json::json;
+
+use crate::args::Export;
+use crate::folder::{Folder, NotWritten};
+use crate::outcome::Outcome;
+use crate::session::Session;
+use crate::text;
+
+/// Writes a model as a file of another program, and says what that does not say.
+pub fn export(options: &Export) -> Outcome {
+    let session = Session::begin(options.json);
+    if options.list {
+        let row = |f: &Format| {
+            let endings: Vec<String> = f.endings.iter().map(|e| format!(".{e}")).collect();
+            (f.name, format!("{} ({})", f.about, endings.join(", ")))
+        };
+        text::print(&text::pairs(&FORMATS.iter().map(row).collect::<Vec<_>>()));
+        return Outcome::Done;
+    }
+    // The command line asks for both unless it lists the formats.
+    let (Some(model), Some(to)) = (&options.model, &options.output) else { return Outcome::Misunderstood };
+    export_to(&session, options, model, to).unwrap_or_else(|outcome| outcome)
+}
+
+fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Result<Outcome, Outcome> {
+    let known = || FORMATS.iter().map(|f| f.name).collect::<Vec<_>>().join(", ");
+    let format = match &options.format {
+        Some(name) => Format::named(name).ok_or_else(|| {
+            session
+                .misunderstood(&format!("`--format {name}`: there is no such format; there are {}", known()))
+        })?,
+        None => {
+            let name = to.to_string_lossy();
+            let why =
+                || format!("`-o {name}`: its ending tells no format; name one with `--format`: {}", known());
+            Format::of(&name).ok_or_else(|| session.misunderstood(&why()))?
+        }
+    };
+    session.may_save(model, Some(to))?;
+    let file = session.read(model)?;
+    let exported = format.export(&file);
+    write(to, &exported).map_err(|e| session.not_written(&e))?;
+    if session.is_json() {
+        session.print_json(&json!({
+            "generator": GENERATOR, "status": "complete", "format": format.name, "file": to, "unsaid": exported.unsaid,
+        }));
+        return Ok(Outcome::Done);
+    }
+    let mut out = format!("{}: {}\n", to.display(), format.about);
+    if !exported.unsaid.is_empty() {
+        out += "  not said, or said otherwise:\n";
+        out.extend(exported.unsaid.iter().map(|u| format!("    {} `{}`: {}\n", u.kind, u.name, u.why)));
+    }
+    text::print(&out);
+    Ok(Outcome::Done)
+}
+
+fn write(to: &Path, exported: &Exported) -> Result<(), NotWritten> {
+    let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = to.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let mut folder = Folder::open(parent)?;
+    folder.write(&name, |out| out.write_all(exported.text.as_bytes()))?;
+    folder.commit(&[])
+}

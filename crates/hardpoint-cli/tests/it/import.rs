@@ -1,0 +1,88 @@
+//! `hardpoint import`, from the command line.
+
+use assert_cmd::Command;
+
+const ROBOT: &str = r#"<robot name="door">
+  <link name="frame"/><link name="leaf"><visual><geometry><box size="0.8 0.04 2"/></geometry></visual></link>
+  <joint name="hinge" type="revolute">
+    <parent link="frame"/><child link="leaf"/><axis xyz="0 0 1"/>
+    <limit lower="0" upper="1.5" effort="1" velocity="1"/>
+  </joint>
+</robot>"#;
+
+fn hardpoint(folder: &std::path::Path) -> Command {
+    let mut command = Command::cargo_bin("hardpoint").unwrap();
+    command.current_dir(folder);
+    command
+}
+
+fn with(name: &str, text: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join(name), text).unwrap();
+    folder
+}
+
+#[test]
+fn an_imported_model_passes_check_and_has_its_shapes_beside_it() {
+    let folder = with("door.urdf", ROBOT);
+    let out =
+        hardpoint(folder.path()).args(["import", "door.urdf", "-o", "models/door.toml"]).assert().success();
+    insta::with_settings!({ prepend_module_to_snapshot => false, snapshot_path => "../snapshots" }, {
+        insta::assert_snapshot!("import", String::from_utf8_lossy(&out.get_output().stdout));
+    });
+    assert!(folder.path().join("models/meshes/leaf.stl").exists());
+    hardpoint(folder.path()).args(["check", "models/door.toml"]).assert().success();
+}
+
+#[test]
+fn as_json_an_import_is_one_document() {
+    let folder = with("door.urdf", ROBOT);
+    let out = hardpoint(folder.path())
+        .args(["import", "door.urdf", "-o", "door.toml", "--json"])
+        .assert()
+        .success();
+    let document: serde_json::Value = serde_json::from_slice(&out.get_output().stdout).unwrap();
+    assert_eq!(document["status"], "complete");
+    assert_eq!(document["files"][0], "meshes/leaf.stl");
+    let entries = document["report"]["entries"].as_array().unwrap();
+    let hinge = entries.iter().find(|e| e["kind"] == "joint").unwrap();
+    assert_eq!(
+        (&hinge["fate"], &hinge["name"], &hinge["place"]["line"]),
+        (&"taken".into(), &"hinge".into(), &3.into())
+    );
+}
+
+#[test]
+fn a_broken_source_is_told_with_its_place_and_writes_nothing() {
+    let folder = with("door.urdf", &ROBOT.replace("child link=\"leaf\"", "child link=\"leef\""));
+    let out = hardpoint(folder.path()).args(["import", "door.urdf", "-o", "door.toml"]).assert().code(3);
+    let told = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
+    assert!(told.contains("HP0803") && told.contains("door.urdf:4:40") && told.contains("`leaf`"), "{told}");
+    assert!(!folder.path().join("door.toml").exists());
+    let out = hardpoint(folder.path()).args(["import", "none.urdf", "-o", "door.toml"]).assert().code(3);
+    assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("HP0809"));
+}
+
+#[test]
+fn the_formats_are_listed_and_an_unknown_one_is_named() {
+    let folder = with("door.urdf", ROBOT);
+    let out = hardpoint(folder.path()).args(["import", "--list"]).assert().success();
+    let list = String::from_utf8_lossy(&out.get_output().stdout).into_owned();
+    assert!(["asmt", "adams", "urdf", "sdf", "mjcf", "lotus"].iter().all(|f| list.contains(f)), "{list}");
+    let args = ["import", "door.urdf", "-o", "door.toml", "--format", "urd"];
+    let out = hardpoint(folder.path()).args(args).assert().code(2);
+    assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("there are asmt, adams"));
+    hardpoint(folder.path()).args(["import", "door.urdf"]).assert().code(2);
+}
+
+#[test]
+fn an_exported_model_is_imported_again_and_what_it_does_not_say_is_named() {
+    let folder = with("door.urdf", ROBOT);
+    hardpoint(folder.path()).args(["import", "door.urdf", "-o", "door.toml"]).assert().success();
+    let out = hardpoint(folder.path()).args(["export", "door.toml", "-o", "again.urdf"]).assert().success();
+    let told = String::from_utf8_lossy(&out.get_output().stdout).into_owned();
+    assert!(told.contains("driver `hinge_input`: URDF has no motions"), "{told}");
+    hardpoint(folder.path()).args(["import", "again.urdf", "-o", "again.toml"]).assert().success();
+    let out = hardpoint(folder.path()).args(["export", "door.toml", "-o", "door.step"]).assert().code(2);
+    assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("csv, teimorbit, urdf, mjcf"));
+}

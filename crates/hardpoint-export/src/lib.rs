@@ -1,0 +1,124 @@
+//! Models of Hardpoint as files of other programs, and what these cannot say.
+//!
+//! ```
+//! let text = r#"
+//! name = "pendulum"
+//! units = { length = "mm", angle = "deg" }
+//! hardpoints = { pivot = [0, 0, 500] }
+//! bodies = { arm = {} }
+//! joints.hinge = { type = "revolute", bodies = ["ground", "arm"], at = "pivot", axis = "y" }
+//! drivers.swing = { joint = "hinge", law = "30*sin(2*pi*t)" }
+//! time = { end = 1.0, steps = 100 }
+//! "#;
+//! let file = hardpoint_file::parse(text, "pendulum.toml").unwrap();
+//! let urdf = hardpoint_export::Format::named("urdf").unwrap();
+//! let exported = urdf.export(&file);
+//! assert!(exported.text.contains(r#"<origin xyz="0 0 0.5"/>"#));
+//! assert!(exported.unsaid.iter().any(|u| u.name == "swing")); // URDF has no motions
+//! ```
+
+mod mjcf;
+mod skeleton;
+mod tables;
+mod urdf;
+
+use hardpoint_file::ModelFile;
+use serde::Serialize;
+
+/// A model as a file of another program.
+#[derive(Clone, Debug, Default)]
+pub struct Exported {
+    /// The file's text.
+    pub text: String,
+    /// What it does not say, or says only nearly.
+    pub unsaid: Vec<Unsaid>,
+}
+
+/// Something that a format cannot say.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Unsaid {
+    /// What it is in the model: `joint`, `driver`.
+    pub kind: &'static str,
+    /// Its name there.
+    pub name: String,
+    /// Why, or how else it is said.
+    pub why: String,
+}
+
+/// A format.
+#[derive(Clone, Copy)]
+pub struct Format {
+    /// The name by which it can be asked for.
+    pub name: &'static str,
+    /// What it is.
+    pub about: &'static str,
+    /// How names of its files end.
+    pub endings: &'static [&'static str],
+    write: fn(&ModelFile, &mut Exported),
+}
+
+impl std::fmt::Debug for Format {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+/// All formats.
+pub const FORMATS: &[Format] = &[tables::CSV, tables::TEIMORBIT, urdf::FORMAT, mjcf::FORMAT];
+
+impl Format {
+    /// The format of that name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        FORMATS.iter().find(|f| f.name == name)
+    }
+
+    /// The format of a file by how its name ends.
+    pub fn of(name: &str) -> Option<&'static Self> {
+        let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
+        FORMATS.iter().find(|f| f.endings.contains(&ending.as_str()))
+    }
+
+    /// A model as a file of this format.
+    pub fn export(&self, file: &ModelFile) -> Exported {
+        let mut out = Exported::default();
+        (self.write)(file, &mut out);
+        out
+    }
+}
+
+impl Exported {
+    fn unsaid(&mut self, kind: &'static str, name: &str, why: impl Into<String>) {
+        self.unsaid.push(Unsaid { kind, name: name.to_owned(), why: why.into() });
+    }
+
+    /// Drivers, design variables, measures and the like, which no format of mechanisms has.
+    fn without_motions(&mut self, file: &ModelFile, format: &str) {
+        for driver in &file.model.drivers {
+            self.unsaid("driver", &driver.name, format!("{format} has no motions"));
+        }
+        let rest = [
+            ("design variables", file.model.variables.len()),
+            ("measures", file.model.measures.len()),
+            ("wheels", file.model.wheels.len()),
+            ("meshes", file.drawing.bodies.len()),
+        ];
+        for (kind, count) in rest.into_iter().filter(|(_, count)| *count > 0) {
+            self.unsaid(kind, &count.to_string(), "they are not written");
+        }
+    }
+}
+
+/// A number as short as it can be read back.
+fn number(x: f64) -> String {
+    // Zero is written without a sign.
+    format!("{}", x + 0.0)
+}
+
+fn numbers(list: [f64; 3]) -> String {
+    list.map(number).join(" ")
+}
+
+/// A text in an attribute of XML.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

@@ -1,0 +1,76 @@
+//! Tables of hardpoints.
+
+use std::fmt::Write;
+
+use hardpoint_file::{LengthUnit, ModelFile};
+
+use crate::{Exported, Format, number};
+
+/// A table for spreadsheets.
+pub const CSV: Format =
+    Format { name: "csv", about: "hardpoints as a CSV table", endings: &["csv"], write: csv };
+
+/// A block for Adams/Car.
+pub const TEIMORBIT: Format = Format {
+    name: "teimorbit",
+    about: "hardpoints as a TeimOrbit block",
+    endings: &["sub", "hpt"],
+    write: teimorbit,
+};
+
+/// Names and places of the hardpoints, in the file's unit.
+fn places(file: &ModelFile) -> impl Iterator<Item = (&str, [f64; 3])> {
+    let own = file.model.hardpoints.iter().filter(|h| !h.unnamed);
+    own.map(|h| (h.name.as_str(), h.position.to_array().map(|x| shortest(file.units.length, x))))
+}
+
+/// A length in the file's unit, as short as it gives the same length again.
+fn shortest(unit: LengthUnit, metres: f64) -> f64 {
+    let value = metres * unit.per_metre();
+    let rounded = |digits: usize| format!("{value:.digits$e}").parse::<f64>().unwrap_or(value);
+    (0..17).map(rounded).find(|x| unit.metres(*x) == metres).unwrap_or(value)
+}
+
+fn csv(file: &ModelFile, out: &mut Exported) {
+    let unit = file.units.length.symbol();
+    let _ = writeln!(out.text, "name,x ({unit}),y ({unit}),z ({unit})");
+    for (name, at) in places(file) {
+        let name = if name.contains([',', '"']) {
+            format!("\"{}\"", name.replace('"', "\"\""))
+        } else {
+            name.to_owned()
+        };
+        let _ = writeln!(out.text, "{name},{}", at.map(number).join(","));
+    }
+}
+
+/// In Adams/Car's axes: from x forward, y left to x back, y right.
+fn teimorbit(file: &ModelFile, out: &mut Exported) {
+    let unit = match file.units.length {
+        LengthUnit::Metre => "meter",
+        LengthUnit::Inch => "inch",
+        other => other.symbol(),
+    };
+    let head = "$---------------------------------------------------------------------MDI_HEADER\n[MDI_HEADER]\n FILE_TYPE     =  'sub'\n FILE_VERSION  =  4.0\n FILE_FORMAT   =  'ASCII'\n";
+    let _ = writeln!(
+        out.text,
+        "{head}$--------------------------------------------------------------------------UNITS\n[UNITS]\n LENGTH  =  '{unit}'\n ANGLE   =  'degrees'"
+    );
+    out.text += "$----------------------------------------------------------------------HARDPOINT\n[HARDPOINT]\n{hardpoint_name              symmetry        x_value      y_value      z_value}\n";
+    for (name, [x, y, z]) in places(file) {
+        let (short, side) = match (name.strip_suffix("_left"), name.strip_suffix("_right")) {
+            (Some(short), _) => (short, "left"),
+            (_, Some(short)) => (short, "right"),
+            _ => (name, "single"),
+        };
+        if name.contains('\'') {
+            out.unsaid("hardpoint", name, "names with quotes cannot be written");
+            continue;
+        }
+        let place = [-x, -y, z].map(number);
+        let _ = writeln!(out.text, " '{short}'  '{side}'  {}", place.join("  "));
+    }
+    if file.model.hardpoints.iter().any(|h| h.unnamed) {
+        out.unsaid("places", "coordinates", "places without a hardpoint's name are not written");
+    }
+}

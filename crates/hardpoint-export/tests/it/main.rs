@@ -1,0 +1,114 @@
+//! Import, export, import again: the same model.
+
+use std::path::Path;
+
+use hardpoint::space::Vec3;
+use hardpoint_export::Format;
+use hardpoint_file::ModelFile;
+
+fn source(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hardpoint-import/tests/models");
+    let path = folder.join(name);
+    let beside = path.parent().unwrap().to_owned();
+    let bytes = std::fs::read(&path).unwrap();
+    let imported = hardpoint_import::import(&bytes, name, &|p| std::fs::read(beside.join(p)).ok()).unwrap();
+    imported.text
+}
+
+fn model(text: &str) -> ModelFile {
+    // Shapes lie in files.
+    let bare: String = text.lines().map(|l| format!("{}\n", without_mesh(l))).collect();
+    hardpoint_file::parse(&bare, "model.toml").unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn without_mesh(line: &str) -> String {
+    match (line.find(", mesh = {"), line.rfind(" }")) {
+        (Some(k), Some(_)) => format!("{} }}", &line[..k]),
+        _ => line.to_owned(),
+    }
+}
+
+/// Joints by name, type, bodies, place and axis.
+fn joints(file: &ModelFile) -> Vec<(String, &'static str, [String; 2], Vec3, Vec3)> {
+    let m = &file.model;
+    let mut list: Vec<_> = m
+        .named_joints()
+        .map(|(_, j)| {
+            let bodies = j.bodies.map(|b| m.bodies[b.0].name.clone());
+            let axis = if j.axis.is_some() { j.frames[0].cols[2] } else { Vec3::zero() };
+            (j.name.clone(), j.kind.name, bodies, m.hardpoints[j.at[0].0].position, axis)
+        })
+        .collect();
+    list.sort_by(|a, b| a.0.cmp(&b.0));
+    list
+}
+
+/// Whether two models have the same joints between the same bodies at the same places.
+fn same(a: &ModelFile, b: &ModelFile) {
+    /// Sums of places along a tree differ by so much of a metre.
+    const ROUNDED: f64 = 1e-12;
+    let (a, b) = (joints(a), joints(b));
+    assert_eq!(a.len(), b.len(), "{a:#?}\n{b:#?}");
+    for (a, b) in a.iter().zip(&b) {
+        assert_eq!((&a.0, a.1, &a.2), (&b.0, b.1, &b.2));
+        assert!((a.3 - b.3).norm() < ROUNDED && (a.4 - b.4).norm() < ROUNDED, "{a:?} {b:?}");
+    }
+}
+
+fn there_and_back(name: &str, format: &str, file: &str) {
+    let first = model(&source(name));
+    let exported = Format::named(format).unwrap().export(&first);
+    let again =
+        hardpoint_import::import(exported.text.as_bytes(), file, &|_| None).unwrap_or_else(|e| panic!("{e}"));
+    let second = model(&again.text);
+    same(&first, &second);
+    assert_eq!(first.model.couplers.len(), second.model.couplers.len());
+    // Only the names that the format has no room for could change on the first way.
+    let names = |f: &ModelFile| {
+        f.model.bodies.iter().map(|b| b.name.clone()).collect::<std::collections::BTreeSet<_>>()
+    };
+    assert_eq!(names(&first), names(&second), "{name}");
+}
+
+#[test]
+fn robots_come_back_the_same() {
+    there_and_back("urdf/gripper.urdf", "urdf", "again.urdf");
+    there_and_back("urdf/four_bar.urdf", "urdf", "again.urdf");
+    there_and_back("asmt/four_bar.asmt", "urdf", "again.urdf");
+    there_and_back("mjcf/hand.xml", "mjcf", "again.xml");
+    there_and_back("mjcf/four_bar.xml", "mjcf", "again.xml");
+}
+
+#[test]
+fn hardpoints_come_back_to_the_last_digit() {
+    for name in ["teimorbit/wishbone.sub", "teimorbit/push_rod.sub"] {
+        let first = model(&source(name));
+        let exported = Format::named("teimorbit").unwrap().export(&first);
+        let again = hardpoint_import::import(exported.text.as_bytes(), "again.sub", &|_| None).unwrap();
+        let second = model(&again.text);
+        let places = |f: &ModelFile| -> Vec<(String, [u64; 3])> {
+            let own = f.model.hardpoints.iter().filter(|h| !h.unnamed);
+            let mut list: Vec<_> =
+                own.map(|h| (h.name.clone(), h.position.to_array().map(|x| (x + 0.0).to_bits()))).collect();
+            list.sort();
+            list
+        };
+        assert_eq!(places(&first), places(&second), "{name}");
+        assert_eq!(joints(&first).len(), joints(&second).len(), "{name}");
+    }
+}
+
+#[test]
+fn what_a_format_cannot_say_is_named() {
+    let file = model(&source("suspension-explorer/wishbone.yaml"));
+    let told: Vec<String> = ["csv", "urdf", "mjcf"]
+        .iter()
+        .map(|format| {
+            let exported = Format::named(format).unwrap().export(&file);
+            let list: Vec<String> =
+                exported.unsaid.iter().map(|u| format!("{} `{}`: {}\n", u.kind, u.name, u.why)).collect();
+            format!("## {format}\n{}", list.concat())
+        })
+        .collect();
+    insta::assert_snapshot!(told.join("\n"));
+}
