@@ -27,7 +27,7 @@ use hardpoint::draft::{
 };
 use hardpoint::joint::{self, Freedom, JointType, Quantity};
 use hardpoint::law::Law;
-use hardpoint::space::{Pose, Quat, Vec3, rotation_from_euler_313};
+use hardpoint::space::{Angles, Pose, Quat, Vec3};
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{closest, shown};
@@ -146,9 +146,19 @@ const FRAME_BY_POSITION: Table = table! {
     must "position": PLACE, "[0, 0, 0]";
     /// 3-1-3 Euler angles, in the angle unit: turn about z, then the new x, then the new z. Default: zero.
     may "euler": Shape::exactly(3, &ANGLE), "[0, 0, 0]";
-    /// Quaternion `[w, x, y, z]`, of any length, instead of `euler`.
+    /// Cardan angles instead: turn about x, then the new y, then the new z.
+    may "cardan": Shape::exactly(3, &ANGLE), "[0, 0, 0]";
+    /// Roll, pitch and yaw instead: turn by the last about z, then by pitch about the new y, then by roll about the new x.
+    may "roll_pitch_yaw": Shape::exactly(3, &ANGLE), "[0, 0, 0]";
+    /// Quaternion `[w, x, y, z]` instead, of any length.
     may "quaternion": Shape::exactly(4, &NUMBER), "[1, 0, 0, 0]";
 };
+/// Keys of orientations as angles, what they mean, and what is expected there.
+const ANGLES: [(&str, Angles, &str); 3] = [
+    ("euler", Angles::Euler, "three Euler angles (3-1-3)"),
+    ("cardan", Angles::Cardan, "three Cardan angles (about x, y and z)"),
+    ("roll_pitch_yaw", Angles::RollPitchYaw, "three angles: roll, pitch and yaw"),
+];
 const FRAME_BY_POINTS: Table = table! {
     /// By three points.
     "FramePoints":
@@ -612,7 +622,8 @@ impl Reader<'_> {
         let table = self.table(f.value, &subject, "a table with a position or three points")?;
         let fields = self.fields(format!("the frame of {}", body.what), f.value.span(), table, FRAME.keys());
         if ["origin", "x", "xy"].iter().any(|k| fields.get(k).is_some()) {
-            for key in ["position", "euler", "quaternion"] {
+            let angles = ANGLES.map(|(key, ..)| key);
+            for key in ["position"].into_iter().chain(angles).chain(["quaternion"]) {
                 self.out_of_place(
                     &fields,
                     key,
@@ -631,13 +642,15 @@ impl Reader<'_> {
             PlaceDraft::Hardpoint(name) => self.hardpoint_position(&name, f, raw),
             PlaceDraft::Formula(_) => None,
         });
-        let rot = match (fields.get("euler"), fields.get("quaternion")) {
-            (Some(_), other) => {
-                if other.is_some() {
-                    self.out_of_place(&fields, "quaternion", "the orientation is given by `euler` already");
+        let angles = ANGLES.into_iter().find(|(key, ..)| fields.get(key).is_some());
+        let rot = match (angles, fields.get("quaternion")) {
+            (Some((given, angles, expected)), _) => {
+                let why = format!("the orientation is given by `{given}` already");
+                let others = ANGLES.map(|(key, ..)| key).into_iter().chain(["quaternion"]);
+                for other in others.filter(|key| *key != given) {
+                    self.out_of_place(&fields, other, &why);
                 }
-                let angles = self.list_of::<3>(&fields, "euler", "three Euler angles (3-1-3)");
-                angles.map(rotation_from_euler_313)
+                self.list_of::<3>(&fields, given, expected).map(|list| angles.rotation(list))
             }
             (None, Some(f)) => {
                 let subject = fields.subject("quaternion");

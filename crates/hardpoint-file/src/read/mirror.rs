@@ -126,11 +126,21 @@ impl<'n> Rule<'n> {
                 let turned = turns(key);
                 each(list, self.numbers, |k| (k == self.across) != turned);
             }
-            // R = Rz(a) Rx(b) Rz(c) between two mirrors: turns about the mirror's axis stay, all others go the other way.
-            Leaf::Angles(list) => each(list, self.numbers, |k| (if k == 1 { 0 } else { 2 }) != self.across),
+            // Turns one after the other, between two mirrors: those about the mirror's axis stay, all others go the other way.
+            Leaf::Angles(list) => each(list, self.numbers, |k| turned_about(key, k) != self.across),
             Leaf::Quaternion(list) => each(list, self.numbers, |k| k > 0 && k - 1 != self.across),
         });
         named
+    }
+}
+
+/// The axis of the k-th angle under a key: Cardan angles are of x, y and z in their order, and so are roll, pitch and yaw; 3-1-3 Euler
+/// angles are of z, x and z.
+fn turned_about(key: &str, k: usize) -> usize {
+    match (key, k) {
+        ("cardan" | "roll_pitch_yaw", k) => k,
+        (_, 1) => 0,
+        _ => 2,
     }
 }
 

@@ -6,7 +6,7 @@ use hardpoint::draft::{
     FieldDraft, FieldKind, LineDraft, MeasureDraft, MeasureField, MeasureKindDraft, MeasureType, MetricDraft,
     PlaceDraft, PointDraft, PointRef, RayDraft, Section,
 };
-use hardpoint::model::{AxleMeasure, Reduction, WheelMeasure, WheelNeed};
+use hardpoint::model::{AxleMeasure, OrientationAngle, Reduction, WheelMeasure, WheelNeed};
 use hardpoint::space::Vec3;
 
 use toml::de::DeValue;
@@ -163,12 +163,20 @@ pub(super) const WHEEL_MEASURE: Shape = Shape::Any(
         let needs = |m: &WheelMeasure| match m.needs() {
             WheelNeed::Nothing => "",
             WheelNeed::Kingpin => " Needs a kingpin.",
+            WheelNeed::Planes => " Needs `planes`.",
             WheelNeed::Bump => " Needs `bump`.",
+            WheelNeed::Spring => " Needs `bump` and `spring`.",
+            WheelNeed::Steer => " Needs `steer`.",
             WheelNeed::Braking(_) => " Needs `bump`, and the vehicle's `front_brake_share`.",
             WheelNeed::Driving(_) => " Needs `bump`, and the vehicle's `front_drive_share`.",
         };
         WheelMeasure::ALL.iter().map(|m| (m.name(), format!("{}{}", m.summary(), needs(m)))).collect()
     })],
+);
+const ORIENTATION_ANGLE: Shape = Shape::Any(
+    "OrientationAngle",
+    "One of three angles that say how a body is turned.",
+    &[Shape::Words(OrientationAngle::WORDS)],
 );
 pub(super) const AXLE_MEASURE: Shape = Shape::Any(
     "AxleMeasure",
@@ -226,6 +234,7 @@ fn key(field: &MeasureField) -> Key {
         FieldKind::Output => (OUTPUT, "\"toe\""),
         FieldKind::Driver => (DRIVER, "\"bump\""),
         FieldKind::Body => (BODY, "\"knuckle\""),
+        FieldKind::OrientationAngle => (ORIENTATION_ANGLE, "\"yaw\""),
         FieldKind::Expression => (Shape::Expression, "\"left.toe + right.toe\""),
     };
     let need = if field.required { Need::Required } else { Need::Optional };
@@ -308,6 +317,9 @@ impl Reader<'_> {
                 | FieldKind::Output
                 | FieldKind::Driver
                 | FieldKind::Body => self.name_of(fields, key).map(FieldDraft::Name),
+                FieldKind::OrientationAngle => {
+                    self.word_of(fields, key).map(|k| FieldDraft::Angle(OrientationAngle::at(k)))
+                }
                 FieldKind::Point => self.point_of(fields, key).map(FieldDraft::Point),
                 FieldKind::Direction => self.vector_of(fields, key).map(FieldDraft::Direction),
                 FieldKind::Line => self.line_of(fields, key, place).map(FieldDraft::Line),

@@ -38,10 +38,27 @@ pub(crate) const WHEEL: Table = table! {
     may "kingpin": Shape::exactly(2, &POINT_REF), "[\"lower_ball\", { body = \"ground\", at = \"strut_top\" }]";
     /// The driver that moves it up and down, for roll centres, bump steer and the like. Default: the only driver.
     may "bump": DRIVER, "\"jounce\"";
+    /// The driver that steers it, for the virtual steering axis.
+    may "steer": DRIVER, "\"rack\"";
+    /// The lower and the upper plane of its arms, for the instant centres of textbooks: of an arm two pivots and its ball joint, of a strut
+    /// its top mount and another point of its axis.
+    may "planes": Shape::exactly(2, &ARM_PLANE_SHAPE),
+        "[{ body = \"lca\", at = [\"lca_front\", \"lca_rear\", \"lower_ball\"] }, { body = \"strut\", at = [\"strut_top\", \"strut_lower\"] }]";
+    /// The ends of its spring, for the motion ratio.
+    may "spring": Shape::exactly(2, &POINT_REF), "[{ body = \"ground\", at = \"spring_top\" }, { body = \"lca\", at = \"spring_bottom\" }]";
     /// At which end of the vehicle it is, for anti-dive and the like.
     may "end": Shape::Words(&[("front", ""), ("rear", "")]), "\"front\"";
     /// What to measure, as NAME.toe and so on: `"all"` that is possible, or a list.
     may "measures": Shape::Any("WheelMeasures", "", &[ALL, Shape::list(&WHEEL_MEASURE)]), "[\"toe\", \"camber\"]";
+};
+const ARM_PLANE_SHAPE: Shape = Shape::Table(&ARM_PLANE);
+const ARM_PLANE: Table = table! {
+    /// The plane of an arm or a strut.
+    "ArmPlane":
+    /// The name of the arm's or strut's body.
+    must "body": BODY, "\"lca\"";
+    /// Three points of an arm, or two of a strut: hardpoints' names or coordinates in the design configuration.
+    must "at": Shape::List(&PLACE, [2, 3]), "[\"lca_front\", \"lca_rear\", \"lower_ball\"]";
 };
 const ALL: Shape = Shape::Any("AllMeasures", "", &[Shape::Words(&[("all", "")])]);
 pub(crate) const VEHICLE: Table = table! {
@@ -132,7 +149,13 @@ impl Reader<'_> {
             let side = self.word_of(&fields, "side").map(|k| SIDES[k]);
             let end = self.word_of(&fields, "end").map(|k| ENDS[k]);
             let bump = self.name_of(&fields, "bump");
-            let kingpin = self.given(&fields, "kingpin", |r, f| r.kingpin(&fields, f));
+            let kingpin = self.given(&fields, "kingpin", |r, f| {
+                r.two_points(&fields, f, "a list of a lower and an upper point")
+            });
+            let steer = self.name_of(&fields, "steer");
+            let planes = self.given(&fields, "planes", |r, f| r.arm_planes(&fields, f));
+            let spring =
+                self.given(&fields, "spring", |r, f| r.two_points(&fields, f, "a list of two points"));
             if spin.is_none() {
                 self.unread.push("spin_axis");
             }
@@ -147,6 +170,9 @@ impl Reader<'_> {
                 side,
                 kingpin,
                 bump,
+                steer,
+                planes,
+                spring,
                 end,
             });
         }
@@ -182,14 +208,36 @@ impl Reader<'_> {
         Some(WheelSpinDraft::Angles { toe: toe?, camber: camber? })
     }
 
-    fn kingpin(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<[PointRef; 2]> {
+    /// The planes of both arms, each by points of one body.
+    fn arm_planes(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<[Vec<PointRef>; 2]> {
+        let subject = fields.subject("planes");
+        let list = f.value.get_ref().as_array().filter(|list| list.len() == 2);
+        let Some(list) = list else {
+            self.wrong(f.value, &subject, "a list of a lower and an upper plane");
+            return None;
+        };
+        let [lower, upper] = [0, 1].map(|k| {
+            let table = self.table(&list[k], &subject, "a table with `body` and `at`")?;
+            let plane = self.fields(subject.name.clone(), list[k].span(), table, ARM_PLANE.keys());
+            let body = self.name_of(&plane, "body");
+            let at = self.need(&plane, "at")?;
+            let points = self.list(at.value, &plane.subject("at"), "a list of two or three hardpoints")?;
+            let places: Vec<Option<PlaceDraft>> =
+                points.iter().map(|value| self.fixed_place(value, &plane.subject("at"))).collect();
+            let (body, places) = (body?, places.into_iter().collect::<Option<Vec<_>>>()?);
+            Some(places.into_iter().map(|at| PointRef::On { body: body.clone(), at }).collect())
+        });
+        Some([lower?, upper?])
+    }
+
+    fn two_points(&mut self, fields: &Fields<'_>, f: Field<'_>, expected: &str) -> Option<[PointRef; 2]> {
         match f.value.get_ref().as_array() {
             Some(list) if list.len() == 2 => {
                 let [lower, upper] = [0, 1].map(|k| self.point_ref(fields, Field { value: &list[k], ..f }));
                 Some([lower?, upper?])
             }
             _ => {
-                self.wrong(f.value, &fields.subject("kingpin"), "a list of a lower and an upper point");
+                self.wrong(f.value, &fields.subject(f.key), expected);
                 None
             }
         }
@@ -203,11 +251,22 @@ impl Reader<'_> {
         // A wheel that names no driver takes the only one.
         let moves = has("bump") || raw.draft.drivers.len() == 1;
         let has_kingpin = |need: WheelNeed| need != WheelNeed::Kingpin || has("kingpin");
-        let has_driver = |need: WheelNeed| !need.goes_by_driver() || moves;
+        // Whoever names no driver that steers, no planes and no spring does not ask for what follows from them.
+        let is_asked = |need: WheelNeed| match need {
+            WheelNeed::Steer => has("steer"),
+            WheelNeed::Planes => has("planes"),
+            WheelNeed::Spring => has("spring"),
+            _ => true,
+        };
+        let has_driver = |need: WheelNeed| !need.goes_by_driver() || need == WheelNeed::Steer || moves;
         let is_at = |need: WheelNeed| need.end().is_none_or(|at| end == Some(at.name()));
         let possible = |m: &WheelMeasure| {
             let need = m.needs();
-            has_kingpin(need) && has_driver(need) && is_at(need) && vehicle.lacks(need).next().is_none()
+            has_kingpin(need)
+                && is_asked(need)
+                && has_driver(need)
+                && is_at(need)
+                && vehicle.lacks(need).next().is_none()
         };
         let drivers = raw.draft.drivers.len();
         let no_driver = match drivers {
@@ -217,6 +276,7 @@ impl Reader<'_> {
         // Whoever says nothing of the vehicle or of its ends does not ask what they do to the pitching.
         let lacking = |m: &WheelMeasure| match m.needs() {
             need if !has_kingpin(need) => Some("the wheel has no `kingpin`"),
+            need if !is_asked(need) => None,
             need if !has_driver(need) => Some(no_driver.as_str()),
             need if !is_at(need) => None,
             need => vehicle.lacks(need).next().map(|key| match key {

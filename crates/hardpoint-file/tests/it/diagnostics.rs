@@ -180,6 +180,13 @@ fn mechanism() {
     broken("names_collide", &[("[design.lean]", "[design.B_x]")]);
     broken("null_move", &[("along = \"xyz\"", "along = [0, 0, 0]")]);
     broken(
+        "frame_turned_in_three_ways",
+        &[(
+            "crank = {}",
+            "crank = { frame = { position = \"A\", euler = [0, 1, 2], cardan = [3, 4], quaternion = [1, 0, 0, 0] } }",
+        )],
+    );
+    broken(
         "frame_points_on_a_line",
         &[("crank = {}", "crank = { frame = { origin = \"A\", x = [1, 0, 0], xy = [2, 0, 0] } }")],
     );
@@ -227,6 +234,30 @@ fn wheels() {
     broken("kingpin_upside_down", upright, "at = [0, 580, -300]");
     broken("kingpin_of_three", KINGPIN, "[\"P\", \"P\", \"P\"]");
     broken("kingpin_at_unknown_point", KINGPIN, "[\"P\", \"top\"]");
+    let with = |name: &str, more: &str| broken(name, "radius = 300", &format!("radius = 300\n{more}"));
+    let plane = |at: &str| {
+        format!(
+            "planes = [{{ body = \"coupler\", at = [\"B\", \"C\", [0, 0, 9]] }}, {{ body = \"rocker\", at = {at} }}]"
+        )
+    };
+    with("planes_on_a_line", &plane("[\"C\", \"D\", \"C\"]"));
+    with("plane_of_a_strut_at_one_place", &plane("[\"C\", \"C\"]"));
+    with("plane_of_one_point", &plane("[\"C\"]"));
+    with("planes_of_one_arm", "planes = [{ body = \"coupler\", at = [\"B\", \"C\"] }]");
+    with(
+        "plane_without_body",
+        "planes = [{ at = [\"B\", \"C\"] }, { body = \"rocer\", at = [\"B\", \"C\"] }]",
+    );
+    with("spring_at_one_place", "spring = [\"P\", \"P\"]");
+    with("spring_of_one_point", "spring = \"P\"");
+    with("steered_by_nothing", "steer = \"turm\"");
+    for (name, measure) in [
+        ("without_planes", "plane_centre_front_y"),
+        ("without_spring", "motion_ratio"),
+        ("without_steer", "virtual_caster"),
+    ] {
+        broken(&format!("wheel_{name}"), "mechanical_trail", measure);
+    }
     broken("wheel_of_no_radius", "radius = 300", "radius = 0");
     broken("wheel_axis_vertical", "[0, 1, 0]", "\"z\"");
     broken("wheel_axis_inboard", "[0, 1, 0]", "[0, -1, 0.02]");
@@ -280,6 +311,10 @@ fn measures_of_measures_metrics_and_shapes() {
     with(
         "bend_of_no_beam",
         "[design.s]\nshape = \"rocker\"\nfield = { bend = [\"C\", \"C\"], towards = \"z\" }",
+    );
+    with(
+        "orientation_misspelt",
+        "[measures.a]\ntype = \"orientation\"\nbody = \"crank\"\nangle = \"jaw\"\nrelative_to = \"roker\"",
     );
     with("vehicle_of_no_length", "[vehicle]\nwheelbase = -1\nfront_brake_share = 2");
     with("axle_of_no_wheel", "[axles.a]\nleft = \"l\"\nright = \"r\"");

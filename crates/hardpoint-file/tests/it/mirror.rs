@@ -92,9 +92,9 @@ rack = [30, 0, 80]
 
 [bodies]
 left_arm = { frame = { position = [10, 20, 30], euler = [20, 30, 40] } }
-left_nut = {}
+left_nut = { frame = { position = [0, 0, 10], cardan = [20, 30, 40] } }
 left_pin = { frame = { origin = "left_pin", x = [-200, 250, 50], xy = [-300, 300, 40] } }
-left_slide = {}
+left_slide = { frame = { position = [5, 0, 0], roll_pitch_yaw = [-25, 15, 35] } }
 rack = {}
 
 [joints]

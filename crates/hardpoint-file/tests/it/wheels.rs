@@ -19,6 +19,9 @@ spin_axis = [0.0035, 1, 0.0175]
 radius = 310
 kingpin = [{ body = "knuckle", at = "ball_joint" }, { body = "ground", at = "strut_top" }]
 bump = "strut_drive"
+steer = "rack_drive"
+planes = [{ body = "lca", at = ["lca_rear", "lca_front", "ball_joint"] }, { body = "strut", at = ["strut_top", "strut_lower"] }]
+spring = [{ body = "ground", at = "strut_top" }, { body = "knuckle", at = "strut_lower" }]
 measures = "all"
 "#;
 
@@ -36,8 +39,26 @@ camber = -1.1
 radius = 230
 kingpin = ["kingpin_lower", { body = "uca", at = "upper_ball" }]
 bump = "spring_drive"
+steer = "rack_drive"
+planes = [{ body = "lca", at = ["lca_rear", "lca_front", "lower_ball"] }, { body = "uca", at = ["uca_rear", "uca_front", "upper_ball"] }]
+spring = [{ body = "ground", at = [40, 300, 400] }, { body = "lca", at = "pushrod_outer" }]
 measures = "all"
 "#;
+
+/// Planes, spring and steering of the arms that `side` names begin with, by that rack.
+fn arms(side: &str, rack: &str) -> String {
+    let at = |arm: &str, ball: &str| {
+        let points = [format!("{arm}_front"), format!("{arm}_rear"), ball.to_owned()];
+        let points = points.map(|p| format!("\"{side}{p}\"")).join(", ");
+        format!("{{ body = \"{side}{arm}\", at = [{points}] }}")
+    };
+    format!(
+        "steer = \"{rack}\"\nplanes = [{}, {}]\n\
+         spring = [{{ body = \"ground\", at = [10, 330, 330] }}, {{ body = \"{side}lca\", at = [10, 450, -20] }}]\n",
+        at("lca", "lower_ball"),
+        at("uca", "upper_ball")
+    )
+}
 
 const AXLE: &str = r#"
 [wheels.w]
@@ -113,6 +134,7 @@ fn with_all(text: &str) -> String {
     text.replace("right = \"right\"\nmeasures = \"all\"", "right = \"right\"")
         .replace(&format!("[{list}]"), "\"all\"")
         .replace("15*sin", "2*sin")
+        .replace("bump = \"left_bump\"\n", &format!("bump = \"left_bump\"\n{}", arms("left_", "steering")))
         .replace("[wheels.left]", "[wheels.w]")
         .replace("left.", "w.")
         .replace("left = \"left\"", "left = \"w\"")
@@ -121,7 +143,7 @@ fn with_all(text: &str) -> String {
 /// Only wheels that a driver moves up and down have slopes, and only those of a vehicle that is known stand up to braking.
 fn is_left_out(name: &str, what: WheelMeasure) -> bool {
     match what.needs() {
-        WheelNeed::Bump => name == "rack_steering",
+        WheelNeed::Bump | WheelNeed::Steer | WheelNeed::Planes | WheelNeed::Spring => name == "rack_steering",
         WheelNeed::Braking(end) | WheelNeed::Driving(end) => name != "front_axle" || end == VehicleEnd::Rear,
         WheelNeed::Nothing | WheelNeed::Kingpin => false,
     }
@@ -132,6 +154,7 @@ fn steered(text: &str) -> String {
     assert!(text.contains(law));
     text.replace(law, "law = \"25*sin(3*t + 0.4)\"")
         .replace("spindle = [0, 551.87, 0]", "spindle = [-0.3, 551.87, -1.5]")
+        .replace("bump = \"bump\"\n", &format!("bump = \"bump\"\n{}", arms("", "rack_drive")))
         .replace("front_left", "w")
 }
 
@@ -139,7 +162,10 @@ fn steered(text: &str) -> String {
 fn mirrored(text: &str) -> String {
     let mut inside = false;
     let mut lines = Vec::new();
-    for line in text.replace("axis = \"y\"", "axis = \"-y\"").lines() {
+    let text = text.replace("axis = \"y\"", "axis = \"-y\"");
+    for line in
+        text.replace("[10, 330, 330]", "[10, -330, 330]").replace("[10, 450, -20]", "[10, -450, -20]").lines()
+    {
         if line.starts_with('[') {
             inside = line == "[hardpoints]";
         }
@@ -168,7 +194,7 @@ fn every_measure_agrees_with_resolved_designs_on_every_suspension() {
         // The comparison was not of zeros: each measure depends on the design in each order of the motion.
         for what in WheelMeasure::ALL {
             let Some(m) = solution.measured.index(&format!("w.{}", what.name())) else {
-                assert!(what.needs().goes_by_driver() && is_left_out(name, *what), "{name}: {}", what.name());
+                assert!(is_left_out(name, *what), "{name}: {}", what.name());
                 continue;
             };
             for order in 0..solution.measured.outputs[m].known.orders {
@@ -197,7 +223,9 @@ fn rates_and_accelerations_agree_with_differences_over_time() {
         let at: Vec<f64> = (1..12).map(|k| last * f64::from(k) / 12.0 + 0.0123).collect();
         file.model.times = at.iter().flat_map(|t| [t - H, *t, t + H]).collect();
         let solution = solved(&file);
-        for what in WheelMeasure::ALL.iter().filter(|m| !m.needs().goes_by_driver()) {
+        for what in
+            WheelMeasure::ALL.iter().filter(|m| !m.needs().goes_by_driver() && !is_left_out(name, **m))
+        {
             let m = solution.measured.index(&format!("w.{}", what.name())).unwrap();
             let value = |k: usize| solution.measured.value(k, m);
             for order in 1..3 {
@@ -207,7 +235,12 @@ fn rates_and_accelerations_agree_with_differences_over_time() {
                     continue;
                 }
                 assert!(largest > 1e-4, "{name}: {} has no rate of order {order}", what.name());
-                for n in 0..at.len() {
+                // What is nearly at infinity has no number.
+                let is_there = |n: &usize| (3 * n..3 * n + 3).all(|k| value(k)[0].is_finite());
+                let there: Vec<usize> = (0..at.len()).filter(is_there).collect();
+                let least = if what.needs() == WheelNeed::Planes { 8 } else { at.len() };
+                assert!(there.len() >= least, "{name}: {} has too few numbers", what.name());
+                for n in there {
                     let difference = (value(3 * n + 2)[order - 1] - value(3 * n)[order - 1]) / (2.0 * H);
                     let apart = (difference - value(3 * n + 1)[order]).abs() / largest;
                     assert!(apart < 1e-5, "{name}: {} order {order} at {}: {apart:e}", what.name(), at[n]);
@@ -231,6 +264,7 @@ fn a_right_wheel_measures_what_its_mirror_image_does() {
             WheelMeasure::SteerAngle
             | WheelMeasure::ContactY
             | WheelMeasure::FrontCentreY
+            | WheelMeasure::PlaneCentreFrontY
             | WheelMeasure::InstantAxisY => -1.0,
             _ => 1.0,
         };
@@ -255,7 +289,8 @@ fn the_wheels_of_an_axle_are_each_others_mirror_images_half_a_period_later() {
     let file = parsed(&(text("rack_steering") + AXLE));
     let solution = solved(&file);
     let half = (solution.motion.len() - 1) / 2;
-    for what in WheelMeasure::ALL.iter().filter(|m| !m.needs().goes_by_driver()) {
+    let is_there = |m: &&WheelMeasure| !m.needs().goes_by_driver() && !is_left_out("rack_steering", **m);
+    for what in WheelMeasure::ALL.iter().filter(is_there) {
         let sign = match what {
             WheelMeasure::SteerAngle | WheelMeasure::ContactY => -1.0,
             _ => 1.0,
@@ -387,6 +422,9 @@ fn slopes_are_those_of_runs_whose_driver_is_shifted() {
         let axis = ["x", "y", "z"].map(|c| value(&format!("w.instant_axis_{c}")));
         let along = w * (w.x.signum() / w.norm());
         assert!((Vec3::from(axis) - along).norm() < 1e-6, "step {k}");
+        close("w.swing_arm_front", contact.y - value("w.instant_centre_front_y"));
+        close("w.swing_arm_side", value("w.instant_centre_side_x") - contact.x);
+        close("w.motion_ratio", -value("left_motion_ratio"));
         close("w.anti_dive", 0.68 * 2.7 / 0.62 * v.x / v.z);
         close("w.anti_rise", -0.5 * 2.7 / 0.62 * difference("w.wheel_recession") / rise);
     }
@@ -457,5 +495,214 @@ fn a_live_axle_has_the_measures_of_rear_wheels() {
             value(k, "l.anti_squat")
         );
         assert!((value(k, "l.anti_lift") / lift).abs() < 1.0);
+    }
+}
+
+/// A front view in which all is plane: arms and knuckle turn about axes along x, the wheel stands at x = 0.
+const FRONT_VIEW: &str = r#"
+name = "front view"
+units = { length = "mm", angle = "deg" }
+
+[hardpoints]
+lca_inner = [0, 300, 200]
+lower_ball = [0, 700, 160]
+uca_inner = [0, 400, 430]
+upper_ball = [0, 660, 450]
+spring_top = [0, 450, 700]
+spring_foot = [0, 500, 180]
+
+[bodies]
+lca = {}
+uca = {}
+knuckle = {}
+
+[joints]
+lca_pivot = { type = "revolute", bodies = ["ground", "lca"], at = "lca_inner", axis = "x" }
+uca_pivot = { type = "revolute", bodies = ["ground", "uca"], at = "uca_inner", axis = "x" }
+lower_ball = { type = "revolute", bodies = ["lca", "knuckle"], at = "lower_ball", axis = "x" }
+upper_ball = { type = "revolute", bodies = ["uca", "knuckle"], at = "upper_ball", axis = "x" }
+
+[drivers]
+bump = { joint = "lca_pivot", law = "-8 + 16*t" }
+
+[wheels.w]
+body = "knuckle"
+centre = [0, 750, 310]
+toe = 0
+camber = -1.5
+radius = 310
+planes = [
+    { body = "lca", at = ["lca_inner", [50, 300, 200], "lower_ball"] },
+    { body = "uca", at = ["uca_inner", [50, 400, 430], "upper_ball"] },
+]
+spring = [{ body = "ground", at = "spring_top" }, { body = "lca", at = "spring_foot" }]
+measures = "all"
+
+[time]
+end = 1
+steps = 8
+"#;
+
+/// Round-off of a small linkage whose loop has redundant constraints.
+const PLANE: f64 = 1e-9;
+
+#[test]
+fn textbook_constructions_are_exact_where_all_is_plane() {
+    let file = parsed(FRONT_VIEW);
+    let solution = solved(&file);
+    let value = |k: usize, name: &str| {
+        solution.measured.value(k, solution.measured.index(&format!("w.{name}")).unwrap())[0]
+    };
+    let place = |k: usize, body: &str, [y, z]: [f64; 2]| {
+        let body = file.model.body(body).unwrap();
+        let drawn = file.model.bodies[body.0].frame.r;
+        let state = solution.motion.at(k).body(body.0);
+        let p = state.rotation * (Vec3::new(0.0, y, z) - drawn) + state.r;
+        [p.y, p.z]
+    };
+    for k in 0..solution.motion.len() {
+        // Where the lines along both arms meet: p + a u = q + b v.
+        let (p, q) = ([0.3, 0.2], [0.4, 0.43]);
+        let (l, m) = (place(k, "lca", [0.7, 0.16]), place(k, "uca", [0.66, 0.45]));
+        let (u, v) = ([l[0] - p[0], l[1] - p[1]], [m[0] - q[0], m[1] - q[1]]);
+        let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+        let way = cross([q[0] - p[0], q[1] - p[1]], v) / cross(u, v);
+        let meet = [p[0] + way * u[0], p[1] + way * u[1]];
+        let contact = [value(k, "contact_y"), value(k, "contact_z")];
+        let close = |name: &str, expected: f64| {
+            let found = value(k, name);
+            assert!((found - expected).abs() < PLANE * (1.0 + expected.abs()), "{name}: {found} {expected}");
+        };
+        for (ours, other) in [("plane_centre_front_y", meet[0]), ("plane_centre_front_z", meet[1])] {
+            close(ours, other);
+            close(&ours.replace("plane_centre", "instant_centre"), other);
+        }
+        let rise = (meet[1] - contact[1]) / (contact[0] - meet[0]) * contact[0];
+        close("roll_centre_height_planes", rise);
+        close("roll_centre_height_geometric", rise);
+        close("swing_arm_front", contact[0] - meet[0]);
+        close("camber_front", value(k, "camber"));
+        // The camber changes by one over the swing arm's length, seen from the wheel centre's height.
+        let rises = value(k, "half_track") - (-value(k, "camber")).sin() * 0.31 - meet[0];
+        close("bump_camber", -1.0 / rises);
+        // l' of the spring: the foot goes square to the arm.
+        let foot = place(k, "lca", [0.5, 0.18]);
+        let (along, arm) = ([foot[0] - 0.45, foot[1] - 0.7], [foot[0] - 0.3, foot[1] - 0.2]);
+        let length = along[0].hypot(along[1]);
+        let grows = (along[0] * -arm[1] + along[1] * arm[0]) / length;
+        // The ball joint goes the same way, and the wheel centre about the instant centre with it.
+        let centre = [contact[0] + (-value(k, "camber")).sin() * -0.31, 0.0];
+        let lever = (l[0] - meet[0]).hypot(l[1] - meet[1]);
+        let turn = (l[0] - 0.3).hypot(l[1] - 0.2) / lever * -1.0;
+        let rise = turn * (centre[0] - meet[0]);
+        assert!(
+            (value(k, "motion_ratio").abs() - (grows / rise).abs()).abs() < PLANE,
+            "{}",
+            value(k, "motion_ratio")
+        );
+        assert!(value(k, "motion_ratio") > 0.3 && value(k, "motion_ratio") < 1.0);
+    }
+}
+
+const VIRTUAL: [(&str, &str); 7] = [
+    ("virtual_caster", "caster"),
+    ("virtual_kingpin_inclination", "kingpin_inclination"),
+    ("virtual_scrub_radius", "scrub_radius"),
+    ("virtual_spindle_offset", "spindle_offset"),
+    ("virtual_caster_trail", "caster_trail"),
+    ("virtual_mechanical_trail", "mechanical_trail"),
+    ("virtual_hub_trail", "hub_trail"),
+];
+
+/// A knuckle that turns about two ball joints, or a pin, has no other steering axis than the line through them.
+#[test]
+fn a_knuckle_on_a_kingpin_steers_about_it() {
+    let of_rack = of_a_rack(AXLE)
+        .replace("body = \"left_knuckle\"\ncentre", "steer = \"rack\"\nbody = \"left_knuckle\"\ncentre");
+    let names = VIRTUAL.map(|(name, _)| format!("\"{name}\"")).join(", ");
+    let of_rack = of_rack.replacen("measures = [", &format!("measures = [{names}, "), 1);
+    // With the lower arm held, the other one stands as well.
+    let held = steered(&text("double_wishbone_4x4")).replace(
+        "point = \"wheel_centre\"\nalong = \"z\"\nlaw = \"80*sin(2*pi*t)\"",
+        "joint = \"lca_pivot\"\nlaw = \"8*sin(2*pi*t)\"",
+    );
+    for text in [text("rack_steering") + &of_rack, held] {
+        let file = parsed(&text);
+        let solution = solved(&file);
+        let index =
+            |name: &str| solution.measured.index(&format!("w.{name}")).unwrap_or_else(|| panic!("{name}"));
+        for (virtual_one, real) in VIRTUAL {
+            let (a, b) = (index(virtual_one), index(real));
+            for k in 0..solution.motion.len() {
+                let close =
+                    |x: f64, y: f64| assert!((x - y).abs() < 1e-9 * (1.0 + y.abs()), "{real}: {x} {y}");
+                close(solution.measured.value(k, a)[0], solution.measured.value(k, b)[0]);
+            }
+        }
+    }
+}
+
+/// Where the lines of two pairs of rods meet, in A and B, and that of a leg passes through B, the knuckle turns about AB while the fifth rod
+/// moves: the virtual kingpin of textbooks.
+#[test]
+fn five_links_whose_lines_meet_have_the_steering_axis_of_textbooks() {
+    let (a, b) = ([-20.0, 690.0, 520.0], [10.0, 740.0, 170.0]);
+    // A rod whose line passes through a place: its ends are a part of the way from there to its inner end.
+    let rod = |name: &str, meet: [f64; 3], inner: [f64; 3], part: f64| {
+        let outer: Vec<String> =
+            (0..3).map(|k| (meet[k] + part * (inner[k] - meet[k])).to_string()).collect();
+        format!(
+            "{name} = {{ type = \"rod\", bodies = [\"ground\", \"knuckle\"], at = [[{}, {}, {}], [{}]] }}\n",
+            inner[0],
+            inner[1],
+            inner[2],
+            outer.join(", ")
+        )
+    };
+    let text = format!(
+        r#"
+name = "virtual kingpin"
+units = {{ length = "mm", angle = "deg" }}
+bodies = {{ knuckle = {{}}, rack = {{}} }}
+[joints]
+{}{}{}{}
+tie_rod = {{ type = "rod", bodies = ["rack", "knuckle"], at = [[-150, 350, 280], [-140, 690, 270]] }}
+rack = {{ type = "translational", bodies = ["ground", "rack"], at = [-150, 350, 280], axis = "y" }}
+spring = {{ type = "leg", bodies = ["ground", "knuckle"], at = [[-30, 560, 800], [{}, {}, {}]] }}
+[drivers]
+bump = {{ joint = "spring", law = "0" }}
+rack = {{ joint = "rack", law = "20*t" }}
+[wheels.w]
+body = "knuckle"
+centre = [0, 760, 310]
+spin_axis = [0.01, 1, 0.02]
+radius = 310
+bump = "bump"
+steer = "rack"
+kingpin = [{{ body = "knuckle", at = {b:?} }}, {{ body = "knuckle", at = {a:?} }}]
+measures = "all"
+[time]
+end = 1
+steps = 4
+"#,
+        rod("upper_front", a, [150.0, 420.0, 470.0], 0.2),
+        rod("upper_rear", a, [-190.0, 430.0, 460.0], 0.3),
+        rod("lower_front", b, [220.0, 380.0, 190.0], 0.15),
+        rod("lower_rear", b, [-100.0, 360.0, 180.0], 0.1),
+        b[0] + 0.3 * (-30.0 - b[0]),
+        b[1] + 0.3 * (560.0 - b[1]),
+        b[2] + 0.3 * (800.0 - b[2]),
+    );
+    let file = parsed(&text);
+    let solution = solved(&file);
+    let value = |k: usize, name: &str| {
+        solution.measured.value(k, solution.measured.index(&format!("w.{name}")).unwrap())[0]
+    };
+    for (virtual_one, real) in VIRTUAL {
+        let (x, y) = (value(0, virtual_one), value(0, real));
+        assert!((x - y).abs() < 1e-9 * (1.0 + y.abs()), "{real}: {x} {y}");
+        // Steered, the lines meet no longer.
+        let (x, y) = (value(4, virtual_one), value(4, real));
+        assert!((x - y).abs() > 1e-6, "{real}: {x} {y}");
     }
 }

@@ -3,8 +3,8 @@
 use crate::draft::{LineDraft, PointRef, RayDraft};
 use crate::expression::Expression;
 use crate::model::{
-    AxleMeasure, BodyId, Combination, Direction, DriverId, JointId, MeasureKind, OutputSource, PointId, Ray,
-    WheelMeasure, measures,
+    AxleMeasure, BodyId, Combination, Direction, DriverId, JointId, MeasureKind, OrientationAngle,
+    OutputSource, PointId, Ray, WheelMeasure, measures,
 };
 use crate::space::Vec3;
 
@@ -55,6 +55,8 @@ pub enum FieldKind {
     Driver,
     /// The name of a body.
     Body,
+    /// One of [`OrientationAngle::WORDS`].
+    OrientationAngle,
     /// An expression over outputs.
     Expression,
 }
@@ -72,6 +74,8 @@ pub enum FieldDraft {
     Line(LineDraft),
     /// A direction to measure an angle from or to.
     Ray(RayDraft),
+    /// One of the angles that say how a body is turned.
+    Angle(OrientationAngle),
     /// An expression.
     Expression(Expression),
 }

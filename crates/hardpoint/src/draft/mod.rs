@@ -414,6 +414,13 @@ pub struct WheelDraft {
     pub kingpin: Option<[PointRef; 2]>,
     /// The name of the driver that moves it up and down; may be left out where there is only one.
     pub bump: Option<String>,
+    /// The name of the driver that steers it.
+    pub steer: Option<String>,
+    /// The planes of the lower and the upper arm: each by two pivots and a ball joint, or by a strut's top mount and another point of its
+    /// axis.
+    pub planes: Option<[Vec<PointRef>; 2]>,
+    /// The ends of its spring.
+    pub spring: Option<[PointRef; 2]>,
     /// At which end of the vehicle it is.
     pub end: Option<VehicleEnd>,
 }

@@ -27,8 +27,8 @@ use crate::constraint::Row;
 use crate::design::{BodyFixed, DesignMap};
 use crate::law::Law;
 use crate::model::{
-    AxleMeasure, BodyId, Dimension, DriverId, JointId, KnownOrders, MeasureKind, Model, OutputSource,
-    PointId, Ray, Side, VariableId, WheelId,
+    ArmPlane, AxleMeasure, BodyId, Dimension, DriverId, JointId, KnownOrders, MeasureKind, Model,
+    OutputSource, PointId, Ray, Side, VariableId, WheelId,
 };
 use crate::motion::{Motion, PassedPlace};
 use crate::number::{Dual, Jet, Rates, Real};
@@ -491,17 +491,7 @@ pub(crate) fn watched(model: &Model, topology: &Topology) -> Vec<bool> {
     for (turns, output) in turns(model, topology, &outputs).iter().zip(&outputs) {
         let (Some(Turns::Path(_)), OutputSource::Measure(m)) = (turns, output.source) else { continue };
         watched.resize(model.bodies.len(), false);
-        if let MeasureKind::Coordinate { joint, .. } = model.measures[m].kind {
-            model.joints[joint.0].bodies.iter().for_each(|b| watched[b.0] = true);
-        }
-        if let MeasureKind::Angle { from, to, .. } = &model.measures[m].kind {
-            for point in
-                [from, to].iter().filter_map(|ray| if let Ray::Between(p) = ray { Some(p) } else { None })
-            {
-                point.iter().for_each(|p| watched[model.points[p.0].body.0] = true);
-            }
-        }
-        model.directions(&model.measures[m]).iter().flatten().for_each(|(body, _)| watched[body.0] = true);
+        model.bodies_of(&model.measures[m]).iter().for_each(|body| watched[body.0] = true);
     }
     watched
 }
@@ -550,6 +540,7 @@ fn is_counted(model: &Model, output: &Output) -> bool {
     match model.measures[m].kind {
         MeasureKind::Coordinate { .. } => output.dimension == Dimension::ANGLE,
         MeasureKind::Angle { about: Some(_), .. } => true,
+        MeasureKind::Orientation { angle, .. } => angle.is_counted(),
         _ => false,
     }
 }
@@ -557,10 +548,11 @@ fn is_counted(model: &Model, output: &Output) -> bool {
 /// One turn, rad.
 const TURN: f64 = 2.0 * std::f64::consts::PI;
 
-/// The angle nearest to another that is a whole number of turns from this one.
+/// The angle nearest to another that is a whole number of turns from this one; this one, where the other has no number.
 fn turned(angle: f64, near: f64) -> f64 {
     // angle + 2 pi k,  k the whole number nearest to (near - angle) / 2 pi
-    angle + TURN * ((near - angle) / TURN).round()
+    let turns = ((near - angle) / TURN).round();
+    if turns.is_nan() { angle } else { angle + TURN * turns }
 }
 
 /// An angle on its way: its value with all turns, its rate, and when.
@@ -723,6 +715,13 @@ impl<'a, T: Real> Instant<'a, T> {
                 };
                 self.whole_turns.get(k).map_or(within, |turns| within + *turns)
             }
+            MeasureKind::Orientation { body, angle, relative_to } => {
+                // A_j, or A_i^T A_j
+                let rot = self.poses[body.0].rot;
+                let rot = relative_to.map_or(rot, |i| self.poses[i.0].rot.transpose() * rot);
+                let within = angle.angles.of(rot)[angle.place];
+                self.whole_turns.get(k).map_or(within, |turns| within + *turns)
+            }
             MeasureKind::TransmissionAngle { from, to } => {
                 let [a, b] = self.rays(k, [from, to]);
                 // atan2(abs(a x b), abs(a . b)): between lines, 0 to 90 deg
@@ -829,6 +828,24 @@ impl<'a, T: Real> Instant<'a, T> {
             radius: T::constant(wheel.radius),
             side: T::constant(wheel.side.sign()),
             kingpin: wheel.kingpin.map(|points| points.map(point)),
+            planes: wheel.planes.map(|planes| {
+                planes.map(|plane| match plane {
+                    // (B - A) x (C - A),    B - A
+                    ArmPlane::Through(points) => {
+                        let [a, b, c] = points.map(point);
+                        [(b - a).cross(c - a), a]
+                    }
+                    ArmPlane::Square(points) => {
+                        let [a, b] = points.map(point);
+                        [b - a, a]
+                    }
+                })
+            }),
+            // abs(P_2 - P_1)
+            spring: wheel.spring.map(|ends| {
+                let [a, b] = ends.map(point);
+                (b - a).norm()
+            }),
         }
     }
 

@@ -4,7 +4,7 @@
 //! changes with the design is the second derivative along both.
 
 use crate::design::{BodyFixed, DesignMap};
-use crate::model::{AxleMeasure, DriverId, GROUND, MeasureKind, Model, VariableId, WheelId};
+use crate::model::{AxleMeasure, DriverId, GROUND, MeasureKind, Model, VariableId, WheelId, WheelNeed};
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{PairDirection, Seconds};
@@ -132,15 +132,15 @@ impl<'a> Slopes<'a> {
 
 /// The drivers that a measure goes by, if it does: those of both wheels of an axle may differ.
 fn driver_of(model: &Model, k: usize) -> Option<[DriverId; 2]> {
-    let of_wheel = |wheel: WheelId| model.wheels[wheel.0].bump;
+    let of_wheel = |wheel: WheelId, need: WheelNeed| model.wheels[wheel.0].driver(need);
     if !model.goes_by_driver(k) {
         return None;
     }
     match model.measures[k].kind {
         MeasureKind::Slope { driver, .. } => Some([driver; 2]),
-        MeasureKind::Wheel { wheel, .. } => of_wheel(wheel).map(|d| [d; 2]),
+        MeasureKind::Wheel { wheel, what } => of_wheel(wheel, what.needs()).map(|d| [d; 2]),
         MeasureKind::Axle { axle, .. } => {
-            let [left, right] = model.axles[axle.0].wheels.map(of_wheel);
+            let [left, right] = model.axles[axle.0].wheels.map(|wheel| of_wheel(wheel, WheelNeed::Bump));
             left.zip(right).map(|(l, r)| [l, r])
         }
         _ => None,

@@ -26,6 +26,10 @@ pub(super) struct WheelAt<T> {
     pub side: T,
     /// A lower and an upper point of the axis that it steers about.
     pub kingpin: Option<[Vec3<T>; 2]>,
+    /// Of the lower and the upper arm: a normal of its plane, of any length, and a point in it.
+    pub planes: Option<[[Vec3<T>; 2]; 2]>,
+    /// Length of the spring.
+    pub spring: Option<T>,
 }
 
 /// `atan2(e_x, s e_y)` of the outboard spin axis e of a wheel on side s.
@@ -44,6 +48,8 @@ impl<T: Real> WheelAt<T> {
         match what {
             WheelMeasure::Toe => toe(self.spin_axis, self.side),
             WheelMeasure::Camber => camber(self.spin_axis),
+            // -atan2(e_z, s e_y)
+            WheelMeasure::CamberFront => -self.spin_axis.z.atan2(self.side * self.spin_axis.y),
             // atan2(z . (f_0 x f), f_0 . f)
             WheelMeasure::SteerAngle => {
                 let (d, f) = (design().forward(), self.forward());
@@ -83,6 +89,16 @@ impl<T: Real> WheelAt<T> {
             WheelMeasure::ContactX => self.contact().x,
             WheelMeasure::ContactY => self.contact().y,
             WheelMeasure::ContactZ => self.contact().z,
+            // C + m / m_0 of the lines in which the planes x = C_x, or y = C_y, cut those of the arms
+            WheelMeasure::PlaneCentreFrontY => self.contact().y + self.planes_meet(|n| n.y).beside(),
+            WheelMeasure::PlaneCentreFrontZ => self.contact().z + self.planes_meet(|n| n.y).above(),
+            WheelMeasure::PlaneCentreSideX => self.contact().x + self.planes_meet(|n| n.x).beside(),
+            WheelMeasure::PlaneCentreSideZ => self.contact().z + self.planes_meet(|n| n.x).above(),
+            // The line from C to there meets y = 0 at -C_y m_z / m_y above C, also where it is at infinity.
+            WheelMeasure::RollCentreHeightPlanes => {
+                let meet = self.planes_meet(|n| n.y);
+                -(self.contact().y * meet.z / meet.aside)
+            }
             WheelMeasure::BumpSteer
             | WheelMeasure::BumpCamber
             | WheelMeasure::BumpRecession
@@ -96,11 +112,31 @@ impl<T: Real> WheelAt<T> {
             | WheelMeasure::InstantAxisX
             | WheelMeasure::InstantAxisY
             | WheelMeasure::InstantAxisZ
+            | WheelMeasure::SwingArmFront
+            | WheelMeasure::SwingArmSide
+            | WheelMeasure::MotionRatio
+            | WheelMeasure::VirtualCaster
+            | WheelMeasure::VirtualKingpinInclination
+            | WheelMeasure::VirtualScrubRadius
+            | WheelMeasure::VirtualSpindleOffset
+            | WheelMeasure::VirtualCasterTrail
+            | WheelMeasure::VirtualMechanicalTrail
+            | WheelMeasure::VirtualHubTrail
             | WheelMeasure::AntiDive
             | WheelMeasure::AntiLift
             | WheelMeasure::AntiSquat
             | WheelMeasure::AntiRise => T::constant(f64::NAN),
         }
+    }
+
+    /// Where the planes of the arms meet in a view that shows z and another axis, from the contact point, in its plane.
+    fn planes_meet(&self, seen: impl Fn(Vec3<T>) -> T) -> Meet<T> {
+        let planes = self.planes.expect("a measure that needs planes is of a wheel that has them");
+        let contact = self.contact();
+        // n_a a + n_z z = n . (P - C) of both,  solved by Cramer's rule
+        let [(a, z, d), (b, y, e)] = planes.map(|[n, p]| (seen(n), n.z, n.dot(p - contact)));
+        let lengths = planes.map(|[n, _]| n.norm());
+        Meet { aside: d * y - z * e, z: a * e - d * b, by: a * y - z * b, lengths: lengths[0] * lengths[1] }
     }
 
     /// Outboard along the ground: the horizontal part of the spin axis, of unit length.
@@ -152,7 +188,32 @@ impl<T: Real> WheelAt<T> {
     }
 }
 
-/// A wheel while the driver that moves it up and down moves alone: derivatives are by that driver.
+/// Where two lines meet in a plane: `aside / by` and `z / by` from a place.
+struct Meet<T> {
+    aside: T,
+    z: T,
+    by: T,
+    /// Product of the lengths of both normals.
+    lengths: T,
+}
+
+impl<T: Real> Meet<T> {
+    fn beside(&self) -> T {
+        self.aside / self.apart()
+    }
+
+    fn above(&self) -> T {
+        self.z / self.apart()
+    }
+
+    /// For division; NaN where lines that are nearly parallel meet at infinity.
+    fn apart(&self) -> T {
+        let limit = self.lengths * T::constant(AT_INFINITY);
+        if self.by.abs().exceeds(limit) { self.by } else { T::constant(f64::NAN) }
+    }
+}
+
+/// A wheel while the driver that moves it up and down, or the one that steers it, moves alone: derivatives are by that driver.
 pub(super) struct TravellingWheel<T> {
     pub wheel: WheelAt<Dual<T>>,
     /// The motion of the body that it turns on.
@@ -170,6 +231,11 @@ impl<T: Real> TravellingWheel<T> {
         // Of the carrier's point that is at C now.
         let v = self.carrier.at(c);
         let side = wheel.side.v;
+        if let Some(what) = what.of_kingpin() {
+            return self
+                .about_its_screw(w, v, c)
+                .measure(what, || unreachable!("no kingpin's measure counts"));
+        }
         match what {
             // toe' / W_z',    camber' / W_z',    -W_x' / W_z',    s C_y' / W_z'
             WheelMeasure::BumpSteer => toe(wheel.spin_axis, wheel.side).d / rise,
@@ -185,6 +251,14 @@ impl<T: Real> TravellingWheel<T> {
             // ... in x and z at P_y = C_y:  v_x + w_y (P_z - C_z) = 0,  v_z - w_y (P_x - C_x) = 0
             WheelMeasure::SideCentreX => c.x + v.z / seen(w.y, w),
             WheelMeasure::SideCentreZ => c.z - v.x / seen(w.y, w),
+            // s (C_y - P_y),  P_x - C_x  of these
+            WheelMeasure::SwingArmFront => side * v.z / seen(w.x, w),
+            WheelMeasure::SwingArmSide => v.z / seen(w.y, w),
+            // -l' / W_z'
+            WheelMeasure::MotionRatio => {
+                let spring = wheel.spring.expect("a motion ratio is of a wheel that has a spring");
+                -(spring.d / rise)
+            }
             // w / abs(w), times the sign of w_x
             WheelMeasure::InstantAxisX => w.x.abs() / w.norm(),
             WheelMeasure::InstantAxisY => w.y * w.x / (w.x.abs() * w.norm()),
@@ -195,6 +269,26 @@ impl<T: Real> TravellingWheel<T> {
             WheelMeasure::AntiSquat => -(wheel.centre.x.d / rise) * support::<T>(what, vehicle),
             WheelMeasure::AntiRise => wheel.centre.x.d / rise * support::<T>(what, vehicle),
             _ => T::constant(f64::NAN),
+        }
+    }
+}
+
+impl<T: Real> TravellingWheel<T> {
+    /// The wheel where it is, with the axis of the screw that its carrier moves about as its kingpin: the carrier turns by w, and v is the
+    /// velocity of its point that is at c.
+    fn about_its_screw(&self, w: Vec3<T>, v: Vec3<T>, c: Vec3<T>) -> WheelAt<T> {
+        let WheelAt { centre, spin_axis, radius, side, .. } = &self.wheel;
+        // P = C + w x v / w^2 moves along w alone;  k = w / w_z points up
+        let foot = c + w.cross(v) * (T::one() / w.dot(w));
+        let up = w * (T::one() / seen(w.z, w));
+        WheelAt {
+            centre: centre.map(|x| x.v),
+            spin_axis: spin_axis.map(|x| x.v),
+            radius: radius.v,
+            side: side.v,
+            kingpin: Some([foot, foot + up]),
+            planes: None,
+            spring: None,
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::model::{
     AxleId, AxleMeasure, BodyId, Direction, DriverId, HardpointId, JointId, Model, PointId, WheelId,
     WheelMeasure,
 };
-use crate::space::{Real, Vec3};
+use crate::space::{Angles, Real, Vec3};
 
 /// A number that follows from the motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,6 +79,19 @@ macro_rules! measures {
             None => format!("angle between {} and {}", w.ray(from), w.ray(to)),
             Some(n) => format!("angle from {} to {} about {}", w.ray(from), w.ray(to), (w.direction)(*n)),
         };
+
+    /// How a body is turned, as one of the angles that say it.
+    Orientation "orientation" {
+        /// The body's name.
+        body: String => BodyId,
+        /// Which angle.
+        angle: OrientationAngle => OrientationAngle,
+        /// The body whose frame it is turned against. Default: the global axes.
+        relative_to: Option<String> => Option<BodyId>,
+    } |_, w| Dimension::ANGLE, POSITIONS, match relative_to {
+        Some(other) => format!("{} of `{}` relative to `{}`", angle.words(), w.body(*body), w.body(*other)),
+        None => format!("{} of `{}`", angle.words(), w.body(*body)),
+    };
 
     /// Angle between two lines, 0 to 90 deg.
     TransmissionAngle "transmission_angle" {
@@ -301,7 +314,14 @@ impl OnBodies for Ray {
     }
 }
 
+impl OnBodies for Option<BodyId> {
+    fn bodies(&self, _: &Model) -> Vec<BodyId> {
+        self.iter().copied().collect()
+    }
+}
+
 impl OnBodies for usize {}
+impl OnBodies for OrientationAngle {}
 impl OnBodies for Vec3 {}
 impl OnBodies for Option<Vec3> {}
 impl OnBodies for Direction {}
@@ -393,6 +413,55 @@ pub enum Ray {
         /// Where it points.
         axis: Direction,
     },
+}
+
+/// One of the angles that say how a body is turned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OrientationAngle {
+    /// Of which three it is one.
+    pub angles: Angles,
+    /// Which of them, 0 to 2.
+    pub place: usize,
+}
+
+impl OrientationAngle {
+    /// As model files write them, and what they are; all three of each kind in their order.
+    pub const WORDS: &[(&str, &str)] = &[
+        ("euler_1", "The first 3-1-3 Euler angle, about z."),
+        ("euler_2", "The second one, about the new x: 0 to 180 deg between both z axes."),
+        ("euler_3", "The third one, about the new z."),
+        ("cardan_1", "The first Cardan angle, about x."),
+        ("cardan_2", "The second one, about the new y: -90 to 90 deg."),
+        ("cardan_3", "The third one, about the new z."),
+        ("roll", "About the body's x, after yaw and pitch."),
+        ("pitch", "About its y, after yaw: -90 to 90 deg, positive where x points down."),
+        ("yaw", "About z."),
+    ];
+
+    /// That of a place in [`WORDS`](Self::WORDS).
+    pub fn at(word: usize) -> Self {
+        let angles = [Angles::Euler, Angles::Cardan, Angles::RollPitchYaw][word / 3];
+        Self { angles, place: word % 3 }
+    }
+
+    /// Whether it is counted through whole turns; the middle one of three never makes one.
+    pub(crate) fn is_counted(self) -> bool {
+        self.place != 1
+    }
+
+    fn words(self) -> &'static str {
+        match (self.angles, self.place) {
+            (Angles::Euler, 0) => "first Euler angle",
+            (Angles::Euler, 1) => "second Euler angle",
+            (Angles::Euler, _) => "third Euler angle",
+            (Angles::Cardan, 0) => "first Cardan angle",
+            (Angles::Cardan, 1) => "second Cardan angle",
+            (Angles::Cardan, _) => "third Cardan angle",
+            (Angles::RollPitchYaw, 0) => "roll",
+            (Angles::RollPitchYaw, 1) => "pitch",
+            (Angles::RollPitchYaw, _) => "yaw",
+        }
+    }
 }
 
 /// A formula over other outputs.

@@ -24,13 +24,15 @@ pub use curve::{Curve, CurvePoint};
 pub use formula::{Formula, NamedNumber, Source, Target};
 pub use held::Held;
 pub(crate) use measure::measures;
-pub use measure::{Combination, Dimension, KnownOrders, Measure, MeasureKind, OutputSource, Ray};
+pub use measure::{
+    Combination, Dimension, KnownOrders, Measure, MeasureKind, OrientationAngle, OutputSource, Ray,
+};
 pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
 pub use optimization::{Goal, Limit, Limited, Optimization};
 pub use sweeping::{SweepMethod, SweepRange, Sweeping};
 pub use tolerancing::{Allocating, AllocationRule, Correlation, Scatter, Tolerance, Tolerancing};
-pub use wheel::{Axle, AxleMeasure, Side, Vehicle, VehicleEnd, Wheel, WheelMeasure, WheelNeed};
+pub use wheel::{ArmPlane, Axle, AxleMeasure, Side, Vehicle, VehicleEnd, Wheel, WheelMeasure, WheelNeed};
 
 use crate::constraint::MarkerPair;
 use crate::joint::{CoordinateType, JointType, Need, Quantity};

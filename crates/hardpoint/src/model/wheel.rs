@@ -21,8 +21,40 @@ pub struct Wheel {
     pub kingpin: Option<[PointId; 2]>,
     /// The driver that moves it up and down.
     pub bump: Option<DriverId>,
+    /// The driver that steers it.
+    pub steer: Option<DriverId>,
+    /// The planes of the lower and the upper arm.
+    pub planes: Option<[ArmPlane; 2]>,
+    /// The ends of its spring.
+    pub spring: Option<[PointId; 2]>,
     /// At which end of the vehicle it is.
     pub end: Option<VehicleEnd>,
+}
+
+impl Wheel {
+    /// The driver that moves alone where a measure needs this.
+    pub fn driver(&self, need: WheelNeed) -> Option<DriverId> {
+        if need == WheelNeed::Steer { self.steer } else { self.bump }
+    }
+}
+
+/// The plane in which an arm lets its outer joint go, as textbooks construct instant centres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArmPlane {
+    /// Of an arm: through its two pivots and its ball joint.
+    Through([PointId; 3]),
+    /// Of a strut: through its top mount, the first point, square to the way to the second one.
+    Square([PointId; 2]),
+}
+
+impl ArmPlane {
+    /// The points that it goes by.
+    pub fn points(&self) -> &[PointId] {
+        match self {
+            Self::Through(points) => points,
+            Self::Square(points) => points,
+        }
+    }
 }
 
 /// Two wheels side by side.
@@ -53,7 +85,7 @@ impl Vehicle {
         match need {
             WheelNeed::Braking(_) => Some(("front_brake_share", self.front_brake_share)),
             WheelNeed::Driving(_) => Some(("front_drive_share", self.front_drive_share)),
-            WheelNeed::Nothing | WheelNeed::Kingpin | WheelNeed::Bump => None,
+            _ => None,
         }
     }
 
@@ -93,8 +125,14 @@ pub enum WheelNeed {
     Nothing,
     /// The kingpin.
     Kingpin,
+    /// The planes of the arms.
+    Planes,
     /// The driver that moves the wheel up and down.
     Bump,
+    /// That, and the spring.
+    Spring,
+    /// The driver that steers the wheel.
+    Steer,
     /// That, and what part of the braking force its end of the vehicle takes.
     Braking(VehicleEnd),
     /// That, and what part of the driving force its end of the vehicle gives.
@@ -106,13 +144,13 @@ impl WheelNeed {
     pub fn end(self) -> Option<VehicleEnd> {
         match self {
             Self::Braking(end) | Self::Driving(end) => Some(end),
-            Self::Nothing | Self::Kingpin | Self::Bump => None,
+            _ => None,
         }
     }
 
     /// Whether the measure says what happens while one driver alone moves.
     pub fn goes_by_driver(self) -> bool {
-        !matches!(self, Self::Nothing | Self::Kingpin)
+        !matches!(self, Self::Nothing | Self::Kingpin | Self::Planes)
     }
 }
 
@@ -195,6 +233,8 @@ wheel_measures! {
     Toe "toe" ANGLE WheelNeed::Nothing;
     /// Lean of the wheel's plane; positive where its top is outboard.
     Camber "camber" ANGLE WheelNeed::Nothing;
+    /// Lean of the wheel's plane as the vehicle's front view shows it; positive where its top is outboard.
+    CamberFront "camber_front" ANGLE WheelNeed::Nothing;
     /// Heading of the wheel's plane since the design configuration; positive to the left.
     SteerAngle "steer_angle" ANGLE WheelNeed::Nothing;
     /// Lean of the kingpin in side view; positive where its top is rearward.
@@ -251,6 +291,36 @@ wheel_measures! {
     InstantAxisY "instant_axis_y" NUMBER WheelNeed::Bump;
     /// z component of the unit vector along the instant axis of the wheel carrier, which points forward.
     InstantAxisZ "instant_axis_z" NUMBER WheelNeed::Bump;
+    /// How far inboard of the contact point the instant centre in front view is.
+    SwingArmFront "swing_arm_front" LENGTH WheelNeed::Bump;
+    /// How far in front of the contact point the instant centre in side view is.
+    SwingArmSide "swing_arm_side" LENGTH WheelNeed::Bump;
+    /// How much shorter the spring gets per wheel travel.
+    MotionRatio "motion_ratio" NUMBER WheelNeed::Spring;
+    /// Global y of where the planes of both arms meet in front view, at the contact point's x.
+    PlaneCentreFrontY "plane_centre_front_y" LENGTH WheelNeed::Planes;
+    /// Global z of where the planes of both arms meet in front view, at the contact point's x.
+    PlaneCentreFrontZ "plane_centre_front_z" LENGTH WheelNeed::Planes;
+    /// Global x of where the planes of both arms meet in side view, at the contact point's y.
+    PlaneCentreSideX "plane_centre_side_x" LENGTH WheelNeed::Planes;
+    /// Global z of where the planes of both arms meet in side view, at the contact point's y.
+    PlaneCentreSideZ "plane_centre_side_z" LENGTH WheelNeed::Planes;
+    /// Height of the roll centre above the ground, from where the planes of both arms meet in front view.
+    RollCentreHeightPlanes "roll_centre_height_planes" LENGTH WheelNeed::Planes;
+    /// Lean of the virtual steering axis in side view; positive where its top is rearward.
+    VirtualCaster "virtual_caster" ANGLE WheelNeed::Steer;
+    /// Lean of the virtual steering axis in front view; positive where its top is inboard.
+    VirtualKingpinInclination "virtual_kingpin_inclination" ANGLE WheelNeed::Steer;
+    /// How far outboard of the virtual steering axis the contact point is, on the ground.
+    VirtualScrubRadius "virtual_scrub_radius" LENGTH WheelNeed::Steer;
+    /// How far outboard of the virtual steering axis the wheel centre is, at its height.
+    VirtualSpindleOffset "virtual_spindle_offset" LENGTH WheelNeed::Steer;
+    /// How far behind the virtual steering axis the contact point is, on the ground.
+    VirtualCasterTrail "virtual_caster_trail" LENGTH WheelNeed::Steer;
+    /// The same square to the virtual steering axis, in the wheel's side view.
+    VirtualMechanicalTrail "virtual_mechanical_trail" LENGTH WheelNeed::Steer;
+    /// How far in front of the virtual steering axis the wheel centre is, at its height.
+    VirtualHubTrail "virtual_hub_trail" LENGTH WheelNeed::Steer;
     /// Part of the braking dive that the front suspension's geometry takes, 1 for all of it; brakes at the wheel.
     AntiDive "anti_dive" NUMBER WheelNeed::Braking(VehicleEnd::Front);
     /// Part of the braking lift that the rear suspension's geometry takes, 1 for all of it; brakes at the wheel.
@@ -284,6 +354,20 @@ impl WheelMeasure {
     /// Whether it needs the wheel's kingpin.
     pub fn needs_kingpin(self) -> bool {
         self.needs() == WheelNeed::Kingpin
+    }
+
+    /// Of a virtual steering axis, what the same is of a kingpin.
+    pub(crate) fn of_kingpin(self) -> Option<Self> {
+        Some(match self {
+            Self::VirtualCaster => Self::Caster,
+            Self::VirtualKingpinInclination => Self::KingpinInclination,
+            Self::VirtualScrubRadius => Self::ScrubRadius,
+            Self::VirtualSpindleOffset => Self::SpindleOffset,
+            Self::VirtualCasterTrail => Self::CasterTrail,
+            Self::VirtualMechanicalTrail => Self::MechanicalTrail,
+            Self::VirtualHubTrail => Self::HubTrail,
+            _ => return None,
+        })
     }
 }
 

@@ -1,4 +1,4 @@
-//! 3-1-3 Euler angles, for input and output only: stored orientations have no singularity.
+//! Orientations as three angles, for input and output only: stored orientations have no singularity.
 
 use crate::number::Real;
 
@@ -32,6 +32,62 @@ pub fn euler_313_from_rotation(c: Mat3) -> [f64; 3] {
     [h.x.atan2(-h.y), s2.atan2(h.z), f.z.atan2(g.z)]
 }
 
+/// Three turns one after the other, each about an axis that the turns before it have carried along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Angles {
+    /// 3-1-3 Euler angles: about z, the new x, the new z.
+    Euler,
+    /// Cardan angles: about x, the new y, the new z.
+    Cardan,
+    /// Roll, pitch and yaw: the last one first, yaw about z, pitch about the new y, roll about the new x.
+    RollPitchYaw,
+}
+
+/// Where the first turn and the last one are about axes that are nearer to one line than this, as a sine, only their sum or difference
+/// is known: a thousandth of a degree moves them by a whole turn.
+const SAME_AXIS: f64 = 1e-6;
+
+impl Angles {
+    /// The rotation with these angles, rad.
+    pub fn rotation<T: Real>(self, angles: [T; 3]) -> Mat3<T> {
+        let [x, y, z] = Vec3::AXES;
+        let [a, b, c] = angles;
+        match self {
+            // Rz(t1) Rx(t2) Rz(t3)                                                                             (paper 2.2)
+            Self::Euler => rotation_from_euler_313(angles),
+            // Rx(a) Ry(b) Rz(c)
+            Self::Cardan => Mat3::about(x, a) * Mat3::about(y, b) * Mat3::about(z, c),
+            // Rz(yaw) Ry(pitch) Rx(roll)
+            Self::RollPitchYaw => Mat3::about(z, c) * Mat3::about(y, b) * Mat3::about(x, a),
+        }
+    }
+
+    /// The angles of a rotation, rad: the first one and the last one in (-pi, pi], the middle one in [0, pi] of Euler's and in
+    /// [-pi/2, pi/2] of the others. NaN where only the sum or difference of the first and the last is known.
+    pub fn of<T: Real>(self, rotation: Mat3<T>) -> [T; 3] {
+        let [f, g, h] = rotation.cols;
+        let length = |a: T, b: T| (a * a + b * b).sqrt();
+        let (angles, apart) = match self {
+            // h = (s1 s2, -c1 s2, c2),    (f_z, g_z) = (s2 s3, s2 c3)
+            Self::Euler => {
+                let s2 = length(h.x, h.y);
+                ([h.x.atan2(-h.y), s2.atan2(h.z), f.z.atan2(g.z)], s2)
+            }
+            // (f_x, g_x, h_x) = (cb cc, -cb sc, sb),    (h_y, h_z) = (-sa cb, ca cb)
+            Self::Cardan => {
+                let cb = length(f.x, g.x);
+                ([(-h.y).atan2(h.z), h.x.atan2(cb), (-g.x).atan2(f.x)], cb)
+            }
+            // f = (cy cp, sy cp, -sp),    (g_z, h_z) = (cp sr, cp cr)
+            Self::RollPitchYaw => {
+                let cp = length(f.x, f.y);
+                ([g.z.atan2(h.z), (-f.z).atan2(cp), f.y.atan2(f.x)], cp)
+            }
+        };
+        if apart.exceeds(T::constant(SAME_AXIS)) { angles } else { [T::constant(f64::NAN); 3] }
+    }
+}
+
 /// The rotation vector rate `R(theta) U` of the Euler angle rates `u` (paper Eqs. 3.7 to 3.10).
 ///
 /// The second column of the paper's Eq. 3.8 is misprinted; `(c1, s1, 0)` is right. R is singular
@@ -59,6 +115,35 @@ mod tests {
                 assert!((c.cols[k] - back.cols[k]).norm() < 1e-12, "{theta:?}");
             }
         }
+    }
+
+    #[test]
+    fn all_angles_round_trip() {
+        for all in [Angles::Euler, Angles::Cardan, Angles::RollPitchYaw] {
+            for angles in [[0.3, 0.7, -1.1], [2.9, 1.5, 0.2], [-3.0, 0.1, 2.0]] {
+                let back = all.of(all.rotation(angles));
+                for k in 0..3 {
+                    assert!((angles[k] - back[k]).abs() < 1e-12, "{all:?} {angles:?} {back:?}");
+                }
+            }
+            // Where two turns are about one axis, there are none.
+            let locked = if all == Angles::Euler { 0.0 } else { std::f64::consts::FRAC_PI_2 };
+            assert!(all.of(all.rotation([0.3, locked, -1.1])).iter().all(|x| x.is_nan()), "{all:?}");
+        }
+    }
+
+    #[test]
+    fn each_angle_turns_about_its_axis() {
+        // A car that heads to the left by 30 deg, then noses down by 20 deg: its own x axis says both.
+        let (yaw, pitch) = (30f64.to_radians(), 20f64.to_radians());
+        let x = Angles::RollPitchYaw.rotation([0.4, pitch, yaw]).cols[0];
+        let expected = Vec3::new(pitch.cos() * yaw.cos(), pitch.cos() * yaw.sin(), -pitch.sin());
+        assert!((x - expected).norm() < 1e-15);
+        // Of a universal joint whose input turns about x and whose pins are y and z, these are Cardan angles: z ends up where the first two
+        // take it.
+        let z = Angles::Cardan.rotation([yaw, pitch, 0.4]).cols[2];
+        let expected = Vec3::new(pitch.sin(), -yaw.sin() * pitch.cos(), yaw.cos() * pitch.cos());
+        assert!((z - expected).norm() < 1e-15);
     }
 
     #[test]

@@ -10,7 +10,7 @@ mod quat;
 mod twist;
 mod vec3;
 
-pub use euler::{euler_313_from_rotation, euler_rates, rotation_from_euler_313};
+pub use euler::{Angles, euler_313_from_rotation, euler_rates, rotation_from_euler_313};
 pub use mat3::Mat3;
 pub use pose::Pose;
 pub use quat::Quat;

@@ -116,6 +116,15 @@ fn all_measures_of_a_wheel_have_the_same_gradients_where_variables_move_its_own_
         side: None,
         kingpin: Some([on_knuckle("low"), on_knuckle("up")]),
         bump: None,
+        steer: None,
+        planes: Some([
+            ["hub", "low", "up"].map(on_knuckle).to_vec(),
+            vec![
+                PointRef::On { body: "uca".into(), at: at("up") },
+                PointRef::On { body: "uca".into(), at: at("hub") },
+            ],
+        ]),
+        spring: None,
         end: None,
     });
     let of_wheel = |&what: &WheelMeasure| {

@@ -7,7 +7,7 @@ use crate::draft::{
 use crate::expression::Expression;
 use crate::model::{
     AxleMeasure, BodyId, CaseId, Combination, Dimension, Direction, DriverId, JointId, KnownOrders, Measure,
-    MeasureKind, Metric, OutputSource, PointId, Ray, Reduction, WheelMeasure,
+    MeasureKind, Metric, OrientationAngle, OutputSource, PointId, Ray, Reduction, WheelMeasure,
 };
 use crate::space::Vec3;
 
@@ -390,6 +390,11 @@ field!(Direction, Line, Line: LineDraft, |line, key, c| Some(c.check.line(line, 
 field!(Ray, Ray, Ray: RayDraft, |ray, key, c| c.check.ray(ray, c.owner, c.here, key));
 field!(OutputSource, Output, Name: String, |name, key, c| c.check.output(name, c.here.key(key)));
 field!(BodyId, Body, Name: String, |name, key, c| c.check.body(name, c.here.key(key)));
+field!(Option<BodyId>, Body, Name: Option<String>, may |name, key, c| match name {
+    Some(name) => BodyId::resolve(name, key, c).map(Some),
+    None => Some(None),
+});
+field!(OrientationAngle, OrientationAngle, Angle: OrientationAngle, |angle, _key, _c| Some(*angle));
 field!(DriverId, Driver, Name: Option<String>, may |name, _key, c| {
     c.check.driver_or_only(name.as_deref(), c.owner, c.here)
 });

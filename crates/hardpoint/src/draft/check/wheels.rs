@@ -2,8 +2,8 @@
 
 use crate::draft::{AxleDraft, PointRef, Section, WheelDraft, WheelSpinDraft};
 use crate::model::{
-    Axle, AxleId, AxleMeasure, BodyId, BodyPoint, Direction, DriverId, HardpointId, MeasureKind, PointId,
-    Side, VehicleEnd, Wheel, WheelId, WheelMeasure,
+    ArmPlane, Axle, AxleId, AxleMeasure, BodyId, BodyPoint, Direction, DriverId, HardpointId, MeasureKind,
+    PointId, Side, VehicleEnd, Wheel, WheelId, WheelMeasure, WheelNeed,
 };
 use crate::space::Vec3;
 
@@ -84,7 +84,7 @@ impl Checker<'_> {
             self.model.axles[axle.0].wheels.into_iter().find(|w| self.model.wheels[w.0].bump.is_none());
         if let Some(wheel) = unmoved.filter(|_| what.goes_by_driver()) {
             let wheel = self.model.wheels[wheel.0].name.clone();
-            self.needs_bump(what.name(), &wheel, here);
+            self.needs_driver(what.name(), &wheel, WheelNeed::Bump, here);
             return None;
         }
         Some(MeasureKind::Axle { axle, what })
@@ -94,15 +94,19 @@ impl Checker<'_> {
         self.draft.unread.any(Section::Vehicle, 0) || self.lost("vehicle")
     }
 
-    fn needs_bump(&mut self, what: &str, wheel: &str, here: Here) {
+    fn needs_driver(&mut self, what: &str, wheel: &str, need: WheelNeed, here: Here) {
         if self.lost("driver") {
             return;
         }
         let drivers: Vec<String> = self.draft.drivers.iter().map(|d| format!("`{}`", d.name)).collect();
-        let message = format!("`{what}` needs to know which driver moves wheel `{wheel}` up and down");
+        let (does, key) = match need {
+            WheelNeed::Steer => (format!("steers wheel `{wheel}`"), "steer"),
+            _ => (format!("moves wheel `{wheel}` up and down"), "bump"),
+        };
+        let message = format!("`{what}` needs to know which driver {does}");
         self.fault("HP0232", here.key("type"), message)
             .note(format!("drivers: {}", drivers.join(", ")))
-            .help("add `bump = DRIVER` to the wheel");
+            .help(format!("add `{key} = DRIVER` to the wheel"));
     }
 
     pub(super) fn wheels(&mut self) {
@@ -119,8 +123,11 @@ impl Checker<'_> {
     fn one_wheel(&mut self, w: &WheelDraft, here: Here) -> Option<Wheel> {
         let faults = self.faults.len();
         let body = self.body(&w.body, here.key("body"));
-        let [centre, radius, spin, kingpin, side, bump] =
-            ["centre", "radius", "spin_axis", "kingpin", "side", "bump"].map(|key| !self.unread(here, key));
+        let [centre, radius, spin, side, bump] =
+            ["centre", "radius", "spin_axis", "side", "bump"].map(|key| !self.unread(here, key));
+        if ["kingpin", "steer", "planes", "spring"].into_iter().any(|key| self.unread(here, key)) {
+            return None;
+        }
         let centre = if centre { self.place(&w.centre, &w.name, here.key("centre")) } else { None };
         if radius && !(w.radius > 0.0 && w.radius.is_finite()) {
             self.fault(
@@ -134,8 +141,25 @@ impl Checker<'_> {
         let spin_axis = if spin { self.spin_axis(w, side, here) } else { None };
         let kingpin = match &w.kingpin {
             Some(points) => Some(self.kingpin(w, points, here)?),
-            None if kingpin => None,
-            None => return None,
+            None => None,
+        };
+        let planes = match &w.planes {
+            Some([lower, upper]) => {
+                let (lower, upper) = (self.arm_plane(w, lower, 0, here), self.arm_plane(w, upper, 1, here));
+                Some([lower?, upper?])
+            }
+            None => None,
+        };
+        let spring = match &w.spring {
+            Some(ends) => Some(self.spring(w, ends, here)?),
+            None => None,
+        };
+        let steer = match &w.steer {
+            Some(name) => {
+                let names = self.draft.drivers.iter().map(|d| d.name.as_str());
+                Some(self.find("driver", name, here.key("steer"), names).map(DriverId)?)
+            }
+            None => None,
         };
         let bump = match &w.bump {
             None if !bump => return None,
@@ -150,7 +174,8 @@ impl Checker<'_> {
         self.model.points.push(BodyPoint { name: w.name.clone(), body, at, unnamed: true });
         let centre = PointId(self.model.points.len() - 1);
         let (name, radius, end) = (w.name.clone(), w.radius, w.end);
-        let wheel = Wheel { name, body, centre, spin_axis, radius, side, kingpin, bump, end };
+        let wheel =
+            Wheel { name, body, centre, spin_axis, radius, side, kingpin, bump, steer, planes, spring, end };
         (self.faults.len() == faults && !self.draft.unread.any(here.section, here.index)).then_some(wheel)
     }
 
@@ -263,6 +288,54 @@ impl Checker<'_> {
         None
     }
 
+    /// The plane of an arm, by points that make one.
+    fn arm_plane(&mut self, w: &WheelDraft, points: &[PointRef], arm: usize, here: Here) -> Option<ArmPlane> {
+        let found: Vec<Option<PointId>> =
+            points.iter().map(|p| self.point(p, &w.name, here.item("planes", arm))).collect();
+        let found: Vec<PointId> = found.into_iter().collect::<Option<_>>()?;
+        let places = found.iter().map(|p| self.position(self.model.points[p.0].at));
+        let places: Vec<Vec3> = places.collect::<Option<_>>()?;
+        let size = self.extent.size();
+        let (name, which) = (&w.name, ["lower", "upper"][arm]);
+        let (plane, makes_one) = match (&found[..], &places[..]) {
+            (&[a, b, c], &[p, q, r]) => {
+                let (along, across) = (q - p, (q - p).cross(r - p));
+                (ArmPlane::Through([a, b, c]), across.norm() > SAME_POINT * size * along.norm())
+            }
+            (&[a, b], &[p, q]) => (ArmPlane::Square([a, b]), (q - p).norm() > SAME_POINT * size),
+            _ => {
+                let message =
+                    format!("the {which} plane of wheel `{name}` is given by {} points", found.len());
+                self.fault("HP0231", here.item("planes", arm), message).help(
+                    "give three points of an arm, or two of a strut: its top mount, and another one of its axis",
+                );
+                return None;
+            }
+        };
+        if makes_one {
+            return Some(plane);
+        }
+        let message = format!("the points of the {which} plane of wheel `{name}` make no plane");
+        self.fault("HP0231", here.item("planes", arm), message).help(match plane {
+            ArmPlane::Through(_) => "name two pivots and the ball joint of an arm, which are not on one line",
+            ArmPlane::Square(_) => "name a strut's top mount and another point of its axis",
+        });
+        None
+    }
+
+    /// The ends of the spring, which are apart.
+    fn spring(&mut self, w: &WheelDraft, ends: &[PointRef; 2], here: Here) -> Option<[PointId; 2]> {
+        let [a, b] = [0, 1].map(|k| self.point(&ends[k], &w.name, here.item("spring", k)));
+        let ends = [a?, b?];
+        let [p, q] = ends.map(|p| self.position(self.model.points[p.0].at));
+        if !((q? - p?).norm() > SAME_POINT * self.extent.size()) {
+            let message = format!("the two ends of the spring of wheel `{}` are at the same place", w.name);
+            self.fault("HP0231", here.key("spring"), message).help("name its ends on either body");
+            return None;
+        }
+        Some(ends)
+    }
+
     /// A measure of a wheel; `None`, without a second fault, where the wheel itself is faulty.
     pub(super) fn wheel_measure(
         &mut self,
@@ -282,10 +355,26 @@ impl Checker<'_> {
             );
             return None;
         }
+        let (given, help) = (&draft.wheels[k], "add to the wheel ");
+        let lacks = match what.needs() {
+            WheelNeed::Planes if given.planes.is_none() && !self.unread(wheel, "planes") => Some((
+                "planes of the arms",
+                "`planes = [LOWER, UPPER]`, each `{ body = ..., at = [PIVOT, PIVOT, BALL] }`",
+            )),
+            WheelNeed::Spring if given.spring.is_none() && !self.unread(wheel, "spring") => {
+                Some(("spring", "`spring = [END, END]`, each a point's name or `{ body = ..., at = ... }`"))
+            }
+            _ => None,
+        };
+        if let Some((lacks, add)) = lacks {
+            let message = format!("`{}` needs the {lacks} of wheel `{name}`, which gives none", what.name());
+            self.fault("HP0232", here.key("type"), message).help(format!("{help}{add}"));
+            return None;
+        }
         let id = self.wheel_ids[k]?;
         let (needs, wheel) = (what.needs(), &self.model.wheels[id.0]);
-        if needs.goes_by_driver() && wheel.bump.is_none() {
-            self.needs_bump(what.name(), name, here);
+        if needs.goes_by_driver() && wheel.driver(needs).is_none() {
+            self.needs_driver(what.name(), name, needs, here);
             return None;
         }
         if let (Some(end), Some(at)) = (needs.end(), wheel.end)

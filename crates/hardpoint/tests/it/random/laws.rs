@@ -763,6 +763,8 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
             MeasureKindDraft::Rate { .. }
             | MeasureKindDraft::Slope { .. }
             | MeasureKindDraft::Combination { .. } => {}
+            // Of two bodies, whose frames are drawn along.
+            MeasureKindDraft::Orientation { .. } => {}
             // Its wheels would have to stay upright.
             MeasureKindDraft::Wheel { .. } | MeasureKindDraft::Axle { .. } => {
                 unreachable!("random mechanisms have no wheels")
