@@ -159,8 +159,13 @@ fn statements(text: &str) -> Vec<Statement> {
         if code.is_empty() || is_title {
             continue;
         }
-        match (code.strip_prefix([',', '&']), lines.last_mut()) {
+        // A line goes on where the next begins with a comma or `&`, or where it ends with one.
+        let goes_on = lines.last().is_some_and(|l| l.1.ends_with([',', '&']));
+        let rest = code.strip_prefix([',', '&']).or(goes_on.then_some(code));
+        match (rest, lines.last_mut()) {
             (Some(rest), Some(last)) => {
+                let kept = last.1.trim_end_matches('&').len();
+                last.1.truncate(kept);
                 last.1.push(SEAM);
                 last.1.push_str(rest);
             }

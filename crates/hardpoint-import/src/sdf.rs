@@ -50,6 +50,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         frames: BTreeMap::new(),
         joints: BTreeMap::new(),
         version,
+        several: false,
         shapes: Vec::new(),
     };
     let mut worlds = named(root, "world");
@@ -58,6 +59,8 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         let name = other.attribute("name").unwrap_or_default();
         reader.notes.refused("world", name, xml::at(0, other), "only the first world of a file is read");
     }
+    let own = |n: &Node<'_, '_>| ["model", "include"].contains(&n.tag_name().name());
+    reader.several = world.into_iter().chain([root]).flat_map(children).filter(own).count() > 1;
     for outer in world.into_iter().chain([root]) {
         reader.models(outer, 0, "", home(), 0);
         for node in children(outer) {
@@ -122,6 +125,8 @@ struct Reader<'d, 'n> {
     frames: BTreeMap<String, Frame>,
     joints: BTreeMap<String, Joined>,
     version: f64,
+    /// Whether the file has more than one model: then names have their model's before them.
+    several: bool,
     shapes: Vec<(usize, Node<'d, 'd>, usize, String)>,
 }
 
@@ -180,7 +185,8 @@ impl<'d> Reader<'d, '_> {
         let renamed = include.and_then(|(_, i)| child(i, "name")?.text());
         let name = renamed.map_or_else(|| self.name_of(text, model), |n| n.trim().to_owned());
         // Names within a model are seen from outside with the model's before them.
-        let scope = if depth == 0 && scope.is_empty() { String::new() } else { format!("{scope}{name}::") };
+        let alone = depth == 0 && scope.is_empty() && !self.several;
+        let scope = if alone { String::new() } else { format!("{scope}{name}::") };
         let own = match include.and_then(|(number, i)| Some((number, child(i, "pose")?))) {
             Some((number, p)) => self.written_pose(number, p),
             None => child(model, "pose").map_or_else(home, |p| self.written_pose(text, p)),
