@@ -590,17 +590,13 @@ fn textbook_constructions_are_exact_where_all_is_plane() {
         let (along, arm) = ([foot[0] - 0.45, foot[1] - 0.7], [foot[0] - 0.3, foot[1] - 0.2]);
         let length = along[0].hypot(along[1]);
         let grows = (along[0] * -arm[1] + along[1] * arm[0]) / length;
-        // The ball joint goes the same way, and the wheel centre about the instant centre with it.
-        let centre = [contact[0] + (-value(k, "camber")).sin() * -0.31, 0.0];
-        let lever = (l[0] - meet[0]).hypot(l[1] - meet[1]);
-        let turn = (l[0] - 0.3).hypot(l[1] - 0.2) / lever * -1.0;
-        let rise = turn * (centre[0] - meet[0]);
-        assert!(
-            (value(k, "motion_ratio").abs() - (grows / rise).abs()).abs() < PLANE,
-            "{}",
-            value(k, "motion_ratio")
-        );
-        assert!(value(k, "motion_ratio") > 0.3 && value(k, "motion_ratio") < 1.0);
+        // The ball joint goes about the pivot and about the instant centre; so does the wheel centre about the latter.
+        let turn = (l[0] - 0.3).hypot(l[1] - 0.2) / (l[0] - meet[0]).hypot(l[1] - meet[1]);
+        let centre = contact[0] + value(k, "camber").sin() * 0.31;
+        let expected = (grows / (turn * (centre - meet[0]))).abs();
+        // The spring stands on the arm: in bump it gets shorter.
+        let found = value(k, "motion_ratio");
+        assert!((found - expected).abs() < PLANE, "{found} {expected}");
     }
 }
 
@@ -704,5 +700,33 @@ steps = 4
         // Steered, the lines meet no longer.
         let (x, y) = (value(4, virtual_one), value(4, real));
         assert!((x - y).abs() > 1e-6, "{real}: {x} {y}");
+    }
+}
+
+/// Planes, spring and steering of a wheel have their mirror images, by names and by coordinates.
+#[test]
+fn the_other_wheel_in_a_mirror_has_the_same_planes_spring_and_steering_axis() {
+    const NAMES: [&str; 6] = [
+        "motion_ratio",
+        "swing_arm_front",
+        "plane_centre_front_z",
+        "plane_centre_side_x",
+        "roll_centre_height_planes",
+        "virtual_caster",
+    ];
+    let listed = NAMES.map(|name| format!("\"{name}\"")).join(", ");
+    let text = text("front_axle")
+        .replace("bump = \"left_bump\"\n", &format!("bump = \"left_bump\"\n{}", arms("left_", "steering")))
+        .replacen("measures = [\n", &format!("measures = [\n{listed},\n"), 1)
+        .replacen("measures = [\"toe\", ", &format!("measures = [{listed}, \"toe\", "), 1)
+        .replace("60*sin(6*pi*t)", "60*sin(4*pi*t)")
+        .replace("15*sin(2*pi*t)", "0");
+    let solution = solved(&parsed(&text));
+    for name in NAMES {
+        let [l, r] = ["left", "right"].map(|w| solution.measured.index(&format!("{w}.{name}")).unwrap());
+        for k in 0..solution.motion.len() {
+            let [x, y] = [l, r].map(|m| solution.measured.value(k, m)[0]);
+            assert!((x - y).abs() < 1e-9 * (1.0 + x.abs()), "{name}: {x} {y}");
+        }
     }
 }
