@@ -471,7 +471,7 @@ pub struct Export {
 const AFTER_IMPORT: &str = "\
 The format shows in the file; `--list` names the formats. Names of bodies and joints are
 kept. What nothing drives in the source gets a driver that holds it as drawn; where that
-is the only freedom, it swings. Shapes are written as meshes/BODY.stl beside the model.
+is the only freedom, it swings. Shapes are written beside the model, as FILE_meshes/BODY.stl.
 The report says what was taken, approximated and refused, with the place in the source
 (docs/import.md). Then the model is checked as by `hardpoint check`, whose exit codes
 these are; 3 also where the source has errors, and then no model is written.

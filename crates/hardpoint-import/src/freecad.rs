@@ -299,7 +299,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
         let first = path.iter().position(|p| self.bodies.contains_key(*p));
         let Some(first) = first else {
-            let message = format!("`{label}` refers to `{name}`, which is no part of the assembly");
+            let place = if sub.is_empty() { name } else { sub.as_str() };
+            let message = format!("`{label}` refers to `{place}`, which is no part of the assembly");
             self.notes.problem_with("HP0803", at, message, "choose both ends of the joint in FreeCAD");
             return None;
         };

@@ -215,7 +215,7 @@ pub fn import_as(
         let help = "write bodies and joints between them, as in docs/file-format.md";
         Some(notes.diagnostic("HP0807", None, message).help(help))
     };
-    let files = input.shapes.files(&mut m, "meshes");
+    let files = input.shapes.files(&mut m, &format!("{}_meshes", shapes::file_name(stem)));
     let fault = fault.map(|diagnostic| notes.only(diagnostic));
     Ok(Imported { text: write::text(&m, &about), report: notes.report, files, series: input.series, fault })
 }

@@ -84,8 +84,7 @@ impl Shapes {
             if body == GROUND || triangles.is_empty() || m.bodies[body].pose.is_none() {
                 continue;
             }
-            let kept = |c: char| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '_' };
-            let name: String = m.bodies[body].name.chars().map(kept).collect();
+            let name = file_name(&m.bodies[body].name);
             let taken = |file: &str| files.iter().any(|f| f.0.eq_ignore_ascii_case(file));
             let wanted = format!("{folder}/{name}.stl");
             let file = if taken(&wanted) { format!("{folder}/{name}_{body}.stl") } else { wanted };
@@ -94,6 +93,12 @@ impl Shapes {
         }
         files
     }
+}
+
+/// A name as part of a file's name.
+pub fn file_name(name: &str) -> String {
+    let kept = |c: char| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '_' };
+    name.chars().map(kept).collect()
 }
 
 /// That the shape of something is not shown, and why.

@@ -30,7 +30,7 @@ fn an_imported_model_passes_check_and_has_its_shapes_beside_it() {
     insta::with_settings!({ prepend_module_to_snapshot => false, snapshot_path => "../snapshots" }, {
         insta::assert_snapshot!("import", String::from_utf8_lossy(&out.get_output().stdout));
     });
-    assert!(folder.path().join("models/meshes/leaf.stl").exists());
+    assert!(folder.path().join("models/door_meshes/leaf.stl").exists());
     hardpoint(folder.path()).args(["check", "models/door.toml"]).assert().success();
 }
 
@@ -43,7 +43,7 @@ fn as_json_an_import_is_one_document() {
         .success();
     let document: serde_json::Value = serde_json::from_slice(&out.get_output().stdout).unwrap();
     assert_eq!(document["status"], "complete");
-    assert_eq!(document["files"][0], "meshes/leaf.stl");
+    assert_eq!(document["files"][0], "door_meshes/leaf.stl");
     let entries = document["report"]["entries"].as_array().unwrap();
     let hinge = entries.iter().find(|e| e["kind"] == "joint").unwrap();
     assert_eq!(

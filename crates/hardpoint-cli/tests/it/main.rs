@@ -10,5 +10,6 @@ mod optimize;
 mod results;
 mod studio;
 mod sweep;
+mod there_and_back;
 mod tolerance;
 mod whatif;

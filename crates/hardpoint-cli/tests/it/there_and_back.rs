@@ -110,5 +110,7 @@ fn what_a_format_cannot_say_is_named() {
             format!("## {format}\n{}", list.concat())
         })
         .collect();
-    insta::assert_snapshot!(told.join("\n"));
+    insta::with_settings!({ prepend_module_to_snapshot => false, snapshot_path => "../snapshots" }, {
+        insta::assert_snapshot!("export_unsaid", told.join("\n"));
+    });
 }
