@@ -11,7 +11,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("cargo::rerun-if-changed={}", file.display());
         let mut deflated = DeflateEncoder::new(Vec::new(), Compression::best());
         deflated.write_all(&fs::read(file)?)?;
-        let text = BASE64_STANDARD.encode(deflated.finish()?);
+        let bytes = deflated.finish()?;
+        let text = if name == "engine.wasm" { base85(&bytes) } else { BASE64_STANDARD.encode(bytes) };
         fs::write(Path::new(&env::var("OUT_DIR")?).join(name).with_extension(extension(name)), text)?;
     }
     Ok(())
@@ -20,4 +21,19 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// `app.js.txt` of `app.js`.
 fn extension(name: &str) -> String {
     format!("{}.txt", name.rsplit('.').next().unwrap_or_default())
+}
+
+/// Digits that mean nothing to HTML, as `web/src/unpack.ts` knows them.
+const DIGITS: &[u8; 85] = b"0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:+=^!/*?,;_()[]{}@%$#";
+
+/// Four bytes in five characters, a sixteenth less than base64 takes: of the engine that is 0.14 MB. Of a last few bytes, one more than these.
+fn base85(bytes: &[u8]) -> String {
+    let digits = bytes.chunks(4).flat_map(|chunk| {
+        let mut four = [0; 4];
+        four[..chunk.len()].copy_from_slice(chunk);
+        let number = u32::from_be_bytes(four);
+        let digit = move |place: u32| char::from(DIGITS[(number / 85_u32.pow(4 - place) % 85) as usize]);
+        (0..=chunk.len() as u32).map(digit)
+    });
+    digits.collect()
 }

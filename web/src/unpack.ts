@@ -15,8 +15,13 @@ export async function unpack(base64: string): Promise<{ payload: wire.Payload; d
 }
 
 /** The bytes that were deflated and written in base64. */
-export async function inflated(base64: string): Promise<Uint8Array<ArrayBuffer>> {
-  const plain = new Blob([bytesOf(base64)]).stream().pipeThrough(new DecompressionStream('deflate-raw'))
+export const inflated = (base64: string): Promise<Uint8Array<ArrayBuffer>> => inflate(bytesOf(base64))
+
+/** The bytes that were deflated and written in base 85, as `crates/hardpoint-report/build.rs` does. */
+export const inflatedOf85 = (text: string): Promise<Uint8Array<ArrayBuffer>> => inflate(bytesOf85(text))
+
+async function inflate(deflated: Uint8Array<ArrayBuffer>): Promise<Uint8Array<ArrayBuffer>> {
+  const plain = new Blob([deflated]).stream().pipeThrough(new DecompressionStream('deflate-raw'))
   return new Uint8Array(await new Response(plain).arrayBuffer())
 }
 
@@ -31,6 +36,22 @@ function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
   const bytes = new Uint8Array(text.length)
   for (let k = 0; k < text.length; k++) bytes[k] = text.charCodeAt(k)
   return bytes
+}
+
+const DIGITS = '0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:+=^!/*?,;_()[]{}@%$#'
+
+/** Four bytes of each five characters; the last ones count as if the largest digit followed them. */
+function bytesOf85(text: string): Uint8Array<ArrayBuffer> {
+  const value = new Uint8Array(128)
+  for (let k = 0; k < DIGITS.length; k++) value[DIGITS.charCodeAt(k)] = k
+  const groups = Math.ceil(text.length / 5)
+  const view = new DataView(new ArrayBuffer(groups * 4))
+  for (let group = 0; group < groups; group++) {
+    let number = 0
+    for (let k = group * 5; k < group * 5 + 5; k++) number = number * 85 + (k < text.length ? value[text.charCodeAt(k)] : 84)
+    view.setUint32(group * 4, number)
+  }
+  return new Uint8Array(view.buffer, 0, Math.floor((text.length * 4) / 5))
 }
 
 /** First values of all tracks, then the second ones, and so on. */

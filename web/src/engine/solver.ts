@@ -1,4 +1,4 @@
-import { inflated } from '../unpack'
+import { inflatedOf85 } from '../unpack'
 import { type Answer, answer } from './answer'
 import type { Request, Told } from './protocol'
 import type { Order, Report } from './worker'
@@ -61,5 +61,5 @@ export class Solver {
 export async function binary(): Promise<WebAssembly.Module | undefined> {
   const text = document.getElementById('engine')?.textContent?.trim()
   if (!text || typeof WebAssembly === 'undefined') return undefined
-  return WebAssembly.compile(await inflated(text)).catch(() => undefined)
+  return WebAssembly.compile(await inflatedOf85(text)).catch(() => undefined)
 }

@@ -25,7 +25,7 @@ const ROOMS: [&str; 17] = [
 ];
 
 /// Which of our own crates each crate may depend on.
-const CRATES: [(&str, &[&str]); 12] = [
+const CRATES: &[(&str, &[&str])] = &[
     ("hardpoint-tape", &[]),
     ("hardpoint-code", &["hardpoint-tape"]),
     ("hardpoint", &["hardpoint-tape", "hardpoint-code"]),
