@@ -24,7 +24,8 @@ fn extension(name: &str) -> String {
 }
 
 /// Digits that mean nothing to HTML, as `web/src/unpack.ts` knows them.
-const DIGITS: &[u8; 85] = b"0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:+=^!/*?,;_()[]{}@%$#";
+const DIGITS: &[u8; 85] =
+    b"0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:+=^!/*?,;_()[]{}@%$#";
 
 /// Four bytes in five characters, a sixteenth less than base64 takes: of the engine that is 0.14 MB. Of a last few bytes, one more than these.
 fn base85(bytes: &[u8]) -> String {

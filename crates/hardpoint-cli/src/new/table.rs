@@ -68,7 +68,11 @@ fn text(path: &Path) -> Result<Vec<Vec<String>>, String> {
     let mut cells: Vec<Vec<String>> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| e.to_string())?;
-        let line = record.position().map_or(0, |p| p.line() as usize);
+        // A record's position is that of the empty lines and remarks before it.
+        let line = record.position().map_or(0, |p| {
+            let before = text[p.byte() as usize..].lines().take_while(|l| l.is_empty() || l.starts_with('#'));
+            p.line() as usize + before.count()
+        });
         cells.resize(line.saturating_sub(1).max(cells.len()), Vec::new());
         cells.push(record.iter().map(str::to_owned).collect());
     }
@@ -134,6 +138,7 @@ mod tests {
         ];
         for text in [
             "name,x,y,z\nA,1,2,3.5\n\nB,-1,0,1e3\n",
+            "name,x,y,z\r\nA,1,2,3.5\r\n\r\nB,-1,0,1e3\r\n",
             "# from the drawing\nA; 1; 2; 3.5\n\nB; -1; 0; 1e3\n",
             "\u{feff}z [mm]\tPoint\tY (mm)\tX\n3.5\tA\t2\t1\n\n1e3\tB\t0\t-1\n",
         ] {
