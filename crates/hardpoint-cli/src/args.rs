@@ -179,6 +179,10 @@ Writes into the folder, each file whole or not at all:
   sensitivity.csv  derivatives of measures and points by every design variable
                    (of bodies where the model has neither, and is small)
   summary.json     the model, how the run went, the largest sensitivities
+and if asked for
+  motion.xlsx      an Excel workbook with charts (--workbook)
+  motion.glb       the motion as animated glTF (--gltf)
+  jerk.csv         third time derivatives (--jerk)
 Of a model with cases, each case gets a folder of its own there, and summary.json says how
 each of them went. What stands in which column: docs/results.md. Files of an earlier run that this one
 does not write are removed. Ctrl-C while it solves writes the part that was solved;
@@ -187,7 +191,8 @@ while it writes, the files of the earlier run stay.
 Examples:
   hardpoint run models/slider_crank.toml
   hardpoint run models/macpherson.toml -o results/baseline --bodies
-  hardpoint run models/macpherson.toml --format npy
+  hardpoint run models/macpherson.toml --format parquet
+  hardpoint run models/double_wishbone.toml --workbook --gltf
   hardpoint run models/studies/strut_toe.toml --case bump
   hardpoint run models/macpherson.toml --json | jq '.sensitivities[0]'";
 
@@ -198,6 +203,8 @@ pub enum Format {
     Csv,
     /// NumPy arrays, less than half as large: motion.npy and sensitivity.npy, with columns.json to name their columns
     Npy,
+    /// Apache Parquet: motion.parquet and sensitivity.parquet, with units in the names of the columns and in the metadata
+    Parquet,
 }
 
 impl Format {
@@ -206,6 +213,7 @@ impl Format {
         match self {
             Self::Csv => "csv",
             Self::Npy => "npy",
+            Self::Parquet => "parquet",
         }
     }
 }
@@ -227,13 +235,20 @@ pub struct Run {
     /// Write the third time derivatives of all bodies too, as jerk.csv
     #[arg(long)]
     pub jerk: bool,
+    /// Write an Excel workbook too, motion.xlsx: variables, measures over time with charts, sensitivities
+    #[arg(long)]
+    pub workbook: bool,
+    /// Write an animated glTF too, motion.glb, for Blender and other viewers
+    #[arg(long)]
+    pub gltf: bool,
     /// Write motion and sensitivities of all bodies, however many there are
     #[arg(long)]
     pub bodies: bool,
     /// Solve the motion only
     #[arg(long)]
     pub no_sensitivities: bool,
-    /// Write motion and sensitivities as text (csv), or as NumPy arrays, half as large, with columns.json (npy)
+    /// Write motion and sensitivities as text (csv), or half as large as NumPy arrays with columns.json (npy), or as Apache Parquet
+    /// with units in its metadata (parquet)
     #[arg(long, value_enum, default_value_t = Format::Csv, hide_possible_values = true)]
     pub format: Format,
 }
@@ -444,6 +459,7 @@ The motion itself is written by `hardpoint run`.
 Examples:
   hardpoint export models/four_bar.toml -o four_bar.urdf
   hardpoint export models/double_wishbone.toml -o hardpoints.csv
+  hardpoint export models/double_wishbone.toml -o skeleton.dxf
   hardpoint export models/double_wishbone.toml -o front.sub --json | jq '.unsaid[]'
   hardpoint export --list";
 

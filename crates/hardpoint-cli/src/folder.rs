@@ -70,15 +70,15 @@ impl Folder {
         Ok(())
     }
 
-    /// Writes a file beside its place.
-    pub fn write(
+    /// Writes a file beside its place, and hands back what `content` tells of it.
+    pub fn write<T>(
         &mut self,
         name: &str,
-        content: impl FnOnce(&mut Writing) -> io::Result<()>,
-    ) -> Result<(), NotWritten> {
+        content: impl FnOnce(&mut Writing) -> io::Result<T>,
+    ) -> Result<T, NotWritten> {
         let mut writing = self.begin(name)?;
-        content(&mut writing).map_err(|error| writing.failed(error))?;
-        self.end(writing)
+        let told = content(&mut writing).map_err(|error| writing.failed(error))?;
+        self.end(writing).map(|()| told)
     }
 
     /// Puts all files in their places, the last one last; files of this family that were not written now are removed, so that

@@ -1,19 +1,27 @@
 //! Long tables, written as they come: as CSV, or as Parquet.
 
+use std::fs::File;
 use std::io::{self, Write};
 use std::sync::Arc;
 
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::column::reader::ColumnReader;
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
+use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
 
 use hardpoint_report::GENERATOR;
 use hardpoint_report::cells::Cells;
 
-/// A row group of Parquet has at least so many rows, so that the table need not fit into memory.
+/// A row group of Parquet has so many rows, fewer where they would have more than so many cells, so that the table need not fit
+/// into memory.
 const GROUP_ROWS: usize = 1 << 16;
+const GROUP_CELLS: usize = 1 << 22;
+/// Columns of a table, by their names; the cells only say of which kind they are.
+pub type Kinds = Vec<(String, Cells)>;
 
 /// How a table is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,15 +49,16 @@ pub struct TableWriter<W: Write + Send> {
 
 enum Sink<W: Write + Send> {
     Csv(Box<csv::Writer<W>>),
-    Parquet(Box<SerializedFileWriter<W>>, Vec<Cells>),
+    Parquet { writer: Box<SerializedFileWriter<W>>, pending: Vec<Cells>, group: usize },
 }
 
 impl<W: Write + Send> TableWriter<W> {
-    /// Begins a table with these columns; the cells only say of which kind they are.
+    /// Begins a table with these columns. `facts` about it, by key, go where the format has a place for them: into the metadata
+    /// of a Parquet file.
     ///
     /// # Errors
     /// Where it cannot be written.
-    pub fn new(out: W, format: TableFormat, columns: Vec<(String, Cells)>) -> io::Result<Self> {
+    pub fn new(out: W, format: TableFormat, columns: Kinds, facts: &[(&str, String)]) -> io::Result<Self> {
         let sink = match format {
             TableFormat::Csv => {
                 let mut csv = csv::Writer::from_writer(out);
@@ -59,12 +68,14 @@ impl<W: Write + Send> TableWriter<W> {
             TableFormat::Parquet => {
                 let properties = WriterProperties::builder()
                     .set_created_by(GENERATOR.into())
+                    .set_key_value_metadata((!facts.is_empty()).then(|| facts.iter().map(fact).collect()))
                     .set_compression(Compression::UNCOMPRESSED)
                     .set_dictionary_enabled(false);
                 let schema = schema(&columns).map_err(io::Error::other)?;
                 let writer = SerializedFileWriter::new(out, schema, Arc::new(properties.build()));
-                let cells = columns.into_iter().map(|(_, cells)| cells).collect();
-                Sink::Parquet(Box::new(writer.map_err(io::Error::other)?), cells)
+                let group = usize::clamp(GROUP_CELLS / columns.len().max(1), 1, GROUP_ROWS);
+                let pending = columns.into_iter().map(|(_, cells)| cells).collect();
+                Sink::Parquet { writer: Box::new(writer.map_err(io::Error::other)?), pending, group }
             }
         };
         Ok(Self { sink })
@@ -82,14 +93,14 @@ impl<W: Write + Send> TableWriter<W> {
                 }
                 Ok(())
             }
-            Sink::Parquet(writer, pending) => {
+            Sink::Parquet { writer, pending, group } => {
                 // Groups end where they are full, wherever the rows came from.
                 let mut rest = rows;
                 loop {
-                    let room = GROUP_ROWS - pending.first().map_or(0, Cells::len);
+                    let room = *group - pending.first().map_or(0, Cells::len);
                     let later: Vec<Cells> = rest.iter_mut().map(|cells| cells.split_off(room)).collect();
                     pending.iter_mut().zip(rest).for_each(|(cells, more)| cells.append(more));
-                    if pending.first().map_or(0, Cells::len) < GROUP_ROWS {
+                    if pending.first().map_or(0, Cells::len) < *group {
                         return Ok(());
                     }
                     write_group(writer, pending)?;
@@ -99,24 +110,91 @@ impl<W: Write + Send> TableWriter<W> {
         }
     }
 
-    /// Ends the table.
+    /// Ends the table, and hands back what was written to.
     ///
     /// # Errors
     /// Where it cannot be written.
-    pub fn end(self) -> io::Result<()> {
+    pub fn end(self) -> io::Result<W> {
         match self.sink {
-            Sink::Csv(mut csv) => csv.flush(),
-            Sink::Parquet(mut writer, mut pending) => {
+            Sink::Csv(csv) => csv.into_inner().map_err(|e| e.into_error()),
+            Sink::Parquet { mut writer, mut pending, .. } => {
                 if pending.first().is_some_and(|cells| !cells.is_empty()) {
                     write_group(&mut writer, &mut pending)?;
                 }
-                writer.close().map(drop).map_err(io::Error::other)
+                writer.into_inner().map_err(io::Error::other)
             }
         }
     }
+
+    /// Adds the rows of a Parquet file with these columns that are to be kept, by their cells in column `of`, which has texts. False
+    /// where it was not to go on.
+    ///
+    /// # Errors
+    /// Where either cannot be read or written.
+    pub fn add_file(
+        &mut self,
+        file: File,
+        of: usize,
+        keep: impl Fn(&str) -> bool,
+        mut go_on: impl FnMut() -> bool,
+    ) -> io::Result<bool> {
+        let reader = SerializedFileReader::new(file).map_err(io::Error::other)?;
+        for k in 0..reader.num_row_groups() {
+            if !go_on() {
+                return Ok(false);
+            }
+            let rows = read_group(&*reader.get_row_group(k).map_err(io::Error::other)?);
+            let mut rows = rows.map_err(io::Error::other)?;
+            if let Cells::Texts(texts) = &rows[of] {
+                let kept: Vec<bool> = texts.iter().map(|text| keep(text)).collect();
+                rows.iter_mut().for_each(|cells| cells.retain(&kept));
+            }
+            self.add(rows)?;
+        }
+        Ok(true)
+    }
 }
 
-fn schema(columns: &[(String, Cells)]) -> parquet::errors::Result<TypePtr> {
+fn fact((key, value): &(&str, String)) -> KeyValue {
+    KeyValue::new((*key).to_owned(), value.clone())
+}
+
+/// The cells of a row group, column by column.
+fn read_group(group: &dyn RowGroupReader) -> parquet::errors::Result<Vec<Cells>> {
+    let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+    let mut columns = Vec::new();
+    for k in 0..group.num_columns() {
+        let mut known = Vec::new();
+        columns.push(match group.get_column_reader(k)? {
+            ColumnReader::Int64ColumnReader(mut column) => {
+                let mut cells = Vec::new();
+                column.read_records(rows, None, None, &mut cells)?;
+                Cells::Whole(cells)
+            }
+            ColumnReader::DoubleColumnReader(mut column) => {
+                let mut cells = Vec::new();
+                column.read_records(rows, Some(&mut known), None, &mut cells)?;
+                Cells::Numbers(spread(&known, cells, f64::NAN))
+            }
+            ColumnReader::ByteArrayColumnReader(mut column) => {
+                let mut cells = Vec::new();
+                column.read_records(rows, Some(&mut known), None, &mut cells)?;
+                let texts = cells.iter().map(|text| text.as_utf8().map(ToOwned::to_owned));
+                Cells::Texts(spread(&known, texts.collect::<Result<_, _>>()?, String::new()))
+            }
+            _ => return Err(parquet::errors::ParquetError::General("a column of another kind".into())),
+        });
+    }
+    Ok(columns)
+}
+
+/// What is known at its places, and `none` elsewhere.
+fn spread<T: Clone>(known: &[i16], cells: Vec<T>, none: T) -> Vec<T> {
+    let mut cells = cells.into_iter();
+    known.iter().map(|k| if *k > 0 { cells.next() } else { None }.unwrap_or_else(|| none.clone())).collect()
+}
+
+fn schema(columns: &Kinds) -> parquet::errors::Result<TypePtr> {
     let column = |(name, cells): &(String, Cells)| {
         let (physical, repetition) = match cells {
             Cells::Whole(_) => (Physical::INT64, Repetition::REQUIRED),
@@ -169,7 +247,7 @@ fn write_group<W: Write + Send>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use parquet::file::reader::{FileReader, SerializedFileReader};
+    use parquet::record::RowAccessor;
 
     const ROWS: usize = 3 * GROUP_ROWS / 2;
 
@@ -185,7 +263,7 @@ mod tests {
         let names = ["design", "toe [deg]", "failed"].map(String::from);
         let mut out = Vec::new();
         let mut table =
-            TableWriter::new(&mut out, format, names.into_iter().zip(rows(0..0)).collect()).unwrap();
+            TableWriter::new(&mut out, format, names.into_iter().zip(rows(0..0)).collect(), &[]).unwrap();
         for first in (0..ROWS).step_by(at_once) {
             table.add(rows(first..usize::min(first + at_once, ROWS))).unwrap();
         }
@@ -226,5 +304,35 @@ mod tests {
         let text = String::from_utf8(written(TableFormat::Csv, 9)).unwrap();
         let lines: Vec<&str> = text.lines().take(4).collect();
         assert_eq!(lines, ["design,toe [deg],failed", "0,,row 0", "1,0.5,", "2,1,"]);
+    }
+
+    #[test]
+    fn rows_are_taken_out_of_a_written_table_and_facts_are_its_metadata() {
+        let names = ["design", "toe [deg]", "failed"].map(String::from);
+        let kinds = || names.clone().into_iter().zip(rows(0..0)).collect::<Kinds>();
+        let facts = [("units", r#"{"toe [deg]":"deg"}"#.to_owned())];
+        let begin = |out| TableWriter::new(out, TableFormat::Parquet, kinds(), &facts).unwrap();
+        let whole = || {
+            let mut table = begin(tempfile::tempfile().unwrap());
+            table.add(rows(0..ROWS)).unwrap();
+            table.end().unwrap()
+        };
+        let without = |go_on: &mut dyn FnMut() -> bool| {
+            let mut table = begin(tempfile::tempfile().unwrap());
+            let all = table.add_file(whole(), 2, |why| !why.starts_with("row 1"), go_on).unwrap();
+            (all, SerializedFileReader::new(table.end().unwrap()).unwrap())
+        };
+        let (all, reader) = without(&mut || true);
+        assert!(all);
+        let kept = |k: &usize| !k.is_multiple_of(7) || !k.to_string().starts_with('1');
+        let expected: Vec<i64> = (0..ROWS).filter(kept).map(|k| k as i64).collect();
+        let found: Vec<i64> =
+            reader.get_row_iter(None).unwrap().map(|row| row.unwrap().get_long(0).unwrap()).collect();
+        assert!(found == expected && found.len() < ROWS);
+        let told = reader.metadata().file_metadata().key_value_metadata().unwrap();
+        let told: Vec<_> = told.iter().map(|f| (f.key.as_str(), f.value.clone())).collect();
+        assert_eq!(told, [("units", Some(facts[0].1.clone()))]);
+        let mut once = true;
+        assert!(!without(&mut || std::mem::take(&mut once)).0, "it can be ended between groups");
     }
 }

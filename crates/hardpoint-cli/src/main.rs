@@ -25,6 +25,7 @@ mod text;
 mod tolerance;
 mod verify;
 mod whatif;
+mod workbook;
 
 use std::io::Write;
 use std::process::ExitCode;

@@ -31,6 +31,7 @@ use crate::pages;
 use crate::session::{Session, json_text};
 use crate::tables::Plan;
 use crate::text;
+use crate::workbook::Contents;
 
 /// The step of the differences that the report compares with, as part of the natural step: small enough for
 /// five digits, large enough to stay clear of round-off.
@@ -48,13 +49,18 @@ const TOO_MANY: &str = "the sensitivities were not compared with re-solved desig
 const JERK_ROWS: usize = 256;
 
 /// All files that a run may write; the last one vouches for the others.
-const FILES: [&str; 11] = [
+const FILES: [&str; 16] = [
     "motion.csv",
     "sensitivity.csv",
     "motion.npy",
     "sensitivity.npy",
     "columns.json",
+    "motion.parquet",
+    "sensitivity.parquet",
     "jerk.csv",
+    "loads.csv",
+    "motion.xlsx",
+    "motion.glb",
     "maps.csv",
     "map_sensitivity.csv",
     "maps.json",
@@ -235,6 +241,33 @@ fn run_in(
         if options.jerk && !stopped_before {
             write_jerk(session, file, &analysis, &mut folder).map_err(|e| session.not_written(&e))?;
             summary.files.push(folder.path_of("jerk.csv").display().to_string());
+        }
+        if file.model.has_loads() && !stopped_before {
+            let _working = session.working("reactions of the joints");
+            let loads = analysis.loads(&[]);
+            let written = folder.write("loads.csv", |out| {
+                hardpoint_report::loads::write(&file.model, file.units, &loads, out)?;
+                Ok(())
+            });
+            written.map_err(|e| session.not_written(&e))?;
+            summary.files.push(folder.path_of("loads.csv").display().to_string());
+        }
+        if options.workbook {
+            let contents =
+                Contents { file, course: &course, summary: &summary, suffix: options.format.suffix() };
+            let told = folder.write("motion.xlsx", |out| contents.write(out));
+            summary.left_out.extend(told.map_err(|e| session.not_written(&e))?);
+            summary.files.push(folder.path_of("motion.xlsx").display().to_string());
+        }
+        if options.gltf {
+            let glb = hardpoint_export::animation(file, &solution.motion);
+            let written = folder.write("motion.glb", |out| glb.and_then(|glb| out.write_all(&glb)));
+            written.map_err(|e| session.not_written(&e))?;
+            let every = course.stride;
+            summary.left_out.extend(
+                (every > 1).then(|| format!("not in `motion.glb`: only one output time in {every} is there")),
+            );
+            summary.files.push(folder.path_of("motion.glb").display().to_string());
         }
         // Of a file with cases, the maps are those of the whole.
         if case.is_none() {

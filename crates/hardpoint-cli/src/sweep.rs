@@ -332,20 +332,20 @@ impl Results<'_> {
         let (swept, suffix) = (self.swept, self.format.suffix());
         let name = format!("designs.{suffix}");
         folder.write(&name, |out| {
-            let mut table = TableWriter::new(out, self.format, swept.columns())?;
+            let mut table = TableWriter::new(out, self.format, swept.columns(), &[])?;
             self.journal.each(|block| {
                 swept.tally(tally, &block);
                 table.add(swept.rows(&block))
             })?;
-            table.end()
+            table.end().map(drop)
         })?;
         files.push(folder.path_of(&name).display().to_string());
         if !swept.asked.curves.is_empty() {
             let name = format!("curves.{suffix}");
             folder.write(&name, |out| {
-                let mut table = TableWriter::new(out, self.format, swept.curve_columns())?;
+                let mut table = TableWriter::new(out, self.format, swept.curve_columns(), &[])?;
                 self.journal.each(|block| table.add(swept.curve_rows(&block)))?;
-                table.end()
+                table.end().map(drop)
             })?;
             files.push(folder.path_of(&name).display().to_string());
         }

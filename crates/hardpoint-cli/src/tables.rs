@@ -1,16 +1,21 @@
 //! The tables that a run writes while it solves: which, how large, and in which format.
 
+use std::io;
+
 use hardpoint::Solution;
 use hardpoint::model::Model;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint_file::{ModelFile, Units};
-use hardpoint_report::columns::Columns;
+use hardpoint_report::cells::Cells;
+use hardpoint_report::columns::{Column, Columns};
 use hardpoint_report::csv::{MotionCsv, SensitivityCsv, without_variables};
+use hardpoint_report::facts::variable_unit;
 use hardpoint_report::figures::bytes;
 use hardpoint_report::npy::{Npy, Sidecar, add_motion, add_sensitivities};
 
 use crate::args::{Format, Run};
 use crate::folder::{Folder, NotWritten, Writing};
+use crate::long_table::{TableFormat, TableWriter};
 use crate::session::json_text;
 
 /// The motion of more bodies than this is written only where it is asked for.
@@ -19,12 +24,10 @@ const MOST_BODIES: usize = 100;
 const MOST_MOVED: usize = 200;
 /// What is larger than this is announced before the work.
 const LARGE: u64 = 100 << 20;
-/// Why there is no table of sensitivities.
-const INTERRUPTED: &str = "left out: `sensitivity.csv`, because the run was interrupted while the rows of variables were taken out \
-    of it that the mechanism cannot follow";
 /// A number with all its digits, in CSV.
 const CSV_NUMBER: u64 = 19;
-const NPY_NUMBER: u64 = 8;
+/// The same as a double.
+const DOUBLE: u64 = 8;
 
 /// Which tables are written.
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +73,7 @@ impl<'m> Plan<'m> {
 
     /// The names of the tables with about what they take.
     fn sizes(&self) -> Vec<(String, u64)> {
-        let number = if self.format == Format::Npy { NPY_NUMBER } else { CSV_NUMBER };
+        let number = if self.format == Format::Csv { CSV_NUMBER } else { DOUBLE };
         let table = |name: &str, rows: u64, columns: usize| {
             (format!("{name}.{}", self.format.suffix()), rows * columns as u64 * number)
         };
@@ -89,7 +92,7 @@ impl<'m> Plan<'m> {
         let each: Vec<String> = sizes.iter().map(|(name, size)| format!("{name} {}", bytes(*size))).collect();
         let mut ways = vec!["fewer `steps`"];
         if self.format == Format::Csv {
-            ways.push("`--format npy`, about half of it");
+            ways.push("`--format npy` or `parquet`, about half of it");
         }
         if self.sensitivity.is_some() {
             ways.push("`--no-sensitivities`");
@@ -102,64 +105,138 @@ impl<'m> Plan<'m> {
 
     /// Begins the tables.
     pub fn begin(self, folder: &Folder) -> Result<Tables<'m>, NotWritten> {
-        let [motion, sensitivity] =
-            ["motion", "sensitivity"].map(|name| format!("{name}.{}", self.format.suffix()));
-        let mut tables = Tables {
-            plan: self,
-            motion: None,
-            sensitivity: None,
-            names: Vec::new(),
-            rows: Vec::new(),
-            failure: None,
+        let begun = |name: &str, begin: &dyn Fn(Writing) -> io::Result<Table<'m>>| {
+            let name = format!("{name}.{}", self.format.suffix());
+            let table = begin(folder.begin(&name)?);
+            table
+                .map_err(|error| NotWritten { path: folder.path_of(&name), error })
+                .map(|table| (name, table))
         };
-        if let Some(columns) = self.motion {
-            let writing = folder.begin(&motion)?;
-            let failed = |error: std::io::Error| NotWritten { path: folder.path_of(&motion), error };
-            tables.motion = Some(match self.format {
-                Format::Csv => {
-                    Motion::Csv(Box::new(MotionCsv::new(columns, writing).map_err(|e| failed(e.into()))?))
-                }
-                Format::Npy => {
-                    Motion::Npy(columns, Npy::new(&[1 + columns.of_motion().len()], writing).map_err(failed)?)
-                }
-            });
-            tables.names.push(motion);
-        }
-        if let Some(columns) = self.sensitivity {
-            let writing = folder.begin(&sensitivity)?;
-            let failed = |error: std::io::Error| NotWritten { path: folder.path_of(&sensitivity), error };
-            let shape = [columns.model.variables.len(), columns.of_sensitivities().len()];
-            tables.sensitivity = Some(match self.format {
-                Format::Csv => Sensitivity::Csv(Box::new(
-                    SensitivityCsv::new(columns, writing).map_err(|e| failed(e.into()))?,
-                )),
-                Format::Npy => Sensitivity::Npy(columns, Npy::new(&shape, writing).map_err(failed)?),
-            });
-            tables.names.push(sensitivity);
-        }
-        Ok(tables)
+        let motion = self.motion.map(|c| begun("motion", &|out| self.motion_table(c, out))).transpose()?;
+        let sensitivity = self
+            .sensitivity
+            .map(|c| begun("sensitivity", &|out| self.sensitivity_table(c, out)))
+            .transpose()?;
+        Ok(Tables { plan: self, motion, sensitivity, rows: Vec::new(), failure: None })
+    }
+
+    fn motion_table(&self, columns: Columns<'m>, out: Writing) -> io::Result<Table<'m>> {
+        Ok(match self.format {
+            Format::Csv => Table::Motion(Box::new(MotionCsv::new(columns, out)?)),
+            Format::Npy => Table::MotionNpy(columns, Npy::new(&[1 + columns.of_motion().len()], out)?),
+            Format::Parquet => {
+                Table::MotionParquet(columns, Box::new(parquet(out, columns, &[], &columns.of_motion())?))
+            }
+        })
+    }
+
+    fn sensitivity_table(&self, columns: Columns<'m>, out: Writing) -> io::Result<Table<'m>> {
+        let of = columns.of_sensitivities();
+        Ok(match self.format {
+            Format::Csv => Table::Sensitivity(Box::new(SensitivityCsv::new(columns, out)?)),
+            Format::Npy => {
+                Table::SensitivityNpy(columns, Npy::new(&[columns.model.variables.len(), of.len()], out)?)
+            }
+            Format::Parquet => {
+                Table::SensitivityParquet(columns, Box::new(parquet(out, columns, &VARIABLE, &of)?))
+            }
+        })
     }
 }
 
-enum Motion<'m> {
-    Csv(Box<MotionCsv<'m, Writing>>),
-    Npy(Columns<'m>, Npy<Writing>),
+/// The columns of a variable and its unit, which come after the time.
+const VARIABLE: [&str; 2] = ["variable", "per"];
+
+/// Begins a Parquet file: time, texts, numbers. The metadata have what it is of, and the unit of each column of numbers.
+fn parquet(
+    out: Writing,
+    columns: Columns<'_>,
+    texts: &[&str],
+    numbers: &[Column],
+) -> io::Result<TableWriter<Writing>> {
+    let time = Column { name: "t".into(), unit: "s".into() };
+    let number = |c: &Column| (c.header(), Cells::Numbers(Vec::new()));
+    let text = |name: &&str| ((*name).to_owned(), Cells::Texts(Vec::new()));
+    let kinds = [number(&time)].into_iter().chain(texts.iter().map(text)).chain(numbers.iter().map(number));
+    let units: serde_json::Map<String, serde_json::Value> =
+        [&time].into_iter().chain(numbers).map(|c| (c.header(), c.unit.as_str().into())).collect();
+    let facts =
+        [("model", columns.model.name.clone()), ("units", serde_json::Value::Object(units).to_string())];
+    TableWriter::new(out, TableFormat::Parquet, kinds.collect(), &facts)
 }
 
-enum Sensitivity<'m> {
-    Csv(Box<SensitivityCsv<'m, Writing>>),
-    Npy(Columns<'m>, Npy<Writing>),
+/// A table under way.
+enum Table<'m> {
+    Motion(Box<MotionCsv<'m, Writing>>),
+    MotionNpy(Columns<'m>, Npy<Writing>),
+    MotionParquet(Columns<'m>, Box<TableWriter<Writing>>),
+    Sensitivity(Box<SensitivityCsv<'m, Writing>>),
+    SensitivityNpy(Columns<'m>, Npy<Writing>),
+    SensitivityParquet(Columns<'m>, Box<TableWriter<Writing>>),
 }
 
-/// Tables under way.
+impl Table<'_> {
+    fn add(&mut self, window: &Solution) -> io::Result<()> {
+        match self {
+            Self::Motion(table) => table.add(window).map_err(Into::into),
+            Self::MotionNpy(columns, table) => add_motion(table, columns, window),
+            Self::MotionParquet(columns, table) => table.add(motion_cells(columns, window)),
+            Self::Sensitivity(table) => table.add(window).map_err(Into::into),
+            Self::SensitivityNpy(columns, table) => add_sensitivities(table, columns, window),
+            Self::SensitivityParquet(columns, table) => table.add(sensitivity_cells(columns, window)),
+        }
+    }
+
+    fn end(self) -> io::Result<Writing> {
+        match self {
+            Self::Motion(table) => table.end(),
+            Self::Sensitivity(table) => table.end(),
+            Self::MotionNpy(_, table) | Self::SensitivityNpy(_, table) => table.end(),
+            Self::MotionParquet(_, table) | Self::SensitivityParquet(_, table) => table.end(),
+        }
+    }
+}
+
+fn motion_cells(columns: &Columns<'_>, window: &Solution) -> Vec<Cells> {
+    let mut cells = vec![Vec::new(); 1 + columns.of_motion().len()];
+    let mut row = Vec::new();
+    for (k, &t) in window.motion.times.iter().enumerate() {
+        row.clear();
+        row.push(t);
+        columns.motion(window, k, &mut row);
+        cells.iter_mut().zip(&row).for_each(|(cells, x)| cells.push(*x));
+    }
+    cells.into_iter().map(Cells::Numbers).collect()
+}
+
+/// By the variables that the window has sensitivities for.
+fn sensitivity_cells(columns: &Columns<'_>, window: &Solution) -> Vec<Cells> {
+    let (mut times, mut texts) = (Vec::new(), [Vec::new(), Vec::new()]);
+    let mut cells = vec![Vec::new(); columns.of_sensitivities().len()];
+    let mut row = Vec::new();
+    for (k, &t) in window.motion.times.iter().enumerate() {
+        for (b, variable) in columns.model.variables.iter().enumerate() {
+            row.clear();
+            if columns.sensitivities(window, k, b, &mut row).is_some() {
+                times.push(t);
+                texts[0].push(variable.name.clone());
+                texts[1].push(variable_unit(columns.model, columns.units, variable));
+                cells.iter_mut().zip(&row).for_each(|(cells, x)| cells.push(*x));
+            }
+        }
+    }
+    let numbers = cells.into_iter().map(Cells::Numbers);
+    std::iter::once(Cells::Numbers(times)).chain(texts.map(Cells::Texts)).chain(numbers).collect()
+}
+
+/// Tables under way, by their names.
 pub struct Tables<'m> {
     plan: Plan<'m>,
-    motion: Option<Motion<'m>>,
-    sensitivity: Option<Sensitivity<'m>>,
-    names: Vec<String>,
+    motion: Option<(String, Table<'m>)>,
+    sensitivity: Option<(String, Table<'m>)>,
     /// Per variable, how many output times have sensitivities by it.
     rows: Vec<usize>,
-    failure: Option<(String, std::io::Error)>,
+    failure: Option<(String, io::Error)>,
 }
 
 /// What was written.
@@ -180,23 +257,10 @@ impl Tables<'_> {
         self.failure.is_none()
     }
 
-    fn try_add(&mut self, window: &Solution) -> Result<(), (String, std::io::Error)> {
-        let name = |what: &str| {
-            let of = |n: &&String| n.starts_with(what);
-            self.names.iter().find(of).cloned().unwrap_or_default()
-        };
-        let added = match &mut self.motion {
-            Some(Motion::Csv(table)) => table.add(window).map_err(Into::into),
-            Some(Motion::Npy(columns, table)) => add_motion(table, columns, window),
-            None => Ok(()),
-        };
-        added.map_err(|e| (name("motion"), e))?;
-        let added = match &mut self.sensitivity {
-            Some(Sensitivity::Csv(table)) => table.add(window).map_err(Into::into),
-            Some(Sensitivity::Npy(columns, table)) => add_sensitivities(table, columns, window),
-            None => Ok(()),
-        };
-        added.map_err(|e| (name("sensitivity"), e))?;
+    fn try_add(&mut self, window: &Solution) -> Result<(), (String, io::Error)> {
+        for (name, table) in self.motion.iter_mut().chain(&mut self.sensitivity) {
+            table.add(window).map_err(|e| (name.clone(), e))?;
+        }
         let sensitivities = &window.sensitivities;
         self.rows.resize(sensitivities.variables, 0);
         for (rows, answer) in self.rows.iter_mut().zip(&sensitivities.admissibility) {
@@ -214,70 +278,73 @@ impl Tables<'_> {
         answers: &[Admissibility],
         go_on: impl FnMut() -> bool,
     ) -> Result<Written, NotWritten> {
-        let Self { plan, motion, sensitivity, mut names, rows, failure } = self;
-        let mut left_out = None;
+        let Self { plan, motion, sensitivity, rows, failure } = self;
+        let failed = |name: &str, folder: &Folder, error| NotWritten { path: folder.path_of(name), error };
         if let Some((name, error)) = failure {
-            return Err(NotWritten { path: folder.path_of(&name), error });
+            return Err(failed(&name, folder, error));
         }
-        let failed = |what: &str, folder: &Folder, error: std::io::Error| {
-            let path = folder.path_of(&format!("{what}.{}", plan.format.suffix()));
-            NotWritten { path, error }
-        };
-        match motion {
-            Some(Motion::Csv(table)) => {
-                let writing = table.end().map_err(|e| failed("motion", folder, e))?;
-                folder.end(writing)?;
-            }
-            Some(Motion::Npy(_, table)) => {
-                let writing = table.end().map_err(|e| failed("motion", folder, e))?;
-                folder.end(writing)?;
-            }
-            None => {}
+        let (mut names, mut left_out) = (Vec::new(), None);
+        if let Some((name, table)) = motion {
+            let writing = table.end().map_err(|e| failed(&name, folder, e))?;
+            folder.end(writing)?;
+            names.push(name);
         }
         let unknown: Vec<usize> = (0..answers.len()).filter(|b| cannot(&answers[*b])).collect();
-        match sensitivity {
-            // By none of the variables is there anything to say.
-            Some(_) if unknown.len() == answers.len() => names.retain(|n| !n.starts_with("sensitivity")),
-            Some(Sensitivity::Csv(table)) => {
-                let columns = plan.sensitivity.expect("it is under way");
-                // Those of all variables, up to the last output time that has any of the unknown.
-                let last = unknown.iter().map(|b| rows[*b]).max().unwrap_or(0);
-                let rows: usize = rows.iter().map(|n| n.min(&last)).sum();
-                let mut writing = table.end().map_err(|e| failed("sensitivity", folder, e))?;
-                if rows == 0 {
-                    folder.end(writing)?;
-                } else {
-                    let unknown: Vec<&str> =
-                        unknown.iter().map(|b| columns.model.variables[*b].name.as_str()).collect();
-                    let before = writing.reopen().map_err(|e| writing.failed(e))?;
-                    let mut without = folder.begin("sensitivity.csv")?;
-                    let whole = without_variables(before, &unknown, rows as u64, &mut without, go_on)
-                        .map_err(|e| without.failed(e))?;
-                    if whole {
-                        folder.end(without)?;
-                    } else {
-                        names.retain(|n| !n.starts_with("sensitivity"));
-                        left_out = Some(INTERRUPTED.into());
-                    }
-                }
-            }
-            Some(Sensitivity::Npy(columns, mut table)) => {
+        // Where none of the variables can be followed, there is nothing to say.
+        if let Some((name, mut table)) = sensitivity.filter(|_| unknown.len() < answers.len()) {
+            let columns = plan.sensitivity.expect("it is under way");
+            if let Table::SensitivityNpy(_, table) = &mut table {
                 let width = columns.of_sensitivities().len();
                 let none = unknown.iter().try_for_each(|&b| table.forget(rows[b], b * width, width));
-                none.map_err(|e| failed("sensitivity", folder, e))?;
-                let writing = table.end().map_err(|e| failed("sensitivity", folder, e))?;
-                folder.end(writing)?;
+                none.map_err(|e| failed(&name, folder, e))?;
             }
-            None => {}
+            let mut writing = table.end().map_err(|e| failed(&name, folder, e))?;
+            // Those of all variables, up to the last output time that has any of the unknown.
+            let last = unknown.iter().map(|b| rows[*b]).max().unwrap_or(0);
+            let rows: usize = rows.iter().map(|n| n.min(&last)).sum();
+            let whole = if rows == 0 || plan.format == Format::Npy {
+                Some(writing)
+            } else {
+                let unknown: Vec<&str> =
+                    unknown.iter().map(|b| columns.model.variables[*b].name.as_str()).collect();
+                let before = writing.reopen().map_err(|e| writing.failed(e))?;
+                let mut out = folder.begin(&name)?;
+                let whole = match plan.format {
+                    Format::Parquet => parquet(out, columns, &VARIABLE, &columns.of_sensitivities())
+                        .and_then(|mut table| {
+                            let whole = table.add_file(before, 1, |v| !unknown.contains(&v), go_on)?;
+                            table.end().map(|out| whole.then_some(out))
+                        }),
+                    _ => without_variables(before, &unknown, rows as u64, &mut out, go_on)
+                        .map(|whole| whole.then_some(out))
+                        .map_err(Into::into),
+                };
+                whole.map_err(|e| failed(&name, folder, e))?
+            };
+            match whole {
+                Some(writing) => {
+                    folder.end(writing)?;
+                    names.push(name);
+                }
+                None => left_out = Some(interrupted(&name)),
+            }
         }
         if let (Format::Npy, Some(motion)) = (plan.format, &plan.motion) {
             let sensitivity = plan.sensitivity.filter(|_| names.iter().any(|n| n.starts_with("sensitivity")));
             let json = json_text(&Sidecar::new(motion, sensitivity.as_ref()));
-            folder.write("columns.json", |out| std::io::Write::write_all(out, json.as_bytes()))?;
+            folder.write("columns.json", |out| io::Write::write_all(out, json.as_bytes()))?;
             names.push("columns.json".into());
         }
         Ok(Written { names, left_out })
     }
+}
+
+/// Why there is no table of sensitivities.
+fn interrupted(name: &str) -> String {
+    format!(
+        "left out: `{name}`, because the run was interrupted while the rows of variables were taken out of it that the mechanism \
+         cannot follow"
+    )
 }
 
 fn cannot(answer: &Admissibility) -> bool {

@@ -17,6 +17,9 @@
 //! assert!(exported.unsaid.iter().any(|u| u.name == "swing")); // URDF has no motions
 //! ```
 
+mod animation;
+mod dxf;
+mod links;
 mod mjcf;
 mod skeleton;
 mod tables;
@@ -24,6 +27,9 @@ mod urdf;
 
 use hardpoint_file::ModelFile;
 use serde::Serialize;
+
+pub use animation::animation;
+pub use tables::hardpoints;
 
 /// A model as a file of another program.
 #[derive(Clone, Debug, Default)]
@@ -64,7 +70,7 @@ impl std::fmt::Debug for Format {
 }
 
 /// All formats.
-pub const FORMATS: &[Format] = &[tables::CSV, tables::TEIMORBIT, urdf::FORMAT, mjcf::FORMAT];
+pub const FORMATS: &[Format] = &[tables::CSV, tables::TEIMORBIT, urdf::FORMAT, mjcf::FORMAT, dxf::FORMAT];
 
 impl Format {
     /// The format of that name.

@@ -18,8 +18,8 @@ pub const TEIMORBIT: Format = Format {
     write: teimorbit,
 };
 
-/// Names and places of the hardpoints, in the file's unit.
-fn places(file: &ModelFile) -> impl Iterator<Item = (&str, [f64; 3])> {
+/// Names and places of the hardpoints, in the file's unit and as short as they give the same places again.
+pub fn hardpoints(file: &ModelFile) -> impl Iterator<Item = (&str, [f64; 3])> {
     let own = file.model.hardpoints.iter().filter(|h| !h.unnamed);
     own.map(|h| (h.name.as_str(), h.position.to_array().map(|x| shortest(file.units.length, x))))
 }
@@ -34,7 +34,7 @@ fn shortest(unit: LengthUnit, metres: f64) -> f64 {
 fn csv(file: &ModelFile, out: &mut Exported) {
     let unit = file.units.length.symbol();
     let _ = writeln!(out.text, "name,x ({unit}),y ({unit}),z ({unit})");
-    for (name, at) in places(file) {
+    for (name, at) in hardpoints(file) {
         let name = if name.contains([',', '"']) {
             format!("\"{}\"", name.replace('"', "\"\""))
         } else {
@@ -57,7 +57,7 @@ fn teimorbit(file: &ModelFile, out: &mut Exported) {
         "{head}$--------------------------------------------------------------------------UNITS\n[UNITS]\n LENGTH  =  '{unit}'\n ANGLE   =  'degrees'"
     );
     out.text += "$----------------------------------------------------------------------HARDPOINT\n[HARDPOINT]\n{hardpoint_name              symmetry        x_value      y_value      z_value}\n";
-    for (name, [x, y, z]) in places(file) {
+    for (name, [x, y, z]) in hardpoints(file) {
         let (short, side) = match (name.strip_suffix("_left"), name.strip_suffix("_right")) {
             (Some(short), _) => (short, "left"),
             (_, Some(short)) => (short, "right"),

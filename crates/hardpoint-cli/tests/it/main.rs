@@ -3,6 +3,8 @@
 mod bench;
 mod calibrate;
 mod client;
+mod dxf;
+mod gltf;
 mod golden;
 mod import;
 mod new;
@@ -13,3 +15,4 @@ mod sweep;
 mod there_and_back;
 mod tolerance;
 mod whatif;
+mod workbook;

@@ -46,6 +46,40 @@ fn both_formulations_write_the_same_motion() {
 }
 
 #[test]
+fn loads_of_joints_are_written_and_what_they_share_is_empty() {
+    let bench = Bench::with(&[]);
+    let press = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/press.toml");
+    let output = bench.run(&["run", press.to_str().unwrap(), "-o", "out"]);
+    assert_eq!(output.status.code(), Some(0));
+    let text = bench.text("out/loads.csv");
+    let mut table = csv::Reader::from_reader(text.as_bytes());
+    let header: Vec<String> = table.headers().unwrap().iter().map(str::to_owned).collect();
+    let column =
+        |name: &str| header.iter().position(|h| h == name).unwrap_or_else(|| panic!("{name}: {header:?}"));
+    let columns = ["force.x [N]", "force.y [N]", "force in body.x [N]", "force in body.y [N]"].map(column);
+    let motion = bench.text("out/motion.csv");
+    let mut motion = csv::Reader::from_reader(motion.as_bytes());
+    let pin = motion
+        .headers()
+        .unwrap()
+        .iter()
+        .position(|h| h == "crank_pin [N]")
+        .expect("the press measures its pin");
+    let pins: Vec<f64> = motion.records().map(|row| row.unwrap()[pin].parse().unwrap()).collect();
+    let mut seen = 0;
+    for row in table.records().map(Result::unwrap).filter(|row| &row[1] == "B") {
+        let [x, y, u, v] = columns.map(|k| row[k].parse::<f64>().unwrap());
+        let radial = pins[seen];
+        assert!((x.hypot(y) - radial).abs() < 1e-9 * radial && (u.hypot(v) - radial).abs() < 1e-9 * radial);
+        // Along the pin, hinges of a plane share what there is.
+        assert!(row[column("force.z [N]")].is_empty() && row[column("moment.x [N*m]")].is_empty());
+        assert!(!row[column("moment.z [N*m]")].is_empty());
+        seen += 1;
+    }
+    assert_eq!(seen, pins.len());
+}
+
+#[test]
 fn a_motion_past_its_limit_leaves_the_part_that_was_solved() {
     let bench = Bench::with(&["short_rod.toml"]);
     let output = bench.run(&["run", "short_rod.toml", "-o", "out"]);
@@ -273,6 +307,48 @@ fn arrays_hold_what_the_tables_hold() {
     let (known, unknown): (Vec<f64>, Vec<f64>) = array.into_iter().partition(|x| !x.is_nan());
     assert_eq!(known, written);
     assert_eq!(unknown.len(), 41 * header.len(), "one of three variables cannot be followed");
+}
+
+#[test]
+fn parquet_holds_what_the_tables_hold_with_their_units() {
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    use parquet::record::Field;
+
+    let bench = Bench::with(&["slider.toml"]);
+    assert!(bench.run(&["run", "slider.toml", "-o", "out", "--bodies"]).status.success());
+    let tables = ["motion", "sensitivity"].map(|name| (name, bench.text(&format!("out/{name}.csv"))));
+    assert!(
+        bench.run(&["run", "slider.toml", "-o", "out", "--bodies", "--format", "parquet"]).status.success()
+    );
+    assert_eq!(bench.list("out"), ["motion.parquet", "report.html", "sensitivity.parquet", "summary.json"]);
+    for (name, csv) in tables {
+        let file = std::fs::File::open(bench.path(&format!("out/{name}.parquet"))).unwrap();
+        let reader = SerializedFileReader::new(file).unwrap();
+        let facts = reader.metadata().file_metadata().key_value_metadata().unwrap().clone();
+        let fact = |key: &str| facts.iter().find(|f| f.key == key).unwrap().value.clone().unwrap();
+        assert_eq!(fact("model"), "slider-crank for tests");
+        let units: Value = serde_json::from_str(&fact("units")).unwrap();
+        let mut table = csv::Reader::from_reader(csv.as_bytes());
+        let headers = table.headers().unwrap().clone();
+        for header in headers.iter().filter(|h| !["variable", "per"].contains(h)) {
+            let unit = header.rsplit_once(" [").map_or("1", |(_, unit)| unit.trim_end_matches(']'));
+            assert_eq!(units[header], unit);
+        }
+        let mut count = 0;
+        for (row, record) in reader.get_row_iter(None).unwrap().zip(table.records()) {
+            let (row, record) = (row.unwrap(), record.unwrap());
+            for ((column, field), (header, text)) in row.get_column_iter().zip(headers.iter().zip(&record)) {
+                assert_eq!(column, header);
+                match field {
+                    Field::Double(x) => assert_eq!(*x, text.parse::<f64>().unwrap()),
+                    Field::Str(x) => assert_eq!(x, text),
+                    other => assert!(*other == Field::Null && text.is_empty(), "{header}: {other}, {text}"),
+                }
+            }
+            count += 1;
+        }
+        assert_eq!((count, reader.metadata().file_metadata().num_rows()), (rows(&csv), rows(&csv) as i64));
+    }
 }
 
 #[test]

@@ -1,0 +1,85 @@
+//! What bodies look like where nothing else says it: their places, and lines between them.
+
+use hardpoint::model::{Direction, Joint, Model};
+use hardpoint::space::Vec3;
+
+/// Places of a body that are nearer to each other than this part of the mechanism's size are one.
+const SAME_PLACE: f64 = 1e-9;
+/// Joints whose axis, where it goes through two hardpoints, has a bearing at both.
+const HINGES: [&str; 2] = ["revolute", "cylindrical"];
+/// Joints that are rods between their two places.
+const RODS: [&str; 3] = ["distance", "leg", "revolute_spherical"];
+
+/// The places of every body, in its frame, m: where joints hold it, the bearings of hinges, and its named points.
+pub fn places(model: &Model) -> Vec<Vec<Vec3>> {
+    let geometry = model.geometry(&[]);
+    let same = SAME_PLACE * model.size();
+    let mut places = vec![Vec::<Vec3>::new(); model.bodies.len()];
+    let mut add = |body: usize, at: Vec3| {
+        let list = &mut places[body];
+        if list.iter().all(|other| (*other - at).norm() > same) {
+            list.push(at);
+        }
+    };
+    for (id, joint) in model.named_joints() {
+        let bearings = match joint.axis {
+            Some(Direction::Through(a, b)) if HINGES.contains(&joint.kind.name) => vec![a, b],
+            _ => Vec::new(),
+        };
+        for end in 0..2 {
+            let body = joint.bodies[end];
+            add(body.0, geometry.markers[id.0][end].r);
+            let body_from_world = model.bodies[body.0].frame.inverse();
+            bearings.iter().for_each(|h| add(body.0, body_from_world.point(model.hardpoints[h.0].position)));
+        }
+    }
+    for (k, point) in model.points.iter().enumerate().filter(|(_, p)| !p.unnamed) {
+        add(point.body.0, geometry.points[k]);
+    }
+    places
+}
+
+/// The rods that are joints, each with its two places in the frames of its bodies, m.
+pub fn rods(model: &Model) -> impl Iterator<Item = (&Joint, [Vec3; 2])> {
+    let geometry = model.geometry(&[]);
+    let rods = model.named_joints().filter(|(_, joint)| RODS.contains(&joint.kind.name));
+    rods.map(move |(id, joint)| (joint, [0, 1].map(|end| geometry.markers[id.0][end].r)))
+}
+
+/// Lines that connect places: all of up to three, the shortest tree of more.
+pub fn lines(places: &[Vec3]) -> Vec<[Vec3; 2]> {
+    let mut lines = Vec::new();
+    let mut left: Vec<Vec3> = places.to_vec();
+    let Some(first) = left.pop() else { return lines };
+    let mut reached = vec![first];
+    while !left.is_empty() {
+        let pairs = reached.iter().flat_map(|a| left.iter().enumerate().map(move |(k, b)| (*a, k, *b)));
+        let nearest = pairs.min_by(|(a, _, b), (c, _, d)| (*a - *b).norm().total_cmp(&(*c - *d).norm()));
+        let Some((from, k, to)) = nearest else { break };
+        lines.push([from, to]);
+        reached.push(to);
+        left.swap_remove(k);
+    }
+    if let [a, b, c] = places {
+        let pairs = [[*a, *b], [*b, *c], [*c, *a]];
+        lines = pairs.to_vec();
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_places_are_all_connected_and_many_by_the_shortest_tree() {
+        let at = |x: f64, y: f64| Vec3::new(x, y, 0.0);
+        assert_eq!(lines(&[at(0.0, 0.0)]).len(), 0);
+        assert_eq!(lines(&[at(0.0, 0.0), at(1.0, 0.0)]).len(), 1);
+        assert_eq!(lines(&[at(0.0, 0.0), at(1.0, 0.0), at(5.0, 5.0)]).len(), 3);
+        let row = [at(0.0, 0.0), at(3.0, 0.0), at(1.0, 0.0), at(2.0, 0.0), at(2.0, 0.5)];
+        let tree = lines(&row);
+        let length: f64 = tree.iter().map(|[a, b]| (*a - *b).norm()).sum();
+        assert_eq!((tree.len(), length), (4, 3.5));
+    }
+}
