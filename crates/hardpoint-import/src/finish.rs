@@ -18,6 +18,8 @@ use crate::write;
 const SWING: f64 = 0.2;
 /// Or along this part of the mechanism's size.
 const STROKE: f64 = 0.05;
+/// What is off an axis by less than this part of the mechanism's size stays where it is when it turns.
+const OFF: f64 = 1e-6;
 /// Output times at which such a swing is tried.
 const TRIED: usize = 20;
 /// So many output times show which design variables are followed.
@@ -83,6 +85,56 @@ pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
     }
     unfollowed(m, notes);
     None
+}
+
+/// A point to look at first, where the source names none: of the last body of the longest chain of joints that move, at its place that
+/// is farthest from the joint that carries it.
+pub fn end_point(m: &mut Mechanism, notes: &mut Notes) {
+    if !m.points.is_empty() || !m.wheels.is_empty() {
+        return;
+    }
+    // Of every body, how many joints that move are between it and the ground at least, and the joint that leads there.
+    let mut chains: Vec<Option<(usize, usize)>> = vec![None; m.bodies.len()];
+    chains[GROUND] = Some((0, usize::MAX));
+    let mut settled = false;
+    while !settled {
+        settled = true;
+        for (k, joint) in m.joints.iter().enumerate() {
+            let [i, j] = joint.bodies;
+            for (from, to) in [(i, j), (j, i)] {
+                let Some((length, _)) = chains[from] else { continue };
+                let length = length + usize::from(joint.kind != "fixed");
+                if chains[to].is_none_or(|(known, _)| length < known) {
+                    chains[to] = Some((length, k));
+                    settled = false;
+                }
+            }
+        }
+    }
+    let ends =
+        chains.iter().enumerate().filter_map(|(b, chain)| chain.map(|(length, joint)| (length, b, joint)));
+    let longest =
+        ends.filter(|(length, ..)| *length > 0).reduce(|best, end| if end.0 > best.0 { end } else { best });
+    let Some((length, end, carrier)) = longest else { return };
+    let place = |joint: &Joint| {
+        let side = joint.bodies.iter().position(|b| *b == end)?;
+        joint.at.get(side).or(joint.at.last()).copied()
+    };
+    let carried_by = &m.joints[carrier];
+    let Some(carried) = place(carried_by) else { return };
+    let others = m.joints.iter().filter_map(place).chain(m.bodies[end].pose.map(|p| p.r));
+    let at = others
+        .fold(carried, |best, at| if (at - carried).norm() > (best - carried).norm() { at } else { best });
+    // What turns about a place of the ground has to be off it, and off its axis.
+    let arm = carried_by.axis.map_or(at - carried, |axis| (at - carried).cross(axis));
+    let slides = ["translational", "cylindrical", "planar"].contains(&carried_by.kind);
+    if length == 1 && !slides && arm.norm() <= OFF * m.size() {
+        return;
+    }
+    m.point(&format!("{}_end", m.bodies[end].name), end, at);
+    let why = "added: a point of the last body of the longest chain, so that there is a motion to look at";
+    let name = m.points.last().map_or(String::new(), |p| p.name.clone());
+    notes.approximated("point", &name, None, why);
 }
 
 /// Leaves out the design variables that the mechanism cannot follow: a plane loop, say, whose hinge would leave the plane.

@@ -126,7 +126,7 @@ impl Format {
         let ending = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
         let by_name = |f: &&Self| f.endings.contains(&ending.as_str());
         if bytes.starts_with(b"PK") {
-            return FORMATS.iter().find(|f| f.binary);
+            return FORMATS.iter().find(|f| f.binary && !TABLES.contains(&ending.as_str()));
         }
         let head = String::from_utf8_lossy(&bytes[..bytes.len().min(LOOKED_AT)]);
         let alike: Vec<&Self> = FORMATS.iter().filter(|f| !f.binary && (f.looks)(&head)).collect();
@@ -135,6 +135,10 @@ impl Format {
     }
 }
 
+/// Formats of robots, which name no points to look at.
+const ROBOTS: [&str; 3] = ["urdf", "sdf", "mjcf"];
+/// Tables, which many keep their hardpoints in.
+const TABLES: [&str; 7] = ["csv", "tsv", "txt", "xlsx", "xlsm", "xls", "ods"];
 /// So much of a file is looked at to tell its format.
 const LOOKED_AT: usize = 1 << 16;
 /// Larger sources are not read, bytes.
@@ -152,7 +156,12 @@ pub fn import(bytes: &[u8], name: &str, resolve: Resolve<'_>) -> Result<Imported
             let known = FORMATS.iter().map(|f| format!("`{}` ({})", f.name, f.about)).collect::<Vec<_>>();
             let message = notes.diagnostic("HP0801", None, "the format of the file is not recognised");
             let message = message.note(format!("known are {}", known.join(", ")));
-            Err(notes.only(message.help("name the format, like `--format adams`")))
+            let message = message.help("name the format, like `--format adams`");
+            let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
+            let table = TABLES.contains(&ending.as_str());
+            let help = "a table of hardpoints begins a model from a template: \
+                        `hardpoint new NAME --template TEMPLATE --hardpoints FILE`";
+            Err(notes.only(if table { message.help(help) } else { message }))
         }
     }
 }
@@ -209,6 +218,9 @@ pub fn import_as(
     }
     let about = report::printable(&format!("Imported from {base} ({})", format.about));
     let fault = if m.bodies.len() > 1 {
+        if ROBOTS.contains(&format.name) {
+            finish::end_point(&mut m, &mut notes);
+        }
         finish::finish(&mut m, &mut notes)
     } else {
         let message = "the topology is not recognised: only the hardpoints are written";

@@ -201,3 +201,15 @@ fn what_is_no_format_is_told() {
     let problems = hardpoint_import::import(&zip[..40], "cut.FCStd", &|_| None).unwrap_err();
     insta::assert_snapshot!(problems.to_string());
 }
+
+#[test]
+fn tables_of_hardpoints_are_sent_to_new() {
+    let zip = crate::document(b"<Document/>");
+    for (bytes, name) in
+        [(&b"A,1,2,3\n"[..], "points.csv"), (&zip[..], "points.xlsx"), (&b"hello"[..], "x.abc")]
+    {
+        let told = hardpoint_import::import(bytes, name, &|_| None).unwrap_err().to_string();
+        assert!(told.contains("HP0801"), "{told}");
+        assert_eq!(told.contains("--hardpoints"), name != "x.abc", "{told}");
+    }
+}

@@ -83,3 +83,28 @@ fn a_stored_motion_is_reproduced() {
     off.bodies[1].1[20].pose.r.x += 1e-6;
     assert!((off.compare(&file, &solution).place - 1e-6).abs() < SAME);
 }
+
+#[test]
+fn robots_have_a_point_that_moves() {
+    for (file, point) in [("mjcf/four_bar.xml", "coupler_end"), ("sdf/four_bar.sdf", "coupler_end")] {
+        let path = folder().join(file);
+        let imported = hardpoint_import::import(&std::fs::read(&path).unwrap(), file, &|_| None)
+            .unwrap_or_else(|e| panic!("{e}"));
+        // Shapes lie in files.
+        let bare = |line: &str| match (line.find(", mesh = {"), line.rfind(" }")) {
+            (Some(k), Some(_)) => format!("{} }}\n", &line[..k]),
+            _ => format!("{line}\n"),
+        };
+        let text: String = imported.text.lines().map(bare).collect();
+        let read = hardpoint_file::parse(&text, "model.toml").unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(read.model.points[0].name, point);
+        let run = Analysis::new(&read.model).unwrap().run();
+        let at = |k: usize, axis: usize| {
+            let name = format!("{point}.{}", ["x", "y", "z"][axis]);
+            let m = run.measured.outputs.iter().position(|o| o.name == name).unwrap();
+            run.measured.value(k, m)[0]
+        };
+        let moves = |axis| (0..run.motion.len()).any(|k| (at(k, axis) - at(0, axis)).abs() > 1e-3);
+        assert!((0..3).any(moves), "{file}");
+    }
+}
