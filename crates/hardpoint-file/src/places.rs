@@ -68,7 +68,7 @@ impl EntryPlace {
     }
 }
 
-const SECTIONS: [Section; 26] = [
+const SECTIONS: [Section; 28] = [
     Section::Model,
     Section::Parameters,
     Section::Hardpoints,
@@ -81,6 +81,8 @@ const SECTIONS: [Section; 26] = [
     Section::Vehicle,
     Section::Wheels,
     Section::Axles,
+    Section::Masses,
+    Section::Forces,
     Section::Measures,
     Section::Metrics,
     Section::Time,

@@ -5,6 +5,7 @@ mod couplers;
 mod data;
 mod design;
 mod drivers;
+mod elements;
 pub(crate) mod include;
 mod law;
 pub(crate) mod measured;
@@ -75,6 +76,12 @@ pub(crate) const MODEL: Table = table! {
     may "wheels": Shape::Entries("a wheel", &Shape::Table(&wheels::WHEEL)), "{}";
     /// Pairs of wheels, for what is measured at both.
     may "axles": Shape::Entries("an axle", &Shape::Table(&wheels::AXLE)), "{}";
+    /// Which way everything falls, and how fast.
+    may "gravity": Shape::Table(&elements::GRAVITY), "{ along = \"-z\" }";
+    /// What has mass, for loads.
+    may "masses": Shape::Entries("a mass", &Shape::Kinds(&elements::MASS)), "{}";
+    /// What pushes: springs, dampers, friction, given forces; and what gives way.
+    may "forces": Shape::Entries("a force", &Shape::Kinds(&elements::FORCE)), "{}";
     /// Numbers to compute from the motion, with their sensitivities.
     may "measures": Shape::Entries("a measure", &results::MEASURE), "{}";
     /// Numbers that sum measures up over the motion, with their sensitivities.
@@ -244,7 +251,7 @@ fn coordinates() -> Vec<(&'static str, String)> {
 
 /// The tables that `docs/file-format.md` shows, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 35] {
+pub(crate) fn tables() -> [(&'static str, Shape); 38] {
     [
         ("include", Shape::Table(&include::INCLUDE_TABLE)),
         ("mirror", Shape::Table(&mirror::MIRROR)),
@@ -266,6 +273,9 @@ pub(crate) fn tables() -> [(&'static str, Shape); 35] {
         ("the vehicle", Shape::Table(&wheels::VEHICLE)),
         ("wheels", Shape::Table(&wheels::WHEEL)),
         ("axles", Shape::Table(&wheels::AXLE)),
+        ("gravity", Shape::Table(&elements::GRAVITY)),
+        ("masses", Shape::Kinds(&elements::MASS)),
+        ("forces", Shape::Kinds(&elements::FORCE)),
         ("measures", Shape::Kinds(&results::OWN_MEASURE)),
         ("metrics", Shape::Table(&results::METRIC)),
         ("time", Shape::Kinds(&results::TIME)),
@@ -337,6 +347,9 @@ impl Reader<'_> {
         self.vehicle(&fields, &mut raw);
         self.wheels(&fields, &mut raw);
         self.axles(&fields, &mut raw);
+        self.gravity(&fields, &mut raw);
+        self.masses(&fields, &mut raw);
+        self.forces(&fields, &mut raw);
         self.metrics(&fields, &mut raw);
         self.time(&fields, &mut raw);
         self.cases(&fields, &mut raw);

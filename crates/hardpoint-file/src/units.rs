@@ -4,7 +4,7 @@
 //! results go back to the user in the same ones. Time is always in seconds.
 
 use hardpoint::joint::Quantity;
-use hardpoint::model::Dimension;
+use hardpoint::model::{Dimension, ElementUnit};
 use serde::Serialize;
 
 /// A unit of length.
@@ -149,8 +149,38 @@ impl Units {
 
     /// How many of the user's units make one SI unit.
     pub fn per_si(self, of: impl Into<Dimension>) -> f64 {
-        let Dimension { length, angle, .. } = of.into();
+        let of = of.into();
+        // Moments, energies and powers are in N m, J and W.
+        let (length, angle) = (of.length_in_units(), of.angle);
         self.length.per_metre().powi(length.into()) * self.angle.per_radian().powi(angle.into())
+    }
+
+    /// How many of the user's units of such a number of a mass or force make one SI unit: what loads are made of is in kg, N and N m,
+    /// and per the user's unit of length or angle.
+    pub fn per_si_of(self, unit: ElementUnit) -> f64 {
+        let (length, angle) = (self.length.per_metre(), self.angle.per_radian());
+        match unit {
+            ElementUnit::Length => length,
+            ElementUnit::Angle => angle,
+            ElementUnit::Stiffness | ElementUnit::Damping => 1.0 / length,
+            ElementUnit::CubicStiffness => 1.0 / (length * length * length),
+            ElementUnit::TorsionalStiffness | ElementUnit::TorsionalDamping => 1.0 / angle,
+            ElementUnit::Mass
+            | ElementUnit::Inertia
+            | ElementUnit::Density
+            | ElementUnit::Force
+            | ElementUnit::Moment
+            | ElementUnit::Plain => 1.0,
+        }
+    }
+
+    /// Such a number in the user's unit, in SI.
+    pub fn to_si_of(self, unit: ElementUnit, value: f64) -> f64 {
+        match unit {
+            ElementUnit::Length => self.length.metres(value),
+            ElementUnit::Angle => self.angle.radians(value),
+            unit => value / self.per_si_of(unit),
+        }
     }
 
     /// A value in SI, in the user's unit.

@@ -63,6 +63,7 @@ pub mod expression;
 pub mod joint;
 pub mod law;
 mod linalg;
+mod load;
 pub mod measure;
 pub mod model;
 pub mod motion;

@@ -307,8 +307,12 @@ impl Reader<'_> {
         Some(part)
     }
 
-    /// The units of all files are the same; a file that says none has those of what it includes.
+    /// The units of all files are the same, and so is gravity; a file that says none has those of what it includes.
     fn units_of<'a>(&mut self, own: &mut DeTable<'a>, part: &DeTable<'a>, value: &Value<'_>) {
+        // What falls in a part falls in the whole.
+        if let (Some((key, gravity)), false) = (part.get_key_value("gravity"), own.contains_key("gravity")) {
+            own.insert(key.clone(), gravity.clone());
+        }
         let said =
             |table: &DeTable<'_>| -> Option<[String; 2]> {
                 let units = table.get("units")?.get_ref().as_table()?;

@@ -40,7 +40,7 @@ const VARIABLES: Shape = Shape::Words(&[
     ("each", "Those with such a word in their names have one of their own on the other side."),
 ]);
 /// Sections whose entries are mirrored; of parameters and design variables, where each side has its own.
-pub(crate) const SECTIONS: [&str; 12] = [
+pub(crate) const SECTIONS: [&str; 14] = [
     "parameters",
     "hardpoints",
     "bodies",
@@ -51,6 +51,8 @@ pub(crate) const SECTIONS: [&str; 12] = [
     "points",
     "wheels",
     "axles",
+    "masses",
+    "forces",
     "measures",
     "metrics",
 ];

@@ -99,6 +99,16 @@ impl Reader<'_> {
                 square(measure, name);
             }
         });
+        sections(model, "measures", &mut |measure| {
+            if word(measure, "type").as_deref() == Some("shaking_moment") {
+                square(measure, "along");
+            }
+        });
+        sections(model, "forces", &mut |force| {
+            if word(force, "type").as_deref() == Some("moment") {
+                square(force, "about");
+            }
+        });
         sections(model, "drivers", &mut |driver| {
             if driver.contains_key("body") {
                 square(driver, "about");

@@ -6,18 +6,21 @@ use hardpoint::draft::{
     FieldDraft, FieldKind, LineDraft, MeasureDraft, MeasureField, MeasureKindDraft, MeasureType, MetricDraft,
     PlaceDraft, PointDraft, PointRef, RayDraft, Section,
 };
-use hardpoint::model::{AxleMeasure, OrientationAngle, Reduction, WheelMeasure, WheelNeed};
+use hardpoint::model::{
+    Axes, AxleMeasure, ElementUnit, OrientationAngle, ReactionPart, Reduction, WheelMeasure, WheelNeed,
+};
 use hardpoint::space::Vec3;
 
 use toml::de::DeValue;
 
 use crate::format::{
-    BODY, CASE, DRIVER, JOINT, Key, Kinds, NUMBER, Need, OUTPUT, Shape, TWO_NUMBERS, Table, keys, table,
+    ANGLE, BODY, CASE, DRIVER, JOINT, Key, Kinds, LENGTH, NUMBER, Need, OUTPUT, Shape, TWO_NUMBERS, Table,
+    keys, table,
 };
 use crate::places::EntryPlace;
 use crate::tree::{DIRECTION, Field, Fields, LINE, PLACE, Reader, Subject, Value};
 
-use super::law::COLUMN;
+use super::law::{COLUMN, LAW};
 use super::{COORDINATE, DRAW, Raw, data};
 
 /// More output times than this are surely a slip.
@@ -173,6 +176,12 @@ pub(super) const WHEEL_MEASURE: Shape = Shape::Any(
         WheelMeasure::ALL.iter().map(|m| (m.name(), format!("{}{}", m.summary(), needs(m)))).collect()
     })],
 );
+const REACTION_PART: Shape = Shape::Any(
+    "ReactionPart",
+    "What of a joint's reaction is measured.",
+    &[Shape::Words(ReactionPart::WORDS)],
+);
+const AXES: Shape = Shape::Any("Axes", "Along which axes something is given.", &[Shape::Words(Axes::WORDS)]);
 const ORIENTATION_ANGLE: Shape = Shape::Any(
     "OrientationAngle",
     "One of three angles that say how a body is turned.",
@@ -222,8 +231,8 @@ static MEASURES: LazyLock<Vec<(Table, MeasureOf)>> = LazyLock::new(|| {
     own.chain(of_wheels).chain(of_axles).collect()
 });
 
-/// The key of a measure's field.
-fn key(field: &MeasureField) -> Key {
+/// The key of a field of a measure, a mass or a force.
+pub(super) fn key(field: &MeasureField) -> Key {
     let (shape, example) = match field.kind {
         FieldKind::Joint => (JOINT, "\"J1\""),
         FieldKind::Coordinate => (COORDINATE, "\"angle\""),
@@ -236,9 +245,38 @@ fn key(field: &MeasureField) -> Key {
         FieldKind::Body => (BODY, "\"knuckle\""),
         FieldKind::OrientationAngle => (ORIENTATION_ANGLE, "\"yaw\""),
         FieldKind::Expression => (Shape::Expression, "\"left.toe + right.toe\""),
+        FieldKind::ReactionPart => (REACTION_PART, "\"radial\""),
+        FieldKind::Axes => (AXES, "\"body\""),
+        FieldKind::Force => (Shape::Name("a force"), "\"spring\""),
+        FieldKind::Number(ElementUnit::Length) => (LENGTH, "20"),
+        FieldKind::Number(ElementUnit::Angle) => (ANGLE, "5"),
+        FieldKind::Number(ElementUnit::Density) => (NUMBER, "7850"),
+        FieldKind::Number(_) => (NUMBER, "2.5"),
+        FieldKind::Law => (LAW, "\"sin(2*pi*t)\""),
     };
     let need = if field.required { Need::Required } else { Need::Optional };
-    Key { key: field.key, shape, need, example, doc: field.summary }
+    Key { key: field.key, shape, need, example, doc: with_unit(field) }
+}
+
+/// What a field means, with the unit of its number where that is none of lengths and angles alone.
+fn with_unit(field: &MeasureField) -> &'static str {
+    let FieldKind::Number(unit) = field.kind else { return field.summary };
+    let unit = match unit {
+        ElementUnit::Mass => "kg",
+        ElementUnit::Inertia => "kg m^2",
+        ElementUnit::Force => "N",
+        ElementUnit::Moment => "N m",
+        ElementUnit::Stiffness => "N per unit of length",
+        ElementUnit::CubicStiffness => "N per cube of it",
+        ElementUnit::Damping => "N s per unit of length",
+        ElementUnit::TorsionalStiffness => "N m per unit of angle",
+        ElementUnit::TorsionalDamping => "N m s per unit of angle",
+        // Their sentences say it, or the shape does.
+        ElementUnit::Density | ElementUnit::Plain | ElementUnit::Length | ElementUnit::Angle => {
+            return field.summary;
+        }
+    };
+    format!("{} In {unit}.", field.summary).leak()
 }
 
 impl Reader<'_> {
@@ -309,35 +347,51 @@ impl Reader<'_> {
         place: &mut EntryPlace,
     ) -> Option<MeasureKindDraft> {
         let mut unread = false;
-        let draft = own.draft(|field| {
-            let key = field.key;
-            let value = match field.kind {
-                FieldKind::Joint
-                | FieldKind::Coordinate
-                | FieldKind::Output
-                | FieldKind::Driver
-                | FieldKind::Body => self.name_of(fields, key).map(FieldDraft::Name),
-                FieldKind::OrientationAngle => {
-                    self.word_of(fields, key).map(|k| FieldDraft::Angle(OrientationAngle::at(k)))
-                }
-                FieldKind::Point => self.point_of(fields, key).map(FieldDraft::Point),
-                FieldKind::Direction => self.vector_of(fields, key).map(FieldDraft::Direction),
-                FieldKind::Line => self.line_of(fields, key, place).map(FieldDraft::Line),
-                FieldKind::Ray => {
-                    self.given(fields, key, |r, f| r.ray(fields, f, place)).map(FieldDraft::Ray)
-                }
-                FieldKind::Expression => self.given(fields, key, |r, f| {
-                    let subject = fields.subject(key);
-                    if f.value.get_ref().as_str().is_none() {
-                        r.wrong(f.value, &subject, "an expression in quotes");
-                    }
-                    r.expression(f.value, &subject).map(FieldDraft::Expression)
-                }),
-            };
-            unread |= value.is_none() && fields.get(key).is_some();
-            value
-        });
+        let draft = own.draft(|field| self.own_field(field, fields, place, &mut unread));
         draft.filter(|_| !unread)
+    }
+
+    /// A field of a measure, a mass or a force; `unread` where it is there and cannot be read.
+    pub(super) fn own_field(
+        &mut self,
+        field: &MeasureField,
+        fields: &Fields<'_>,
+        place: &mut EntryPlace,
+        unread: &mut bool,
+    ) -> Option<FieldDraft> {
+        let key = field.key;
+        let value = match field.kind {
+            FieldKind::Joint
+            | FieldKind::Coordinate
+            | FieldKind::Output
+            | FieldKind::Driver
+            | FieldKind::Force
+            | FieldKind::Body => self.name_of(fields, key).map(FieldDraft::Name),
+            FieldKind::OrientationAngle => {
+                self.word_of(fields, key).map(|k| FieldDraft::Angle(OrientationAngle::at(k)))
+            }
+            FieldKind::ReactionPart => {
+                self.word_of(fields, key).map(|k| FieldDraft::Part(ReactionPart::at(k)))
+            }
+            FieldKind::Axes => self.word_of(fields, key).map(|k| FieldDraft::Axes(Axes::at(k))),
+            FieldKind::Number(unit) => {
+                self.given(fields, key, |r, f| r.element_number(fields, f, unit)).map(FieldDraft::Number)
+            }
+            FieldKind::Law => self.given(fields, key, |r, f| r.factor_law(fields, f)).map(FieldDraft::Law),
+            FieldKind::Point => self.point_of(fields, key).map(FieldDraft::Point),
+            FieldKind::Direction => self.vector_of(fields, key).map(FieldDraft::Direction),
+            FieldKind::Line => self.line_of(fields, key, place).map(FieldDraft::Line),
+            FieldKind::Ray => self.given(fields, key, |r, f| r.ray(fields, f, place)).map(FieldDraft::Ray),
+            FieldKind::Expression => self.given(fields, key, |r, f| {
+                let subject = fields.subject(key);
+                if f.value.get_ref().as_str().is_none() {
+                    r.wrong(f.value, &subject, "an expression in quotes");
+                }
+                r.expression(f.value, &subject).map(FieldDraft::Expression)
+            }),
+        };
+        *unread |= value.is_none() && fields.get(key).is_some();
+        value
     }
 
     /// A direction to measure an angle from or to: `["P", "Q"]`, a global vector, or `{ body = ..., axis = ... }`.

@@ -60,6 +60,7 @@ const GALLERY: &[Entry] = &[
     entry("macpherson", 2, 0, &[], macpherson_strut_and_tie_rod_have_their_lengths),
     entry("pantograph", 2, 6, &[], pantograph_copies_exactly),
     entry("peaucellier", 1, 9, &[], peaucellier_draws_a_straight_line),
+    entry("press", 1, 3, &[], press_goes_by_its_crank_and_rod),
     entry("quick_return", 1, 3, &[], quick_return_rests_at_210_and_330_degrees),
     entry("rack_steering", 1, 0, &[], rack_steering_is_its_own_mirror_image),
     entry("rssr", 1, 0, &[], rssr_coupler_keeps_its_length),
@@ -807,6 +808,15 @@ fn scissor_height_follows_from_the_cylinder(m: &Solved) {
 }
 
 /// x = r cos q + sqrt(l^2 - (r sin q - h)^2), with the pin of the slider at the height h.
+fn press_goes_by_its_crank_and_rod(m: &Solved) {
+    let (r, l) = (0.06, 0.24_f64);
+    for (k, t) in m.steps() {
+        let (sin, cos) = (TAU * t).sin_cos();
+        let y = r * cos - (l * l - (r * sin).powi(2)).sqrt();
+        m.close("stroke", m.value(k, "stroke"), y + 0.18, EXACT);
+    }
+}
+
 fn slider_crank_follows_its_formula(m: &Solved) {
     let (r, l, h) = (0.2, 0.48_f64.hypot(0.11), 0.05);
     for (k, t) in m.steps() {

@@ -10,6 +10,7 @@ mod gallery;
 mod gallery_models;
 mod grids;
 mod includes;
+mod loads;
 mod measures;
 mod meshes;
 mod metrics;

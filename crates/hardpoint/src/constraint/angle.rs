@@ -33,8 +33,8 @@ fn sine_of_difference<T: Real>([s, c]: [T; 2], target: T) -> T {
 fn unwrapped<T: Real>([s, c]: [T; 2], near: T) -> T {
     const TURN: f64 = 2.0 * std::f64::consts::PI;
     // angle + 2 pi k, as near to `near` as it gets
-    let angle = s.value().atan2(c.value());
-    T::constant(angle + TURN * ((near.value() - angle) / TURN).round())
+    let angle = s.atan2(c);
+    angle + T::constant(TURN * ((near.value() - angle.value()) / TURN).round())
 }
 
 /// The angle about z_i nearest to `near`.

@@ -15,6 +15,8 @@ pub(super) struct Formulas {
     pub of_parameter: Vec<Option<usize>>,
     pub of_hardpoint: Vec<[Option<usize>; 3]>,
     pub of_length: Vec<Option<usize>>,
+    /// The same of the numbers of masses and forces.
+    pub of_number: Vec<Option<usize>>,
     /// The formulas that use a parameter, or a coordinate of a hardpoint.
     using_parameter: Vec<Vec<usize>>,
     using_hardpoint: Vec<Vec<usize>>,
@@ -33,6 +35,7 @@ impl Formulas {
             of_parameter: vec![None; parameters],
             of_hardpoint: vec![[None; 3]; hardpoints],
             of_length: vec![None; model.joints.len()],
+            of_number: vec![None; model.numbers.len()],
             using_parameter: vec![Vec::new(); parameters],
             using_hardpoint: vec![Vec::new(); hardpoints],
             is_used: Vec::new(),
@@ -44,6 +47,7 @@ impl Formulas {
                 Target::Parameter(p) => f.of_parameter[p.0] = Some(k),
                 Target::Coordinate(h, axis) => f.of_hardpoint[h.0][axis] = Some(k),
                 Target::Length(j) => f.of_length[j.0] = Some(k),
+                Target::Number(n) => f.of_number[n.0] = Some(k),
                 Target::Law(..) => {}
             }
             for source in formula.sources() {
@@ -84,7 +88,7 @@ impl Formulas {
                 match model.formulas[k].of {
                     Target::Parameter(p) => waiting.extend(&self.using_parameter[p.0]),
                     Target::Coordinate(h, _) => waiting.extend(&self.using_hardpoint[h.0]),
-                    Target::Length(_) | Target::Law(..) => {}
+                    Target::Length(_) | Target::Law(..) | Target::Number(_) => {}
                 }
             }
         }

@@ -19,6 +19,8 @@ pub struct Geometry<T = f64> {
     pub kept: Vec<JointConstants<T>>,
     /// Per point of the model, its position in its body's frame, m.
     pub points: Vec<Vec3<T>>,
+    /// Per number of the model's masses and forces, its value, SI.
+    pub numbers: Vec<T>,
 }
 
 /// What measures go by, fixed in the bodies.
@@ -83,13 +85,16 @@ impl<T: Real> JointConstants<T> {
     }
 
     pub(super) fn vanishes(self) -> bool {
-        [self.distance, self.offset, self.cosine, self.course, self.contact].into_iter().all(T::vanishes)
+        self.numbers().into_iter().all(T::vanishes)
+    }
+
+    /// All of them.
+    pub(crate) fn numbers(&self) -> [T; 5] {
+        [self.distance, self.offset, self.cosine, self.contact, self.course]
     }
 
     /// The largest of them.
     pub(crate) fn size(&self) -> T {
-        let [a, b] =
-            [self.distance.abs().larger(self.offset.abs()), self.cosine.abs().larger(self.contact.abs())];
-        a.larger(b).larger(self.course.abs())
+        self.numbers().into_iter().map(T::abs).fold(T::zero(), T::larger)
     }
 }

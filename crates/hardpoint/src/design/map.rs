@@ -18,10 +18,10 @@ use crate::design::{BodyFixed, DesignVelocity, Geometry, JointConstants, MarkerV
 use crate::law::Law;
 use crate::model::{
     BodyId, Change, DesignVariable, Direction, DriverId, HardpointId, Held, Joint, JointId, Measure,
-    MeasureKind, Model, PointId, Source, Target, VariableId,
+    MeasureKind, Model, NumberId, PointId, Source, Target, VariableId,
 };
 use crate::number::{Dual, Real};
-use crate::space::{Mat3, Pose, Vec3};
+use crate::space::{Mat3, Pose, Twist, Vec3};
 
 use super::change::Effect;
 use super::formulas::Formulas;
@@ -93,6 +93,7 @@ impl<'m> DesignMap<'m> {
             markers: (0..model.joints.len()).map(|j| [0, 1].map(|e| design.marker(j, e))).collect(),
             kept: (0..model.joints.len()).map(|j| design.kept(j)).collect(),
             points: (0..model.points.len()).map(|k| design.point(k)).collect(),
+            numbers: (0..model.numbers.len()).map(|k| design.number(k)).collect(),
         }
     }
 
@@ -153,6 +154,14 @@ impl<'m> DesignMap<'m> {
         field
     }
 
+    /// Marker i of a joint moves by a twist along the joint's own axes, in the designs whose values these are.
+    pub fn opening<T: Real>(&self, joint: JointId, twist: Twist, values: &[T]) -> DesignVelocity<T> {
+        let design = PlacedDesign::new(self, values.to_vec());
+        // e = Ad(M) of it
+        let twist = design.marker(joint.0, 0).carry(twist.spread());
+        DesignVelocity { markers: vec![MarkerVelocity { joint, end: 0, twist }], ..DesignVelocity::default() }
+    }
+
     /// What may change along a direction, some variables at once.
     pub(super) fn affected(&self, along: &[(VariableId, f64)]) -> Affected {
         let mut affected = Affected::default();
@@ -173,6 +182,7 @@ impl<'m> DesignMap<'m> {
                     Target::Coordinate(h, _) => affected.hardpoints.push(h.0),
                     Target::Length(j) => affected.joints.push(j.0),
                     Target::Law(..) => affected.law_formulas.push(k),
+                    Target::Number(n) => affected.numbers.push(n),
                 }
             }
         }
@@ -244,7 +254,8 @@ fn is_null<T: Real>(v: Vec3<T>) -> bool {
     v.x.vanishes() && v.y.vanishes() && v.z.vanishes()
 }
 
-/// What may change along a direction: hardpoints, joints, points, parameters of laws at a rate, and formulas of such.
+/// What may change along a direction: hardpoints, joints, points, parameters of laws at a rate, formulas of such, and numbers of masses
+/// and forces.
 #[derive(Default)]
 pub(super) struct Affected {
     pub hardpoints: Vec<usize>,
@@ -252,6 +263,7 @@ pub(super) struct Affected {
     pub points: Vec<usize>,
     pub laws: Vec<(DriverId, usize, f64)>,
     pub law_formulas: Vec<usize>,
+    pub numbers: Vec<NumberId>,
 }
 
 /// Where everything is with the variables at these values.
@@ -430,6 +442,13 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         let [x_i, y_i] = [0, 1].map(|k| m_i.rot.cols[k]);
         let course = if has_course { y_i.dot(z_j).atan2(x_i.dot(z_j)) } else { zero };
         JointConstants { distance, offset: z_i.dot(d), cosine: z_i.dot(z_j), course, contact }
+    }
+
+    /// A number of a mass or force.
+    fn number(&self, k: usize) -> T {
+        let formula = self.design_map.formulas.as_ref().and_then(|f| f.of_number[k]);
+        let given = formula.and_then(|formula| self.values.formulas.get(formula)).copied();
+        given.unwrap_or_else(|| T::constant(self.design_map.model().numbers[k].value))
     }
 
     /// A point in its body's frame.

@@ -72,6 +72,7 @@ impl Model {
             let felt = [&affected.joints, &affected.points, &affected.law_formulas];
             felt.iter().all(|list| list.is_empty())
                 && affected.laws.is_empty()
+                && affected.numbers.is_empty()
                 && !affected.hardpoints.iter().any(|h| seen.contains(h))
         };
         (0..self.variables.len()).map(VariableId).filter(is_idle).collect()

@@ -3,6 +3,7 @@
 mod cases;
 mod design;
 mod driven;
+mod elements;
 mod formulas;
 mod grids;
 mod joints;
@@ -69,6 +70,7 @@ impl Model {
         c.vehicle();
         c.wheels();
         c.axles();
+        c.elements();
         c.measures();
         c.metrics();
         c.variables();
@@ -138,7 +140,7 @@ struct Checker<'a> {
 }
 
 /// The tables that names of a kind stand in.
-const TABLES: [(&str, &str); 13] = [
+const TABLES: [(&str, &str); 15] = [
     ("parameter", "parameters"),
     ("hardpoint", "hardpoints"),
     ("body", "bodies"),
@@ -147,6 +149,8 @@ const TABLES: [(&str, &str); 13] = [
     ("point", "points"),
     ("wheel", "wheels"),
     ("axle", "axles"),
+    ("mass", "masses"),
+    ("force", "forces"),
     ("measure", "measures"),
     ("metric", "metrics"),
     ("case", "cases"),
@@ -195,6 +199,9 @@ impl<'a> Checker<'a> {
             vehicle: draft.vehicle.clone(),
             wheels: Vec::new(),
             axles: Vec::new(),
+            elements: Vec::new(),
+            numbers: Vec::new(),
+            gravity: draft.gravity,
             measures: Vec::new(),
             metrics: Vec::new(),
             idle: Vec::new(),
@@ -213,6 +220,8 @@ impl<'a> Checker<'a> {
             ("joint", numbered(draft.joints.iter().map(|j| j.name.as_str()))),
             ("point", numbered(draft.points.iter().map(|p| p.name.as_str()))),
             ("driver", numbered(draft.drivers.iter().map(|d| d.name.as_str()))),
+            ("mass", numbered(draft.masses.iter().map(|m| m.name.as_str()))),
+            ("force", numbered(draft.forces.iter().map(|f| f.name.as_str()))),
             ("measure", numbered(draft.measures.iter().map(|m| m.name.as_str()))),
             ("metric", numbered(draft.metrics.iter().map(|m| m.name.as_str()))),
             ("case", numbered(draft.cases.iter().map(|c| c.name.as_str()))),
@@ -266,7 +275,7 @@ impl<'a> Checker<'a> {
     /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
     fn names(&mut self) {
         let d = self.draft;
-        let lists: [(Section, &str, Vec<&str>); 19] = [
+        let lists: [(Section, &str, Vec<&str>); 21] = [
             (Section::Parameters, "parameter", d.parameters.iter().map(|x| x.name.as_str()).collect()),
             (Section::Hardpoints, "hardpoint", d.hardpoints.iter().map(|x| x.name.as_str()).collect()),
             (Section::Bodies, "body", d.bodies.iter().map(|x| x.name.as_str()).collect()),
@@ -277,6 +286,8 @@ impl<'a> Checker<'a> {
             (Section::Points, "point", d.points.iter().map(|x| x.name.as_str()).collect()),
             (Section::Wheels, "wheel", d.wheels.iter().map(|x| x.name.as_str()).collect()),
             (Section::Axles, "axle", d.axles.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Masses, "mass", d.masses.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Forces, "force", d.forces.iter().map(|x| x.name.as_str()).collect()),
             (Section::Measures, "measure", d.measures.iter().map(|x| x.name.as_str()).collect()),
             (Section::Metrics, "metric", d.metrics.iter().map(|x| x.name.as_str()).collect()),
             (Section::Cases, "case", d.cases.iter().map(|x| x.name.as_str()).collect()),

@@ -57,6 +57,10 @@ pub enum Section {
     Wheels,
     /// [`super::Draft::axles`].
     Axles,
+    /// [`super::Draft::masses`].
+    Masses,
+    /// [`super::Draft::forces`].
+    Forces,
     /// [`super::Draft::measures`].
     Measures,
     /// [`super::Draft::metrics`].
@@ -115,6 +119,8 @@ impl fmt::Display for Section {
             Self::Vehicle => "vehicle",
             Self::Wheels => "wheels",
             Self::Axles => "axles",
+            Self::Masses => "masses",
+            Self::Forces => "forces",
             Self::Measures => "measures",
             Self::Metrics => "metrics",
             Self::Time => "time",

@@ -1,10 +1,11 @@
 //! Measures as written, and what their fields mean in a model.
 
-use crate::draft::{LineDraft, PointRef, RayDraft};
+use crate::draft::{LineDraft, NumberDraft, PointRef, RayDraft};
 use crate::expression::Expression;
+use crate::law::Law;
 use crate::model::{
-    AxleMeasure, BodyId, Combination, Direction, DriverId, JointId, MeasureKind, OrientationAngle,
-    OutputSource, PointId, Ray, WheelMeasure, measures,
+    Axes, AxleMeasure, BodyId, Combination, Direction, DriverId, ElementId, ElementUnit, JointId,
+    MeasureKind, OrientationAngle, OutputSource, PointId, Ray, ReactionPart, WheelMeasure, measures,
 };
 use crate::space::Vec3;
 
@@ -57,6 +58,16 @@ pub enum FieldKind {
     Body,
     /// One of [`OrientationAngle::WORDS`].
     OrientationAngle,
+    /// One of [`ReactionPart::WORDS`].
+    ReactionPart,
+    /// One of [`Axes::WORDS`].
+    Axes,
+    /// The name of a force.
+    Force,
+    /// A number, which may be an expression over parameters.
+    Number(ElementUnit),
+    /// A number over time.
+    Law,
     /// An expression over outputs.
     Expression,
 }
@@ -76,6 +87,14 @@ pub enum FieldDraft {
     Ray(RayDraft),
     /// One of the angles that say how a body is turned.
     Angle(OrientationAngle),
+    /// What of a joint's reaction is measured.
+    Part(ReactionPart),
+    /// Along which axes something is given.
+    Axes(Axes),
+    /// A number.
+    Number(NumberDraft),
+    /// A number over time.
+    Law(Law),
     /// An expression.
     Expression(Expression),
 }

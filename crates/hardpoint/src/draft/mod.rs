@@ -6,12 +6,14 @@
 mod build;
 mod change;
 mod check;
+mod element;
 mod fault;
 mod idle;
 mod measure;
 
 pub use change::{ChangeDraft, ShapeDraft};
 pub use check::{Nominal, NotConstant};
+pub use element::{ElementDraft, ElementKindDraft, ElementType, NumberDraft};
 pub use fault::{Fault, Locus, Section, did_you_mean, some_of};
 pub use measure::{FieldDraft, FieldKind, MeasureField, MeasureKindDraft, MeasureType};
 
@@ -56,6 +58,12 @@ pub struct Draft {
     pub vehicle: Vehicle,
     /// Pairs of wheels.
     pub axles: Vec<AxleDraft>,
+    /// Masses.
+    pub masses: Vec<ElementDraft>,
+    /// Forces.
+    pub forces: Vec<ElementDraft>,
+    /// What everything falls with, m/s^2, global.
+    pub gravity: Vec3,
     /// Measures.
     pub measures: Vec<MeasureDraft>,
     /// Metrics.

@@ -19,7 +19,7 @@ use bodies::with_sensitivity;
 use hardpoint_tape::LANES;
 use program::MeasureRun;
 pub(crate) use program::{MeasureProgram, ProgramKey, dependences};
-pub(crate) use slope::{SlopeValues, Slopes};
+pub(crate) use slope::{Slopes, StepValues};
 use wheel::{WheelAt, camber, toe};
 
 use crate::blocks::Blocks;
@@ -242,7 +242,7 @@ pub(crate) fn evaluate(
     design: &MeasuredDesign<'_>,
     topology: &Topology,
     (motion, sensitivities): (&Motion, &Sensitivities),
-    slopes: &SlopeValues,
+    slopes: &StepValues,
     before: Option<&PreviousStep>,
     program: Option<&MeasureProgram>,
     measured: &mut Measured,
@@ -301,7 +301,7 @@ struct FormulaEvaluator<'a> {
     laws: &'a [Law],
     motion: &'a Motion,
     before: Option<&'a PreviousStep>,
-    slopes: &'a SlopeValues,
+    slopes: &'a StepValues,
     fixed: BodyFixed<Rates>,
     /// The bodies that measures name, and where they are.
     bodies: Vec<usize>,
@@ -324,7 +324,7 @@ impl<'a> FormulaEvaluator<'a> {
         design: &MeasuredDesign<'a>,
         topology: &Topology,
         (motion, before): (&'a Motion, Option<&'a PreviousStep>),
-        slopes: &'a SlopeValues,
+        slopes: &'a StepValues,
         measured: &Measured,
     ) -> Self {
         let &MeasuredDesign { model, design_map, values, laws } = design;
@@ -404,7 +404,7 @@ impl<'a> FormulaEvaluator<'a> {
 /// What outputs may ask for besides the motion.
 pub(crate) struct Context<'a> {
     /// Of the measures that go by a driver.
-    pub slopes: &'a SlopeValues,
+    pub slopes: &'a StepValues,
     /// By time and measure: the whole turns of its angle, rad; empty where no formula asks for them.
     pub whole_turns: &'a [f64],
 }
@@ -687,7 +687,7 @@ impl<'a, T: Real> Instant<'a, T> {
     /// Formulas and signs: `docs/measures.md`.
     fn measure(&self, k: usize) -> T {
         let unknown = || T::constant(f64::NAN);
-        if self.model.goes_by_driver(k) {
+        if self.model.goes_by_step(k) {
             return self.slopes.get(k).copied().unwrap_or_else(unknown);
         }
         match &self.model.measures[k].kind {
@@ -756,7 +756,16 @@ impl<'a, T: Real> Instant<'a, T> {
                 now.measure(*what, || self.wheel_as_drawn(k, 0, *wheel))
             }
             MeasureKind::Axle { axle, what } => self.axle(k, self.model.axles[axle.0].wheels, *what),
-            MeasureKind::Slope { .. } => unknown(),
+            // What goes by the step, above.
+            MeasureKind::Slope { .. }
+            | MeasureKind::DriverForce { .. }
+            | MeasureKind::DriverPower { .. }
+            | MeasureKind::Reaction { .. }
+            | MeasureKind::SpringForce { .. }
+            | MeasureKind::KineticEnergy { .. }
+            | MeasureKind::ShakingForce { .. }
+            | MeasureKind::ShakingMoment { .. }
+            | MeasureKind::Compliance { .. } => unknown(),
         }
     }
 

@@ -280,7 +280,7 @@ struct Recorder<'a> {
 impl Recorder<'_> {
     /// An output that depends on these bodies and goes by what these variables move within them; none that is no arithmetic.
     fn output(&self, output: &Output, [bodies, variables]: &[Vec<usize>; 2]) -> Option<RecordedOutput> {
-        if goes_by_driver(self.model, output.source) {
+        if goes_by_step(self.model, output.source) {
             return None;
         }
         recording::begin();
@@ -351,14 +351,14 @@ impl Recorder<'_> {
     }
 }
 
-/// Whether an output goes, itself or by what it is made of, by a driver that moves alone.
-fn goes_by_driver(model: &Model, output: OutputSource) -> bool {
+/// Whether an output goes, itself or by what it is made of, by more of a step than where its bodies are.
+fn goes_by_step(model: &Model, output: OutputSource) -> bool {
     let OutputSource::Measure(m) = output else { return false };
-    model.goes_by_driver(m)
+    model.goes_by_step(m)
         || match &model.measures[m].kind {
-            MeasureKind::Rate { of } => goes_by_driver(model, *of),
+            MeasureKind::Rate { of } => goes_by_step(model, *of),
             MeasureKind::Combination { expression: formula } => {
-                formula.sources().any(|source| goes_by_driver(model, source))
+                formula.sources().any(|source| goes_by_step(model, source))
             }
             _ => false,
         }

@@ -14,10 +14,11 @@ use crate::topology::Topology;
 use super::wheel::{TravellingWheel, axle_roll_centre};
 use super::{Instant, bodies_asked_for};
 
-/// Values of the measures that go by a driver, over a motion, and their derivatives by the design variables.
+/// Values of the measures that need more of a step than where the bodies are, over a motion, and their derivatives by the design
+/// variables.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct SlopeValues {
-    /// How many measures there are; 0 if none of them goes by a driver.
+pub(crate) struct StepValues {
+    /// How many measures there are; 0 if none of them is such.
     measures: usize,
     /// Derivatives by so many.
     variables: usize,
@@ -27,7 +28,26 @@ pub(crate) struct SlopeValues {
     d: Vec<f64>,
 }
 
-impl SlopeValues {
+impl StepValues {
+    /// One more output time, with so many measures and variables.
+    pub fn begin(&mut self, measures: usize, variables: usize) {
+        (self.measures, self.variables) = (measures, variables);
+        self.values.resize(self.values.len() + measures, f64::NAN);
+        self.d.resize(self.d.len() + measures * variables, f64::NAN);
+    }
+
+    /// The value of a measure at that time.
+    pub fn set(&mut self, measure: usize, x: f64) {
+        let first = self.values.len() - self.measures;
+        self.values[first + measure] = x;
+    }
+
+    /// Its derivative by a variable.
+    pub fn set_d(&mut self, variable: usize, measure: usize, x: f64) {
+        let first = self.d.len() - self.measures * self.variables;
+        self.d[first + variable * self.measures + measure] = x;
+    }
+
     /// Per measure, its value at time k; empty where none is known.
     pub fn at(&self, k: usize) -> &[f64] {
         if self.measures == 0 { &[] } else { &self.values[k * self.measures..][..self.measures] }
@@ -102,10 +122,9 @@ impl<'a> Slopes<'a> {
         })
     }
 
-    /// Appends what is found at time t.
-    pub fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, out: &mut SlopeValues) {
+    /// Enters what is found at time t, the one that was begun last.
+    pub fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, out: &mut StepValues) {
         self.seconds.solve(stepper, t);
-        (out.measures, out.variables) = (self.model.measures.len(), self.variables);
         let state = &stepper.state;
         for by in 0..=self.variables {
             for (d, poses) in self.poses.iter_mut().enumerate() {
@@ -122,9 +141,9 @@ impl<'a> Slopes<'a> {
                 drivers: &self.drivers,
                 instants: self.poses.iter().map(|p| Instant::new(self.model, &self.fixed[by], p)).collect(),
             };
-            for k in 0..self.model.measures.len() {
+            for k in (0..self.model.measures.len()).filter(|k| self.model.goes_by_driver(*k)) {
                 let x = alone.measure(self.model, k);
-                if by < self.variables { out.d.push(x.d) } else { out.values.push(x.v) }
+                if by < self.variables { out.set_d(by, k, x.d) } else { out.set(k, x.v) }
             }
         }
     }

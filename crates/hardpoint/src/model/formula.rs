@@ -2,7 +2,7 @@
 
 use crate::expression::Expression;
 use crate::joint::Quantity;
-use crate::model::{DriverId, HardpointId, JointId, Model, ParameterId};
+use crate::model::{DriverId, HardpointId, JointId, Model, NumberId, ParameterId};
 use crate::space::Real;
 
 /// A parameter of the model: a number with a name, for formulas.
@@ -36,6 +36,8 @@ pub enum Target {
     Length(JointId),
     /// A parameter of a driver's law, which is a plain number.
     Law(DriverId, usize),
+    /// A number of a mass or force.
+    Number(NumberId),
 }
 
 /// A number of the model that follows others.

@@ -3,8 +3,8 @@
 use crate::expression::Expression;
 use crate::joint::Quantity;
 use crate::model::{
-    AxleId, AxleMeasure, BodyId, Direction, DriverId, HardpointId, JointId, Model, PointId, WheelId,
-    WheelMeasure,
+    Axes, AxleId, AxleMeasure, BodyId, Direction, DriverId, ElementId, HardpointId, JointId, Model, PointId,
+    WheelId, WheelMeasure,
 };
 use crate::space::{Angles, Real, Vec3};
 
@@ -191,6 +191,86 @@ macro_rules! measures {
         /// The wheel's spin axis in the design configuration, pointing outboard.
         spin_axis: LineDraft => Direction,
     } |_, w| Dimension::ANGLE, POSITIONS, w.of_axis("camber", *body, spin_axis);
+
+    /// Force or moment that a driver needs; positive where it works while what it drives grows.
+    DriverForce "driver_force" {
+        /// The driver. Default: the only one.
+        driver: Option<String> => DriverId,
+    } |m, w| m.force_of(*driver), moving(1), format!("force of driver `{}`", w.model.drivers[driver.0].name);
+
+    /// Power that a driver gives the mechanism.
+    DriverPower "driver_power" {
+        /// The driver. Default: the only one.
+        driver: Option<String> => DriverId,
+    } |_, w|
+        Dimension::MOMENT.rate(1),
+        moving(1),
+        format!("power of driver `{}`", w.model.drivers[driver.0].name);
+
+    /// Force or moment that a joint puts on one of its bodies, with that of drivers on its coordinates.
+    Reaction "reaction" {
+        /// The joint.
+        joint: String => JointId,
+        /// What of it.
+        part: ReactionPart => ReactionPart,
+        /// The body that it pushes. Default: the second of the joint.
+        on: Option<String> => Option<BodyId>,
+        /// Along which axes components are taken. Default: the global ones.
+        axes: Option<Axes> => Option<Axes>,
+    } |_, MeasureWords { model, .. }|
+        if part.is_moment() { Dimension::MOMENT } else { Dimension::FORCE },
+        moving(1),
+        format!("{} of joint `{}`", part.words(), model.joints[joint.0].name);
+
+    /// Tension of a spring, force or moment of one on a joint's coordinate, size of any other force.
+    SpringForce "spring_force" {
+        /// The force's name.
+        force: String => ElementId,
+    } |m, w|
+        m.elements[force.0].kind.dimension(),
+        moving(1),
+        format!("force of `{}`", w.model.elements[force.0].name);
+
+    /// Kinetic energy of a body, or of all.
+    KineticEnergy "kinetic_energy" {
+        /// The body. Default: all.
+        body: Option<String> => Option<BodyId>,
+    } |_, w| Dimension::MOMENT, moving(1), match body {
+        Some(body) => format!("kinetic energy of `{}`", w.body(*body)),
+        None => "kinetic energy".into(),
+    };
+
+    /// Force that the mechanism puts on ground.
+    ShakingForce "shaking_force" {
+        /// The direction of the component, of any length. Default: the magnitude.
+        along: Option<Vec3> => Option<Vec3>,
+    } |_, w| Dimension::FORCE, moving(1), match along {
+        Some(n) => format!("force on ground along {}", (w.direction)(*n)),
+        None => "magnitude of the force on ground".into(),
+    };
+
+    /// Moment that the mechanism puts on ground.
+    ShakingMoment "shaking_moment" {
+        /// About this point.
+        about: PointRef => PointId,
+        /// The direction of the component, of any length. Default: the magnitude.
+        along: Option<Vec3> => Option<Vec3>,
+    } |_, w| Dimension::MOMENT, moving(1), format!("moment on ground about {}", w.point(*about));
+
+    /// How much a measure changes per force on a point, by what elastic joints, springs and bushings give: linear about every position.
+    Compliance "compliance" {
+        /// The measure, or `POINT.x`.
+        of: String => OutputSource,
+        /// The point that the force pushes.
+        at: PointRef => PointId,
+        /// Its direction, of any length.
+        along: Vec3 => Vec3,
+        /// A driver that is released: it holds nothing, springs do. Default: all drivers hold.
+        released: Option<String> => Option<DriverId>,
+    } |m, w|
+        m.dimension(*of).over(Dimension::FORCE),
+        moving(1),
+        format!("{} per force on {} along {}", w.output(*of), w.point(*at), (w.direction)(*along));
     } };
 }
 pub(crate) use measures;
@@ -321,11 +401,15 @@ impl OnBodies for Option<BodyId> {
 }
 
 impl OnBodies for usize {}
+impl OnBodies for ElementId {}
+impl OnBodies for ReactionPart {}
+impl OnBodies for Option<Axes> {}
 impl OnBodies for OrientationAngle {}
 impl OnBodies for Vec3 {}
 impl OnBodies for Option<Vec3> {}
 impl OnBodies for Direction {}
 impl OnBodies for DriverId {}
+impl OnBodies for Option<DriverId> {}
 impl OnBodies for OutputSource {}
 impl OnBodies for Combination {}
 
@@ -415,6 +499,94 @@ pub enum Ray {
     },
 }
 
+impl MeasureKind {
+    /// Whether it is a load: what drives the mechanism, or what its parts carry.
+    pub fn is_load(&self) -> bool {
+        matches!(
+            self,
+            Self::DriverForce { .. }
+                | Self::DriverPower { .. }
+                | Self::Reaction { .. }
+                | Self::SpringForce { .. }
+                | Self::KineticEnergy { .. }
+                | Self::ShakingForce { .. }
+                | Self::ShakingMoment { .. }
+        )
+    }
+}
+
+/// What of a joint's reaction is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReactionPart {
+    /// The size of its force.
+    Force,
+    /// A component of it: 0 for x, 1 for y, 2 for z.
+    ForceAlong(usize),
+    /// The force along the joint's axis.
+    Axial,
+    /// The size of the force across it.
+    Radial,
+    /// The size of its moment about the joint's place.
+    Moment,
+    /// A component of it.
+    MomentAbout(usize),
+    /// The moment about the joint's axis.
+    Torque,
+    /// The size of the moment across it.
+    Bending,
+}
+
+impl ReactionPart {
+    /// As model files write them, and what they are.
+    pub const WORDS: &[(&str, &str)] = &[
+        ("force", "The size of its force."),
+        ("force_x", "The force along x."),
+        ("force_y", "The force along y."),
+        ("force_z", "The force along z."),
+        ("axial", "The force along the joint's axis."),
+        ("radial", "The size of the force across the joint's axis."),
+        ("moment", "The size of its moment about the joint's place."),
+        ("moment_x", "The moment about x."),
+        ("moment_y", "The moment about y."),
+        ("moment_z", "The moment about z."),
+        ("torque", "The moment about the joint's axis: that of a driver, of friction there."),
+        ("bending", "The size of the moment across the joint's axis."),
+    ];
+
+    /// That of a place in [`WORDS`](Self::WORDS).
+    pub fn at(word: usize) -> Self {
+        match word {
+            0 => Self::Force,
+            1..=3 => Self::ForceAlong(word - 1),
+            4 => Self::Axial,
+            5 => Self::Radial,
+            6 => Self::Moment,
+            7..=9 => Self::MomentAbout(word - 7),
+            10 => Self::Torque,
+            _ => Self::Bending,
+        }
+    }
+
+    /// Whether it is a moment, rather than a force.
+    pub fn is_moment(self) -> bool {
+        matches!(self, Self::Moment | Self::MomentAbout(_) | Self::Torque | Self::Bending)
+    }
+
+    fn words(self) -> String {
+        let axis = |k: usize| ["x", "y", "z"][k];
+        match self {
+            Self::Force => "force".into(),
+            Self::ForceAlong(k) => format!("force along {}", axis(k)),
+            Self::Axial => "axial force".into(),
+            Self::Radial => "radial force".into(),
+            Self::Moment => "moment".into(),
+            Self::MomentAbout(k) => format!("moment about {}", axis(k)),
+            Self::Torque => "torque".into(),
+            Self::Bending => "bending moment".into(),
+        }
+    }
+}
+
 /// One of the angles that say how a body is turned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OrientationAngle {
@@ -496,7 +668,7 @@ impl Combination {
     }
 }
 
-/// What a number measures, as powers of length, angle and time; the user's units follow from it.
+/// What a number measures, as powers of length, angle, time and force; the user's units follow from it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Dimension {
     /// Power of length.
@@ -505,15 +677,26 @@ pub struct Dimension {
     pub angle: i8,
     /// Power of time.
     pub time: i8,
+    /// Power of force.
+    pub force: i8,
 }
 
 impl Dimension {
     /// A plain number.
-    pub const NUMBER: Self = Self { length: 0, angle: 0, time: 0 };
+    pub const NUMBER: Self = Self { length: 0, angle: 0, time: 0, force: 0 };
     /// A length.
     pub const LENGTH: Self = Self { length: 1, ..Self::NUMBER };
     /// An angle.
     pub const ANGLE: Self = Self { angle: 1, ..Self::NUMBER };
+    /// A force.
+    pub const FORCE: Self = Self { force: 1, ..Self::NUMBER };
+    /// A moment, or an energy.
+    pub const MOMENT: Self = Self { force: 1, ..Self::LENGTH };
+
+    /// The power of the user's unit of length: moments, energies and powers are in N m, J and W whatever that is.
+    pub const fn length_in_units(self) -> i8 {
+        if self.force > 0 && self.length > 0 { 0 } else { self.length }
+    }
 
     /// That of the time derivative of this order; of -1 that of an integral over time.
     #[must_use]
@@ -524,7 +707,12 @@ impl Dimension {
     /// That of a quotient.
     #[must_use]
     pub const fn over(self, o: Self) -> Self {
-        Self { length: self.length - o.length, angle: self.angle - o.angle, time: self.time - o.time }
+        Self {
+            length: self.length - o.length,
+            angle: self.angle - o.angle,
+            time: self.time - o.time,
+            force: self.force - o.force,
+        }
     }
 }
 
@@ -563,6 +751,20 @@ impl Model {
             MeasureKind::Wheel { what, .. } => what.needs().goes_by_driver(),
             MeasureKind::Axle { what, .. } => what.goes_by_driver(),
             _ => false,
+        }
+    }
+
+    /// Whether a measure needs more of a step than where its bodies are: what happens while one driver alone moves, or loads.
+    pub fn goes_by_step(&self, measure: usize) -> bool {
+        let kind = &self.measures[measure].kind;
+        self.goes_by_driver(measure) || kind.is_load() || matches!(kind, MeasureKind::Compliance { .. })
+    }
+
+    /// What the force of a driver is: that times what it drives is work.
+    fn force_of(&self, driver: DriverId) -> Dimension {
+        match self.driven(&self.drivers[driver.0]).quantity {
+            Quantity::Angle => Dimension::MOMENT,
+            Quantity::Length | Quantity::Number => Dimension::FORCE,
         }
     }
 

@@ -7,6 +7,7 @@ mod case;
 pub mod change;
 mod coupler;
 mod curve;
+pub(crate) mod element;
 mod formula;
 mod held;
 mod measure;
@@ -21,11 +22,18 @@ pub use change::{Change, ChangeText, End};
 pub use coupler::{Coupler, CouplerTerm, Transmission};
 pub(crate) use curve::Contact;
 pub use curve::{Curve, CurvePoint};
+pub use element::{
+    Angle, Axes, CubicStiffness, Damping, Density, Element, ElementId, ElementKind, ElementNumber,
+    ElementUnit, Force, Inertia, Length, Mass, Moment, NumberId, Plain, Stiffness, TorsionalDamping,
+    TorsionalStiffness,
+};
+pub(crate) use element::{each_number, elements};
 pub use formula::{Formula, NamedNumber, Source, Target};
 pub use held::Held;
 pub(crate) use measure::measures;
 pub use measure::{
     Combination, Dimension, KnownOrders, Measure, MeasureKind, OrientationAngle, OutputSource, Ray,
+    ReactionPart,
 };
 pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
@@ -104,6 +112,12 @@ pub struct Model {
     pub wheels: Vec<Wheel>,
     /// Pairs of them, in the order of the file.
     pub axles: Vec<Axle>,
+    /// Masses, then forces, in the order of the file.
+    pub elements: Vec<Element>,
+    /// The numbers that these are given.
+    pub numbers: Vec<ElementNumber>,
+    /// What everything falls with, m/s^2, global.
+    pub gravity: Vec3,
     /// Measures, in the order of the file.
     pub measures: Vec<Measure>,
     /// Metrics, in the order of the file.

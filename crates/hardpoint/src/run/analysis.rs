@@ -7,7 +7,7 @@ use hardpoint_tape::Number;
 
 use crate::design::DesignMap;
 use crate::law::Law;
-use crate::measure::{self, Measured, PreviousStep, SlopeValues};
+use crate::measure::{self, Measured, PreviousStep, StepValues};
 use crate::model::{BodyId, Held, Model};
 use crate::motion::execution::{Cache, Runnable};
 use crate::motion::kinematics::State;
@@ -174,17 +174,17 @@ impl<'m> Analysis<'m> {
 
     /// How the even steps of the nominal design's motion are solved, with its measures or without.
     pub(super) fn solved_by(&self, measures: bool) -> SolvedBy {
-        let by_driver = "measures go by a driver that moves alone";
+        let by_driver = "measures go by a driver that moves alone, or are loads";
         let hindrance = StepProgram::hindrance(&self.topology, measures);
-        match hindrance.or((measures && self.goes_by_driver()).then_some(by_driver)) {
+        match hindrance.or((measures && self.goes_by_step()).then_some(by_driver)) {
             Some(why) => SolvedBy::Kernel(why.into()),
             None => self.programs.solved_by(self.model().times.len()),
         }
     }
 
-    /// Whether measures go by a driver that moves alone, and need more of a step than programs hand out.
-    pub(super) fn goes_by_driver(&self) -> bool {
-        (0..self.model().measures.len()).any(|k| self.model().goes_by_driver(k))
+    /// Whether measures need more of a step than programs hand out.
+    pub(super) fn goes_by_step(&self) -> bool {
+        (0..self.model().measures.len()).any(|k| self.model().goes_by_step(k))
     }
 
     /// What evaluates these laws at many times, if they are those of the nominal design and it pays.
@@ -236,7 +236,7 @@ impl<'m> Analysis<'m> {
     pub(super) fn measure(
         &self,
         design: &PreparedDesign,
-        slopes: &SlopeValues,
+        slopes: &StepValues,
         before: Option<&PreviousStep>,
         solution: &mut Solution,
     ) {

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use hardpoint_tape::LANES;
 
-use crate::measure::{Measured, SlopeValues};
+use crate::measure::{Measured, StepValues};
 use crate::motion::Effort;
 use crate::motion::designs::DesignsAbreast;
 use crate::motion::step_program::Purpose;
@@ -36,7 +36,7 @@ impl Analysis<'_> {
         visit: impl FnMut(usize, &mut Solution) + Send,
     ) {
         let scope = Scope { of_many: designs.len(), ..run.scope };
-        let alone = scope.sensitivities || scope.measures && self.goes_by_driver();
+        let alone = scope.sensitivities || scope.measures && self.goes_by_step();
         let (next, visit) = (AtomicUsize::new(0), Mutex::new(visit));
         let work = || {
             let mut solutions: [Solution; LANES] = std::array::from_fn(|_| Solution::default());
@@ -76,7 +76,7 @@ impl Analysis<'_> {
             solution.sensitivities = Sensitivities::default();
             solution.stop = None;
             if scope.measures {
-                self.measure(&self.prepare(design, scope), &SlopeValues::default(), None, solution);
+                self.measure(&self.prepare(design, scope), &StepValues::default(), None, solution);
             } else {
                 solution.measured = Measured::default();
             }

@@ -6,6 +6,7 @@ use hardpoint_tape::LANES;
 
 use crate::design::{DesignVelocity, Geometry};
 use crate::law::Law;
+use crate::load::LoadSolver;
 use crate::model::BodyId;
 use crate::motion::abreast::TimesAbreast;
 use crate::motion::parts::PlanGeometry;
@@ -53,6 +54,8 @@ pub(crate) struct Walk<'a> {
     abreast: TimesAbreast<'a>,
     /// `None` where no sensitivities are asked for.
     pub solver: Option<SensitivitySolver>,
+    /// `None` where no loads are.
+    pub loads: Option<LoadSolver<'a>>,
     /// Per body: whether its results are wanted.
     wanted: Vec<bool>,
     /// Output times solved.
@@ -61,7 +64,7 @@ pub(crate) struct Walk<'a> {
 
 /// What has just been solved: one output time, or several by a program, in these of its lanes.
 pub(crate) enum SolvedSteps<'w, 'a> {
-    One(&'w mut Stepper<'a>),
+    One(&'w mut Stepper<'a>, Option<&'w LoadSolver<'a>>),
     Abreast(&'w Tape, Range<usize>),
 }
 
@@ -76,6 +79,7 @@ impl<'a> Walk<'a> {
             abreast: TimesAbreast::new(None, &[], None),
             solver: (!fields.is_empty())
                 .then(|| SensitivitySolver::new(model, topology, fields, wanted.clone())),
+            loads: None,
             wanted,
             done: 0,
         }
@@ -106,7 +110,7 @@ impl<'a> Walk<'a> {
     /// To the last output time, or to what stops it, for those who take what they want from the stepper: nothing is stored.
     pub fn each(&mut self, mut then: impl FnMut(&mut Stepper<'a>)) -> Option<Stop> {
         self.all(&mut Nowhere, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
-            if let SolvedSteps::One(one) = solved {
+            if let SolvedSteps::One(one, _) = solved {
                 then(one);
             }
         })
@@ -135,7 +139,7 @@ impl<'a> Walk<'a> {
                 }
                 (count, stop) = self.tell(1, progress);
                 self.give_one(k, sink);
-                SolvedSteps::One(&mut self.one)
+                SolvedSteps::One(&mut self.one, self.loads.as_ref())
             } else {
                 (count, stop) = self.tell(at_once, progress);
                 let lanes = self.give_abreast(k, count, sink);
@@ -182,9 +186,17 @@ impl<'a> Walk<'a> {
         for body in (1..self.wanted.len()).filter(|b| self.wanted[*b]) {
             sink.state(k, BodyId(body), &BodyState::of(&self.one.state, body));
         }
+        let (t, loads) = (self.analysis.model().times[k], &mut self.loads);
+        if let Some(loads) = loads {
+            loads.step(&mut self.one, t);
+        }
         if let Some(solver) = &mut self.solver {
-            let t = self.analysis.model().times[k];
-            solver.step(&mut self.one, t, |variable, body, found| sink.sensitivity(k, variable, body, found));
+            let found = |variable, body, found: &_| sink.sensitivity(k, variable, body, found);
+            solver.step(&mut self.one, t, found, |by| {
+                if let Some(loads) = loads {
+                    loads.differentiate(by);
+                }
+            });
         }
     }
 

@@ -7,7 +7,8 @@ use std::ops::ControlFlow;
 
 use hardpoint_tape::LANES;
 
-use crate::measure::{self, PreviousStep, SlopeValues, Slopes};
+use crate::load::{Compliances, LoadSolver};
+use crate::measure::{self, PreviousStep, Slopes, StepValues};
 use crate::model::{BodyId, Model, OutputSource, VariableId};
 use crate::motion::margin::Margins;
 use crate::motion::{BodyState, Motion};
@@ -92,11 +93,17 @@ impl Analysis<'_> {
         let slopes = || Slopes::new(self.design_map(), topology, &design.values, sensitive);
         let mut slopes = measures.then(slopes).flatten();
         let wanted = vec![true; model.bodies.len()];
-        // What goes by a driver asks for more than bodies.
-        let mut walk = match slopes {
-            Some(_) => Walk::new(self, design, wanted),
-            None => Walk::by_programs(self, design, wanted, measures),
+        let giving = || Compliances::new(self.design_map(), topology, &design.values, sensitive);
+        let mut compliances = measures.then(giving).flatten();
+        let loads = measures && (LoadSolver::is_asked(model) || compliances.is_some());
+        // What goes by a driver, and loads, ask for more than bodies.
+        let mut walk = match slopes.is_some() || loads {
+            true => Walk::new(self, design, wanted),
+            false => Walk::by_programs(self, design, wanted, measures),
         };
+        if loads {
+            walk.loads = Some(LoadSolver::new(self.design_map(), topology, &design.values, sensitive));
+        }
         if measures {
             walk.one.watched = measure::watched(model, topology);
         }
@@ -111,7 +118,7 @@ impl Analysis<'_> {
             done: 0,
             motion: std::mem::take(&mut solution.motion),
             sensitivities,
-            slopes: SlopeValues::default(),
+            slopes: StepValues::default(),
             before: None,
         };
         self.make_room(&mut window.motion, rows);
@@ -121,9 +128,19 @@ impl Analysis<'_> {
             let k = window.done - window.first;
             window.done += count;
             match solved {
-                SolvedSteps::One(one) => {
+                SolvedSteps::One(one, loads) => {
+                    if slopes.is_some() || loads.is_some() {
+                        let variables = if sensitive { model.variables.len() } else { 0 };
+                        window.slopes.begin(model.measures.len(), variables);
+                    }
                     if let Some(found) = &mut slopes {
                         found.add(one, times[0], &mut window.slopes);
+                    }
+                    if let Some(loads) = loads {
+                        loads.enter(&mut window.slopes);
+                        if let Some(compliances) = &mut compliances {
+                            compliances.add(one, times[0], &loads.near, &mut window.slopes);
+                        }
                     }
                     window.motion.coordinates.set(k, 0, one.coordinates());
                     window.motion.passed.extend(one.passed.drain(..).map(|place| (k, place)));
@@ -166,7 +183,7 @@ struct Window {
     done: usize,
     motion: Motion,
     sensitivities: Sensitivities,
-    slopes: SlopeValues,
+    slopes: StepValues,
     /// The end of the window before.
     before: Option<PreviousStep>,
 }
@@ -208,7 +225,7 @@ impl Window {
         });
         (self.motion, self.sensitivities) = (std::mem::take(motion), std::mem::take(sensitivities));
         analysis.make_room(&mut self.motion, rows);
-        self.slopes = SlopeValues::default();
+        self.slopes = StepValues::default();
         self.first = self.done;
     }
 }

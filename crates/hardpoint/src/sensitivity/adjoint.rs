@@ -6,10 +6,7 @@
 //!
 //! | here | theory | what |
 //! |---|---|---|
-//! | `load[n]` | F, F., F.. | on each body, per unit of the output; on the way to ground, all that is still to be carried |
-//! | `links[n]` | T_k, T_k., T_k.. | what a link transmits to its parent (18) |
-//! | `closures[n]` | T_c, T_c., T_c.. | what a closure's rows push body j with, and body i back |
-//! | `rows[n]` | mu, mu., mu.. | `T_c = - sum mu_r l_r` |
+//! | `transmission` | F, T, mu and their rates | on its way to ground: `transmission.rs` |
 //! | `seen` | t, t., t.. | T as the body of a marker sees it (20) |
 //! | `gradient[v][n]` | dy/db, d(y.)/db, d(y..)/db | (19) and its time derivatives |
 
@@ -23,18 +20,39 @@ use crate::topology::{BlockId, ClosureId, CoordinateId, LinkId, RowId, Term, Top
 
 use super::direct::{DEFECT_FLOOR, Defect, PlanVelocity};
 use super::solver::{Resistance, note};
+use super::transmission::{Transmission, Transposed, Way};
 
 /// A wrench with its first two time derivatives, about the world origin.
 pub(crate) type Load = [Wrench; 3];
+
+/// Loads on the twists D of the frames that unit twists and wrenches turn with, W of a body and z of its marker together.
+#[derive(Clone, Debug)]
+pub(crate) struct Turning {
+    /// Per link: on that of its parent's marker.
+    pub starts: Vec<Wrench>,
+    /// Per closure: on those of markers i and j.
+    pub ends: Vec<[Wrench; 2]>,
+    /// Per coordinate: on its S.
+    pub pulls: Vec<f64>,
+}
+
+impl Turning {
+    pub fn new(topology: &Topology) -> Self {
+        Self {
+            starts: vec![Wrench::zero(); topology.links.len()],
+            ends: vec![[Wrench::zero(); 2]; topology.closures.len()],
+            pulls: vec![0.0; topology.coordinates.len()],
+        }
+    }
+}
 
 /// What loads on some bodies are felt by: the way from there to ground, and the variables that change something on it.
 #[derive(Clone, Debug)]
 pub(crate) struct Support {
     /// Bodies that the load comes to.
     bodies: Vec<usize>,
-    /// Blocks, and links placed by drivers alone, from the load to ground.
-    blocks: Vec<BlockId>,
-    driven_links: Vec<LinkId>,
+    /// From the load to ground.
+    way: Way,
     /// Markers that some variable moves.
     places: Vec<MarkerPlace>,
     /// Per variable and marker that it moves: place, and body-fixed twist with the sign of that end.
@@ -102,7 +120,7 @@ impl Support {
         }
         let bodies = (0..pushed.len()).filter(|&b| pushed[b]).collect();
         let (places, moves, keeps, laws) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let mut support = Self { bodies, blocks, driven_links, places, moves, keeps, laws };
+        let mut support = Self { bodies, way: Way { blocks, driven_links }, places, moves, keeps, laws };
         for (v, field) in fields.iter().enumerate() {
             support.add(topology, &feels, v, field);
         }
@@ -153,15 +171,8 @@ impl Support {
 pub(crate) struct Adjoint {
     /// What each variable changes.
     fields: Vec<PlanVelocity<f64>>,
-    /// Per order and body: what still has to be carried.
-    load: [Vec<Wrench>; 3],
-    /// Per order and link, or closure: the wrench that it transmits.
-    links: [Vec<Wrench>; 3],
-    closures: [Vec<Wrench>; 3],
-    /// Per order and row: how much of its wrench that takes, with the sign that makes it a part of the gradient.
-    rows: [Vec<f64>; 3],
-    /// Per body of a block: the load on it and all that it carries.
-    below: Vec<Wrench>,
+    /// What is under way to ground.
+    transmission: Transmission,
     /// Per marker, parent's and child's of the links and then i and j of the closures: the wrench seen from its body.
     seen: Vec<Load>,
 }
@@ -170,15 +181,10 @@ impl Adjoint {
     /// By the variables with these fields.
     pub fn new(model: &Model, topology: &Topology, fields: &[DesignVelocity]) -> Self {
         let none = Wrench::zero();
-        let three = |n: usize| std::array::from_fn(|_| vec![none; n]);
         let parts = |f: &DesignVelocity| PlanVelocity::new(topology, &f.clone().with_laws_in_order());
         Self {
             fields: fields.iter().map(parts).collect(),
-            load: three(model.bodies.len()),
-            links: three(topology.links.len()),
-            closures: three(topology.closures.len()),
-            rows: std::array::from_fn(|_| vec![0.0; topology.rows.len()]),
-            below: vec![none; model.bodies.len()],
+            transmission: Transmission::new(model, topology),
             seen: vec![[none; 3]; 2 * (topology.links.len() + topology.closures.len())],
         }
     }
@@ -206,89 +212,41 @@ impl Adjoint {
         gradient: &mut [[f64; 3]],
     ) {
         for n in 0..orders {
-            support.bodies.iter().for_each(|&b| self.load[n][b] = Wrench::zero());
-            loads.iter().for_each(|(b, load)| self.load[n][*b] += load[n]);
-            self.transmit(topology, state, support, n);
+            let load = &mut self.transmission.load[n];
+            support.bodies.iter().for_each(|&b| load[b] = Wrench::zero());
+            loads.iter().for_each(|(b, load_on)| load[*b] += load_on[n]);
+            self.transmission.transmit(topology, Transposed::of(state), &support.way, n);
         }
         self.see(state, support, orders);
         self.work(topology, state, support, orders, gradient);
     }
 
-    /// What links, closures and rows transmit, to order n: the equation of order n, transposed (`docs/theory.md` (18), (25)),
-    ///
-    /// ```text
-    /// sum_{m=0..n} C(n,m) T_k(m) . x_a(n-m) = 0                     for every unknown coordinate a of link k,
-    /// T_c(n) = - sum_r sum_{m=0..n} C(n,m) mu_r(m) l_r(n-m)         for every closure.
-    /// ```
-    fn transmit(&mut self, topology: &Topology, state: &mut State<f64>, support: &Support, n: usize) {
-        let Self { load, links, closures, rows, below, .. } = self;
-        let (zero, none) = (0.0, Wrench::zero());
-        let State { x, l, factors, rhs, .. } = state;
-        let load = &mut load[n];
-        for &b in &support.blocks {
-            let block = &topology[b];
-            // What is known before: the parts of lower orders, on wrenches that turn.
-            for &c in &block.closures {
-                let closure = &topology[c];
-                let mut known = none;
-                for r in closure.row_ids() {
-                    rows[n][r.0] = zero;
-                    for m in (0..n).filter(|_| topology[r].drives()) {
-                        // - C(n,m) mu_r(m) l_r(n-m) for m < n, of (25), second line
-                        known = l[n - m][r.0].times_plus(rows[m][r.0] * -BINOMIAL[n][m], known);
-                    }
-                }
-                closures[n][c.0] = known;
-                load[closure.bodies[1].0] += known;
-                load[closure.bodies[0].0] -= known;
+    /// The same of a functional `sum F . W.. + 2 F. . W. + F.. . W`, whose wrenches need not be each other's rates, and of loads on frames and
+    /// coordinates; it is what each variable's third number in `gradient` gets.
+    pub fn add_turning_work(
+        &mut self,
+        topology: &Topology,
+        state: &mut State<f64>,
+        (support, loads): (&Support, &[(usize, Load)]),
+        turning: &Turning,
+        gradient: &mut [[f64; 3]],
+    ) {
+        self.transmission.pulls[2].copy_from_slice(&turning.pulls);
+        self.add_work(topology, state, support, loads, 3, gradient);
+        self.transmission.pulls[2].fill(0.0);
+        for (field, gradient) in self.fields.iter().zip(gradient) {
+            for m in field.links.iter().filter(|m| m.end == 0) {
+                gradient[2] += turning.starts[m.at.0].on(state.pose[m.body].carry(m.e));
             }
-            // First as if the closures took nothing: what then works on the unknowns is theirs to take.
-            for link in block.link_ids().map(|k| &topology[k]) {
-                below[link.child.0] = load[link.child.0];
-            }
-            // Parents outside of the block get some, too, which nobody reads.
-            for link in block.link_ids().rev().map(|k| &topology[k]) {
-                // below(p) = F_p + sum of below(c) over its children: T_k as far as it is known
-                let carried = below[link.child.0];
-                below[link.parent.0] += carried;
-            }
-            for (column, &a) in block.unknowns.iter().enumerate() {
-                let k = topology[a].link;
-                let mut works = below[topology[k].child.0].on(x[0][a.0]);
-                for m in 0..n {
-                    // below . x_a + sum_{m<n} C(n,m) T_k(m) . x_a(n-m): what (25), third line, comes to as long as mu(n) = 0
-                    works += links[m][k.0].on(x[n - m][a.0]) * BINOMIAL[n][m];
-                }
-                rhs[column] = works;
-            }
-            // J^T mu(n) = works
-            factors[b.0].solve_transposed(rhs);
-            for (k, &r) in block.selected.iter().enumerate() {
-                for Term { row, factor } in topology.parts_of_row(r) {
-                    // mu of a coupler's terms: c_k mu
-                    rows[n][row.0] = rhs[k] * factor;
-                }
-            }
-            for &c in &block.closures {
-                let closure = &topology[c];
-                let mut taken = none;
-                for r in closure.row_ids() {
-                    if topology[r].drives() {
-                        // T_c(n) = known - sum mu_r(n) l_r
-                        taken = l[0][r.0].times_plus(-rows[n][r.0], taken);
-                    }
-                }
-                closures[n][c.0] += taken;
-                load[closure.bodies[1].0] += taken;
-                load[closure.bodies[0].0] -= taken;
-            }
-            for k in block.link_ids().rev() {
-                pass_on(topology, k, load, &mut links[n]);
+            for m in &field.closures {
+                gradient[2] += turning.ends[m.at.0][m.end].on(state.pose[m.body].carry(m.e));
             }
         }
-        for &k in &support.driven_links {
-            pass_on(topology, k, load, &mut links[n]);
-        }
+    }
+
+    /// How fast variable v changes a driver's value, speed or acceleration, at the time that was set.
+    pub fn law_rate(&self, v: usize, driver: DriverId, order: usize) -> f64 {
+        self.fields[v].law_rate(driver, order)
     }
 
     /// Wrenches on the markers that variables move, seen from their bodies: there the markers' twists stand still, and time
@@ -298,8 +256,8 @@ impl Adjoint {
         for place in &support.places {
             let (pose, v, a) = (&state.pose[place.body], v[place.body], a[place.body]);
             let of = |n: usize| match place.joint {
-                Transmitter::Link(k) => self.links[n][k.0],
-                Transmitter::Closure(c) => self.closures[n][c.0],
+                Transmitter::Link(k) => self.transmission.links[n][k.0],
+                Transmitter::Closure(c) => self.transmission.closures[n][c.0],
             };
             let seen = &mut self.seen[place.index];
             // t   = Ad(X)^T T                                                                                     (20)
@@ -330,6 +288,7 @@ impl Adjoint {
         orders: usize,
         gradient: &mut [[f64; 3]],
     ) {
+        let Transmission { rows, links, pulls, .. } = &self.transmission;
         // T_k . (z_p - z_c) + T_c . (z_j - z_i): of order n t(n) . e, since e stands
         for &(v, place, e) in &support.moves {
             for n in 0..orders {
@@ -339,18 +298,18 @@ impl Adjoint {
         for &(v, row, rate) in &support.keeps {
             for n in 0..orders {
                 // mu_r(n) L'_r
-                gradient[v][n] += self.rows[n][row.0] * rate;
+                gradient[v][n] += rows[n][row.0] * rate;
             }
         }
-        let (zero, x) = (0.0, &state.x);
+        let x = &state.x;
         for &(v, driver, follower) in &support.laws {
             let part = |n: usize| match follower {
-                Follower::Row(r) => self.rows[n][r.0],
+                Follower::Row(r) => rows[n][r.0],
                 Follower::Coordinate(c) => {
                     let k = topology[c].link;
                     // nu_d(n) = sum_m C(n,m) T_k(m) . x_a(n-m)
-                    let term = |m: usize| self.links[m][k.0].on(x[n - m][c.0]) * BINOMIAL[n][m];
-                    (0..=n).map(term).fold(zero, |sum, x| sum + x)
+                    let term = |m: usize| links[m][k.0].on(x[n - m][c.0]) * BINOMIAL[n][m];
+                    (0..=n).map(term).fold(pulls[n][c.0], |sum, x| sum + x)
                 }
             };
             for n in 0..orders {
@@ -362,16 +321,6 @@ impl Adjoint {
             }
         }
     }
-}
-
-/// A link transmits what comes to its child, to its parent.
-#[inline(always)]
-fn pass_on(topology: &Topology, k: LinkId, load: &mut [Wrench], links: &mut [Wrench]) {
-    let link = &topology[k];
-    // T_k = what the child bears with all that came to it; F_p <- F_p + T_k                               (18), first line
-    let carried = load[link.child.0];
-    links[k.0] = carried;
-    load[link.parent.0] += carried;
 }
 
 /// Watches the rows that were left out, as [`DirectDifferentiation::worst_defect`](super::DirectDifferentiation::worst_defect) does: each

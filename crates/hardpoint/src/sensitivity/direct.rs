@@ -19,13 +19,14 @@
 //! l . (W_j - W_i)  =  L' - l . (z_j - z_i)                                                     docs/theory.md (11)
 //! ```
 
+use crate::constraint::MarkerPairRates;
 use crate::design::DesignVelocity;
 use crate::law::Law;
 use crate::model::{DriverId, Model};
 use crate::motion::kinematics::State;
 use crate::motion::level::{Flow, carried};
 use crate::motion::stepper::LOCKED;
-use crate::space::{Real, Twist};
+use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, ClosureId, LinkId, RowId, Term, Topology};
 
 /// Design velocities of one variable laid out for the plan: body-fixed marker twists by link and
@@ -238,6 +239,53 @@ impl<T: Real> PlanVelocity<T> {
         found.map_or(T::zero(), |n| self.kept[n].1)
     }
 
+    /// How the unit twists of all coordinates and the wrenches of all rows change with the design, where `flow` says how bodies and
+    /// coordinates do: x' and l' of `docs/theory.md` (45).
+    pub fn turn_axes(
+        &self,
+        topology: &Topology,
+        state: &State<f64>,
+        flow: &Flow<f64>,
+        (x, l): (&mut [Twist], &mut [Wrench]),
+    ) {
+        let (none, e) = (Twist::zero(), |e: Twist<T>| e.value());
+        x.fill(none);
+        l.fill(Wrench::zero());
+        let in_blocks = self.reach.blocks.iter().flat_map(|&b| topology[b].link_ids());
+        for k in self.reach.driven_links.iter().copied().chain(in_blocks) {
+            let link = &topology[k];
+            // D of the parent's marker, then of the frame behind each freedom
+            let mut frame = flow.twists[0][link.parent.0];
+            for m in self.links.iter().filter(|m| m.at == k && m.end == 0) {
+                frame += state.pose[m.body].carry(e(m.e));
+            }
+            for step in &link.steps {
+                for c in step.coordinates() {
+                    // x' = ad(D) x
+                    x[c.0] = frame.ad(state.x[0][c.0]);
+                }
+                for c in step.coordinates().filter(|_| flow.drives || !step.is_driven) {
+                    frame = state.x[0][c.0].times_plus(flow.speeds[0][c.0], frame);
+                }
+            }
+        }
+        for &c in &self.reach.closures {
+            let closure = &topology[c];
+            let mut d = closure.bodies.map(|b| flow.twists[0][b.0]);
+            for m in self.closures.iter().filter(|m| m.at == c) {
+                d[m.end] += state.pose[m.body].carry(e(m.e));
+            }
+            let mut rates = MarkerPairRates { v_i: d[0], v_j: d[1], a_i: none, a_j: none };
+            if let Some(k) = closure.contact {
+                rates = state.walk(c, k, &rates);
+            }
+            for (r, row) in closure.numbered_rows() {
+                // A marker that moves in its body turns a wrench as one that its body carries.
+                [l[r.0], _] = row.wrench_rates(&state.ends[c.0], &rates);
+            }
+        }
+    }
+
     /// The rows that the change may make fail, since the motion is not solved with them.
     #[inline(always)]
     fn left_out(&self, topology: &Topology) -> impl Iterator<Item = RowId> {
@@ -247,7 +295,7 @@ impl<T: Real> PlanVelocity<T> {
 
     /// What a change of its law adds to a driver's value, speed or acceleration.
     #[inline(always)]
-    pub(super) fn law_rate(&self, driver: DriverId, order: usize) -> T {
+    pub fn law_rate(&self, driver: DriverId, order: usize) -> T {
         let of_driver = self.law_rates.iter().find(|(d, _)| *d == driver);
         of_driver.map_or(T::zero(), |(_, rates)| rates[order])
     }

@@ -9,13 +9,17 @@ mod admissible;
 mod direct;
 mod second;
 mod solver;
+mod transmission;
 
-pub(crate) use adjoint::{Adjoint, DefectWatch, Load, Support};
+pub(crate) use adjoint::{Adjoint, DefectWatch, Load, Support, Turning};
 pub use admissible::{Admissibility, Condition, JointDefect, admissibility_at_design, conditions_at_design};
 pub(crate) use direct::{DirectDifferentiation, PlanVelocity};
 pub use second::{BodyCurvature, PairDirection};
 pub(crate) use second::{Seconds, along};
-pub(crate) use solver::{Resistance, SensitivitySolver, admissibility, note_defects, record_derivatives};
+pub(crate) use solver::{
+    Differentiated, Resistance, SensitivitySolver, admissibility, note_defects, record_derivatives,
+};
+pub(crate) use transmission::{Transmission, Transposed, Way};
 
 use hardpoint_tape::Lanes;
 

@@ -15,7 +15,7 @@
 use crate::constraint::MarkerPairRates;
 use crate::design::{DesignMap, DesignVelocity};
 use crate::law::Law;
-use crate::model::{DriverId, Model};
+use crate::model::{DriverId, JointId, Model};
 use crate::motion::kinematics::State;
 use crate::motion::level::turn_twists;
 use crate::motion::stepper::Stepper;
@@ -32,6 +32,8 @@ pub enum PairDirection {
     Design(Vec<f64>),
     /// The design stays, and one driver moves by one unit per unit while the others stand.
     Driver(DriverId),
+    /// Marker i of a joint moves by this twist, along the joint's own axes, while the joint keeps holding its bodies to it.
+    Opening(JointId, Twist),
 }
 
 impl PairDirection {
@@ -39,7 +41,7 @@ impl PairDirection {
     fn speeds(&self) -> &[f64] {
         match self {
             Self::Design(speeds) => speeds,
-            Self::Driver(_) => &[],
+            Self::Driver(_) | Self::Opening(..) => &[],
         }
     }
 
@@ -48,6 +50,7 @@ impl PairDirection {
         match self {
             Self::Design(speeds) => design_map.field_along(&along(speeds), values),
             Self::Driver(driver) => DesignVelocity::of_driver(*driver),
+            Self::Opening(joint, twist) => design_map.opening(*joint, *twist, values),
         }
     }
 }

@@ -26,6 +26,16 @@ pub(crate) struct SensitivitySolver {
     resisting: Vec<Resistance>,
 }
 
+/// What the solution for one variable leaves.
+pub(crate) struct Differentiated<'s> {
+    pub variable: VariableId,
+    pub topology: &'s Topology,
+    pub state: &'s mut State<f64>,
+    pub field: &'s PlanVelocity<f64>,
+    /// W, W., W.. of the bodies, and S of the coordinates.
+    pub flow: &'s Flow<f64>,
+}
+
 /// The joints that resist a variable, and the time of the largest defect.
 pub(crate) type Resistance = (Vec<JointDefect>, f64);
 
@@ -52,12 +62,14 @@ impl SensitivitySolver {
         fields.flat_map(|(v, field)| field.reach.bodies.iter().map(move |b| (VariableId(v), BodyId(*b))))
     }
 
-    /// The output time t, where a stepper stands with velocity and acceleration: `found` gets the sensitivities of wanted bodies.
+    /// The output time t, where a stepper stands with velocity and acceleration: `found` gets the sensitivities of wanted bodies, and
+    /// `each` all that is known of a variable before the next one.
     pub fn step(
         &mut self,
         one: &mut Stepper<'_>,
         t: f64,
         mut found: impl FnMut(VariableId, BodyId, &BodySensitivity),
+        mut each: impl FnMut(Differentiated<'_>),
     ) {
         let Self { fields, direct, wanted, resisting, .. } = self;
         // x., x.., l., l.. of all coordinates and rows once; then three right-hand sides for each variable: (11), (12), (13).
@@ -76,6 +88,7 @@ impl SensitivitySolver {
             if let Some(defect) = direct.worst_defect(topology, state, field) {
                 note(&mut resisting[v], topology, defect, t);
             }
+            each(Differentiated { variable: VariableId(v), topology, state, field, flow: &direct.flow });
         }
     }
 

@@ -3,10 +3,11 @@
 use hardpoint_tape::LANES;
 
 use crate::design::{BodyFixed, DesignVelocity};
+use crate::load::{LoadGradients, LoadSolver};
 use crate::measure::{
-    self, Context, Instant, Output, SlopeValues, bodies_asked_for, dependences, outputs, with_rates,
+    self, Context, Instant, Output, StepValues, bodies_asked_for, dependences, outputs, with_rates,
 };
-use crate::model::{GROUND, MeasureKind, OutputSource, VariableId};
+use crate::model::{GROUND, MeasureKind, Model, OutputSource, VariableId};
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
 use crate::motion::{BodyState, Stop};
@@ -19,14 +20,16 @@ use crate::topology::Topology;
 /// What an output costs the adjoint way, in solutions for one variable the direct way: its load takes some evaluations of the
 /// measure besides the three solutions. 1 to 3 in small mechanisms, less in large ones (`docs/performance.md`).
 const OUTPUT_COST: usize = 3;
+/// Likewise a load: what it makes of the bodies has to be found first, and how it goes with each of them.
+const LOAD_COST: usize = 6;
 /// Likewise a constraint row that was left out and has to be watched: two solutions for the position alone.
 const ROW_COST: usize = 1;
 
 /// How gradients are worked out. All ways give the same numbers, to round-off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Whichever is expected to be faster: adjoint where there are more variables than redundant rows and three times the
-    /// outputs together.
+    /// Whichever is expected to be faster: adjoint where there are more variables than redundant rows, three times the outputs and six
+    /// times the loads together.
     #[default]
     Auto,
     /// Variable by variable: the cost grows with the variables, and outputs are nearly free.
@@ -72,22 +75,27 @@ impl Analysis<'_> {
     /// The adjoint way costs one transposed solution for each output and time, with its first two time derivatives, and a few
     /// products for each marker that a variable moves (`docs/theory.md`, section 8).
     ///
-    /// Velocities, slopes over a driver and formulas over other measures always go the direct way.
+    /// Of loads it is one solution more. Velocities, slopes over a driver, compliances and formulas over other measures always go the
+    /// direct way.
     ///
     /// # Panics
     /// If there is no such output.
     pub fn gradients(&self, design: &[f64], outputs_asked: &[usize], method: Method) -> Gradients {
         let all = outputs(self.model());
         let asked: Vec<Output> = outputs_asked.iter().map(|&m| all[m].clone()).collect();
-        // What is no smooth function of positions alone has no load.
-        let is_plain = |m: &usize| {
+        // What is neither a smooth function of positions alone nor a load is no load on the bodies.
+        let is_plain = |o: &Output| {
             let formula = |k: usize| matches!(self.model().measures[k].kind, MeasureKind::Combination { .. });
-            all[*m].known.by_position && !matches!(all[*m].source, OutputSource::Measure(k) if formula(k))
+            o.known.by_position && !matches!(o.source, OutputSource::Measure(k) if formula(k))
         };
-        if !outputs_asked.iter().all(is_plain) {
+        let is_load = |o: &Output| load_of(self.model(), o).is_some();
+        if !asked.iter().all(|o| is_plain(o) || is_load(o)) {
             return self.gradients_of_run(design, outputs_asked, asked);
         }
-        match self.method(asked.len(), method) {
+        match self.method(asked.len(), asked.iter().filter(|o| is_load(o)).count(), method) {
+            Method::Direct if asked.iter().any(is_load) => {
+                self.gradients_of_run(design, outputs_asked, asked)
+            }
             Method::Direct => self.gradients_direct(design, asked),
             _ => {
                 let design = self.design(design);
@@ -96,9 +104,11 @@ impl Analysis<'_> {
         }
     }
 
-    /// The way to go for so many outputs.
-    fn method(&self, outputs: usize, method: Method) -> Method {
-        let adjoint = OUTPUT_COST * outputs + ROW_COST * self.topology().redundant().count();
+    /// The way to go for so many outputs, so many of which are loads.
+    fn method(&self, outputs: usize, loads: usize, method: Method) -> Method {
+        let adjoint = OUTPUT_COST * (outputs - loads)
+            + LOAD_COST * loads
+            + ROW_COST * self.topology().redundant().count();
         match method {
             Method::Auto if adjoint < self.model().variables.len() => Method::Adjoint,
             Method::Auto => Method::Direct,
@@ -130,7 +140,7 @@ impl Analysis<'_> {
             self.solve(Run::new().at(design).without_measures());
         let PreparedDesign { values, laws, .. } = &self.design(design);
         let at = measure::MeasuredDesign { model: self.model(), design_map: self.design_map(), values, laws };
-        let more = Context { slopes: &SlopeValues::default(), whole_turns: &[] };
+        let more = Context { slopes: &StepValues::default(), whole_turns: &[] };
         let (asked, variables) = (outputs.len(), self.model().variables.len());
         let mut d = vec![[f64::NAN; 3]; motion.len() * asked * variables];
         let blocks = (0..motion.len()).step_by(LANES);
@@ -186,7 +196,9 @@ struct AdjointSolver<'a> {
     analysis: &'a Analysis<'a>,
     adjoint: Adjoint,
     watch: DefectWatch,
-    asked: Vec<RequestedOutput>,
+    asked: Vec<Requested>,
+    /// `None` where no load is asked for.
+    loads: Option<(LoadSolver<'a>, LoadGradients)>,
     /// Bodies that outputs are measured on.
     bodies: Vec<usize>,
     poses: Vec<Pose<Dual<Rates>>>,
@@ -194,6 +206,22 @@ struct AdjointSolver<'a> {
     fixed: BodyFixed<Dual<Rates>>,
     moved: Vec<Option<BodyFixed<Dual<Rates>>>>,
     gradient: Vec<[f64; 3]>,
+}
+
+/// What is asked for.
+enum Requested {
+    /// A function of positions.
+    Output(Box<RequestedOutput>),
+    /// The load that this measure is.
+    Load(usize),
+}
+
+/// The measure that an output is, where that is a load.
+fn load_of(model: &Model, output: &Output) -> Option<usize> {
+    match output.source {
+        OutputSource::Measure(m) if model.measures[m].kind.is_load() => Some(m),
+        _ => None,
+    }
 }
 
 /// An output, and what it depends on.
@@ -219,20 +247,38 @@ impl<'a> AdjointSolver<'a> {
         let (model, design_map) = (analysis.model(), analysis.design_map());
         let adjoint = Adjoint::new(model, analysis.topology(), fields);
         let bodies: Vec<usize> = bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect();
-        let depends = dependences(design_map, &design.values, &bodies, outputs);
+        let (of_loads, of_positions): (Vec<&Output>, Vec<&Output>) =
+            outputs.iter().partition(|o| load_of(model, o).is_some());
+        let of_positions: Vec<Output> = of_positions.into_iter().cloned().collect();
+        let depends = dependences(design_map, &design.values, &bodies, &of_positions);
+        let mut depends = of_positions.into_iter().zip(depends);
         let none = [Wrench::zero(); 3];
-        let asked = outputs.iter().zip(depends).map(|(output, [on, variables])| RequestedOutput {
-            derivatives: vec![[0.0; 3]; 6 * on.len() + variables.len()],
-            output: output.clone(),
-            support: adjoint.support(analysis.topology(), &on),
-            loads: on.into_iter().map(|b| (b, none)).collect(),
-            variables,
+        let asked = outputs.iter().filter_map(|output| match load_of(model, output) {
+            Some(m) => Some(Requested::Load(m)),
+            None => depends.next().map(|(output, [on, variables])| {
+                Requested::Output(Box::new(RequestedOutput {
+                    derivatives: vec![[0.0; 3]; 6 * on.len() + variables.len()],
+                    output,
+                    support: adjoint.support(analysis.topology(), &on),
+                    loads: on.into_iter().map(|b| (b, none)).collect(),
+                    variables,
+                }))
+            }),
         });
-        let asked: Vec<RequestedOutput> = asked.collect();
+        let asked: Vec<Requested> = asked.collect();
+        let loads = (!of_loads.is_empty()).then(|| {
+            let solver = LoadSolver::new(design_map, analysis.topology(), &design.values, true);
+            let gradients = LoadGradients::new(&solver, analysis.topology(), &adjoint);
+            (solver, gradients)
+        });
         let mut values: Vec<Dual<Rates>> =
             design.values.iter().map(|v| Dual::constant(Rates::constant(*v))).collect();
         let mut moved: Vec<Option<BodyFixed<Dual<Rates>>>> = values.iter().map(|_| None).collect();
-        for &v in asked.iter().flat_map(|a| &a.variables) {
+        let by_variables = asked.iter().filter_map(|a| match a {
+            Requested::Output(output) => Some(&output.variables),
+            Requested::Load(_) => None,
+        });
+        for &v in by_variables.flatten() {
             moved[v].get_or_insert_with(|| {
                 let value = values[v];
                 values[v] = Dual::variable(value.v);
@@ -249,6 +295,7 @@ impl<'a> AdjointSolver<'a> {
             analysis,
             adjoint,
             asked,
+            loads,
             bodies,
             moved,
         }
@@ -263,6 +310,9 @@ impl<'a> AdjointSolver<'a> {
         result: &mut Gradients,
     ) {
         self.adjoint.set_time(stepper, t);
+        if let Some((loads, _)) = &mut self.loads {
+            loads.step(stepper, t);
+        }
         let (topology, state) = (&stepper.topology, &mut stepper.state);
         state.finish_rates(topology);
         self.differentiate(state);
@@ -278,7 +328,15 @@ impl<'a> AdjointSolver<'a> {
 
     /// The gradient of output m: what its load works on the design, and what variables change in itself.
     fn trace(&mut self, topology: &Topology, state: &mut State<f64>, m: usize) {
-        let RequestedOutput { loads, support, variables, derivatives, .. } = &mut self.asked[m];
+        let RequestedOutput { loads, support, variables, derivatives, .. } = match &mut self.asked[m] {
+            Requested::Output(output) => &mut **output,
+            Requested::Load(m) => {
+                if let Some((solver, gradients)) = &mut self.loads {
+                    gradients.trace(solver, &mut self.adjoint, (topology, state), *m, &mut self.gradient);
+                }
+                return;
+            }
+        };
         let (by_twists, by_variables) = derivatives.split_at(6 * loads.len());
         for ((_, load), by) in loads.iter_mut().zip(by_twists.chunks_exact(6)) {
             for (order, load) in load.iter_mut().enumerate() {
@@ -303,7 +361,12 @@ impl<'a> AdjointSolver<'a> {
         for &b in bodies.iter() {
             poses[b] = still(with_rates(&BodyState::of(state, b)));
         }
-        for RequestedOutput { output, loads, variables, derivatives, .. } in asked {
+        let of_positions = asked.iter_mut().filter_map(|a| match a {
+            Requested::Output(output) => Some(output),
+            Requested::Load(_) => None,
+        });
+        for output in of_positions {
+            let RequestedOutput { output, loads, variables, derivatives, .. } = &mut **output;
             let (by_twists, by_variables) = derivatives.split_at_mut(6 * loads.len());
             for ((b, _), by) in loads.iter().zip(by_twists.chunks_exact_mut(6)) {
                 for (unit, to) in by.iter_mut().enumerate() {

@@ -14,12 +14,18 @@ pub struct Magnitude {
     size: f64,
     /// Of orders 0, 1 and 2: lengths in sizes, angles in rad, per s to the power of the order.
     orders: [f64; 3],
+    /// Its mass, kg, and what pushes it besides, N: weights, given forces, and preloads.
+    mass: f64,
+    pushed: f64,
 }
 
 impl Magnitude {
     /// That of a mechanism which stands still.
     pub fn at_rest(model: &Model) -> Self {
-        Self { size: model.size(), orders: [1.0, 0.0, 0.0] }
+        let mass = model.mass();
+        let given: f64 = model.elements.iter().map(|e| e.kind.push(model)).sum();
+        let pushed = mass * model.gravity.norm() + given;
+        Self { size: model.size(), orders: [1.0, 0.0, 0.0], mass, pushed }
     }
 
     /// That of a motion, where the whole of it is there.
@@ -56,7 +62,13 @@ impl Magnitude {
     /// included, count as 2.
     pub fn of(&self, quantity: Dimension, order: usize) -> f64 {
         let order = (order as i8 - quantity.time).clamp(0, 2) as usize;
-        self.orders[order] * self.size.powi(quantity.length.into())
+        let order = self.orders[order] * self.size.powi(quantity.length.into());
+        if quantity.force == 0 {
+            return order;
+        }
+        let force = self.pushed + self.mass * self.orders[2] * self.size;
+        // Without any it is 1 N.
+        order * if force > 0.0 { force } else { 1.0 }.powi(quantity.force.into())
     }
 
     /// The largest change of a quantity's time derivative of that order over a natural step that is round-off, SI.

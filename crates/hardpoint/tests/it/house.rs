@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 /// The rooms of the core, in the order of the walk: each may use those before it only. What somebody wrote (`draft`) knows the model that
 /// it means, and so comes after it; results are kept in `blocks`.
-const ROOMS: [&str; 17] = [
+const ROOMS: [&str; 18] = [
     "number",
     "linalg",
     "space",
@@ -20,6 +20,7 @@ const ROOMS: [&str; 17] = [
     "motion",
     "sensitivity",
     "measure",
+    "load",
     "run",
     "study",
 ];

@@ -10,6 +10,7 @@ mod house;
 mod identities;
 mod jerk;
 mod joints;
+mod loads;
 mod loops;
 mod random;
 mod reference;

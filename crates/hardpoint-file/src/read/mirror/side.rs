@@ -64,14 +64,14 @@ impl<'a> Side<'_, 'a> {
     fn mirror(&mut self, section: &str, of: Shape, name: &str, value: &mut Value<'a>) -> bool {
         let kind = value.get_ref().as_table().map_or("", |table| match section {
             "joints" => type_of(table),
-            _ if word(table, "type") == Some("angular_velocity") => "angular_velocity",
+            _ if ["angular_velocity", "shaking_moment"].map(Some).contains(&word(table, "type")) => "about",
             _ => "",
         });
         let turns = move |key: &str| match (section, key) {
             (_, "about" | "rotate" | "turn") => true,
             ("joints", "axis") => TURNED.contains(&kind),
             ("joints", "axis2") => kind == "universal",
-            ("measures", "along") => kind == "angular_velocity",
+            ("measures", "along") => kind == "about",
             _ => false,
         };
         let first = |value: &Value<'a>| {
@@ -105,6 +105,15 @@ impl<'a> Side<'_, 'a> {
                 }
             }
             "bodies" => self.mesh(table),
+            // The products of inertia with what goes across.
+            "masses" => {
+                let products = [["ixy", "izx"], ["ixy", "iyz"], ["iyz", "izx"]][self.rule.across];
+                let found = products.into_iter().filter_map(|key| table.remove(key).map(|v| (key, v)));
+                for (key, mut product) in found.collect::<Vec<_>>() {
+                    turn_sign(&mut product, self.rule.numbers);
+                    put(table, key, product);
+                }
+            }
             "wheels" => {
                 let ends = [("side", ["left", "right"], 1), ("end", ["front", "rear"], 0)];
                 for (key, [one, other], axis) in ends {

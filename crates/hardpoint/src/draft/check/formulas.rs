@@ -3,12 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::design::Effect;
-use crate::draft::{ChangeDraft, Draft, FormulaOf, Locus, Section};
+use crate::draft::{ChangeDraft, Draft, FormulaOf, Locus, NumberDraft, Section};
 use crate::expression::Expression;
 use crate::joint::Quantity;
 use crate::law::Law;
 use crate::model::{
-    CaseId, DriverId, Formula, Hardpoint, HardpointId, JointId, NamedNumber, ParameterId, Source, Target,
+    CaseId, DriverId, ElementNumber, Formula, Hardpoint, HardpointId, JointId, NamedNumber, NumberId,
+    ParameterId, Source, Target,
 };
 use crate::number::Dual;
 use crate::space::Vec3;
@@ -96,10 +97,14 @@ impl<'a> Checker<'a> {
         let quantity = match of {
             Target::Parameter(p) => self.model.parameters[p.0].quantity,
             Target::Coordinate(..) | Target::Length(_) => Quantity::Length,
-            Target::Law(..) => Quantity::Number,
+            Target::Law(..) | Target::Number(_) => Quantity::Number,
         };
         let inputs = inputs.into_iter().collect::<Option<_>>()?;
-        let per_unit = if quantity == Quantity::Length { per_metre } else { 1.0 };
+        let per_unit = match of {
+            Target::Number(n) => self.model.numbers[n.0].per_unit,
+            _ if quantity == Quantity::Length => per_metre,
+            _ => 1.0,
+        };
         Some(Formula { of, expression: expression.clone(), inputs, per_unit })
     }
 
@@ -220,6 +225,7 @@ impl<'a> Checker<'a> {
         match w.formula.of {
             Target::Parameter(p) => self.model.parameters[p.0].value = value,
             Target::Coordinate(h, axis) => self.set(h, axis, value),
+            Target::Number(n) => self.model.numbers[n.0].value = value,
             Target::Length(_) | Target::Law(..) => {}
         }
         self.written.push(w);
@@ -238,7 +244,7 @@ impl<'a> Checker<'a> {
         match of {
             Target::Parameter(p) => drop(self.spoilt.insert(Source::Parameter(p))),
             Target::Coordinate(h, axis) => drop(self.spoilt.insert(Source::Coordinate(h, axis))),
-            Target::Length(_) | Target::Law(..) => {}
+            Target::Length(_) | Target::Law(..) | Target::Number(_) => {}
         }
     }
 
@@ -277,6 +283,30 @@ impl<'a> Checker<'a> {
             self.extent.include(self.model.hardpoints[h.0].position);
             h
         })
+    }
+
+    /// A number of a mass or force, by itself or by an expression.
+    pub(super) fn element_number(
+        &mut self,
+        number: &NumberDraft,
+        owner: &str,
+        key: &'static str,
+        at: Locus,
+    ) -> Option<NumberId> {
+        let id = NumberId(self.model.numbers.len());
+        let (value, per_unit) = (number.value, number.per_unit);
+        self.model.numbers.push(ElementNumber { owner: owner.into(), key, value, per_unit });
+        match &number.expression {
+            Some(expression) => {
+                self.given(Target::Number(id), expression, at, format!("{key} of {owner}"))?;
+            }
+            None if !value.is_finite() => {
+                self.fault("HP0202", at, format!("`{key}` of `{owner}` is not a finite number"));
+                return None;
+            }
+            None => {}
+        }
+        Some(id)
     }
 
     /// The length that a rod is given by an expression, if it is.
@@ -394,7 +424,7 @@ impl Formula {
         match self.of {
             Target::Parameter(p) => Some(Source::Parameter(p)),
             Target::Coordinate(h, axis) => Some(Source::Coordinate(h, axis)),
-            Target::Length(_) | Target::Law(..) => None,
+            Target::Length(_) | Target::Law(..) | Target::Number(_) => None,
         }
     }
 }

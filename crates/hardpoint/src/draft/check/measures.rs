@@ -2,12 +2,14 @@
 
 use crate::draft::measure::Field;
 use crate::draft::{
-    FieldDraft, FieldKind, LineDraft, Locus, MeasureDraft, MetricDraft, PointRef, RayDraft, Section,
+    FieldDraft, FieldKind, LineDraft, Locus, MeasureDraft, MetricDraft, NumberDraft, PointRef, RayDraft,
+    Section,
 };
 use crate::expression::Expression;
 use crate::model::{
-    AxleMeasure, BodyId, CaseId, Combination, Dimension, Direction, DriverId, JointId, KnownOrders, Measure,
-    MeasureKind, Metric, OrientationAngle, OutputSource, PointId, Ray, Reduction, WheelMeasure,
+    AxleMeasure, BodyId, CaseId, Combination, Dimension, Direction, DriverId, Element, ElementId,
+    ElementKind, JointId, KnownOrders, Measure, MeasureKind, Metric, NumberId, OrientationAngle,
+    OutputSource, PointId, Ray, ReactionPart, Reduction, WheelMeasure,
 };
 use crate::space::Vec3;
 
@@ -28,7 +30,8 @@ impl Checker<'_> {
     }
 
     fn one_measure(&mut self, m: &MeasureDraft, here: Here) -> Option<MeasureKind> {
-        let kind = m.kind.resolve(&mut MeasureCheck { check: self, owner: &m.name, here, joint: None })?;
+        let kind = m.kind.resolve(&mut MeasureCheck::new(self, &m.name, here))?;
+        self.loads(&kind, m, here);
         if let MeasureKind::Distance { from, to } = kind {
             let [a, b] = [from, to].map(|p| self.model.points[p.0].clone());
             let at_one_place = self.apart(a.at, b.at) == Some(None);
@@ -43,6 +46,53 @@ impl Checker<'_> {
             }
         }
         Some(kind)
+    }
+
+    /// HP0250: loads of what has none; HP0251: reactions on a body that the joint does not hold.
+    fn loads(&mut self, kind: &MeasureKind, m: &MeasureDraft, here: Here) {
+        let draft = self.draft;
+        let nothing = draft.masses.is_empty() && draft.forces.is_empty();
+        if kind.is_load() && nothing && !self.lost("mass") && !self.lost("force") {
+            let message = format!("`{}` measures a load, but nothing has mass and nothing pushes", m.name);
+            self.fault("HP0250", here.key("type"), message)
+                .help("give the bodies `[masses]`, and what acts on them as `[gravity]` and `[forces]`");
+        }
+        let gives = |e: &Element| {
+            let rigid = matches!(
+                e.kind,
+                ElementKind::PointForce { .. }
+                    | ElementKind::BodyMoment { .. }
+                    | ElementKind::Friction { .. }
+            );
+            !e.kind.has_mass() && !rigid
+        };
+        let rigid = !self.model.elements.iter().any(gives);
+        if matches!(kind, MeasureKind::Compliance { .. })
+            && rigid
+            && !self.draft.unread.any_of(Section::Forces)
+        {
+            let message = format!("`{}` measures what gives way, but nothing does", m.name);
+            self.fault("HP0250", here.key("type"), message)
+                .help("give joints that yield as `[forces]` of `type = \"elastic_joint\"`");
+        }
+        if let MeasureKind::Reaction { joint, on: Some(on), .. } = kind {
+            let joint = &self.model.joints[joint.0];
+            if !joint.bodies.contains(on) {
+                let [i, j] = joint.bodies.map(|b| self.model.bodies[b.0].name.clone());
+                let message =
+                    format!("joint `{}` does not hold body `{}`", joint.name, self.model.bodies[on.0].name);
+                self.fault("HP0251", here.key("on"), message).help(format!("write `{i}` or `{j}`"));
+            }
+        }
+    }
+
+    /// The force of that name.
+    fn force(&mut self, name: &str, at: Locus) -> Option<ElementId> {
+        let draft = self.draft;
+        let k = self.find("force", name, at, draft.forces.iter().map(|f| f.name.as_str()))?;
+        let name = &draft.forces[k].name;
+        let is_it = |e: &Element| !e.kind.has_mass() && e.name == *name;
+        self.model.elements.iter().position(is_it).map(ElementId)
     }
 
     pub(super) fn metrics(&mut self) {
@@ -68,8 +118,9 @@ impl Checker<'_> {
             return None;
         }
         let si = |dimension: Dimension, x: f64| {
-            let [length, angle] = [(m.per_metre, dimension.length), (m.per_radian, dimension.angle)]
-                .map(|(per, power)| per.powi(power.into()));
+            let [length, angle] =
+                [(m.per_metre, dimension.length_in_units()), (m.per_radian, dimension.angle)]
+                    .map(|(per, power)| per.powi(power.into()));
             x / (length * angle)
         };
         let x = |c: &Self| over.map_or(Dimension::NUMBER, |over| c.model.dimension(over));
@@ -246,6 +297,7 @@ impl Checker<'_> {
         let used: Vec<OutputSource> = match &kind {
             MeasureKind::Rate { of } => vec![*of],
             MeasureKind::Slope { of, over, .. } => vec![*of, *over],
+            MeasureKind::Compliance { of, .. } => vec![*of],
             MeasureKind::Combination { expression } => expression.sources().collect(),
             _ => Vec::new(),
         };
@@ -280,6 +332,14 @@ impl Checker<'_> {
                 .help("measure the rate of something that follows from positions or velocities");
                 false
             }
+            MeasureKind::Compliance { of, .. } if !self.model.known(*of).by_position => {
+                let what = self.model.output_name(*of);
+                let message = format!("`{name}` needs what `{what}` does under a force, which is not known");
+                self.fault("HP0233", here.key("of"), message)
+                    .note("forces are let give way at every position by itself")
+                    .help("take a measure that follows from positions alone");
+                false
+            }
             MeasureKind::Slope { of, over, .. } => {
                 for (key, source) in [("of", *of), ("over", *over)] {
                     if !self.model.known(source).by_position {
@@ -303,7 +363,7 @@ impl Checker<'_> {
     /// A combination with its units, whose inputs have theirs already.
     fn in_units(&self, c: &Combination) -> Combination {
         let per_metre = c.expression.per_metre();
-        let per_unit = |d: Dimension| per_metre.powi(d.length.into());
+        let per_unit = |d: Dimension| per_metre.powi(d.length_in_units().into());
         let dimensions: Vec<Dimension> = c.sources().map(|s| self.model.dimension(s)).collect();
         let dimension = dimension_of(&c.expression, &dimensions);
         let inputs = c.sources().zip(&dimensions).map(|(source, d)| (source, per_unit(*d)));
@@ -320,7 +380,15 @@ pub(in crate::draft) struct MeasureCheck<'c, 'd> {
     joint: Option<JointId>,
 }
 
-impl MeasureCheck<'_, '_> {
+impl<'c, 'd> MeasureCheck<'c, 'd> {
+    pub(super) fn new(check: &'c mut Checker<'d>, owner: &'c str, here: Here) -> Self {
+        Self { check, owner, here, joint: None }
+    }
+
+    pub(super) fn number(&mut self, number: &NumberDraft, key: &'static str) -> Option<NumberId> {
+        self.check.element_number(number, self.owner, key, self.here.key(key))
+    }
+
     pub fn wheel(&mut self, name: &str, what: WheelMeasure) -> Option<MeasureKind> {
         self.check.wheel_measure(name, what, self.here)
     }
@@ -394,9 +462,15 @@ field!(Option<BodyId>, Body, Name: Option<String>, may |name, key, c| match name
     Some(name) => BodyId::resolve(name, key, c).map(Some),
     None => Some(None),
 });
+field!(ReactionPart, ReactionPart, Part: ReactionPart, |part, _key, _c| Some(*part));
+field!(ElementId, Force, Name: String, |name, key, c| c.check.force(name, c.here.key(key)));
 field!(OrientationAngle, OrientationAngle, Angle: OrientationAngle, |angle, _key, _c| Some(*angle));
 field!(DriverId, Driver, Name: Option<String>, may |name, _key, c| {
     c.check.driver_or_only(name.as_deref(), c.owner, c.here)
+});
+field!(Option<DriverId>, Driver, Name: Option<String>, may |name, _key, c| match name {
+    Some(name) => c.check.driver_or_only(Some(name), c.owner, c.here).map(Some),
+    None => Some(None),
 });
 field!(Combination, Expression, Expression: Expression, |expression, key, c| {
     let at = c.here.key(key);
@@ -440,7 +514,12 @@ fn dimension_of(expression: &Expression, inputs: &[Dimension]) -> Dimension {
         let holds = |x: f64| (x - whole).abs() < HOMOGENEOUS;
         if holds(found) && holds(again) && whole.abs() < 100.0 { whole as i8 } else { 0 }
     };
-    Dimension { length: power(&|d| d.length), angle: power(&|d| d.angle), time: power(&|d| d.time) }
+    Dimension {
+        length: power(&|d| d.length),
+        angle: power(&|d| d.angle),
+        time: power(&|d| d.time),
+        force: power(&|d| d.force),
+    }
 }
 
 #[cfg(test)]

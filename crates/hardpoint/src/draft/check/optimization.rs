@@ -375,7 +375,7 @@ fn key(of: Limited) -> Key {
 
 /// How many units make one SI unit of it.
 pub(super) fn per_si(of: Dimension, per_metre: f64, per_radian: f64) -> f64 {
-    per_metre.powi(of.length.into()) * per_radian.powi(of.angle.into())
+    per_metre.powi(of.length_in_units().into()) * per_radian.powi(of.angle.into())
 }
 
 /// How to give a variable bounds.

@@ -765,6 +765,14 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
             | MeasureKindDraft::Combination { .. } => {}
             // Of two bodies, whose frames are drawn along.
             MeasureKindDraft::Orientation { .. } => {}
+            MeasureKindDraft::DriverForce { .. }
+            | MeasureKindDraft::DriverPower { .. }
+            | MeasureKindDraft::Reaction { .. }
+            | MeasureKindDraft::SpringForce { .. }
+            | MeasureKindDraft::KineticEnergy { .. }
+            | MeasureKindDraft::ShakingForce { .. }
+            | MeasureKindDraft::ShakingMoment { .. }
+            | MeasureKindDraft::Compliance { .. } => unreachable!("random mechanisms have no masses"),
             // Its wheels would have to stay upright.
             MeasureKindDraft::Wheel { .. } | MeasureKindDraft::Axle { .. } => {
                 unreachable!("random mechanisms have no wheels")

@@ -1,0 +1,149 @@
+//! What loads come from: masses, forces, gravity.
+
+use std::sync::LazyLock;
+
+use hardpoint::draft::{ElementDraft, ElementKindDraft, ElementType, NumberDraft, Section};
+use hardpoint::law::Law;
+use hardpoint::model::ElementUnit;
+
+use crate::format::{Key, Kinds, NUMBER, Table, table};
+use crate::places::EntryPlace;
+use crate::tree::{DIRECTION, Field, Fields, Reader};
+
+use super::Raw;
+use super::results::key;
+
+/// The acceleration of gravity where nothing else is said, m/s^2 (CGPM 1901).
+const STANDARD_GRAVITY: f64 = 9.80665;
+
+pub(crate) const GRAVITY: Table = table! {
+    /// What everything falls with.
+    "Gravity":
+    /// Which way is down.
+    must "along": DIRECTION, "\"-z\"";
+    /// Its acceleration, in m/s^2 whatever the unit of length.
+    or("9.80665") "acceleration": NUMBER, "9.81";
+};
+pub(crate) const MASS: Kinds = Kinds {
+    name: "Mass",
+    doc: "A mass on a body.",
+    typed: true,
+    tables: || TYPES.iter().filter(|t| t.1.table == "masses").map(|t| &t.0).collect(),
+};
+pub(crate) const FORCE: Kinds = Kinds {
+    name: "Force",
+    doc: "What pushes bodies.",
+    typed: true,
+    tables: || TYPES.iter().filter(|t| t.1.table == "forces").map(|t| &t.0).collect(),
+};
+
+/// The types of masses and forces, as the core declares them.
+static TYPES: LazyLock<Vec<(Table, &'static ElementType)>> = LazyLock::new(|| {
+    let table = |own: &'static ElementType| {
+        let keys: Vec<Key> = own.fields.iter().map(key).collect();
+        (Table::new(own.name, own.summary, keys.leak()), own)
+    };
+    ElementType::ALL.iter().map(table).collect()
+});
+static MASSES: LazyLock<Vec<(Table, &'static ElementType)>> = LazyLock::new(|| of_table("masses"));
+static FORCES: LazyLock<Vec<(Table, &'static ElementType)>> = LazyLock::new(|| of_table("forces"));
+
+fn of_table(name: &str) -> Vec<(Table, &'static ElementType)> {
+    TYPES.iter().filter(|t| t.1.table == name).copied().collect()
+}
+
+impl Reader<'_> {
+    pub(super) fn gravity(&mut self, model: &Fields<'_>, raw: &mut Raw) {
+        let Some(f) = model.get("gravity") else { return };
+        let subject = model.subject("gravity");
+        let read = self.table(f.value, &subject, "a table that says which way is down").and_then(|table| {
+            let fields = self.fields("`gravity`", f.value.span(), table, GRAVITY.keys());
+            let along = self.vector_of(&fields, "along");
+            let size = self.number_of(&fields, "acceleration").unwrap_or(STANDARD_GRAVITY);
+            let along = along?;
+            let unit = along.unit();
+            if unit.is_none() {
+                let at = fields.get("along").map_or(fields.at.clone(), |f| f.value.span());
+                self.senseless(at, "the `along` of `gravity` has no direction").help =
+                    Some("give a vector of any length but zero, like [0, 0, -1]".into());
+            }
+            Some(unit? * size)
+        });
+        if read.is_none() {
+            raw.draft.unread.note(Section::Model, 0, "gravity");
+        }
+        self.unread.clear();
+        raw.draft.gravity = read.unwrap_or_default();
+    }
+
+    pub(super) fn masses(&mut self, model: &Fields<'_>, raw: &mut Raw) {
+        self.elements(model, ("masses", "mass"), &MASSES, Section::Masses, raw);
+    }
+
+    pub(super) fn forces(&mut self, model: &Fields<'_>, raw: &mut Raw) {
+        self.elements(model, ("forces", "force"), &FORCES, Section::Forces, raw);
+    }
+
+    fn elements(
+        &mut self,
+        model: &Fields<'_>,
+        (table, one): (&'static str, &str),
+        types: &'static [(Table, &'static ElementType)],
+        section: Section,
+        raw: &mut Raw,
+    ) {
+        for entry in self.entries(model, table, one) {
+            let (place, kind) = match self.entry_type(one, &entry, types) {
+                Some((table, own)) => {
+                    let fields = self.entry(one, &entry, table.typed_keys());
+                    let mut place = EntryPlace::of(&fields);
+                    let mut unread = false;
+                    let kind = own.draft(|field| self.own_field(field, &fields, &mut place, &mut unread));
+                    (place, kind.filter(|_| !unread))
+                }
+                None => (EntryPlace::at(entry.1.clone()), None),
+            };
+            self.unread.clear();
+            if kind.is_none() {
+                self.unread.push("");
+            }
+            self.push(raw, section, place);
+            let draft = ElementDraft::new(entry.0, kind.unwrap_or(ElementKindDraft::Unread));
+            match section {
+                Section::Masses => raw.draft.masses.push(draft),
+                _ => raw.draft.forces.push(draft),
+            }
+        }
+    }
+
+    /// A number of a mass or force: by itself, or by an expression that the core evaluates.
+    pub(super) fn element_number(
+        &mut self,
+        fields: &Fields<'_>,
+        f: Field<'_>,
+        unit: ElementUnit,
+    ) -> Option<NumberDraft> {
+        let subject = fields.subject(f.key);
+        let per_unit = self.units.per_si_of(unit);
+        if f.value.get_ref().is_str() {
+            let expression = self.expression(f.value, &subject)?;
+            return Some(NumberDraft { value: 0.0, expression: Some(expression), per_unit });
+        }
+        let value = self.number(f.value, &subject)?;
+        Some(NumberDraft { value: self.units.to_si_of(unit, value), expression: None, per_unit })
+    }
+
+    /// What a force is multiplied by over time.
+    pub(super) fn factor_law(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Law> {
+        let law = self.law(fields, f);
+        if !self.law_formulas.is_empty() {
+            self.law_formulas.clear();
+            self.senseless(f.value.span(), "the law of a force has a parameter that an expression gives")
+                .help = Some(
+                "write numbers in the law: what follows parameters is the force that it multiplies".into(),
+            );
+            return None;
+        }
+        law
+    }
+}

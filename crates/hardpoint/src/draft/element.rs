@@ -1,0 +1,125 @@
+//! Masses and forces as written, and what their fields mean in a model.
+
+use crate::draft::{FieldDraft, MeasureField, PointRef};
+use crate::expression::Expression;
+use crate::law::Law;
+use crate::model::{
+    Angle, Axes, BodyId, CubicStiffness, Damping, Density, ElementKind, Force, Inertia, JointId, Length,
+    Mass, Moment, Plain, PointId, Stiffness, TorsionalDamping, TorsionalStiffness, elements,
+};
+use crate::space::Vec3;
+
+use super::check::MeasureCheck;
+use super::measure::Field;
+
+/// A number as written: by itself, or by an expression over parameters, which it then follows.
+#[derive(Clone, Debug)]
+pub struct NumberDraft {
+    /// Its value, SI; of no account where an expression gives it.
+    pub value: f64,
+    /// What gives it.
+    pub expression: Option<Expression>,
+    /// How many of the text's units make one SI unit.
+    pub per_unit: f64,
+}
+
+impl From<f64> for NumberDraft {
+    fn from(value: f64) -> Self {
+        Self { value, expression: None, per_unit: 1.0 }
+    }
+}
+
+/// A mass or force as written.
+#[derive(Clone, Debug)]
+pub struct ElementDraft {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub kind: ElementKindDraft,
+}
+
+impl ElementDraft {
+    /// A mass or force of that name.
+    pub fn new(name: impl Into<String>, kind: ElementKindDraft) -> Self {
+        Self { name: name.into(), kind }
+    }
+}
+
+/// A type of element as model files name it.
+#[derive(Debug)]
+pub struct ElementType {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is, in a sentence.
+    pub summary: &'static str,
+    /// The table of model files that it stands in: `masses` or `forces`.
+    pub table: &'static str,
+    /// What is to be said of it.
+    pub fields: &'static [MeasureField],
+}
+
+/// How a type of element is written, and what of the model it means.
+macro_rules! in_drafts {
+    ($(
+        $(#[doc = $doc:literal])* $variant:ident $name:literal $table:ident {
+            $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
+        }
+    )*) => {
+        /// What an element is, as written; see [`ElementKind`].
+        #[derive(Clone, Debug)]
+        pub enum ElementKindDraft {
+            /// It could not be read.
+            Unread,
+            $($(#[doc = $doc])* $variant { $($(#[doc = $field_doc])* $field: $draft,)* },)*
+        }
+
+        impl ElementType {
+            /// All of them.
+            pub const ALL: &[Self] = &[$(Self {
+                name: $name,
+                summary: concat!($($doc),*).trim_ascii(),
+                table: stringify!($table),
+                fields: &[$(MeasureField {
+                    key: stringify!($field),
+                    kind: <$type as Field>::KIND,
+                    required: <$type as Field>::REQUIRED,
+                    summary: concat!($($field_doc),*).trim_ascii(),
+                }),*],
+            }),*];
+
+            /// An element of this type from its fields; `None` where one of them is missing, or not of its kind.
+            pub fn draft(&self, mut field: impl FnMut(&MeasureField) -> Option<FieldDraft>) -> Option<ElementKindDraft> {
+                let mut fields = self.fields.iter().map(|f| field(f)).collect::<Vec<_>>().into_iter();
+                match self.name {
+                    $($name => Some(ElementKindDraft::$variant {
+                        $($field: <$type as Field>::draft(fields.next()?)?,)*
+                    }),)*
+                    _ => None,
+                }
+            }
+        }
+
+        impl ElementKindDraft {
+            /// What it means in a model.
+            pub(super) fn resolve(&self, check: &mut MeasureCheck<'_, '_>) -> Option<ElementKind> {
+                match self {
+                    $(Self::$variant { $($field),* } => {
+                        $(let $field = <$type as Field>::resolve($field, stringify!($field), check);)*
+                        Some(ElementKind::$variant { $($field: $field?),* })
+                    })*
+                    Self::Unread => None,
+                }
+            }
+
+            /// Whether it has mass.
+            pub fn has_mass(&self) -> bool {
+                match self {
+                    $(Self::$variant { .. } => stringify!($table) == "masses",)*
+                    Self::Unread => false,
+                }
+            }
+        }
+    };
+}
+
+elements!(in_drafts);

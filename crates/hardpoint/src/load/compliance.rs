@@ -1,0 +1,209 @@
+//! How the mechanism gives way to a force: small deflections about the kinematic position, (47) of `docs/theory.md`.
+//!
+//! Every direction in which an elastic joint opens is a way to go like a change of the design: a twist of its marker. What bodies do along
+//! it solves (11) with the factors at hand, and how that changes with the design is the second derivative along both (15). Stiffnesses
+//! meet in a matrix as large as the number of ways, whatever the size of the mechanism.
+
+use crate::design::{BodyFixed, DesignMap, Geometry};
+use crate::linalg::Elimination;
+use crate::measure::{Instant, StepValues, bodies_asked_for};
+use crate::model::{DriverId, ElementId, ElementKind, GROUND, MeasureKind, Model, NumberId, VariableId};
+use crate::motion::stepper::Stepper;
+use crate::number::{Dual, Real};
+use crate::sensitivity::{PairDirection, Seconds};
+use crate::space::{Pose, Twist, Vec3};
+use crate::topology::Topology;
+
+use super::acting::{Acting, Moving};
+
+/// A number with its derivative along a way (the outer one) and by a variable (the inner one).
+type Number = Dual<Dual>;
+
+/// A way to give way.
+#[derive(Clone, Debug)]
+enum Way {
+    /// An elastic joint opens, against this stiffness.
+    Opening(NumberId),
+    /// A driver is released: it holds nothing.
+    Released(DriverId),
+}
+
+/// What goes by a variable, or by none.
+struct Changed {
+    fixed: BodyFixed<Number>,
+    geometry: Geometry<Number>,
+}
+
+/// Evaluates compliances where a stepper stands, in one design.
+pub(crate) struct Compliances<'a> {
+    model: &'a Model,
+    asked: Vec<usize>,
+    ways: Vec<Way>,
+    variables: usize,
+    seconds: Seconds,
+    /// Per variable; the last is that of no change.
+    changed: Vec<Changed>,
+    bodies: Vec<usize>,
+    /// Per way.
+    poses: Vec<Vec<Pose<Number>>>,
+    moving: Vec<Moving<Number>>,
+    laws: Vec<f64>,
+    friction: Vec<Number>,
+}
+
+impl<'a> Compliances<'a> {
+    /// For the design with these values, with derivatives by the variables if they are wanted; `None` for a model without such measures.
+    pub fn new(
+        design_map: &'a DesignMap<'a>,
+        topology: &Topology,
+        values: &[f64],
+        sensitivities: bool,
+    ) -> Option<Self> {
+        let model = design_map.model();
+        let is_asked = |m: &usize| matches!(model.measures[*m].kind, MeasureKind::Compliance { .. });
+        let asked: Vec<usize> = (0..model.measures.len()).filter(is_asked).collect();
+        if asked.is_empty() {
+            return None;
+        }
+        let (mut ways, mut directions) = (Vec::new(), Vec::new());
+        for element in &model.elements {
+            let ElementKind::ElasticJoint { joint, x, y, z, about_x, about_y, about_z } = element.kind else {
+                continue;
+            };
+            let slides = [x, y, z].map(|n| n.map(|n| n.0));
+            let turns = [about_x, about_y, about_z].map(|n| n.map(|n| n.0));
+            for (axis, (slide, turn)) in Vec3::AXES.into_iter().zip(slides.into_iter().zip(turns)) {
+                let twists = [Twist { w: Vec3::ZERO, v: axis }, Twist { w: axis, v: Vec3::ZERO }];
+                for (stiffness, twist) in [slide, turn].into_iter().zip(twists) {
+                    if let Some(stiffness) = stiffness {
+                        ways.push(Way::Opening(stiffness));
+                        directions.push(PairDirection::Opening(joint, twist));
+                    }
+                }
+            }
+        }
+        let mut released: Vec<DriverId> = asked.iter().filter_map(|m| released_by(model, *m)).collect();
+        released.sort_unstable();
+        released.dedup();
+        for driver in released {
+            ways.push(Way::Released(driver));
+            directions.push(PairDirection::Driver(driver));
+        }
+        let variables = if sensitivities { model.variables.len() } else { 0 };
+        let ways_to_go = ways.len();
+        directions.extend((0..variables).map(|v| PairDirection::Design(model.alone(VariableId(v), 1.0))));
+        let pairs: Vec<[usize; 2]> =
+            (0..variables).flat_map(|v| (0..ways_to_go).map(move |d| [d, ways_to_go + v])).collect();
+        let changed = |by: usize| {
+            let value = |k: usize| Dual::constant(Dual { v: values[k], d: f64::from(u8::from(k == by)) });
+            let values: Vec<Number> = (0..values.len()).map(value).collect();
+            Changed { fixed: design_map.fixed(&values), geometry: design_map.geometry(&values) }
+        };
+        let mut bodies = bodies_asked_for(model);
+        bodies.extend(model.elements.iter().flat_map(|e| e.kind.bodies(model)).map(|b| b.0));
+        bodies.sort_unstable();
+        bodies.dedup();
+        bodies.retain(|b| *b != GROUND.0);
+        Some(Self {
+            model,
+            asked,
+            seconds: Seconds::new(design_map, topology, values, &directions, &pairs),
+            changed: (0..variables).chain([usize::MAX]).map(changed).collect(),
+            poses: vec![vec![Pose::IDENTITY.spread(); model.bodies.len()]; ways.len()],
+            moving: vec![Moving::still(); model.bodies.len()],
+            laws: vec![1.0; model.elements.len()],
+            friction: vec![Dual::zero(); model.elements.len()],
+            ways,
+            variables,
+            bodies,
+        })
+    }
+
+    /// Enters what is found at time t; `near` is about what the coordinates are that elements act on.
+    pub fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, near: &[f64], out: &mut StepValues) {
+        self.seconds.solve(stepper, t);
+        for by in 0..=self.variables {
+            for (way, poses) in self.poses.iter_mut().enumerate() {
+                for &body in &self.bodies {
+                    poses[body] = if by < self.variables {
+                        self.seconds.pose(&stepper.state, by * self.ways.len() + way, body)
+                    } else {
+                        self.seconds.pose_along(&stepper.state, way, body)
+                    };
+                }
+            }
+            self.enter(by, near, out);
+        }
+    }
+
+    /// Enters values, or derivatives by a variable.
+    fn enter(&mut self, by: usize, near: &[f64], out: &mut StepValues) {
+        let Changed { fixed, geometry } = &self.changed[by];
+        let model = self.model;
+        // Per way: how far everything elastic besides the joints gives, each with its stiffness.
+        let mut given: Vec<Vec<(Dual, Dual)>> = Vec::new();
+        for poses in &self.poses {
+            for &b in &self.bodies {
+                self.moving[b] = Moving { pose: poses[b], v: Twist::zero(), a: Twist::zero() };
+            }
+            let (bodies, laws, friction) = (&self.moving, &self.laws, &self.friction);
+            let acting = Acting { model, geometry, bodies, laws, near, friction };
+            let mut list = Vec::new();
+            for e in (0..model.elements.len()).map(ElementId) {
+                acting.deflections(e, |way, stiffness| list.push((way.d, stiffness.v)));
+            }
+            given.push(list);
+        }
+        for &m in &self.asked {
+            let MeasureKind::Compliance { of, at, along, .. } = &model.measures[m].kind else { continue };
+            let released = released_by(model, m);
+            let counts = |way: &Way| match way {
+                Way::Opening(_) => true,
+                Way::Released(driver) => Some(*driver) == released,
+            };
+            let chosen: Vec<usize> = (0..self.ways.len()).filter(|w| counts(&self.ways[*w])).collect();
+            // L . Y of the output, and what a unit of force works
+            let mut gives: Vec<Dual> = Vec::new();
+            let mut works: Vec<Dual> = Vec::new();
+            for &w in &chosen {
+                let poses = &self.poses[w];
+                gives.push(Instant::new(model, fixed, poses).output(*of).d);
+                let point = &model.points[at.0];
+                let p = poses[point.body.0].point(fixed.points[at.0]);
+                works.push(along.spread::<Number>().dot(p).d);
+            }
+            let mut stiffness = Elimination::<Dual>::new(chosen.len());
+            for (r, &a) in chosen.iter().enumerate() {
+                for (c, &b) in chosen.iter().enumerate() {
+                    // K_ab = K_a for a = b, + sum over springs k y_a y_b
+                    let mut sum = match self.ways[a] {
+                        Way::Opening(n) if a == b => geometry.numbers[n.0].v,
+                        _ => Dual::zero(),
+                    };
+                    for ((y_a, k), (y_b, _)) in given[a].iter().zip(&given[b]) {
+                        sum += *k * *y_a * *y_b;
+                    }
+                    stiffness.row_mut(r)[c] = sum;
+                }
+            }
+            // Without any stiffness against a released driver there is no end to it.
+            let x = if stiffness.factor().pivot_ratio > SINGULAR {
+                stiffness.solve(&mut works);
+                gives.iter().zip(&works).fold(Dual::zero(), |sum, (l, p)| sum + *l * *p)
+            } else {
+                Dual::constant(f64::NAN)
+            };
+            if by < self.variables { out.set_d(by, m, x.d) } else { out.set(m, x.v) }
+        }
+    }
+}
+
+/// Stiffnesses whose pivots differ by more hold some way by nothing.
+const SINGULAR: f64 = 1e-14;
+
+fn released_by(model: &Model, measure: usize) -> Option<DriverId> {
+    match model.measures[measure].kind {
+        MeasureKind::Compliance { released, .. } => released,
+        _ => None,
+    }
+}

@@ -1,0 +1,101 @@
+//! The measures of loads, over any number.
+
+use crate::model::{Axes, BodyId, JointId, MeasureKind, ReactionPart};
+use crate::space::{Mat3, Real, Vec3, Wrench};
+
+use super::acting::Acting;
+use super::carry::Carried;
+
+/// Loads at an instant.
+pub(super) struct Instant<'a, T> {
+    pub acting: &'a Acting<'a, T>,
+    pub carried: &'a Carried<T>,
+}
+
+impl<T: Real> Instant<'_, T> {
+    /// Formulas and signs: `docs/loads.md`.
+    pub fn measure(&self, kind: &MeasureKind) -> T {
+        let Carried { drivers, speeds, shaking, .. } = self.carried;
+        match kind {
+            MeasureKind::DriverForce { driver } => drivers[driver.0],
+            // nu f.
+            MeasureKind::DriverPower { driver } => drivers[driver.0] * speeds[driver.0],
+            MeasureKind::Reaction { joint, part, on, axes } => {
+                self.reaction(*joint, *part, *on, axes.unwrap_or_default())
+            }
+            MeasureKind::SpringForce { force } => self.acting.size(*force),
+            MeasureKind::KineticEnergy { body } => self.acting.kinetic_energy(*body),
+            MeasureKind::ShakingForce { along } => component(shaking.f, *along),
+            MeasureKind::ShakingMoment { about, along } => {
+                let p = self.acting.point(*about);
+                component(shaking.m - p.cross(shaking.f), *along)
+            }
+            _ => T::constant(f64::NAN),
+        }
+    }
+
+    /// Where a joint is on its body j, and the force and the moment about there that it puts on it.
+    pub fn wrench(&self, joint: JointId) -> [Vec3<T>; 3] {
+        let Acting { model, geometry, bodies, .. } = *self.acting;
+        let body = model.joints[joint.0].bodies[1];
+        let place = bodies[body.0].pose.point(geometry.markers[joint.0][1].r);
+        let Wrench { m, f } = self.carried.joints[joint.0];
+        [place, f, m - place.cross(f)]
+    }
+
+    /// What a joint puts on one of its bodies.
+    fn reaction(&self, joint: JointId, part: ReactionPart, on: Option<BodyId>, axes: Axes) -> T {
+        let Acting { model, geometry, bodies, .. } = *self.acting;
+        let [i, j] = model.joints[joint.0].bodies;
+        let end = usize::from(on.is_none_or(|on| on == j));
+        let wrench = self.carried.joints[joint.0];
+        let Wrench { m, f } = if end == 1 { wrench } else { Wrench::zero() - wrench };
+        let body = [i, j][end];
+        let marker = bodies[body.0].pose.compose(geometry.markers[joint.0][end]);
+        // About the joint's place on that body.
+        let m = m - marker.r.cross(f);
+        let axes = match axes {
+            Axes::Global => Mat3::IDENTITY.spread(),
+            Axes::Body => self.acting.turned(body.0),
+            Axes::Joint => marker.rot,
+        };
+        let z = marker.rot.cols[2];
+        let across = |v: Vec3<T>| (v - z * z.dot(v)).norm();
+        match part {
+            ReactionPart::Force => f.norm(),
+            ReactionPart::ForceAlong(k) => axes.cols[k].dot(f),
+            ReactionPart::Axial => z.dot(f),
+            ReactionPart::Radial => across(f),
+            ReactionPart::Moment => m.norm(),
+            ReactionPart::MomentAbout(k) => axes.cols[k].dot(m),
+            ReactionPart::Torque => z.dot(m),
+            ReactionPart::Bending => across(m),
+        }
+    }
+}
+
+/// A reaction is known if no redundant constraint that pulls by itself adds more than this part of what it adds anywhere.
+const KNOWN: f64 = 1e-8;
+
+impl Instant<'_, f64> {
+    /// Whether there is nothing of that reaction in loads that a redundant constraint exerts by itself.
+    pub fn is_free_of(&self, kind: &MeasureKind) -> bool {
+        let size = self.acting.model.size();
+        let joints = (0..self.acting.model.joints.len()).map(JointId);
+        // Forces, and moments by the size of the mechanism.
+        let most = joints.fold(0.0_f64, |most, joint| {
+            let [_, force, moment] = self.wrench(joint);
+            most.max(force.norm()).max(moment.norm() / size)
+        });
+        let scale = match kind {
+            MeasureKind::Reaction { part, .. } if part.is_moment() => most * size,
+            _ => most,
+        };
+        self.measure(kind).abs() <= KNOWN * scale
+    }
+}
+
+/// The component of a vector along a unit vector, or its magnitude.
+fn component<T: Real>(v: Vec3<T>, along: Option<Vec3>) -> T {
+    along.map_or_else(|| v.norm(), |along| along.spread().dot(v))
+}

@@ -1,0 +1,26 @@
+//! Loads: what drives the mechanism, and what its joints carry.
+//!
+//! A mechanism whose motion is prescribed needs no integration for that (`docs/theory.md`, section 14): what its bodies need is known
+//! from where they are and how they move, and what of it comes through which joint is the response to a load, the equation of order n
+//! transposed, with the factors that the motion left.
+//!
+//! | here | theory | what |
+//! |---|---|---|
+//! | [`acting`] | F = f - g | per body, what it needs less what already acts on it; over any number |
+//! | [`carry`] | T, mu, nu | what joints and drivers put on the bodies, and how that changes with the design |
+//! | [`compliance`] | C = Y K^-1 Y^T | how elastic joints give way |
+//! | [`gradient`] | dy/db | one load by all variables |
+//! | [`friction`] | M = -c N(T) | what rubs, from the forces that it changes itself |
+//! | [`measures`] | | the measures of loads, over any number |
+
+mod acting;
+mod carry;
+mod compliance;
+mod friction;
+mod gradient;
+mod measures;
+mod turns;
+
+pub(crate) use carry::LoadSolver;
+pub(crate) use compliance::Compliances;
+pub(crate) use gradient::LoadGradients;

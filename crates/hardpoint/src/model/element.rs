@@ -1,0 +1,412 @@
+//! What a mechanism's loads come from: masses, springs, given forces.
+
+use crate::law::Law;
+use crate::model::{BodyId, Dimension, JointId, Model, PointId};
+use crate::space::Vec3;
+
+/// Something that has mass, or that pushes bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Element {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub kind: ElementKind,
+}
+
+/// An element's place in [`Model::elements`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ElementId(pub usize);
+
+/// A number of an element: its place in [`Model::numbers`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct NumberId(pub usize);
+
+/// A number that an element is given, which may follow the design.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElementNumber {
+    /// The element's name.
+    pub owner: String,
+    /// Its key in model files.
+    pub key: &'static str,
+    /// Its value in the nominal design, SI.
+    pub value: f64,
+    /// How many of the text's units make one SI unit of it.
+    pub(crate) per_unit: f64,
+}
+
+/// Along which axes something is given.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Axes {
+    /// The global ones.
+    #[default]
+    Global,
+    /// Those of its body, which are the global ones as drawn and turn with it.
+    Body,
+    /// Those of its joint's marker.
+    Joint,
+}
+
+impl Axes {
+    /// As model files write them, and what they are.
+    pub const WORDS: &[(&str, &str)] = &[
+        ("global", "The global axes."),
+        ("body", "The global axes as drawn, turning with the body."),
+        ("joint", "Those of the joint on that body: z along its axis."),
+    ];
+
+    /// That of a place in [`WORDS`](Self::WORDS).
+    pub fn at(word: usize) -> Self {
+        [Self::Global, Self::Body, Self::Joint][word]
+    }
+}
+
+/// Declares the kinds of numbers that elements have.
+macro_rules! numbers {
+    ($($(#[doc = $doc:literal])* $name:ident)*) => {
+        /// What a number of an element is.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum ElementUnit { $($(#[doc = $doc])* $name,)* }
+
+        $(
+            $(#[doc = $doc])*
+            #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+            pub struct $name(pub NumberId);
+        )*
+
+        /// The kinds of numbers, for those who handle them all.
+        macro_rules! each_number {
+            ($do:ident) => { $($do!($name);)* };
+        }
+        pub(crate) use each_number;
+    };
+}
+
+numbers! {
+    /// A mass, kg.
+    Mass
+    /// A moment of inertia, kg m^2.
+    Inertia
+    /// A density, kg/m^3.
+    Density
+    /// A length, m.
+    Length
+    /// An angle, rad.
+    Angle
+    /// A force, N.
+    Force
+    /// A moment, N m.
+    Moment
+    /// A stiffness, N/m.
+    Stiffness
+    /// A stiffness per square or cube of the way, N/m^3.
+    CubicStiffness
+    /// A damping, N s/m.
+    Damping
+    /// A torsional stiffness, N m/rad.
+    TorsionalStiffness
+    /// A torsional damping, N m s/rad.
+    TorsionalDamping
+    /// A plain number.
+    Plain
+}
+
+/// The types of elements: their fields, as written and as they mean in a model. With a formula in `load/element.rs` a type is complete.
+macro_rules! elements {
+    ($declare:ident) => {
+        $declare! {
+        /// A rigid mass: a point mass, unless its inertia is given.
+        Rigid "rigid" masses {
+            /// Its centre: a point of the body that it belongs to.
+            centre: PointRef => PointId,
+            /// Its mass.
+            mass: NumberDraft => Mass,
+            /// Moment of inertia about its centre, about the global x axis as drawn.
+            ixx: Option<NumberDraft> => Option<Inertia>,
+            /// The same about y.
+            iyy: Option<NumberDraft> => Option<Inertia>,
+            /// The same about z.
+            izz: Option<NumberDraft> => Option<Inertia>,
+            /// The product of inertia, the integral of x y; an entry of the inertia matrix is its opposite.
+            ixy: Option<NumberDraft> => Option<Inertia>,
+            /// The integral of y z.
+            iyz: Option<NumberDraft> => Option<Inertia>,
+            /// The integral of z x.
+            izx: Option<NumberDraft> => Option<Inertia>,
+        }
+
+        /// A round bar or tube between two points of a body; it follows them when the design moves them.
+        Bar "bar" masses {
+            /// From this point.
+            from: PointRef => PointId,
+            /// To this one, of the same body.
+            to: PointRef => PointId,
+            /// Its outer diameter.
+            diameter: NumberDraft => Length,
+            /// The diameter of its bore. Default: it is solid.
+            bore: Option<NumberDraft> => Option<Length>,
+            /// Its density, kg/m^3; steel has 7850.
+            density: NumberDraft => Density,
+        }
+
+        /// A block, its edges along the global axes as drawn.
+        Block "block" masses {
+            /// Its centre: a point of the body that it belongs to.
+            centre: PointRef => PointId,
+            /// Its edge along x.
+            x: NumberDraft => Length,
+            /// Its edge along y.
+            y: NumberDraft => Length,
+            /// Its edge along z.
+            z: NumberDraft => Length,
+            /// Its density, kg/m^3; steel has 7850.
+            density: NumberDraft => Density,
+        }
+
+        /// A spring and damper between two points.
+        Spring "spring" forces {
+            /// One end.
+            from: PointRef => PointId,
+            /// The other one.
+            to: PointRef => PointId,
+            /// Its stiffness.
+            stiffness: NumberDraft => Stiffness,
+            /// The further force per cube of its deflection: progressive, if it is above zero.
+            cubic: Option<NumberDraft> => Option<CubicStiffness>,
+            /// Its length without force. Default: that of the drawing, or what `preload` makes it.
+            free_length: Option<NumberDraft> => Option<Length>,
+            /// The force with which it pulls its ends together as drawn; a spring that pushes them apart has one below zero.
+            preload: Option<NumberDraft> => Option<Force>,
+            /// Its damping.
+            damping: Option<NumberDraft> => Option<Damping>,
+        }
+
+        /// A spring and damper along a joint's sliding coordinate.
+        JointSpring "joint_spring" forces {
+            /// The joint.
+            joint: String => JointId,
+            /// Which of its coordinates; may be left out where it has only one.
+            coordinate: Option<String> => usize,
+            /// Its stiffness.
+            stiffness: NumberDraft => Stiffness,
+            /// The coordinate at which it pushes nothing; it counts from the drawing. Default: 0.
+            free: Option<NumberDraft> => Option<Length>,
+            /// Its damping.
+            damping: Option<NumberDraft> => Option<Damping>,
+        }
+
+        /// A spring and damper about a joint's axis.
+        TorsionSpring "torsion_spring" forces {
+            /// The joint.
+            joint: String => JointId,
+            /// Which of its angles; may be left out where it has only one.
+            coordinate: Option<String> => usize,
+            /// Its stiffness.
+            stiffness: NumberDraft => TorsionalStiffness,
+            /// The angle at which it turns nothing; it counts from the drawing. Default: 0.
+            free: Option<NumberDraft> => Option<Angle>,
+            /// Its damping, or a viscous friction of the joint.
+            damping: Option<NumberDraft> => Option<TorsionalDamping>,
+        }
+
+        /// Coulomb friction in a hinge, from the force that it carries across its axis.
+        Friction "friction" forces {
+            /// The joint: a revolute.
+            joint: String => JointId,
+            /// The coefficient of friction.
+            coefficient: NumberDraft => Plain,
+            /// The radius of its pin.
+            radius: NumberDraft => Length,
+            /// The speed, per second, below which friction fades: at rest it holds nothing. Default: 0.01 rad/s.
+            fades: Option<NumberDraft> => Option<Angle>,
+        }
+
+        /// A given force on a point.
+        PointForce "force" forces {
+            /// The point.
+            at: PointRef => PointId,
+            /// Its size; below zero it pushes the other way.
+            force: NumberDraft => Force,
+            /// Where it pushes, of any length.
+            along: Vec3 => Vec3,
+            /// Whether that direction turns with the body.
+            axes: Option<Axes> => Option<Axes>,
+            /// What it is multiplied by over time.
+            law: Option<Law> => Option<Law>,
+        }
+
+        /// A given moment on a body.
+        BodyMoment "moment" forces {
+            /// The body's name.
+            body: String => BodyId,
+            /// Its size; below zero it turns the other way.
+            moment: NumberDraft => Moment,
+            /// About which direction, of any length.
+            about: Vec3 => Vec3,
+            /// Whether that direction turns with the body.
+            axes: Option<Axes> => Option<Axes>,
+            /// What it is multiplied by over time.
+            law: Option<Law> => Option<Law>,
+        }
+
+        /// A bushing: springs and dampers between two bodies at a place, along the global axes as drawn, which turn with the first.
+        Bushing "bushing" forces {
+            /// Its place on the first body.
+            from: PointRef => PointId,
+            /// The same place on the second one.
+            to: PointRef => PointId,
+            /// Its stiffness along x.
+            x: NumberDraft => Stiffness,
+            /// Along y.
+            y: NumberDraft => Stiffness,
+            /// Along z.
+            z: NumberDraft => Stiffness,
+            /// About x.
+            about_x: Option<NumberDraft> => Option<TorsionalStiffness>,
+            /// About y.
+            about_y: Option<NumberDraft> => Option<TorsionalStiffness>,
+            /// About z.
+            about_z: Option<NumberDraft> => Option<TorsionalStiffness>,
+            /// Its damping, the same along all axes.
+            damping: Option<NumberDraft> => Option<Damping>,
+        }
+
+        /// A joint that gives along its own axes, z along its axis. It changes neither motion nor forces: measures of `compliance` say what it
+        /// gives way to.
+        ElasticJoint "elastic_joint" forces {
+            /// The joint.
+            joint: String => JointId,
+            /// Its stiffness along x. Default: it is rigid, and so for all that are left out.
+            x: Option<NumberDraft> => Option<Stiffness>,
+            /// Along y.
+            y: Option<NumberDraft> => Option<Stiffness>,
+            /// Along z.
+            z: Option<NumberDraft> => Option<Stiffness>,
+            /// About x.
+            about_x: Option<NumberDraft> => Option<TorsionalStiffness>,
+            /// About y.
+            about_y: Option<NumberDraft> => Option<TorsionalStiffness>,
+            /// About z.
+            about_z: Option<NumberDraft> => Option<TorsionalStiffness>,
+        }
+        }
+    };
+}
+pub(crate) use elements;
+
+/// What a type of element is in a model.
+macro_rules! in_models {
+    ($(
+        $(#[doc = $doc:literal])* $variant:ident $name:literal $table:ident {
+            $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
+        }
+    )*) => {
+        /// What an element is. Its formulas are in `docs/loads.md`.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum ElementKind {
+            $($(#[doc = $doc])* $variant { $($(#[doc = $field_doc])* $field: $type,)* },)*
+        }
+    };
+}
+elements!(in_models);
+
+impl ElementKind {
+    /// Whether it has mass; all others are forces.
+    pub fn has_mass(&self) -> bool {
+        matches!(self, Self::Rigid { .. } | Self::Bar { .. } | Self::Block { .. })
+    }
+
+    /// The law that a given force or moment is multiplied by.
+    pub(crate) fn law(&self) -> Option<&Law> {
+        match self {
+            Self::PointForce { law, .. } | Self::BodyMoment { law, .. } => law.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// The bodies that it needs to know of.
+    pub(crate) fn bodies(&self, model: &Model) -> Vec<BodyId> {
+        let of = |points: &[PointId]| points.iter().map(|p| model.points[p.0].body).collect();
+        match self {
+            Self::Rigid { centre, .. } | Self::Block { centre, .. } => of(&[*centre]),
+            Self::Bar { from, to, .. } | Self::Spring { from, to, .. } | Self::Bushing { from, to, .. } => {
+                of(&[*from, *to])
+            }
+            Self::PointForce { at, .. } => of(&[*at]),
+            Self::BodyMoment { body, .. } => vec![*body],
+            Self::JointSpring { joint, .. }
+            | Self::TorsionSpring { joint, .. }
+            | Self::Friction { joint, .. }
+            | Self::ElasticJoint { joint, .. } => model.joints[joint.0].bodies.to_vec(),
+        }
+    }
+
+    /// The body that a mass belongs to.
+    pub fn mass_on(&self, model: &Model) -> Option<BodyId> {
+        match self {
+            Self::Rigid { centre, .. } | Self::Block { centre, .. } => Some(model.points[centre.0].body),
+            Self::Bar { from, .. } => Some(model.points[from.0].body),
+            _ => None,
+        }
+    }
+
+    /// What the size of a force is.
+    pub(crate) fn dimension(&self) -> Dimension {
+        match self {
+            Self::TorsionSpring { .. } | Self::BodyMoment { .. } | Self::Friction { .. } => Dimension::MOMENT,
+            _ => Dimension::FORCE,
+        }
+    }
+
+    /// The joint whose coordinate it acts on.
+    pub(crate) fn coordinate(&self) -> Option<(JointId, usize)> {
+        match *self {
+            Self::JointSpring { joint, coordinate, .. } | Self::TorsionSpring { joint, coordinate, .. } => {
+                Some((joint, coordinate))
+            }
+            Self::Friction { joint, .. } => Some((joint, 0)),
+            _ => None,
+        }
+    }
+}
+
+impl ElementKind {
+    /// How hard it pushes as drawn, N, as far as it says: a given force, a preload.
+    pub(crate) fn push(&self, model: &Model) -> f64 {
+        let of = |n: NumberId| model.numbers[n.0].value.abs();
+        match self {
+            Self::PointForce { force, .. } => of(force.0),
+            Self::BodyMoment { moment, .. } => of(moment.0) / model.size(),
+            Self::Spring { preload: Some(preload), .. } => of(preload.0),
+            _ => 0.0,
+        }
+    }
+}
+
+impl Model {
+    /// The mass of all bodies as drawn, kg.
+    pub fn mass(&self) -> f64 {
+        let of = |n: NumberId| self.numbers[n.0].value;
+        let mass = |kind: &ElementKind| match kind {
+            ElementKind::Rigid { mass, .. } => of(mass.0),
+            ElementKind::Bar { from, to, diameter, bore, density } => {
+                let [a, b] = [from, to].map(|p| self.position(self.points[p.0].at));
+                let bore = bore.map_or(0.0, |b| of(b.0));
+                let area = std::f64::consts::FRAC_PI_4 * (of(diameter.0).powi(2) - bore * bore);
+                of(density.0) * area * (b - a).norm()
+            }
+            ElementKind::Block { x, y, z, density, .. } => of(x.0) * of(y.0) * of(z.0) * of(density.0),
+            _ => 0.0,
+        };
+        self.elements.iter().map(|e| mass(&e.kind)).sum()
+    }
+
+    /// Whether anything of it has mass, or pushes: without, there are no loads.
+    pub fn has_loads(&self) -> bool {
+        !self.elements.is_empty()
+    }
+
+    /// The element of that name.
+    pub fn element(&self, name: &str) -> Option<ElementId> {
+        self.elements.iter().position(|e| e.name == name).map(ElementId)
+    }
+}

@@ -1,0 +1,172 @@
+//! Loads on their way to ground: the equation of order n, transposed.
+//!
+//! | here | theory | what |
+//! |---|---|---|
+//! | `load[n]` | F, F., F.. | on each body; on the way to ground, all that is still to be carried |
+//! | `links[n]` | T_k, T_k., T_k.. | what a link transmits to its parent (18) |
+//! | `closures[n]` | T_c, T_c., T_c.. | what a closure's rows push body j with, and body i back |
+//! | `rows[n]` | mu, mu., mu.. | `T_c = - sum mu_r l_r` |
+
+use crate::linalg::Factors;
+use crate::model::Model;
+use crate::motion::kinematics::State;
+use crate::motion::level::BINOMIAL;
+use crate::space::{Twist, Wrench};
+use crate::topology::{BlockId, LinkId, Term, Topology};
+
+/// The way of some loads to ground.
+#[derive(Clone, Debug)]
+pub(crate) struct Way {
+    /// Blocks, from the load to ground.
+    pub blocks: Vec<BlockId>,
+    /// Links placed by drivers alone, likewise.
+    pub driven_links: Vec<LinkId>,
+}
+
+impl Way {
+    /// That of loads on any body.
+    pub fn of_all(topology: &Topology) -> Self {
+        Self {
+            blocks: topology.block_ids().rev().collect(),
+            driven_links: topology.driven_links().rev().collect(),
+        }
+    }
+}
+
+/// What the equations of a position have in common: unit twists and wrenches with their derivatives, order by order, and factors.
+pub(crate) struct Transposed<'s> {
+    /// Per order and coordinate: x.
+    pub x: [&'s [Twist]; 3],
+    /// Per order and row: l.
+    pub l: [&'s [Wrench]; 3],
+    /// Per block: its Jacobian's.
+    pub factors: &'s mut [Factors<f64>],
+    /// Room for the right-hand side of a block.
+    pub rhs: &'s mut [f64],
+}
+
+impl<'s> Transposed<'s> {
+    /// Of a state, with its rates in time.
+    pub fn of(state: &'s mut State<f64>) -> Self {
+        let State { x, l, factors, rhs, .. } = state;
+        Self { x: x.each_ref().map(Vec::as_slice), l: l.each_ref().map(Vec::as_slice), factors, rhs }
+    }
+}
+
+/// What is transmitted, and its first two derivatives; nothing is allocated per step.
+pub(crate) struct Transmission {
+    /// Per order and body: what still has to be carried.
+    pub load: [Vec<Wrench>; 3],
+    /// Per order and link, or closure: the wrench that it transmits.
+    pub links: [Vec<Wrench>; 3],
+    pub closures: [Vec<Wrench>; 3],
+    /// Per order and row: how much of its wrench that takes, with the sign that makes it a part of a gradient.
+    pub rows: [Vec<f64>; 3],
+    /// Per order and coordinate: what pulls at it besides.
+    pub pulls: [Vec<f64>; 3],
+    /// Per body of a block: the load on it and all that it carries.
+    below: Vec<Wrench>,
+}
+
+impl Transmission {
+    /// Of no load.
+    pub fn new(model: &Model, topology: &Topology) -> Self {
+        let none = Wrench::zero();
+        let three = |n: usize| std::array::from_fn(|_| vec![none; n]);
+        Self {
+            load: three(model.bodies.len()),
+            links: three(topology.links.len()),
+            closures: three(topology.closures.len()),
+            rows: std::array::from_fn(|_| vec![0.0; topology.rows.len()]),
+            pulls: std::array::from_fn(|_| vec![0.0; topology.coordinates.len()]),
+            below: vec![none; model.bodies.len()],
+        }
+    }
+
+    /// What links, closures and rows transmit, to order n: the equation of order n, transposed (`docs/theory.md` (18), (25)),
+    ///
+    /// ```text
+    /// sum_{m=0..n} C(n,m) T_k(m) . x_a(n-m) = 0                     for every unknown coordinate a of link k,
+    /// T_c(n) = - sum_r sum_{m=0..n} C(n,m) mu_r(m) l_r(n-m)         for every closure.
+    /// ```
+    pub fn transmit(&mut self, topology: &Topology, with: Transposed<'_>, way: &Way, n: usize) {
+        let Self { load, links, closures, rows, pulls, below } = self;
+        let (zero, none) = (0.0, Wrench::zero());
+        let Transposed { x, l, factors, rhs } = with;
+        let load = &mut load[n];
+        for &b in &way.blocks {
+            let block = &topology[b];
+            // What is known before: the parts of lower orders, on wrenches that turn.
+            for &c in &block.closures {
+                let closure = &topology[c];
+                let mut known = none;
+                for r in closure.row_ids() {
+                    rows[n][r.0] = zero;
+                    for m in (0..n).filter(|_| topology[r].drives()) {
+                        // - C(n,m) mu_r(m) l_r(n-m) for m < n, of (25), second line
+                        known = l[n - m][r.0].times_plus(rows[m][r.0] * -BINOMIAL[n][m], known);
+                    }
+                }
+                closures[n][c.0] = known;
+                load[closure.bodies[1].0] += known;
+                load[closure.bodies[0].0] -= known;
+            }
+            // First as if the closures took nothing: what then works on the unknowns is theirs to take.
+            for link in block.link_ids().map(|k| &topology[k]) {
+                below[link.child.0] = load[link.child.0];
+            }
+            // Parents outside of the block get some, too, which nobody reads.
+            for link in block.link_ids().rev().map(|k| &topology[k]) {
+                // below(p) = F_p + sum of below(c) over its children: T_k as far as it is known
+                let carried = below[link.child.0];
+                below[link.parent.0] += carried;
+            }
+            for (column, &a) in block.unknowns.iter().enumerate() {
+                let k = topology[a].link;
+                let mut works = below[topology[k].child.0].on(x[0][a.0]) + pulls[n][a.0];
+                for m in 0..n {
+                    // below . x_a + sum_{m<n} C(n,m) T_k(m) . x_a(n-m): what (25), third line, comes to as long as mu(n) = 0
+                    works += links[m][k.0].on(x[n - m][a.0]) * BINOMIAL[n][m];
+                }
+                rhs[column] = works;
+            }
+            // J^T mu(n) = works
+            factors[b.0].solve_transposed(rhs);
+            for (k, &r) in block.selected.iter().enumerate() {
+                for Term { row, factor } in topology.parts_of_row(r) {
+                    // mu of a coupler's terms: c_k mu
+                    rows[n][row.0] = rhs[k] * factor;
+                }
+            }
+            for &c in &block.closures {
+                let closure = &topology[c];
+                let mut taken = none;
+                for r in closure.row_ids() {
+                    if topology[r].drives() {
+                        // T_c(n) = known - sum mu_r(n) l_r
+                        taken = l[0][r.0].times_plus(-rows[n][r.0], taken);
+                    }
+                }
+                closures[n][c.0] += taken;
+                load[closure.bodies[1].0] += taken;
+                load[closure.bodies[0].0] -= taken;
+            }
+            for k in block.link_ids().rev() {
+                pass_on(topology, k, load, &mut links[n]);
+            }
+        }
+        for &k in &way.driven_links {
+            pass_on(topology, k, load, &mut links[n]);
+        }
+    }
+}
+
+/// A link transmits what comes to its child, to its parent.
+#[inline(always)]
+fn pass_on(topology: &Topology, k: LinkId, load: &mut [Wrench], links: &mut [Wrench]) {
+    let link = &topology[k];
+    // T_k = what the child bears with all that came to it; F_p <- F_p + T_k                               (18), first line
+    let carried = load[link.child.0];
+    links[k.0] = carried;
+    load[link.parent.0] += carried;
+}

@@ -1,0 +1,93 @@
+//! What joints and drivers carry over a motion.
+
+use crate::load::LoadSolver;
+use crate::model::{Axes, JointId};
+use crate::motion::Stop;
+use crate::run::{Analysis, Walk};
+use crate::space::Vec3;
+
+/// What a joint puts on its second body, global.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointLoad {
+    /// Where the joint is on that body, m.
+    pub place: Vec3,
+    /// The force, N, with that of drivers on the joint's coordinates.
+    pub force: Vec3,
+    /// The moment about that place, N m.
+    pub moment: Vec3,
+    /// Which components of force and moment are known: where constraints say the same, some of what joints carry depends on how stiff
+    /// they are, and what stands here is one of many answers.
+    pub known: [[bool; 3]; 2],
+    /// The same force and moment along the global axes as drawn, which have turned with the body.
+    pub in_body: [Vec3; 2],
+    /// Which components of these are known.
+    pub known_in_body: [[bool; 3]; 2],
+}
+
+/// What a driver gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriverLoad {
+    /// Its force, N, or moment, N m; positive where it works while what it drives grows.
+    pub force: f64,
+    /// The speed that it prescribes, m/s or rad/s: times the force it is the power, W.
+    pub speed: f64,
+}
+
+/// Loads of all joints and drivers over a motion.
+#[derive(Clone, Debug, Default)]
+pub struct Loads {
+    /// Output times that were solved, s.
+    pub times: Vec<f64>,
+    /// `joints[k * n + j]` at time k of joint j, of n.
+    pub joints: Vec<JointLoad>,
+    /// `drivers[k * n + d]` at time k of driver d, of n.
+    pub drivers: Vec<DriverLoad>,
+    /// Why the run ended before the last output time, if it did.
+    pub stop: Option<Stop>,
+}
+
+impl Loads {
+    /// Loads of all joints at output time k.
+    pub fn joints_at(&self, k: usize) -> &[JointLoad] {
+        let n = self.joints.len() / self.times.len().max(1);
+        &self.joints[k * n..(k + 1) * n]
+    }
+
+    /// Loads of all drivers at output time k.
+    pub fn drivers_at(&self, k: usize) -> &[DriverLoad] {
+        let n = self.drivers.len() / self.times.len().max(1);
+        &self.drivers[k * n..(k + 1) * n]
+    }
+}
+
+impl Analysis<'_> {
+    /// Loads of all joints and drivers over the motion of the design with variable k at `design[k]`; of a model in which nothing has mass
+    /// and nothing pushes they are all zero.
+    pub fn loads(&self, design: &[f64]) -> Loads {
+        let (model, design) = (self.model(), self.design(design));
+        let mut solver = LoadSolver::new(self.design_map(), self.topology(), &design.values, false).judging();
+        let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
+        let (mut result, mut times) = (Loads::default(), model.times.iter());
+        result.stop = walk.each(|one| {
+            let Some(&t) = times.next() else { return };
+            solver.step(one, t);
+            result.times.push(t);
+            for joint in (0..model.joints.len()).map(JointId) {
+                let [(force, f), (moment, m)] = solver.reaction(joint, Axes::Global);
+                let in_body = solver.reaction(joint, Axes::Body);
+                result.joints.push(JointLoad {
+                    place: solver.place(joint),
+                    force,
+                    moment,
+                    known: [f, m],
+                    in_body: in_body.map(|x| x.0),
+                    known_in_body: in_body.map(|x| x.1),
+                });
+            }
+            let found = solver.found();
+            let drivers = found.drivers.iter().zip(&found.speeds);
+            result.drivers.extend(drivers.map(|(&force, &speed)| DriverLoad { force, speed }));
+        });
+        result
+    }
+}
