@@ -143,8 +143,8 @@ describe.each(Object.entries(models))('of %s', async (_, address) => {
 })
 
 const PLANAR = [
-  'cam', 'dwell', 'excavator', 'four_bar', 'four_bar_by_lengths', 'four_bar_inverse', 'jansen', 'klann', 'pantograph', 'peaucellier', 'quick_return',
-  'scissor_lift', 'three_rrr', 'watt_six_bar',
+  'cam', 'dwell', 'excavator', 'four_bar', 'four_bar_by_lengths', 'four_bar_inverse', 'jansen', 'klann', 'pantograph', 'peaucellier', 'press',
+  'quick_return', 'scissor_lift', 'three_rrr', 'watt_six_bar',
 ]
 
 test('planar models are known to be planar, and no others', async () => {

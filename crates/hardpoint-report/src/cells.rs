@@ -49,6 +49,23 @@ impl Cells {
         self.len() == 0
     }
 
+    /// Keeps some of them.
+    ///
+    /// # Panics
+    /// Where `kept` does not say that of each.
+    pub fn retain(&mut self, kept: &[bool]) {
+        fn keep<T>(cells: &mut Vec<T>, kept: &[bool]) {
+            assert_eq!(cells.len(), kept.len(), "each is kept or not");
+            let mut kept = kept.iter();
+            cells.retain(|_| kept.next().is_some_and(|k| *k));
+        }
+        match self {
+            Self::Whole(cells) => keep(cells, kept),
+            Self::Numbers(cells) => keep(cells, kept),
+            Self::Texts(cells) => keep(cells, kept),
+        }
+    }
+
     /// What goes beyond so many cells.
     pub fn split_off(&mut self, at: usize) -> Self {
         match self {

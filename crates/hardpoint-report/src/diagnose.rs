@@ -5,7 +5,7 @@ use hardpoint::motion::{Closing, Stop, StopKind};
 use hardpoint::topology::TopologyFault;
 use hardpoint::{
     draft::Section,
-    model::{DesignVariable, JointId, Model},
+    model::{DesignVariable, ElementKind, JointId, Measure, MeasureKind, Model, OutputSource},
 };
 use hardpoint_file::{Diagnostic, ModelFile, Severity};
 
@@ -28,6 +28,7 @@ pub fn all(file: &ModelFile, summary: &Summary, course: &Course, outputs: Option
     if ended.as_ref().is_none_or(|s| s.kind == StopKind::Interrupted) {
         list.extend(summary.margin.as_ref().and_then(|m| margin(file, m)));
     }
+    list.extend(loads(file, course));
     list.extend(ended.as_ref().map(|s| stop(file, s, course.steps, outputs)));
     list
 }
@@ -169,6 +170,35 @@ pub(crate) fn driver_values(file: &ModelFile, stop: &Stop) -> String {
         })
         .collect();
     if values.is_empty() { String::new() } else { format!(", with {}", some_of(&values, ", ")) }
+}
+
+/// A warning for each load that has no number at some output time.
+fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
+    let (model, found) = (&file.model, &course.kept);
+    let has_none = |m: usize| (0..found.measured.len()).find(|k| found.measured.value(*k, m)[0].is_nan());
+    let of = |(m, measure): (usize, &Measure)| {
+        let is_compliance = matches!(measure.kind, MeasureKind::Compliance { .. });
+        if !measure.kind.is_load() && !is_compliance {
+            return None;
+        }
+        let output = found.measured.outputs.iter().position(|o| o.source == OutputSource::Measure(m))?;
+        let t = number(found.motion.times[has_none(output)?]);
+        let message = format!("`{}` has no number at t = {t} s", measure.name);
+        let d = file.diagnostic(Severity::Warning, "HP0409", message, Some((Section::Measures, m)));
+        let rubs = model.elements.iter().any(|e| matches!(e.kind, ElementKind::Friction { .. }));
+        Some(if is_compliance {
+            d.note("what gives must be held by something, and constraints that say the same hold one another")
+                .help("release no driver that nothing else holds, and remove redundant constraints: `check` names them")
+        } else if matches!(measure.kind, MeasureKind::Reaction { .. }) && !rubs {
+            d.note("redundant constraints share it, by how stiff they are")
+                .help("measure what is not shared (in a plane `radial`, or components in it), or remove a redundant constraint: `check` names them")
+        } else {
+            d.note("the hinges jam there: so much friction stands against the motion that no forces move it, or redundant constraints \
+                share what presses a pin")
+                .help("give less friction or thinner pins, or remove redundant constraints: `check` names them")
+        })
+    };
+    model.measures.iter().enumerate().filter_map(of).collect()
 }
 
 /// A warning where the motion comes so close to a singular position that its velocities are not to be relied on.

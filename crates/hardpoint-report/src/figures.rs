@@ -98,8 +98,14 @@ pub fn symbol(units: Units, quantity: Quantity) -> &'static str {
 /// assert_eq!(unit(metres, Dimension::NUMBER.over(Dimension::LENGTH)), "1/m");
 /// ```
 pub fn unit(units: Units, of: impl Into<Dimension>) -> String {
-    let Dimension { length, angle, time } = of.into();
-    let powers = [(units.angle.symbol(), angle), (units.length.symbol(), length), ("s", time)];
+    let of = of.into();
+    let Dimension { length, angle, time, force } = of;
+    // Moments and energies are in N m, powers in W, whatever the unit of length.
+    if of == Dimension::MOMENT.rate(1) {
+        return "W".into();
+    }
+    let metres = if of.length_in_units() == length { units.length.symbol() } else { "m" };
+    let powers = [(units.angle.symbol(), angle), ("N", force), (metres, length), ("s", time)];
     let product = |sign: i8| {
         let factors =
             powers.iter().map(|(symbol, power)| (*symbol, power * sign)).filter(|(_, power)| *power > 0);

@@ -35,6 +35,7 @@ pub mod encoding;
 pub mod facts;
 pub mod figures;
 pub mod gallery;
+pub mod loads;
 pub mod maps;
 pub mod margin;
 pub mod metric;
