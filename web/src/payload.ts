@@ -80,6 +80,10 @@ wheels: Array<WheelMark>,
  */
 distances: Array<DistanceMark>,
 /**
+ * Forces on bodies, of joints first; of a model in which something has mass or pushes.
+ */
+loads: Array<LoadMark>,
+/**
  * The vehicle's own axes in the world, where the mechanism belongs to one.
  */
 vehicle: VehicleAxes | null,
@@ -487,6 +491,31 @@ to: BodyPlace,
 draw: string | null, };
 
 /**
+ * A force on a body: what a joint puts on its second body, or what a spring or another force puts on a point.
+ */
+export type LoadMark = {
+/**
+ * The user's name of the joint or the force.
+ */
+name: string,
+/**
+ * Index into [`Payload::joints`], where a joint puts it there.
+ */
+joint: number | null,
+/**
+ * Where it acts.
+ */
+at: BodyPlace,
+/**
+ * Three numbers per step: the force in the world, N. What redundant constraints leave open is left out; not a number where nothing is known.
+ */
+force: Curve,
+/**
+ * Whether something is left out of it at any time.
+ */
+is_part: boolean, };
+
+/**
  * Unit vectors in the world.
  */
 export type VehicleAxes = {
@@ -605,6 +634,10 @@ poses: Array<Curve>,
  * Its hardpoints in the bodies' frames, as in [`BodyTrack::skeleton`].
  */
 skeletons: Array<Array<[number, number, number]>>,
+/**
+ * Its forces, as in [`LoadMark::force`], in the order of [`Payload::loads`].
+ */
+loads: Array<Curve>,
 /**
  * Its quantities, in the order of [`Payload::quantities`].
  */

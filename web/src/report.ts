@@ -63,9 +63,17 @@ export interface Margin {
   note: string
 }
 
+/** A force on a body. */
+export interface Load extends Omit<wire.LoadMark, 'force'> {
+  /** Three numbers per step, in the world, N; empty where the design's forces are not known. */
+  force: Curve
+}
+
 /** Another design over the same times; what is not known of it is empty or missing. */
-export interface Design extends Omit<wire.Design, 'poses' | 'quantities' | 'margin'> {
+export interface Design extends Omit<wire.Design, 'poses' | 'loads' | 'quantities' | 'margin'> {
   poses: Curve[]
+  /** The force of each of the report's loads. */
+  loads: Curve[]
   /** By the quantity's index. */
   quantities: (ByOrder<Curve> | undefined)[]
   margin?: Curve
@@ -91,10 +99,11 @@ export interface SweepAxis extends Omit<wire.SweepAxis, 'values'> {
 }
 
 /** The payload with its curves decoded. */
-export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'drivers' | 'quantities' | 'margin' | 'variables' | 'designs' | 'maps' | 'sweep'> {
+export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'drivers' | 'loads' | 'quantities' | 'margin' | 'variables' | 'designs' | 'maps' | 'sweep'> {
   times: Curve
   bodies: Body[]
   drivers: Driver[]
+  loads: Load[]
   quantities: Quantity[]
   margin?: Margin
   variables: Variable[]
@@ -110,6 +119,7 @@ export function read(payload: wire.Payload, decode: Decode): Report {
     times: decode(payload.times),
     bodies: payload.bodies.map((body) => ({ ...body, poses: decode(body.poses), mesh: mesh(body.mesh, decode) })),
     drivers: payload.drivers.map((driver) => ({ ...driver, travel: decode(driver.travel), alone: driver.alone.map(decode) })),
+    loads: payload.loads.map((load) => ({ ...load, force: decode(load.force) })),
     quantities: payload.quantities.map((quantity, index) => ({
       index,
       name: quantity.name,
@@ -148,6 +158,7 @@ export function design(item: wire.Design, decode: Decode): Design {
   return {
     ...item,
     poses: item.poses.map(decode),
+    loads: item.loads.map(decode),
     quantities: item.quantities.map((item) => (item ? curves(item, decode) : undefined)),
     margin: item.margin ? decode(item.margin) : undefined,
   }

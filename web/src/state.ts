@@ -18,6 +18,8 @@ export interface Choice {
   distance?: number
   /** Whether hardpoints are named in the view. */
   labels: boolean
+  /** Whether forces are drawn in the view. */
+  forces: boolean
   /** The design that the present one is compared with; the one as loaded where there is none. */
   compared?: number
 }
@@ -68,7 +70,7 @@ export class State {
     const variable = effects(report, quantity, 0)[0]?.variable.index ?? report.variables.find(({ sensitivities }) => sensitivities.size > 0)?.index ?? 0
     const exact = report.designs.find(({ kind }) => kind === 'exact')
     this.changes = report.variables.map((_, index) => exact?.change[index] ?? 0)
-    this.choice = { quantity, variable, order: 0, over: report.over ?? undefined, labels: false }
+    this.choice = { quantity, variable, order: 0, over: report.over ?? undefined, labels: false, forces: true }
   }
 
   get lastStep(): number {

@@ -12,19 +12,10 @@ import { Kit } from '../src/scene/kit'
 import { distanceLabels, hardpointLabels, partLabels } from '../src/scene/label_layer'
 import { placeLabels, type Spot } from '../src/scene/labels'
 import { Mechanism } from '../src/scene/mechanism'
-import type { Palette } from '../src/scene/palette'
 import { directions } from '../src/scene/triad'
 import { arcOf, atLeast } from '../src/scene/travel'
 import { type Choice, State } from '../src/state'
-import { crank } from './mechanisms'
-
-const PALETTE: Palette = {
-  ...{ view: '#f6f7f9', outline: '#2a323a', label: '#1c2126', bodies: Array(6).fill('#6c7fb8'), steel: '#f4f6f8', rod: '#8b96a1' },
-  ...{ ground: '#66717c', hatch: '#39424b', rubber: '#4a535c', tyre: '#39424b', driver: '#e06c00', chosen: '#c2185b' },
-  ...{ trace: '#0b62b8', former: '#2a323a', grid: '#e4e8ec', gridMain: '#d2d8dd', axes: { x: '#d55e00', y: '#009e73', z: '#0072b2' } },
-  ...{ light: { sky: 2, earth: '#c2cad2', sun: 1, shadow: 0.16 }, glass: 0.13 },
-}
-const CHOICE: Choice = { quantity: 0, variable: 0, order: 0, labels: false }
+import { CHOICE, crank, PALETTE } from './mechanisms'
 
 function drawn(mechanism: Mechanism, choice: Partial<Choice> = {}): Drawn[] {
   return marks.flatMap((draw) => draw(mechanism, new Kit(mechanism, PALETTE), { ...CHOICE, ...choice }))

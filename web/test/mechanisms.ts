@@ -1,5 +1,7 @@
 import type { Payload } from '../src/payload'
 import type { Report } from '../src/report'
+import type { Palette } from '../src/scene/palette'
+import type { Choice } from '../src/state'
 
 /** What a page is about, when it is about nothing. */
 export const EMPTY: Payload = {
@@ -18,6 +20,7 @@ export const EMPTY: Payload = {
   drivers: [],
   wheels: [],
   distances: [],
+  loads: [],
   vehicle: null,
   quantities: [],
   values: [],
@@ -31,6 +34,16 @@ export const EMPTY: Payload = {
   checks: [],
   model: null,
 }
+
+/** Colours, where they do not matter. */
+export const PALETTE: Palette = {
+  ...{ view: '#f6f7f9', outline: '#2a323a', label: '#1c2126', bodies: Array(6).fill('#6c7fb8'), steel: '#f4f6f8', rod: '#8b96a1' },
+  ...{ ground: '#66717c', hatch: '#39424b', rubber: '#4a535c', tyre: '#39424b', driver: '#e06c00', chosen: '#c2185b', load: '#b3261e' },
+  ...{ trace: '#0b62b8', former: '#2a323a', grid: '#e4e8ec', gridMain: '#d2d8dd', axes: { x: '#d55e00', y: '#009e73', z: '#0072b2' } },
+  ...{ light: { sky: 2, earth: '#c2cad2', sun: 1, shadow: 0.16 }, glass: 0.13 },
+}
+/** What is chosen at first. */
+export const CHOICE: Choice = { quantity: 0, variable: 0, order: 0, labels: false, forces: true }
 
 /** Turns about z by which the crank goes on from one step to the next. */
 const QUARTER = Math.PI / 2
@@ -54,6 +67,7 @@ export function crank(changes: Partial<Report> = {}): Report {
     ],
     joints: [{ name: 'hinge', ...hinge, axis2: null, hinge: null, lead: null, curve: null, draw: null, cut: false } as Report['joints'][number]],
     drivers: [{ name: 'motor', law: 'one turn', joint: 0, turns: true, point: null, along: null, travel, alone: [] }],
+    loads: [],
     quantities: [],
     designs: [],
     maps: [],

@@ -99,6 +99,8 @@ pub struct Payload {
     pub wheels: Vec<WheelMark>,
     /// Distances that are measured between two bodies: springs and dampers are often given so.
     pub distances: Vec<DistanceMark>,
+    /// Forces on bodies, of joints first; of a model in which something has mass or pushes.
+    pub loads: Vec<LoadMark>,
     /// The vehicle's own axes in the world, where the mechanism belongs to one.
     pub vehicle: Option<VehicleAxes>,
     /// What can be plotted over time.
@@ -370,6 +372,22 @@ pub struct DistanceMark {
     pub draw: Option<String>,
 }
 
+/// A force on a body: what a joint puts on its second body, or what a spring or another force puts on a point.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct LoadMark {
+    /// The user's name of the joint or the force.
+    pub name: String,
+    /// Index into [`Payload::joints`], where a joint puts it there.
+    pub joint: Option<usize>,
+    /// Where it acts.
+    pub at: BodyPlace,
+    /// Three numbers per step: the force in the world, N. What redundant constraints leave open is left out; not a number where nothing is known.
+    pub force: Curve,
+    /// Whether something is left out of it at any time.
+    pub is_part: bool,
+}
+
 /// Unit vectors in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(TS))]
@@ -418,6 +436,8 @@ pub struct Design {
     pub poses: Vec<Curve>,
     /// Its hardpoints in the bodies' frames, as in [`BodyTrack::skeleton`].
     pub skeletons: Vec<Vec<[f64; 3]>>,
+    /// Its forces, as in [`LoadMark::force`], in the order of [`Payload::loads`].
+    pub loads: Vec<Curve>,
     /// Its quantities, in the order of [`Payload::quantities`].
     pub quantities: Vec<Option<DesignCurves>>,
     /// Its values, in the order of [`Payload::values`].
@@ -770,6 +790,7 @@ pub(crate) mod tests {
             drivers: vec![],
             wheels: vec![],
             distances: vec![],
+            loads: vec![],
             vehicle: None,
             quantities: vec![],
             values: vec![],
@@ -832,7 +853,7 @@ pub(crate) mod tests {
         }
         declare!(
             Curve Payload ModelText Detail Units Status Fact BodyTrack PointRole Mesh JointMark JointCurve CouplerMark CouplerTerm
-            DriverMark BodyPlace WheelMark DistanceMark VehicleAxes Quantity Value Design DesignKind DesignCurves
+            DriverMark BodyPlace WheelMark DistanceMark LoadMark VehicleAxes Quantity Value Design DesignKind DesignCurves
             GridMap GridDriver GridQuantity GridSensitivity SweepPlot SweepAxis SweepIndex Margin Variable Admissibility Arrow Sensitivity FiniteDifference Table
         );
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/payload.ts");

@@ -8,6 +8,7 @@
 mod designs;
 mod drawing;
 mod first;
+mod loads;
 mod values;
 
 pub use designs::Changed;
@@ -108,6 +109,7 @@ fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payloa
         bodies: model.bodies.len() - 1,
         variables: model.variables.len(),
         outputs: solution.measured.outputs.len(),
+        loads: loads::count(model),
         compared: request.differences.iter().any(Option::is_some),
         designs: request.changed.as_ref().map_or(0, Changed::designs),
     };
@@ -182,6 +184,7 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
         drivers: compose.drivers(),
         wheels: compose.wheels(),
         distances: compose.distances(),
+        loads: compose.loads(),
         vehicle: compose.vehicle(),
         quantities: compose.quantities(),
         values,
@@ -240,6 +243,8 @@ struct Size {
     bodies: usize,
     variables: usize,
     outputs: usize,
+    /// Forces on bodies.
+    loads: usize,
     /// Whether there are differences to compare with.
     compared: bool,
     /// Other designs that are shown beside this one.
@@ -281,7 +286,7 @@ impl Detail {
         let steps = size.steps.div_ceil(self.stride);
         let origins = 3 * size.bodies;
         let shown = if self.origins { origins } else { 0 };
-        let motion = 3 * (size.outputs + shown) + 7 * (size.bodies + 1);
+        let motion = 3 * (size.outputs + shown + size.loads) + 7 * (size.bodies + 1);
         // A body's place and turn; the sensitivity of its origin's place is the same numbers.
         let bodies = if self.bodies { 2 * origins } else { 0 };
         let rates = if self.body_rates { 2 * origins } else { 0 };
@@ -640,7 +645,7 @@ mod tests {
     use super::*;
 
     const STRUT: Size =
-        Size { steps: 501, bodies: 4, variables: 16, outputs: 13, compared: true, designs: 0 };
+        Size { steps: 501, bodies: 4, variables: 16, outputs: 13, loads: 0, compared: true, designs: 0 };
 
     #[test]
     fn a_suspension_is_shown_with_all_that_there_is() {

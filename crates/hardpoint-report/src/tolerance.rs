@@ -466,6 +466,7 @@ impl Studied<'_> {
                 .into(),
             poses: Vec::new(),
             skeletons: Vec::new(),
+            loads: Vec::new(),
             quantities,
             values: vec![None; page.values.len()],
             margin: None,

@@ -6,6 +6,7 @@ const KEYS: [keys: string, meaning: string][] = [
   ['Home End', 'first or last step'],
   ['F', 'fit the mechanism into the view'],
   ['L', 'names of hardpoints'],
+  ['N', 'forces as arrows, of a model with masses or forces'],
   ['1 … 5', 'standard views, in the order of their buttons'],
   ['↑ ↓', 'another row of a list, when it has the focus'],
   ['+ − 0', 'in a plot: closer, further, the whole'],

@@ -2,6 +2,7 @@ import { el, prose } from '../dom'
 import { heatMap } from '../influence/heatmap'
 import { rankingTable } from '../influence/table'
 import type { View } from '../scene/view'
+import { forcePaths } from '../loads/polar'
 import { driverMap } from '../maps/map'
 import type { Report } from '../report'
 import type { State } from '../state'
@@ -53,10 +54,11 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): Made {
     : []
   const maps: Tab[] = report.maps.length > 0 ? [{ name: 'maps', title: 'Maps', content: el('div', {}, ...report.maps.map((map) => driverMap(map, report.quantities[state.choice.quantity]?.name ?? ''))) }] : []
   const sweep: Tab[] = report.sweep ? [{ name: 'designs', title: report.sweep.what === 'design' ? 'Designs' : 'Residuals', content: sweepPlot(report.sweep) }] : []
+  const loads: Tab[] = report.loads.length > 0 ? [{ name: 'loads', title: 'Forces', content: forcePaths(state) }] : []
   const sections: [name: string, element: HTMLElement | undefined][] = [
     ['variables', hasVariables ? variables(state) : undefined],
     ['curves', curves?.element],
-    ['tables', tabs('Tables and checks', [...sweep, ...maps, ...table, { name: 'checks', title: 'Checks', content: checks(state) }])],
+    ['tables', tabs('Tables and checks', [...sweep, ...maps, ...table, ...loads, { name: 'checks', title: 'Checks', content: checks(state) }])],
   ]
   const shown = sections.flatMap(([name, element]) => (element ? [{ name, element }] : []))
   for (const { name, element } of shown) element.classList.add(`area-${name}`)

@@ -36,6 +36,9 @@ function actionOf({ key }: KeyboardEvent, target: HTMLElement, state: State, tar
     case 'l':
     case 'L':
       return () => state.choose({ labels: !state.choice.labels })
+    case 'n':
+    case 'N':
+      return state.report.loads.length > 0 ? () => state.choose({ forces: !state.choice.forces }) : undefined
     case 'm':
     case 'M':
       return targets.grips

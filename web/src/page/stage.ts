@@ -26,12 +26,16 @@ export function stage(state: State): Stage {
   }
   buttons.forEach((button, k) => button.setAttribute('aria-pressed', String(k === 0)))
   const labels = el('button', { type: 'button', title: 'Names of hardpoints (L)', 'data-testid': 'labels', onclick: () => state.choose({ labels: !state.choice.labels }) }, 'labels')
-  const sync = () => labels.setAttribute('aria-pressed', String(state.choice.labels))
+  const forces = el('button', { type: 'button', title: 'Forces as arrows (N)', 'data-testid': 'forces', hidden: state.report.loads.length === 0, onclick: () => state.choose({ forces: !state.choice.forces }) }, 'forces')
+  const sync = () => {
+    labels.setAttribute('aria-pressed', String(state.choice.labels))
+    forces.setAttribute('aria-pressed', String(state.choice.forces))
+  }
   state.onChoice(sync)
   sync()
   const fit = el('button', { type: 'button', title: 'Fit (F)', 'data-testid': 'fit', onclick: () => view.fit() }, 'fit')
   view.element.append(
-    el('div', { class: 'looks', role: 'toolbar', 'aria-label': 'Standard views' }, ...buttons, fit, labels, tracer(state)),
+    el('div', { class: 'looks', role: 'toolbar', 'aria-label': 'Standard views' }, ...buttons, fit, labels, forces, tracer(state)),
     ghostKey(state),
   )
   return { element: view.element, view, look }

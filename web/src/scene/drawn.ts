@@ -5,7 +5,7 @@ import type { Mechanism } from './mechanism'
 
 /** What the pointer finds. */
 export interface Part {
-  kind: 'body' | 'joint' | 'coupler' | 'driver' | 'wheel' | 'distance' | 'mark'
+  kind: 'body' | 'joint' | 'coupler' | 'driver' | 'wheel' | 'distance' | 'load' | 'mark'
   /** Index into the report's list of its kind. */
   index: number
   name: string

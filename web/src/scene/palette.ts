@@ -28,6 +28,8 @@ export interface Palette {
   driver: string
   /** Selection, handle, design velocity. */
   chosen: string
+  /** Forces. */
+  load: string
   /** Paths of points. */
   trace: string
   /** The former design, dashed. */
@@ -62,6 +64,7 @@ export function paletteOf(read = (name: string) => css(`--${name}`)): Palette {
     tyre: read('tyre'),
     driver: read('driver'),
     chosen: read('chosen'),
+    load: read('load'),
     trace: read('trace'),
     former: read('former'),
     grid: read('grid'),

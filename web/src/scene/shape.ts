@@ -55,7 +55,9 @@ export function foreseen(report: Report, changes: number[], size: number): Repor
       axis_j: axis_j ? turn(body_j, at_j, axis_j) : axis_j,
     }
   })
-  return { ...redrawn, joints }
+  // What forces become is not foreseen.
+  const loads = redrawn.loads.map((load) => ({ ...load, force: new Float32Array() }))
+  return { ...redrawn, joints, loads }
 }
 
 /** Shifts of several variables together, to first order; none where there are none. */
@@ -75,7 +77,8 @@ export function solved(report: Report, design: Design, size: number): Report {
     const k = report.bodies[body].skeleton.findIndex((point) => apart(point, at) <= SAME * size)
     return design.skeletons[body]?.[k] ?? at
   }
-  return redraw(report, design.poses, move)
+  const redrawn = redraw(report, design.poses, move)
+  return { ...redrawn, loads: redrawn.loads.map((load, k) => ({ ...load, force: design.loads[k] ?? new Float32Array() })) }
 }
 
 function redraw(report: Report, poses: Curve[], move: Move): Report {
@@ -90,6 +93,7 @@ function redraw(report: Report, poses: Curve[], move: Move): Report {
       kingpin: wheel.kingpin && [place(wheel.kingpin[0]), place(wheel.kingpin[1])],
     })),
     distances: report.distances.map((distance) => ({ ...distance, from: place(distance.from), to: place(distance.to) })),
+    loads: report.loads.map((load) => ({ ...load, at: place(load.at) })),
     drivers: report.drivers.map((driver) => ({ ...driver, point: driver.point && place(driver.point) })),
   }
 }

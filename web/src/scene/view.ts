@@ -10,6 +10,7 @@ import { Assembly } from './assembly'
 import { cameraFor, fit, type Look, looksOf, pixelsPerLength, shapeTo } from './camera'
 import { marks, matter } from './draw'
 import { changeText, shownChange } from './draw/design_velocity'
+import { forceText } from './draw/load'
 import { type Part, samePart } from './drawn'
 import { Floor } from './floor'
 import { distanceLabels, hardpointLabels, LabelLayer, partLabels } from './label_layer'
@@ -256,7 +257,9 @@ export class View {
   #assembleMarks(): Assembly {
     const variable = this.today.report.variables[this.state.choice.variable]
     const change = variable && shownChange(this.today, variable)
-    this.#arrows.textContent = change === undefined ? '' : `arrows for ${changeText(change, variable)}, `
+    const forces = this.state.choice.forces && forceText(this.#matter.mechanism)
+    const said = [forces, change !== undefined && `arrows for ${changeText(change, variable)}`].filter((words) => words)
+    this.#arrows.textContent = said.map((words) => `${words}, `).join('')
     const assembly = new Assembly(this.#matter.mechanism, this.#palette, this.state.choice, marks, this.#outlines, MARK_NUMBERS)
     this.scene.add(...assembly.groups)
     return assembly

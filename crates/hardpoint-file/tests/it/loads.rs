@@ -4,7 +4,7 @@ use std::path::Path;
 
 use hardpoint::model::{Model, VariableId};
 use hardpoint::motion::BodyState;
-use hardpoint::space::Vec3;
+use hardpoint::space::{Mat3, Vec3};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, parse};
@@ -211,6 +211,81 @@ rocking = { type = "shaking_moment", about = { body = "ground", at = "A" } }
     // What turns the arm and is no driver's comes from elsewhere, and ground feels it.
     let rocking = values(&solution, "rocking");
     assert!((rocking[0] + 2.0 * 9.80665 * 0.3 - 5.0).abs() < 1e-12, "{}", rocking[0]);
+}
+
+/// A four-bar of revolutes, which holds itself in its plane more than once, with a spring; drawn turned by a rotation.
+fn four_bar(turn: &Mat3) -> ModelFile {
+    let at = |x: f64, y: f64, z: f64| {
+        let [x, y, z] = (*turn * Vec3::new(x, y, z)).to_array();
+        format!("[{x:.17}, {y:.17}, {z:.17}]")
+    };
+    let [a, b, c, d, e] =
+        [[0.0, 0.0], [0.0, 60.0], [200.0, 120.0], [220.0, 0.0], [90.0, -150.0]].map(|[x, y]| at(x, y, 0.0));
+    let (axis, down) = (at(0.0, 0.0, 1.0), at(0.0, -1.0, 0.0));
+    let joint = |name: &str, i: &str, j: &str| {
+        format!(r#"{name} = {{ type = "revolute", bodies = ["{i}", "{j}"], at = "{name}", axis = {axis} }}"#)
+    };
+    let joints = [
+        joint("A", "ground", "crank"),
+        joint("B", "crank", "rod"),
+        joint("C", "rod", "rocker"),
+        joint("D", "rocker", "ground"),
+    ];
+    let joints = joints.join("\n");
+    file(&format!(
+        r#"
+name = "four-bar"
+units = {{ length = "mm", angle = "deg" }}
+time = {{ end = 1, steps = 8 }}
+[hardpoints]
+A = {a}
+B = {b}
+C = {c}
+D = {d}
+E = {e}
+[bodies]
+crank = {{}}
+rod = {{}}
+rocker = {{}}
+[joints]
+{joints}
+[drivers]
+motor = {{ joint = "A", law = "360*t" }}
+[gravity]
+along = {down}
+[masses]
+pin = {{ type = "rigid", centre = {{ body = "rod", at = "C" }}, mass = 3 }}
+[forces]
+pull = {{ type = "spring", from = {{ body = "ground", at = "E" }}, to = {{ body = "rod", at = "B" }}, stiffness = 2, preload = 40 }}
+"#
+    ))
+}
+
+#[test]
+fn what_is_known_of_a_force_does_not_go_by_the_axes_it_is_written_in() {
+    let turn = Mat3::from_rotation_vector(Vec3::new(0.7, -0.6, 1.1));
+    let [flat, turned] = [Mat3::IDENTITY, turn].map(|by| {
+        let file = four_bar(&by);
+        let loads = Analysis::new(&file.model).unwrap().loads(&[]);
+        assert!(loads.stop.is_none() && loads.times.len() == 9);
+        loads
+    });
+    for k in 0..flat.times.len() {
+        let scale = flat.joints_at(k).iter().map(|load| load.known_force.norm()).fold(1.0, f64::max);
+        for (flat, turned) in flat.joints_at(k).iter().zip(turned.joints_at(k)) {
+            // The force across the pin is known, that along its axis is not.
+            assert_eq!([flat.known_directions, turned.known_directions], [2, 2]);
+            assert_eq!((flat.known[0], turned.known[0]), ([true, true, false], [false; 3]));
+            let drawn = Vec3::new(flat.force.x, flat.force.y, 0.0);
+            assert!((flat.known_force - drawn).norm() < SAME * scale);
+            assert!((turned.known_force - turn * flat.known_force).norm() < SAME * scale);
+        }
+        let ([from, to], [turned_from, _]) = (flat.pushes_at(k), turned.pushes_at(k)) else {
+            panic!("two ends")
+        };
+        assert!((*from + *to).norm() < SAME * from.norm() && from.norm() > 1.0);
+        assert!((*turned_from - turn * *from).norm() < SAME * from.norm());
+    }
 }
 
 #[test]

@@ -229,6 +229,7 @@ impl Beside<'_> {
         Design {
             poses: self.poses(),
             skeletons: self.skeletons(bodies),
+            loads: self.today.forces(changed.change),
             quantities: self.quantities(output, origin),
             values: self.values(values, |metric| found[metric], static_value),
             margin: (!margins.is_empty())
@@ -318,6 +319,7 @@ impl Beside<'_> {
             note,
             poses: Vec::new(),
             skeletons: Vec::new(),
+            loads: Vec::new(),
             quantities: Vec::new(),
             values: Vec::new(),
             margin: None,

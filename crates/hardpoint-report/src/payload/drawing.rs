@@ -39,7 +39,7 @@ struct SkeletonPoint {
 }
 
 /// Whether a joint is drawn: a driven distance is drawn like a leg; a driven point or orientation has nothing to draw.
-fn is_drawn(joint: &Joint) -> bool {
+pub(super) fn is_drawn(joint: &Joint) -> bool {
     !joint.unnamed || joint.kind.places == 2
 }
 
@@ -134,7 +134,7 @@ impl Compose<'_> {
     }
 
     /// Where a hardpoint of the design configuration is in a body's frame.
-    fn in_body(&self, body: BodyId, at: HardpointId) -> Vec3 {
+    pub(super) fn in_body(&self, body: BodyId, at: HardpointId) -> Vec3 {
         self.model.bodies[body.0].frame.inverse().point(self.model.hardpoints[at.0].position)
     }
 
@@ -150,7 +150,7 @@ impl Compose<'_> {
     }
 
     /// Which of the drawn joints that is.
-    fn drawn(&self, joint: JointId) -> Option<usize> {
+    pub(super) fn drawn(&self, joint: JointId) -> Option<usize> {
         self.drawn_joints().position(|(j, _)| j == joint.0)
     }
 
@@ -290,7 +290,7 @@ impl Compose<'_> {
     }
 
     /// Where a point of the model is.
-    fn place(&self, point: PointId) -> BodyPlace {
+    pub(super) fn place(&self, point: PointId) -> BodyPlace {
         let of = &self.model.points[point.0];
         BodyPlace { body: of.body.0, at: self.length(self.in_body(of.body, of.at)) }
     }

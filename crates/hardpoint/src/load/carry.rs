@@ -8,7 +8,9 @@
 
 use crate::design::{DesignMap, Geometry};
 use crate::measure::StepValues;
-use crate::model::{Axes, DriverId, ElementId, JointId, MeasureKind, Model, ReactionPart, VariableId};
+use crate::model::{
+    Axes, DriverId, ElementId, JointId, MeasureKind, Model, PointId, ReactionPart, VariableId,
+};
 use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real};
@@ -351,6 +353,35 @@ impl<'a> LoadSolver<'a> {
         })
     }
 
+    /// What is known of the force that a joint puts on its body j, global, and along how many directions it is: what redundant constraints
+    /// that pull by themselves can change is left out.
+    pub fn known_force(&self, joint: JointId) -> (Vec3, usize) {
+        let acting = self.now.acting(self.model, &self.geometry, &self.laws, &self.near);
+        let force_of = |carried| Instant { acting: &acting, carried }.wrench(joint)[1];
+        // A basis of what they change: each less what is in those before it.
+        let mut open: Vec<Vec3> = Vec::new();
+        for carried in &self.stresses {
+            let kind = MeasureKind::Reaction { joint, part: ReactionPart::Force, on: None, axes: None };
+            if (Instant { acting: &acting, carried }).is_free_of(&kind) {
+                continue;
+            }
+            let force = force_of(carried);
+            let rest = across(force, &open);
+            if rest.norm() > PARALLEL * force.norm() {
+                open.push(rest * (1.0 / rest.norm()));
+            }
+        }
+        (across(force_of(&self.now.found), &open), 3 - open.len())
+    }
+
+    /// What a force puts on the body of one of its points, global: what a spring, a bushing or a given force does there.
+    pub fn push(&self, element: ElementId, at: PointId) -> Vec3 {
+        let acting = self.now.acting(self.model, &self.geometry, &self.laws, &self.near);
+        let mut needed = vec![Wrench::zero(); self.model.bodies.len()];
+        acting.add(element, &mut needed);
+        -needed[self.model.points[at.0].body.0].f
+    }
+
     /// Lets the coordinates that elements act on count their turns.
     fn follow_turns(&mut self, q: &[f64], t: f64) {
         let Self { model, geometry, laws, near, turns, now, .. } = self;
@@ -425,6 +456,14 @@ impl<'a> LoadSolver<'a> {
 /// Whether redundant constraints that pull by themselves leave a reaction alone.
 fn is_known(kind: &MeasureKind, acting: &Acting<'_, f64>, stresses: &[Carried<f64>]) -> bool {
     stresses.iter().all(|carried| Instant { acting, carried }.is_free_of(kind))
+}
+
+/// Two directions are one where no more than this part of one is across the other.
+const PARALLEL: f64 = 1e-7;
+
+/// What of a vector is across these unit vectors, which are across one another.
+fn across(v: Vec3, directions: &[Vec3]) -> Vec3 {
+    directions.iter().fold(v, |v, u| v - *u * u.dot(v))
 }
 
 impl<T: Real> Carried<T> {

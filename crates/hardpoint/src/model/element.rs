@@ -383,6 +383,19 @@ impl ElementKind {
 }
 
 impl Model {
+    /// Where forces act on points: of each spring, bushing and given force its points.
+    pub fn pushed(&self) -> Vec<(ElementId, PointId)> {
+        let points = |kind: &ElementKind| match kind {
+            ElementKind::Spring { from, to, .. } | ElementKind::Bushing { from, to, .. } => vec![*from, *to],
+            ElementKind::PointForce { at, .. } => vec![*at],
+            _ => Vec::new(),
+        };
+        let of = |(e, element): (usize, &Element)| {
+            points(&element.kind).into_iter().map(move |p| (ElementId(e), p))
+        };
+        self.elements.iter().enumerate().flat_map(of).collect()
+    }
+
     /// The mass of all bodies as drawn, kg.
     pub fn mass(&self) -> f64 {
         let of = |n: NumberId| self.numbers[n.0].value;

@@ -22,6 +22,10 @@ pub struct JointLoad {
     pub in_body: [Vec3; 2],
     /// Which components of these are known.
     pub known_in_body: [[bool; 3]; 2],
+    /// What is known of the force, global, whichever way it points: it is the force less its part along directions that are not known.
+    pub known_force: Vec3,
+    /// Along how many directions the force is known; 3: it is known.
+    pub known_directions: usize,
 }
 
 /// What a driver gives.
@@ -42,6 +46,8 @@ pub struct Loads {
     pub joints: Vec<JointLoad>,
     /// `drivers[k * n + d]` at time k of driver d, of n.
     pub drivers: Vec<DriverLoad>,
+    /// `pushes[k * n + i]` at time k of [`Model::pushed`](crate::model::Model::pushed)'s place i, of n: the force on its body there, global, N.
+    pub pushes: Vec<Vec3>,
     /// Why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
 }
@@ -58,6 +64,12 @@ impl Loads {
         let n = self.drivers.len() / self.times.len().max(1);
         &self.drivers[k * n..(k + 1) * n]
     }
+
+    /// Forces at all of [`Model::pushed`](crate::model::Model::pushed)'s places at output time k.
+    pub fn pushes_at(&self, k: usize) -> &[Vec3] {
+        let n = self.pushes.len() / self.times.len().max(1);
+        &self.pushes[k * n..(k + 1) * n]
+    }
 }
 
 impl Analysis<'_> {
@@ -68,6 +80,7 @@ impl Analysis<'_> {
         let mut solver = LoadSolver::new(self.design_map(), self.topology(), &design.values, false).judging();
         let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
         let (mut result, mut times) = (Loads::default(), model.times.iter());
+        let pushed = model.pushed();
         result.stop = walk.each(|one| {
             let Some(&t) = times.next() else { return };
             solver.step(one, t);
@@ -75,6 +88,7 @@ impl Analysis<'_> {
             for joint in (0..model.joints.len()).map(JointId) {
                 let [(force, f), (moment, m)] = solver.reaction(joint, Axes::Global);
                 let in_body = solver.reaction(joint, Axes::Body);
+                let (known_force, known_directions) = solver.known_force(joint);
                 result.joints.push(JointLoad {
                     place: solver.place(joint),
                     force,
@@ -82,8 +96,11 @@ impl Analysis<'_> {
                     known: [f, m],
                     in_body: in_body.map(|x| x.0),
                     known_in_body: in_body.map(|x| x.1),
+                    known_force,
+                    known_directions,
                 });
             }
+            result.pushes.extend(pushed.iter().map(|&(element, at)| solver.push(element, at)));
             let found = solver.found();
             let drivers = found.drivers.iter().zip(&found.speeds);
             result.drivers.extend(drivers.map(|(&force, &speed)| DriverLoad { force, speed }));

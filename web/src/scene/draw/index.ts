@@ -9,6 +9,7 @@ import { formerDesign } from './former'
 import { ground } from './ground'
 import { fixedLink } from './ground_link'
 import { joints } from './joint'
+import { loads } from './load'
 import { meshes } from './mesh'
 import { motors } from './motor'
 import { paths } from './paths'
@@ -19,4 +20,4 @@ import { wheels } from './wheel'
 export const matter: Draw[] = [bodies, meshes, ground, fixedLink, joints, couplers, wheels, distances, motors, paths]
 
 /** What is drawn to say something about it; made anew with every choice. `mechanism.former` is the design drawn dashed. */
-export const marks: Draw[] = [formerDesign, trace, drivers, dimension, designVelocity]
+export const marks: Draw[] = [formerDesign, trace, drivers, dimension, loads, designVelocity]

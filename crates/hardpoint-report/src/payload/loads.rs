@@ -1,0 +1,88 @@
+//! Forces on bodies, as the page draws them.
+
+use hardpoint::Analysis;
+use hardpoint::model::Model;
+use hardpoint::space::Vec3;
+use hardpoint::study::Loads;
+
+use crate::course::settled;
+use crate::page::{BodyPlace, Curve, LoadMark};
+
+use super::Compose;
+use super::drawing::is_drawn;
+
+/// A component of a force below this part of the largest force is round-off.
+const ROUND_OFF: f64 = 1e-11;
+
+/// How many forces the page has of a model.
+pub(super) fn count(model: &Model) -> usize {
+    if model.has_loads() { joints(model).len() + model.pushed().len() } else { 0 }
+}
+
+/// The joints whose forces are shown.
+fn joints(model: &Model) -> Vec<usize> {
+    let all = model.joints.iter().enumerate();
+    all.filter(|(_, joint)| is_drawn(joint) && !joint.unnamed).map(|(j, _)| j).collect()
+}
+
+impl Compose<'_> {
+    /// Forces of today's design.
+    pub(super) fn loads(&self) -> Vec<LoadMark> {
+        if count(self.model) == 0 {
+            return Vec::new();
+        }
+        let (loads, shown) = (self.solved_loads(&[]), joints(self.model));
+        let part_of = |j: usize| (0..loads.times.len()).any(|k| loads.joints_at(k)[j].known_directions < 3);
+        let of_joints = shown.iter().map(|&j| {
+            let joint = &self.model.joints[j];
+            let body = joint.bodies[1];
+            let at = BodyPlace { body: body.0, at: self.length(self.in_body(body, joint.at[1])) };
+            let drawn = self.drawn(hardpoint::model::JointId(j));
+            (joint.name.clone(), drawn, at, part_of(j))
+        });
+        let pushed = self.model.pushed();
+        let of_points = pushed
+            .iter()
+            .map(|&(e, point)| (self.model.elements[e.0].name.clone(), None, self.place(point), false));
+        let marks = of_joints.chain(of_points).zip(self.curves_of(&loads));
+        marks
+            .map(|((name, joint, at, is_part), force)| LoadMark { name, joint, at, force, is_part })
+            .collect()
+    }
+
+    /// Forces of the design with these changes of the variables, in the same order.
+    pub(super) fn forces(&self, change: &[f64]) -> Vec<Curve> {
+        if count(self.model) == 0 { Vec::new() } else { self.curves_of(&self.solved_loads(change)) }
+    }
+
+    /// Loads at the output times that are shown.
+    fn solved_loads(&self, change: &[f64]) -> Loads {
+        let times = self.steps.iter().map(|&k| self.solution.motion.times[k]).collect();
+        let model = Model { times, ..self.model.clone() };
+        let plan = Analysis::with(&model, self.analysis.topology().formulation);
+        plan.map_or_else(|_| Loads::default(), |analysis| analysis.loads(change))
+    }
+
+    /// Three numbers per step of each force; without a number where the motion was not solved.
+    fn curves_of(&self, loads: &Loads) -> Vec<Curve> {
+        let (shown, solved) = (joints(self.model), loads.times.len());
+        let known = |k: usize, j: usize| {
+            let load = &loads.joints_at(k)[j];
+            if load.known_directions == 0 { UNKNOWN } else { load.known_force }
+        };
+        let at = |k: usize| {
+            let of_joints = shown.iter().map(move |&j| known(k, j));
+            of_joints.chain(loads.pushes_at(k).iter().copied())
+        };
+        let forces: Vec<Vec<Vec3>> = (0..solved).map(|k| at(k).collect()).collect();
+        let sizes = forces.iter().flatten().map(|f| f.norm()).filter(|size| size.is_finite());
+        let round_off = ROUND_OFF * sizes.fold(0.0, f64::max);
+        let curve = |i: usize| {
+            let at = |k: usize| forces.get(k).map_or(UNKNOWN, |at| at[i]).to_array();
+            (0..self.steps.len()).flat_map(|k| at(k).map(|x| settled(x, round_off))).collect()
+        };
+        (0..count(self.model)).map(curve).collect()
+    }
+}
+
+const UNKNOWN: Vec3 = Vec3::new(f64::NAN, f64::NAN, f64::NAN);
