@@ -313,6 +313,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }],
         wheels: vec![],
         distances: vec![],
+        loads: vec![],
         vehicle: None,
         quantities: quantities(&times),
         values: vec![],

@@ -101,6 +101,7 @@ fn each_curve(payload: &mut Payload, visit: &mut impl FnMut(&mut Curve, Precisio
         visit(&mut driver.travel, Full, 1);
         driver.alone.iter_mut().for_each(|curve| visit(curve, Full, 1));
     }
+    payload.loads.iter_mut().for_each(|load| visit(&mut load.force, Full, 3));
     for q in &mut payload.quantities {
         [&mut q.value, &mut q.rate, &mut q.accel, &mut q.wanted]
             .into_iter()
@@ -134,6 +135,7 @@ fn each_curve(payload: &mut Payload, visit: &mut impl FnMut(&mut Curve, Precisio
 fn each_curve_of(design: &mut Design, visit: &mut impl FnMut(&mut Curve, Precision, usize)) {
     use Precision::Full;
     design.poses.iter_mut().for_each(|poses| visit(poses, Full, 7));
+    design.loads.iter_mut().for_each(|force| visit(force, Full, 3));
     for q in design.quantities.iter_mut().flatten() {
         [&mut q.value, &mut q.rate, &mut q.accel].into_iter().for_each(|curve| visit(curve, Full, 1));
     }

@@ -10,8 +10,8 @@ import { poseAt } from '../scene/poses'
 import { forceAt, largestAt, largestForce, pathOf, planeAcross, seenFrom, type Plane } from './force'
 
 /** The picture is so wide and high, and its largest circle leaves so much room, px. */
-const SIZE = 440
-const ROOM = 34
+const SIZE = 340
+const ROOM = 26
 /** About so many circles. */
 const RINGS = 3
 /** A place of the path is pointed at from so far, px. */
@@ -57,7 +57,7 @@ class Polar {
       'section',
       { class: 'loads', 'data-testid': 'loads' },
       el('p', { class: 'choice' }, el('label', {}, 'Force of ', this.#which), el('label', {}, 'as seen from ', this.#on), el('label', {}, 'looking along ', this.#along)),
-      el('div', {}, this.#picture, this.#reading),
+      el('div', { class: 'seen' }, this.#picture, this.#reading),
       el('table', {}, el('thead', {}, header), this.#table),
     )
     this.#choose(this.#largest())

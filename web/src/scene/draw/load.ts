@@ -8,7 +8,7 @@ import { place } from '../kit'
 import type { Mechanism } from '../mechanism'
 
 /** The largest force of the motion as a part of the mechanism's size, and its least length in units. */
-const LONGEST = { ofSize: 0.17, least: 14 }
+const LONGEST = { ofSize: 0.24, least: 14 }
 /** Radius of the shaft, length of the head, in units. */
 const SHAFT = 0.42
 const HEAD = 3
