@@ -58,7 +58,8 @@ impl Compose<'_> {
     /// Loads at the output times that are shown.
     fn solved_loads(&self, change: &[f64]) -> Loads {
         let times = self.steps.iter().map(|&k| self.solution.motion.times[k]).collect();
-        let model = Model { times, ..self.model.clone() };
+        // The plan's model has the variables that the design changes; the one that is shown may have none.
+        let model = Model { times, ..self.analysis.model().clone() };
         let plan = Analysis::with(&model, self.analysis.topology().formulation);
         plan.map_or_else(|_| Loads::default(), |analysis| analysis.loads(change))
     }
