@@ -189,6 +189,7 @@ fn what(model: &Model, units: Units, metric: &Metric) -> String {
         Reduction::Least => format!("least {of}{within}"),
         Reduction::Greatest => format!("greatest {of}{within}"),
         Reduction::Range => format!("greatest less least {of}{within}"),
+        Reduction::Integral => format!("integral of {of} over {over}{within}"),
         Reduction::Mean => format!("mean of {of}{mean_over}{within}"),
         Reduction::Rms(target) if target.is_empty() => format!("root mean square of {of}{mean_over}{within}"),
         Reduction::Rms(_) => format!("root mean square of {of} beyond its target{mean_over}{within}"),

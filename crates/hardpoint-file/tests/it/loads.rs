@@ -325,6 +325,27 @@ fn the_press_gives_over_a_turn_what_its_work_and_its_grease_take() {
     let grease = 0.002 * turn * turn * (180.0 / std::f64::consts::PI);
     let taken = mean(work) + grease;
     assert!((given - taken).abs() < 1e-9 * taken, "{given} {taken}");
+
+    // As metrics: the work over time is that over the angle that the motor turns, in J.
+    model.times = (0..=steps).map(|k| f64::from(k) / f64::from(steps)).collect();
+    let output = |name: &str| {
+        OutputSource::Measure((0..model.measures.len()).map(MeasureId).find(|m| model.measures[m.0].name == name).unwrap())
+    };
+    let work = |name: &str, of: &str, over: Option<&str>| Metric {
+        name: name.into(),
+        of: output(of),
+        over: over.map(output),
+        take: Reduction::Integral,
+        window: None,
+        case: None,
+    };
+    model.metrics = vec![work("over_time", "power", None), work("over_angle", "torque", Some("angle"))];
+    let solution = Analysis::new(&model).unwrap().run();
+    for (metric, known) in model.metrics.iter().zip(hardpoint::study::metrics(&model, &solution)) {
+        assert_eq!(model.metric_dimension(metric), Dimension::MOMENT);
+        // Both are the same sum, but for round-off.
+        assert!((known.value.unwrap() - given).abs() < 1e-9 * given, "{}: {:?}", metric.name, known.value);
+    }
 }
 
 /// Masses on every moving body of a model, made up but each another one, off their places and unevenly spread; written into the file.

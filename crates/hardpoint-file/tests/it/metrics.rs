@@ -31,6 +31,8 @@ metrics.slope = { of = "A.y", over = "A.x", take = "slope", at = 30 }
 metrics.at_one = { of = "A.y", take = "value", at = 1 }
 metrics.speed = { of = "A.y", take = "slope", at = 1 }
 metrics.mean = { of = "A.y", take = "mean" }
+metrics.integral = { of = "A.y", take = "integral" }
+metrics.area = { of = "A.y", over = "A.x", take = "integral" }
 metrics.rms = { of = "A.x", take = "rms" }
 metrics.off_line = { of = "A.y", over = "A.x", take = "rms", target = [[-100, 50], [100, 50]] }
 metrics.fastest = { of = "vx", take = "min" }
@@ -50,6 +52,8 @@ fn values_and_derivatives_on_a_circle_are_those_of_the_formulas() {
     let mean = (1.0 - end.cos()) / end;
     let rms = (0.5 + (2.0 * end).sin() / (4.0 * end)).sqrt();
     let cut = (a * a - 0.0025).sqrt();
+    // The integral of sin(t) d(cos(t)).
+    let area = (2.0 * end).sin() / 4.0 - end / 2.0;
     let expected = [
         ("top", a, 1.0, Some(std::f64::consts::FRAC_PI_2), 1e-12),
         ("left", a * end.cos(), end.cos(), Some(end), 1e-12),
@@ -60,6 +64,9 @@ fn values_and_derivatives_on_a_circle_are_those_of_the_formulas() {
         ("at_one", a * 1.0_f64.sin(), 1.0_f64.sin(), Some(1.0), 1e-12),
         ("speed", a * 1.0_f64.cos(), 1.0_f64.cos(), Some(1.0), 1e-12),
         ("mean", a * mean, mean, None, 1e-4),
+        ("integral", a * mean * end, mean * end, None, 2e-4),
+        // Its abscissa goes back all the time: less the area below the circle.
+        ("area", a * a * area, 2.0 * a * area, None, 2e-4),
         ("rms", a * rms, rms, None, 1e-4),
         ("fastest", -a, -1.0, Some(std::f64::consts::FRAC_PI_2), 1e-8),
     ];

@@ -714,6 +714,14 @@ impl Dimension {
             force: self.force - o.force,
         }
     }
+
+    /// That of a product; of a moment and an angle that of a work.
+    #[must_use]
+    pub const fn times(self, o: Self) -> Self {
+        let product = self.over(Self::NUMBER.over(o));
+        let is_work = product.force == 1 && product.length == 1 && product.angle == 1;
+        Self { angle: if is_work { 0 } else { product.angle }, ..product }
+    }
 }
 
 impl From<Quantity> for Dimension {

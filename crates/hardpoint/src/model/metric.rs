@@ -32,6 +32,8 @@ pub enum Reduction {
     Range,
     /// The mean.
     Mean,
+    /// The integral over the abscissa, which counts down where that goes back: of a power over time, or of a force over a way, the work.
+    Integral,
     /// The root of the mean square of what is left beyond a target curve: points `[abscissa, value]`, in SI, with straight lines
     /// between and beyond them; beyond zero where there are none.
     Rms(Vec<[f64; 2]>),
@@ -43,7 +45,8 @@ pub enum Reduction {
 
 impl Reduction {
     /// The names of all of them, as model files write them.
-    pub const NAMES: [&str; 7] = ["min", "max", "range", "mean", "rms", "value", "slope"];
+    pub const NAMES: [&str; 8] =
+        ["min", "max", "range", "mean", "integral", "rms", "value", "slope"];
 
     /// As model files write it.
     pub fn name(&self) -> &'static str {
@@ -52,9 +55,10 @@ impl Reduction {
             Self::Greatest => 1,
             Self::Range => 2,
             Self::Mean => 3,
-            Self::Rms(_) => 4,
-            Self::Value(_) => 5,
-            Self::Slope(_) => 6,
+            Self::Integral => 4,
+            Self::Rms(_) => 5,
+            Self::Value(_) => 6,
+            Self::Slope(_) => 7,
         }]
     }
 }
@@ -92,6 +96,10 @@ impl Model {
     /// What a metric's value is.
     pub fn metric_dimension(&self, metric: &Metric) -> Dimension {
         let of = self.dimension(metric.of);
-        if let Reduction::Slope(_) = metric.take { of.over(self.abscissa(metric)) } else { of }
+        match metric.take {
+            Reduction::Slope(_) => of.over(self.abscissa(metric)),
+            Reduction::Integral => of.times(self.abscissa(metric)),
+            _ => of,
+        }
     }
 }

@@ -465,7 +465,7 @@ fn interpolation_error(
             };
             Some(of(Reduction::Greatest)? + of(Reduction::Least)?)
         }
-        Reduction::Mean | Reduction::Rms(_) => None,
+        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => None,
     }
 }
 
@@ -502,6 +502,7 @@ fn take<T: Real>(
             Some((y.at(k, t)[1] / by, Some(y.within(k, t))))
         }
         Reduction::Mean => mean(metric, y, x, |_, value| value).map(|value| (value, None)),
+        Reduction::Integral => integral(metric, y, x).map(|value| (value, None)),
         Reduction::Rms(target) => {
             let square = |at: T, value: T| {
                 let left = value - on_target(target, at);
@@ -616,6 +617,22 @@ fn mean<T: Real>(
         }
     }
     (way.value() > 0.0).then(|| sum / way)
+}
+
+/// The integral over the output times in the window, by the trapezoidal rule; what the abscissa goes back counts down.
+fn integral<T: Real>(
+    metric: &Metric,
+    y: &SampledCurve<'_, T>,
+    x: &Option<SampledCurve<'_, T>>,
+) -> Option<T> {
+    let counts = |k: usize| within_window(metric, abscissa_at(y, x, k).value());
+    let steps = (1..y.values.len()).filter(|&k| counts(k - 1) && counts(k));
+    // (y_k + y_k-1) (x_k - x_k-1) / 2
+    let part = |k: usize| {
+        let step = abscissa_at(y, x, k) - abscissa_at(y, x, k - 1);
+        (y.values[k][0] + y.values[k - 1][0]) * step * T::constant(0.5)
+    };
+    steps.map(part).reduce(|sum, part| sum + part)
 }
 
 /// The weight of each output time in a mean over the way of the abscissa, and the sum of all of them: half of the way on either side of it,

@@ -423,6 +423,7 @@ mod tests {
             metric("least", Reduction::Least, None),
             metric("range", Reduction::Range, None),
             metric("mean", Reduction::Mean, None),
+            metric("work", Reduction::Integral, Some(1)),
             metric("at", Reduction::Value(0.73), None),
             metric("slope", Reduction::Slope(0.31), None),
         ];
