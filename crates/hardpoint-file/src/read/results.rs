@@ -111,7 +111,10 @@ const TAKE: Shape = Shape::Any(
         ("max", "The greatest value."),
         ("range", "The greatest less the least value."),
         ("mean", "The mean over the output times."),
-        ("integral", "The integral over the abscissa: of a power over time the work in J, and of a force or a moment over its way or angle."),
+        (
+            "integral",
+            "The integral over the abscissa: of a power over time the work in J, and of a force or a moment over its way or angle.",
+        ),
         ("rms", "The root of the mean square of what is left beyond the target."),
         ("value", "The value where the abscissa first is `at`."),
         ("slope", "The change per change of the abscissa where that first is `at`."),

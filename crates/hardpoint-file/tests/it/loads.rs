@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use hardpoint::model::{Model, VariableId};
+use hardpoint::model::{Dimension, Metric, Model, OutputSource, Reduction, VariableId};
 use hardpoint::motion::BodyState;
 use hardpoint::space::{Mat3, Vec3};
 use hardpoint::topology::Formulation;
@@ -328,9 +328,8 @@ fn the_press_gives_over_a_turn_what_its_work_and_its_grease_take() {
 
     // As metrics: the work over time is that over the angle that the motor turns, in J.
     model.times = (0..=steps).map(|k| f64::from(k) / f64::from(steps)).collect();
-    let output = |name: &str| {
-        OutputSource::Measure((0..model.measures.len()).map(MeasureId).find(|m| model.measures[m.0].name == name).unwrap())
-    };
+    let measures: Vec<String> = model.measures.iter().map(|m| m.name.clone()).collect();
+    let output = |name: &str| OutputSource::Measure(measures.iter().position(|m| m == name).unwrap());
     let work = |name: &str, of: &str, over: Option<&str>| Metric {
         name: name.into(),
         of: output(of),

@@ -45,8 +45,7 @@ pub enum Reduction {
 
 impl Reduction {
     /// The names of all of them, as model files write them.
-    pub const NAMES: [&str; 8] =
-        ["min", "max", "range", "mean", "integral", "rms", "value", "slope"];
+    pub const NAMES: [&str; 8] = ["min", "max", "range", "mean", "integral", "rms", "value", "slope"];
 
     /// As model files write it.
     pub fn name(&self) -> &'static str {

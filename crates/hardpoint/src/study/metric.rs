@@ -620,11 +620,7 @@ fn mean<T: Real>(
 }
 
 /// The integral over the output times in the window, by the trapezoidal rule; what the abscissa goes back counts down.
-fn integral<T: Real>(
-    metric: &Metric,
-    y: &SampledCurve<'_, T>,
-    x: &Option<SampledCurve<'_, T>>,
-) -> Option<T> {
+fn integral<T: Real>(metric: &Metric, y: &SampledCurve<'_, T>, x: &Option<SampledCurve<'_, T>>) -> Option<T> {
     let counts = |k: usize| within_window(metric, abscissa_at(y, x, k).value());
     let steps = (1..y.values.len()).filter(|&k| counts(k - 1) && counts(k));
     // (y_k + y_k-1) (x_k - x_k-1) / 2
