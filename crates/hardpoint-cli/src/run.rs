@@ -49,7 +49,7 @@ const TOO_MANY: &str = "the sensitivities were not compared with re-solved desig
 const JERK_ROWS: usize = 256;
 
 /// All files that a run may write; the last one vouches for the others.
-const FILES: [&str; 16] = [
+const FILES: [&str; 17] = [
     "motion.csv",
     "sensitivity.csv",
     "motion.npy",
@@ -59,6 +59,7 @@ const FILES: [&str; 16] = [
     "sensitivity.parquet",
     "jerk.csv",
     "loads.csv",
+    "drivers.csv",
     "motion.xlsx",
     "motion.glb",
     "maps.csv",
@@ -245,12 +246,18 @@ fn run_in(
         if file.model.has_loads() && !stopped_before {
             let _working = session.working("reactions of the joints");
             let loads = analysis.loads(&[]);
-            let written = folder.write("loads.csv", |out| {
-                hardpoint_report::loads::write(&file.model, file.units, &loads, out)?;
-                Ok(())
+            let (model, units) = (&file.model, file.units);
+            let joints = folder
+                .write("loads.csv", |out| Ok(hardpoint_report::loads::write(model, units, &loads, out)?));
+            let drivers = joints.and_then(|()| {
+                folder.write("drivers.csv", |out| {
+                    Ok(hardpoint_report::loads::write_drivers(model, units, &loads, out)?)
+                })
             });
-            written.map_err(|e| session.not_written(&e))?;
-            summary.files.push(folder.path_of("loads.csv").display().to_string());
+            drivers.map_err(|e| session.not_written(&e))?;
+            for name in ["loads.csv", "drivers.csv"] {
+                summary.files.push(folder.path_of(name).display().to_string());
+            }
         }
         if options.workbook {
             let contents =

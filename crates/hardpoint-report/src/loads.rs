@@ -1,14 +1,55 @@
-//! `loads.csv`: what joints put on bodies, for whoever goes on with finite elements.
+//! `loads.csv`: what joints put on bodies, for whoever goes on with finite elements; `drivers.csv`: what drives them.
 
 use std::io::Write;
 
 use csv::Writer;
-use hardpoint::model::Model;
+use hardpoint::model::{Dimension, Model};
 use hardpoint::space::Vec3;
 use hardpoint::study::Loads;
 use hardpoint_file::Units;
 
 use crate::csv::no_formula;
+use crate::figures::{order_unit, unit};
+
+/// A number, or nothing where there is none.
+fn shown(x: f64) -> String {
+    if x.is_finite() { x.to_string() } else { String::new() }
+}
+
+/// Writes a row for every output time: of every driver its force or moment, the speed that it prescribes, its power, and the work that it
+/// has done since the first output time, by the trapezoidal rule.
+///
+/// # Errors
+/// Where `out` cannot be written.
+pub fn write_drivers(model: &Model, units: Units, loads: &Loads, out: impl Write) -> csv::Result<()> {
+    let mut writer = Writer::from_writer(out);
+    let mut header = vec!["t [s]".to_owned()];
+    for driver in &model.drivers {
+        let (quantity, name) = (model.driven(driver).quantity, no_formula(&driver.name));
+        let force = model.force_on(driver);
+        let what = if force == Dimension::MOMENT { "moment" } else { "force" };
+        header.push(format!("{name} {what} [{}]", unit(units, force)));
+        header.push(format!("{name} speed [{}]", order_unit(units, quantity, 1)));
+        header.extend([format!("{name} power [W]"), format!("{name} work [J]")]);
+    }
+    writer.write_record(&header)?;
+    let mut work = vec![0.0; model.drivers.len()];
+    for (k, t) in loads.times.iter().enumerate() {
+        let mut row = vec![shown(*t)];
+        for (d, load) in loads.drivers_at(k).iter().enumerate() {
+            let power = |k: usize| loads.drivers_at(k)[d].force * loads.drivers_at(k)[d].speed;
+            if k > 0 {
+                // (P_k + P_k-1) (t_k - t_k-1) / 2
+                work[d] += 0.5 * (power(k) + power(k - 1)) * (t - loads.times[k - 1]);
+            }
+            let (_, per_si) = units.of(model.driven(&model.drivers[d]).quantity);
+            row.extend([load.force, load.speed * per_si, power(k), work[d]].map(shown));
+        }
+        writer.write_record(&row)?;
+    }
+    writer.flush()?;
+    Ok(())
+}
 
 /// Writes a row for every output time and joint: where it is on its second body, and the force and moment that it puts on that body, global
 /// and along the global axes as drawn, which have turned with the body. What redundant constraints leave open is empty.
@@ -26,7 +67,6 @@ pub fn write(model: &Model, units: Units, loads: &Loads, out: impl Write) -> csv
     header.extend(axes("force in body", "N"));
     header.extend(axes("moment in body", "N*m"));
     writer.write_record(&header)?;
-    let shown = |x: f64| if x.is_finite() { x.to_string() } else { String::new() };
     let known = |v: Vec3, known: [bool; 3]| {
         let all = v.to_array().into_iter().zip(known);
         all.map(|(x, known)| if known { shown(x) } else { String::new() }).collect::<Vec<_>>()

@@ -80,6 +80,39 @@ fn loads_of_joints_are_written_and_what_they_share_is_empty() {
 }
 
 #[test]
+fn drivers_are_written_with_their_power_and_the_work_that_they_did() {
+    let bench = Bench::with(&[]);
+    let press = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/press.toml");
+    assert_eq!(bench.run(&["run", press.to_str().unwrap(), "-o", "out"]).status.code(), Some(0));
+    let table = |name: &str| {
+        let text = bench.text(name);
+        let mut table = csv::Reader::from_reader(text.as_bytes());
+        let header: Vec<String> = table.headers().unwrap().iter().map(str::to_owned).collect();
+        let rows: Vec<Vec<f64>> =
+            table.records().map(|row| row.unwrap().iter().map(|x| x.parse().unwrap()).collect()).collect();
+        (header, rows)
+    };
+    let ((header, drivers), (of_motion, motion)) = (table("out/drivers.csv"), table("out/motion.csv"));
+    let columns = ["t [s]", "motor moment [N*m]", "motor speed [deg/s]", "motor power [W]", "motor work [J]"];
+    assert_eq!(header, columns);
+    let torque = of_motion.iter().position(|h| h == "torque [N*m]").expect("the press measures its torque");
+    let (mut sum, mut before) = (0.0, None);
+    for (driver, motion) in drivers.iter().zip(&motion) {
+        let [t, moment, speed, power, work] = driver[..] else { panic!("{driver:?}") };
+        assert!((moment - motion[torque]).abs() < 1e-9 && (speed - 360.0).abs() < 1e-9, "{driver:?}");
+        assert!((power - moment * speed.to_radians()).abs() < 1e-9 * moment.abs().max(1.0));
+        if let Some((then, power_then)) = before {
+            sum += 0.5 * (power + power_then) * (t - then);
+        }
+        assert!((work - sum).abs() < 1e-9);
+        before = Some((t, power));
+    }
+    assert_eq!(drivers.len(), motion.len());
+    // Over a turn the tool and the grease take 9.1 J.
+    assert!((sum - 9.1).abs() < 0.05, "{sum}");
+}
+
+#[test]
 fn a_motion_past_its_limit_leaves_the_part_that_was_solved() {
     let bench = Bench::with(&["short_rod.toml"]);
     let output = bench.run(&["run", "short_rod.toml", "-o", "out"]);

@@ -385,6 +385,20 @@ fn make_heavy(path: &Path) -> ModelFile {
     hardpoint_file::read(path).unwrap_or_else(|e| panic!("{e}"))
 }
 
+/// All models of the gallery with such masses, by name.
+pub fn heavy_gallery() -> Vec<(String, ModelFile)> {
+    let gallery = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
+    let folder = tempfile::tempdir().unwrap();
+    for file in std::fs::read_dir(gallery).unwrap().map(|e| e.unwrap().path()).filter(|p| p.is_file()) {
+        std::fs::copy(&file, folder.path().join(file.file_name().unwrap())).unwrap();
+    }
+    let mut paths: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|e| e == "toml"));
+    paths.sort();
+    let name = |path: &Path| path.file_stem().unwrap().to_string_lossy().into_owned();
+    paths.iter().map(|path| (name(path), make_heavy(path))).collect()
+}
+
 /// Mass, moments and products of inertia about the global axes as drawn, of body k.
 fn made_up(k: usize, size: f64) -> [f64; 7] {
     let mass = 1.0 + 0.3 * (3.0 * k as f64).sin();
@@ -416,19 +430,9 @@ const BALANCED: f64 = 1e-12;
 
 #[test]
 fn every_model_of_the_gallery_balances_its_wrenches_and_its_power_in_both_formulations() {
-    let gallery = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
-    let folder = tempfile::tempdir().unwrap();
-    for file in std::fs::read_dir(gallery).unwrap().map(|e| e.unwrap().path()).filter(|p| p.is_file()) {
-        std::fs::copy(&file, folder.path().join(file.file_name().unwrap())).unwrap();
-    }
     let mut seen = 0;
-    for path in std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().path()) {
-        if path.extension().is_none_or(|e| e != "toml") {
-            continue;
-        }
+    for (name, file) in heavy_gallery() {
         seen += 1;
-        let file = make_heavy(&path);
-        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
         for formulation in [Formulation::Relative, Formulation::Absolute] {
             let mut model = file.model.clone();
             model.times = model.times.iter().copied().step_by(usize::max(model.times.len() / 8, 1)).collect();

@@ -1,6 +1,6 @@
 //! Steps as straight-line programs against the kernel that they were recorded of, on the whole gallery.
 
-use hardpoint::model::Model;
+use hardpoint::model::{Axes, DriverId, JointId, Measure, MeasureKind, Model, ReactionPart, VariableId};
 use hardpoint::motion::{BodyState, Execution};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::{Analysis, Run, Solution};
@@ -135,7 +135,7 @@ fn measures_and_margins_by_programs_are_those_of_the_kernel() {
             };
             let slopes = |s: &Solution, m: usize| -> Vec<[f64; 3]> {
                 let all = (0..s.motion.len()).flat_map(|k| (0..s.measured.variables).map(move |v| (k, v)));
-                all.map(|(k, v)| s.measured.d(k, hardpoint::model::VariableId(v), m)).collect()
+                all.map(|(k, v)| s.measured.d(k, VariableId(v), m)).collect()
             };
             let margins = |s: &Solution| -> Vec<[f64; 3]> {
                 s.motion.margins.iter().map(|m| [m.value, 0.0, 0.0]).collect()
@@ -178,7 +178,7 @@ fn designs_by_programs_are_those_of_the_kernel() {
         // More groups of lanes than one; in some all lanes have one design, in others none are equal.
         let mut designs: Vec<Vec<f64>> = vec![vec![0.0; model.variables.len()]; 8];
         for k in 0..20 {
-            let step = |b: usize| 1e-3 * model.natural_step(hardpoint::model::VariableId(b));
+            let step = |b: usize| 1e-3 * model.natural_step(VariableId(b));
             let sign = |b: usize| if (k * 7 + b * 3) % 5 < 2 { -1.0 } else { 1.0 };
             designs.push((0..model.variables.len()).map(|b| sign(b) * step(b) * k as f64 / 20.0).collect());
         }
@@ -204,4 +204,60 @@ fn designs_by_programs_are_those_of_the_kernel() {
         }
     }
     assert!(solved > 30, "{solved}");
+}
+
+/// Loads divide by pivots as accelerations do.
+const CARRIED: f64 = 1e-8;
+
+/// A model that asks for what drives it and what all its joints carry.
+fn asking_for_loads(model: &Model) -> Model {
+    let measure = |(k, kind): (usize, MeasureKind)| Measure { name: format!("load {k}"), kind };
+    let drivers = (0..model.drivers.len())
+        .map(DriverId)
+        .flat_map(|driver| [MeasureKind::DriverForce { driver }, MeasureKind::DriverPower { driver }]);
+    let joints = (0..model.joints.len()).map(JointId).flat_map(|joint| {
+        let parts = [
+            (ReactionPart::Radial, Axes::Joint),
+            (ReactionPart::ForceAlong(0), Axes::Body),
+            (ReactionPart::MomentAbout(1), Axes::Global),
+        ];
+        parts.map(|(part, axes)| MeasureKind::Reaction { joint, part, on: None, axes: Some(axes) })
+    });
+    let of_all = [MeasureKind::KineticEnergy { body: None }, MeasureKind::ShakingForce { along: None }];
+    let measures = drivers.chain(joints).chain(of_all).enumerate().map(measure).collect();
+    Model { measures, metrics: Vec::new(), optimization: None, ..resolved(model) }
+}
+
+#[test]
+fn loads_by_programs_are_those_of_the_kernel() {
+    let mut by_programs = 0;
+    for (name, file) in crate::loads::heavy_gallery() {
+        let model = asking_for_loads(&file.model);
+        let bare = Model { measures: Vec::new(), ..model.clone() };
+        let solve = |model: &Model, execution| Analysis::new(model).unwrap().executed(execution).run();
+        let right = solve(&model, Execution::Kernel);
+        for execution in [Execution::Interpreted, Execution::Compiled] {
+            let (again, bare) = (solve(&model, execution), solve(&bare, execution));
+            // Loads send no step to the kernel that goes without it.
+            let steps = [&again, &bare].map(|s| s.motion.effort.by_program);
+            assert_eq!(steps[0], steps[1], "{name} {execution:?}");
+            by_programs += usize::from(steps[0] > 0);
+            for m in 0..model.measures.len() {
+                let values = |s: &Solution| -> Vec<[f64; 3]> {
+                    (0..s.motion.len()).map(|k| [s.measured.value(k, m)[0], 0.0, 0.0]).collect()
+                };
+                let slopes = |v: usize, s: &Solution| -> Vec<[f64; 3]> {
+                    (0..s.motion.len()).map(|k| [s.measured.d(k, VariableId(v), m)[0], 0.0, 0.0]).collect()
+                };
+                // Of a load that is none only round-off is left: it is held against the largest of its joint.
+                let wrong = apart(&values(&again), &values(&right));
+                let slopes =
+                    (0..right.measured.variables).map(|v| apart(&slopes(v, &again), &slopes(v, &right)));
+                let wrong = slopes.fold(wrong, f64::max);
+                let kind = &model.measures[m].kind;
+                assert!(wrong < CARRIED, "{name} {execution:?} {kind:?}: {wrong:e}");
+            }
+        }
+    }
+    assert!(by_programs > 50, "{by_programs}");
 }

@@ -34,7 +34,7 @@ fn unwrapped<T: Real>([s, c]: [T; 2], near: T) -> T {
     const TURN: f64 = 2.0 * std::f64::consts::PI;
     // angle + 2 pi k, as near to `near` as it gets
     let angle = s.atan2(c);
-    angle + T::constant(TURN * ((near.value() - angle.value()) / TURN).round())
+    angle + ((near - angle) * (1.0 / TURN)).round() * TURN
 }
 
 /// The angle about z_i nearest to `near`.

@@ -45,9 +45,9 @@ pub(crate) struct Acting<'a, T> {
     /// Per body.
     pub bodies: &'a [Moving<T>],
     /// Per element: the value of its law.
-    pub laws: &'a [f64],
+    pub laws: &'a [T],
     /// Per element: about what the coordinate is that it acts on, to count angles through whole turns.
-    pub near: &'a [f64],
+    pub near: &'a [T],
     /// Per element: the moment that friction exerts on its coordinate.
     pub friction: &'a [T],
 }
@@ -266,8 +266,8 @@ impl<T: Real> Acting<'_, T> {
                 self.on_coordinate(e, stiffness.0, free.map(|n| n.0), damping.map(|n| n.0))
             }
             ElementKind::Friction { .. } => self.friction[e.0],
-            ElementKind::PointForce { force, .. } => self.number(force.0) * T::constant(self.laws[e.0]),
-            ElementKind::BodyMoment { moment, .. } => self.number(moment.0) * T::constant(self.laws[e.0]),
+            ElementKind::PointForce { force, .. } => self.number(force.0) * self.laws[e.0],
+            ElementKind::BodyMoment { moment, .. } => self.number(moment.0) * self.laws[e.0],
             ElementKind::Bushing { .. } => self.bushing(kind).f.norm(),
             ElementKind::Rigid { .. }
             | ElementKind::Bar { .. }
@@ -348,7 +348,7 @@ impl<T: Real> Acting<'_, T> {
         let (joint, ends, row) = self.row_of(&self.model.elements[e.0].kind)?;
         let kept = self.geometry.kept[joint].by(row);
         let [i, j] = self.model.joints[joint].bodies.map(|b| self.bodies[b.0].v);
-        let value = row.value(&ends, T::constant(self.near[e.0]) + kept) - kept;
+        let value = row.value(&ends, self.near[e.0] + kept) - kept;
         // chi. = l . (V_j - V_i)
         Some([value, row.wrench(&ends).on(j - i)])
     }

@@ -47,7 +47,8 @@ pub(crate) struct Compliances<'a> {
     /// Per way.
     poses: Vec<Vec<Pose<Number>>>,
     moving: Vec<Moving<Number>>,
-    laws: Vec<f64>,
+    laws: Vec<Number>,
+    near: Vec<Number>,
     friction: Vec<Number>,
 }
 
@@ -111,7 +112,8 @@ impl<'a> Compliances<'a> {
             changed: (0..variables).chain([usize::MAX]).map(changed).collect(),
             poses: vec![vec![Pose::IDENTITY.spread(); model.bodies.len()]; ways.len()],
             moving: vec![Moving::still(); model.bodies.len()],
-            laws: vec![1.0; model.elements.len()],
+            laws: vec![Dual::one(); model.elements.len()],
+            near: Vec::new(),
             friction: vec![Dual::zero(); model.elements.len()],
             ways,
             variables,
@@ -122,6 +124,8 @@ impl<'a> Compliances<'a> {
     /// Enters what is found at time t; `near` is about what the coordinates are that elements act on.
     pub fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, near: &[f64], out: &mut StepValues) {
         self.seconds.solve(stepper, t);
+        self.near.clear();
+        self.near.extend(near.iter().map(|x| Number::constant(Dual::constant(*x))));
         for by in 0..=self.variables {
             for (way, poses) in self.poses.iter_mut().enumerate() {
                 for &body in &self.bodies {
@@ -132,12 +136,12 @@ impl<'a> Compliances<'a> {
                     };
                 }
             }
-            self.enter(by, near, out);
+            self.enter(by, out);
         }
     }
 
     /// Enters values, or derivatives by a variable.
-    fn enter(&mut self, by: usize, near: &[f64], out: &mut StepValues) {
+    fn enter(&mut self, by: usize, out: &mut StepValues) {
         let Changed { fixed, geometry } = &self.changed[by];
         let model = self.model;
         // Per way: how far everything elastic besides the joints gives, each with its stiffness.
@@ -146,7 +150,7 @@ impl<'a> Compliances<'a> {
             for &b in &self.bodies {
                 self.moving[b] = Moving { pose: poses[b], v: Twist::zero(), a: Twist::zero() };
             }
-            let (bodies, laws, friction) = (&self.moving, &self.laws, &self.friction);
+            let (bodies, laws, near, friction) = (&self.moving, &self.laws, &self.near, &self.friction);
             let acting = Acting { model, geometry, bodies, laws, near, friction };
             let mut list = Vec::new();
             for e in (0..model.elements.len()).map(ElementId) {

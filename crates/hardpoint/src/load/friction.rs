@@ -59,22 +59,14 @@ impl Friction {
         self.hinges.is_empty()
     }
 
-    /// Takes what pins carry without friction; `response` says what all joints carry of a unit moment in a hinge.
-    pub fn set(
-        &mut self,
-        acting: &Acting<'_, f64>,
-        carried: &Carried<f64>,
-        mut response: impl FnMut(ElementId) -> Vec<Wrench>,
-    ) {
-        let joints: Vec<JointId> = self.hinges.iter().map(|h| h.joint).collect();
-        let responses: Vec<Vec<Wrench>> = self.hinges.iter().map(|h| response(h.element)).collect();
+    /// Takes what pins carry without friction; `responses` say what all joints carry of a unit moment in each hinge.
+    pub fn set(&mut self, acting: &Acting<'_, f64>, carried: &Carried<f64>, responses: Vec<Vec<Wrench>>) {
         for hinge in &mut self.hinges {
             hinge.grip = acting.grip(hinge.element);
             hinge.across = across(acting, hinge.joint, carried.joints[hinge.joint.0]);
             let per = |all: &Vec<Wrench>| across(acting, hinge.joint, all[hinge.joint.0]);
             hinge.per_moment = responses.iter().map(per).collect();
         }
-        debug_assert_eq!(joints.len(), self.moments.len());
     }
 
     /// Finds the moments; they are no numbers where hinges jam, or where `is_known` says that a pin shares its force with others.

@@ -16,14 +16,15 @@ use crate::design::Geometry;
 use crate::model::{BodyId, DriverId, ElementId, GROUND, JointId, MeasureKind, Model};
 use crate::motion::kinematics::State;
 use crate::motion::level::Flow;
-use crate::number::{Dual, Real};
+use crate::number::Dual;
 use crate::sensitivity::{Adjoint, Load, Support, Turning};
 use crate::space::{Pose, Twist, Vec3, Wrench};
 use crate::topology::{ClosureId, LinkId, RowId, Topology};
 
 use super::acting::{Acting, Moving};
-use super::carry::{Carried, DriverAt, LoadSolver, changed};
+use super::carry::{Carried, DriverAt, Scene, changed};
 use super::measures::Instant;
+use super::solver::LoadSolver;
 
 /// How a load goes with what is carried.
 #[derive(Debug, Default)]
@@ -42,6 +43,8 @@ pub(crate) struct LoadGradients {
     flow: Flow<f64>,
     /// What acts, with derivatives.
     bodies: Vec<Moving<Dual>>,
+    laws: Vec<Dual>,
+    near: Vec<Dual>,
     friction: Vec<Dual>,
     carried: Carried<Dual>,
     needed: Vec<Wrench<Dual>>,
@@ -73,7 +76,9 @@ impl LoadGradients {
         Self {
             flow: Flow::new(topology, bodies, true).with_moves(),
             bodies: vec![Moving::still(); bodies],
-            friction: vec![Dual::zero(); model.elements.len()],
+            laws: Vec::new(),
+            near: Vec::new(),
+            friction: Vec::new(),
             carried: Carried::new(model),
             needed: vec![Wrench::zero(); bodies],
             felt,
@@ -119,7 +124,7 @@ impl LoadGradients {
             for (order, unit) in (0..18).map(|k| (k / 6, k % 6)) {
                 let mut twists = [Twist::ZERO; 3];
                 twists[order] = unit_twist(unit);
-                self.bodies[body] = changed(&solver.now.bodies[body], twists);
+                self.bodies[body] = changed(&solver.bodies.now.bodies[body], twists);
                 let by = self.goes(solver, &solver.constant, kind, ground, Some(body));
                 // (F . W).. = F . W.. + 2 F. . W. + F.. . W: with these in the place of F and its rates that is what W makes of y.
                 let factor = [1.0, 0.5, 1.0][order];
@@ -150,13 +155,11 @@ impl LoadGradients {
     /// Takes over where everything is.
     fn stand(&mut self, solver: &LoadSolver<'_>) {
         for b in 1..self.bodies.len() {
-            self.bodies[b] = changed(&solver.now.bodies[b], [Twist::ZERO; 3]);
+            self.bodies[b] = changed(&solver.bodies.now.bodies[b], [Twist::ZERO; 3]);
         }
-        for (to, from) in self.friction.iter_mut().zip(&solver.now.friction) {
-            *to = Dual::constant(*from);
-        }
-        let found = &solver.now.found;
+        let Scene { laws, near, friction, found, .. } = &solver.bodies.now;
         let constant = |x: &Vec<f64>| x.iter().map(|x| Dual::constant(*x)).collect();
+        (self.laws, self.near, self.friction) = (constant(laws), constant(near), constant(friction));
         (self.carried.drivers, self.carried.speeds) = (constant(&found.drivers), constant(&found.speeds));
         self.carried.joints.clear();
         self.carried.joints.extend(found.joints.iter().map(|l| l.spread()));
@@ -171,8 +174,8 @@ impl LoadGradients {
     }
 
     fn acting<'s>(&'s self, solver: &'s LoadSolver<'_>, geometry: &'s Geometry<Dual>) -> Acting<'s, Dual> {
-        let LoadSolver { model, laws, near, .. } = solver;
-        Acting { model, geometry, bodies: &self.bodies, laws, near, friction: &self.friction }
+        let Self { bodies, laws, near, friction, .. } = self;
+        Acting { model: solver.model, geometry, bodies, laws, near, friction }
     }
 
     /// How the load goes with what has been set, by itself and by what the bodies need, on Y: of elements that feel a body, or of all.
@@ -232,7 +235,7 @@ impl LoadGradients {
                     self.objective(solver, &solver.constant, kind)
                 };
                 weights.ground = Some(twist_of([0, 1, 2, 3, 4, 5].map(by)));
-                self.carried.shaking = solver.now.found.shaking.spread();
+                self.carried.shaking = solver.bodies.now.found.shaking.spread();
             }
             _ => {}
         }
@@ -244,7 +247,7 @@ impl LoadGradients {
                 self.objective(solver, &solver.constant, kind)
             };
             weights.joints.push((joint, twist_of([0, 1, 2, 3, 4, 5].map(by))));
-            self.carried.joints[joint.0] = solver.now.found.joints[joint.0].spread();
+            self.carried.joints[joint.0] = solver.bodies.now.found.joints[joint.0].spread();
         }
         weights
     }
@@ -262,14 +265,14 @@ impl LoadGradients {
         flow.demand.fill(0.0);
         flow.speeds[0].fill(0.0);
         for (joint, c) in &weights.joints {
-            let at = &solver.places.joints[joint.0];
+            let at = &solver.bodies.places.joints[joint.0];
             if let Some((k, forward)) = at.link {
                 flow.move_link(0, (k, usize::from(!forward)), *c);
             }
             at.closures.iter().for_each(|&closure| flow.move_end(topology, (closure, 0), *c, &state.l[0]));
         }
         for (driver, weight) in &weights.drivers {
-            match solver.places.drivers[driver.0] {
+            match solver.bodies.places.drivers[driver.0] {
                 Some(DriverAt::Coordinate(c)) => flow.speeds[0][c.0] = *weight,
                 Some(DriverAt::Row(r)) => flow.demand[r.0] += *weight,
                 None => {}
@@ -285,7 +288,7 @@ impl LoadGradients {
     /// with, and on the coordinates before them.
     fn turn(&mut self, solver: &LoadSolver<'_>, topology: &Topology, state: &State<f64>, weights: &Weights) {
         let Self { flow, turning, loads, .. } = self;
-        let (links, rows) = (&solver.transmission.links[0], &solver.transmission.rows[0]);
+        let (links, rows) = (&solver.bodies.transmission.links[0], &solver.bodies.transmission.rows[0]);
         turning.pulls.fill(0.0);
         for (k, link) in LinkId::each(&topology.links) {
             let mut later = Wrench::zero();
@@ -303,8 +306,10 @@ impl LoadGradients {
         }
         for (c, closure) in ClosureId::each(&topology.closures) {
             let [i, j] = closure.bodies.map(|b| flow.twists[0][b.0]);
-            let opened =
-                weights.joints.iter().find(|(joint, _)| solver.places.joints[joint.0].closures.contains(&c));
+            let opened = weights
+                .joints
+                .iter()
+                .find(|(joint, _)| solver.bodies.places.joints[joint.0].closures.contains(&c));
             let apart = j - i - opened.map_or(Twist::ZERO, |(_, twist)| *twist);
             for (end, unit) in (0..12).map(|k| (k / 6, k % 6)) {
                 let mut ends = [Twist::ZERO; 2];

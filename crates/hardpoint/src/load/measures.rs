@@ -77,21 +77,22 @@ impl<T: Real> Instant<'_, T> {
 /// A reaction is known if no redundant constraint that pulls by itself adds more than this part of what it adds anywhere.
 const KNOWN: f64 = 1e-8;
 
-impl Instant<'_, f64> {
-    /// Whether there is nothing of that reaction in loads that a redundant constraint exerts by itself.
-    pub fn is_free_of(&self, kind: &MeasureKind) -> bool {
+impl<T: Real> Instant<'_, T> {
+    /// How much of that reaction there is in loads that a redundant constraint exerts by itself; not above zero where it is nothing but
+    /// round-off.
+    pub fn excess(&self, kind: &MeasureKind) -> T {
         let size = self.acting.model.size();
         let joints = (0..self.acting.model.joints.len()).map(JointId);
         // Forces, and moments by the size of the mechanism.
-        let most = joints.fold(0.0_f64, |most, joint| {
+        let most = joints.fold(T::zero(), |most, joint| {
             let [_, force, moment] = self.wrench(joint);
-            most.max(force.norm()).max(moment.norm() / size)
+            most.larger(force.norm()).larger(moment.norm() * (1.0 / size))
         });
         let scale = match kind {
             MeasureKind::Reaction { part, .. } if part.is_moment() => most * size,
             _ => most,
         };
-        self.measure(kind).abs() <= KNOWN * scale
+        self.measure(kind).abs() - scale * KNOWN
     }
 }
 

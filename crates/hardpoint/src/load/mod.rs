@@ -7,7 +7,9 @@
 //! | here | theory | what |
 //! |---|---|---|
 //! | [`acting`] | F = f - g | per body, what it needs less what already acts on it; over any number |
-//! | [`carry`] | T, mu, nu | what joints and drivers put on the bodies, and how that changes with the design |
+//! | [`carry`] | T, mu, nu | what joints and drivers put on the bodies, and how that changes with the design; over any number |
+//! | [`solver`] | | loads step after step |
+//! | [`program`] | | the same as part of a step's program |
 //! | [`compliance`] | C = Y K^-1 Y^T | how elastic joints give way |
 //! | [`gradient`] | dy/db | one load by all variables |
 //! | [`friction`] | M = -c N(T) | what rubs, from the forces that it changes itself |
@@ -19,8 +21,11 @@ mod compliance;
 mod friction;
 mod gradient;
 mod measures;
+mod program;
+mod solver;
 mod turns;
 
-pub(crate) use carry::LoadSolver;
 pub(crate) use compliance::Compliances;
 pub(crate) use gradient::LoadGradients;
+pub(crate) use program::{RecordedLoads, hindrance};
+pub(crate) use solver::LoadSolver;

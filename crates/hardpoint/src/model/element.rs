@@ -396,6 +396,11 @@ impl Model {
         self.elements.iter().enumerate().flat_map(of).collect()
     }
 
+    /// The laws that forces go by, in the order of the elements that have one.
+    pub(crate) fn laws_of_forces(&self) -> impl Iterator<Item = &Law> {
+        self.elements.iter().filter_map(|e| e.kind.law())
+    }
+
     /// The mass of all bodies as drawn, kg.
     pub fn mass(&self) -> f64 {
         let of = |n: NumberId| self.numbers[n.0].value;

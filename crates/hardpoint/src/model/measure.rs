@@ -3,8 +3,8 @@
 use crate::expression::Expression;
 use crate::joint::Quantity;
 use crate::model::{
-    Axes, AxleId, AxleMeasure, BodyId, Direction, DriverId, ElementId, HardpointId, JointId, Model, PointId,
-    WheelId, WheelMeasure,
+    Axes, AxleId, AxleMeasure, BodyId, Direction, Driver, DriverId, ElementId, HardpointId, JointId, Model,
+    PointId, WheelId, WheelMeasure,
 };
 use crate::space::{Angles, Real, Vec3};
 
@@ -196,7 +196,7 @@ macro_rules! measures {
     DriverForce "driver_force" {
         /// The driver. Default: the only one.
         driver: Option<String> => DriverId,
-    } |m, w| m.force_of(*driver), moving(1), format!("force of driver `{}`", w.model.drivers[driver.0].name);
+    } |m, w| m.force_on(&m.drivers[driver.0]), moving(1), format!("force of driver `{}`", w.model.drivers[driver.0].name);
 
     /// Power that a driver gives the mechanism.
     DriverPower "driver_power" {
@@ -769,8 +769,8 @@ impl Model {
     }
 
     /// What the force of a driver is: that times what it drives is work.
-    fn force_of(&self, driver: DriverId) -> Dimension {
-        match self.driven(&self.drivers[driver.0]).quantity {
+    pub fn force_on(&self, driver: &Driver) -> Dimension {
+        match self.driven(driver).quantity {
             Quantity::Angle => Dimension::MOMENT,
             Quantity::Length | Quantity::Number => Dimension::FORCE,
         }

@@ -50,7 +50,7 @@ pub(crate) struct TimesAbreast<'p> {
     is_own: bool,
 }
 
-/// The drivers' laws at eight times.
+/// The laws of drivers, and of forces, at eight times.
 struct Laws {
     program: Option<Arc<Runnable>>,
     room: ProgramMemory,
@@ -155,7 +155,7 @@ impl<'p> TimesAbreast<'p> {
         room: Option<[&mut [Lanes]; 2]>,
     ) -> Option<()> {
         let tape = self.tape.as_mut()?;
-        self.laws.at(one, times, tape.drivers_mut())?;
+        self.laws.at(one, times, tape.laws_mut())?;
         if !laws_are_even(tape, one, times, [first, last]) {
             return None;
         }
@@ -195,16 +195,21 @@ impl<'p> TimesAbreast<'p> {
 }
 
 impl Laws {
-    /// Value, speed and acceleration of every driver at these times; none where one is not finite.
+    /// Value, speed and acceleration of every driver at these times, and the values of the laws of forces, if there is room for them; none
+    /// where one is not finite.
     #[inline(always)]
-    fn at(&mut self, one: &Stepper<'_>, times: &Lanes, drivers: &mut [Lanes]) -> Option<()> {
+    fn at(&mut self, one: &Stepper<'_>, times: &Lanes, laws: &mut [Lanes]) -> Option<()> {
         let mut by_program = false;
         if let Some(program) = &self.program {
             let limits = lanes_of(&mut self.limits);
-            self.room.run(program, std::slice::from_ref(times), &[], [&mut *drivers, &mut *limits, &mut []]);
+            self.room.run(program, std::slice::from_ref(times), &[], [&mut *laws, &mut *limits, &mut []]);
             by_program = limits.iter().all(|limit| all_within(limit, 0.0));
         }
         if !by_program {
+            let (drivers, forces) = laws.split_at_mut(ORDERS * one.drivers.len());
+            for (force, law) in forces.iter_mut().zip(one.model.laws_of_forces()) {
+                *force = times.map(|t| law.at(t).value());
+            }
             for (d, driver) in drivers.chunks_exact_mut(ORDERS).enumerate() {
                 for lane in 0..LANES {
                     for (to, x) in driver.iter_mut().zip(one.parts.law_of(d).at(times[lane]).derivatives()) {
@@ -213,7 +218,7 @@ impl Laws {
                 }
             }
         }
-        let finite = drivers.iter().all(|x| all_within(&x.map(f64::abs), f64::MAX));
+        let finite = laws.iter().all(|x| all_within(&x.map(f64::abs), f64::MAX));
         finite.then_some(())
     }
 }

@@ -234,7 +234,7 @@ impl<'m> DesignsAbreast<'m> {
             tape.known_mut(channel).copy_from_slice(known);
         }
         let drivers = nominal.drivers.len();
-        for (to, x) in tape.drivers_mut().iter_mut().zip(self.drivers[k * drivers..].as_flattened()) {
+        for (to, x) in tape.laws_mut().iter_mut().zip(self.drivers[k * drivers..].as_flattened()) {
             *to = [*x; LANES];
         }
         let states = &mut Arc::get_mut(&mut self.states)?[states_at];

@@ -56,6 +56,8 @@ pub(crate) struct Purpose {
     pub sensitivities: bool,
     /// Whether it works out how far from a singular position the mechanism is.
     pub margins: bool,
+    /// Whether it works out the loads that are asked for.
+    pub loads: bool,
 }
 
 /// What was recorded besides the motion.
@@ -70,6 +72,20 @@ pub(crate) struct RecordedExtras {
     pub moved: Vec<(VariableId, BodyId)>,
     /// Which variable could fail which row of the constraints.
     pub defects: Vec<(VariableId, RowId)>,
+    /// Measures of loads, and their derivatives.
+    pub loads: Vec<Number>,
+}
+
+/// A step while it is recorded, solved.
+pub(crate) struct RecordedStep<'r> {
+    pub topology: &'r Topology,
+    pub state: &'r mut State<Number>,
+    /// The values of the design's variables.
+    pub values: &'r [Number],
+    /// Value, speed and acceleration of every driver.
+    pub drivers: &'r [[Number; 3]],
+    /// What forces that go by laws are multiplied by, in the order of the elements, where loads are asked for.
+    pub laws: &'r [Number],
 }
 
 /// The program of a step.
@@ -133,8 +149,8 @@ pub(crate) struct Unknown {
     pub speed: usize,
 }
 
-/// Where the inputs of a program begin: weights, what is known of every channel, drivers, how far ahead of the newest position it is,
-/// variables of the design, and what depends on them alone.
+/// Where the inputs of a program begin: weights, what is known of every channel, drivers and the laws of forces, how far ahead of the newest
+/// position it is, variables of the design, and what depends on them alone.
 ///
 /// Known are, of designs, the last positions of every channel, the newest first; of output times these are uniforms, and the input is
 /// what is added to the forecast: nothing, or all there is where the position was found by a run before.
@@ -148,10 +164,10 @@ pub(crate) struct Inputs {
 }
 
 impl Inputs {
-    fn of(channels: &[Channel], purpose: Purpose, drivers: usize) -> Self {
+    fn of(channels: &[Channel], purpose: Purpose, drivers: usize, laws: usize) -> Self {
         let known = if purpose.times { 1 } else { CONDITIONS };
         let drivers_at = CONDITIONS + known * channels.len();
-        let ahead = drivers_at + ORDERS * drivers;
+        let ahead = drivers_at + ORDERS * drivers + laws;
         Self { known, drivers: drivers_at, ahead, design: ahead + 1 }
     }
 }
@@ -164,6 +180,7 @@ pub(crate) struct Outputs {
     pub blocks: usize,
     pub margins: usize,
     pub defects: usize,
+    pub loads: usize,
     pub states: usize,
     derivatives: usize,
 }
@@ -208,13 +225,13 @@ impl StepProgram {
         }
     }
 
-    /// Records the step that is solved where `one`, of the nominal design, stands, and what `besides` makes of it and of the values
-    /// of the design's variables; none where either cannot be recorded.
+    /// Records the step that is solved where `one`, of the nominal design, stands, and what `besides` makes of it; none where either cannot
+    /// be recorded.
     pub fn record(
         one: &Stepper<'_>,
         design_map: &DesignMap<'_>,
         purpose: Purpose,
-        besides: impl FnOnce(&Topology, &mut State<Number>, &[Number]) -> Option<RecordedExtras>,
+        besides: impl FnOnce(RecordedStep<'_>) -> Option<RecordedExtras>,
         execution: Execution,
     ) -> Option<Self> {
         let (model, topology) = (one.model, &one.topology);
@@ -229,6 +246,9 @@ impl StepProgram {
             let offset = OFFSET[purpose.corrections - 1];
             let known = foresee(topology, &channels, &one.saved, (offset, purpose.times), &mut state);
             let drivers: Vec<[Number; 3]> = one.saved.drivers.iter().map(|f| f.map(Number::input)).collect();
+            let t = *model.times.first().unwrap_or(&0.0);
+            let laws = model.laws_of_forces().filter(|_| purpose.loads);
+            let laws: Vec<Number> = laws.map(|law| Number::input(law.at(t).value())).collect();
             let ahead = Number::input(0.0);
             let nominal = model.whole(&[]).into_iter();
             // b as an input makes the geometry a part of the program; as a constant it is folded.
@@ -242,14 +262,16 @@ impl StepProgram {
             blocks = recorded.collect::<Vec<_>>();
             fits &= blocks.len() == topology.blocks.len();
 
-            // Outputs, in the order of `Outputs`: channels, what is judged, blocks, margins, defects, bodies, derivatives.
+            // Outputs, in the order of `Outputs`: channels, what is judged, blocks, margins, defects, loads, bodies, derivatives.
             let mut out = moves(topology, &channels, &state);
             let bodies = BodyState::all(&state);
             let (margins, mut limits) = match purpose.margins {
                 true => Margins::new(topology).record(topology, &state),
                 false => Default::default(),
             };
-            let Some(more) = besides(topology, &mut state, &values) else {
+            let step =
+                RecordedStep { topology, state: &mut state, values: &values, drivers: &drivers, laws: &laws };
+            let Some(more) = besides(step) else {
                 fits = false;
                 return out;
             };
@@ -271,21 +293,24 @@ impl StepProgram {
             out.extend(watched.flat_map(|(w, determinant)| [*determinant, w.most * w.least]));
             let margins_at = out.len();
             let defects_at = margins_at + margins.len();
-            let states = defects_at + more.judged.len();
+            let loads = defects_at + more.judged.len();
+            let states = loads + more.loads.len();
             places = Some(Outputs {
                 judged,
                 blocks: blocks_at,
                 margins: margins_at,
                 defects: defects_at,
+                loads,
                 states,
                 derivatives: states + bodies.len(),
             });
-            out.extend([margins, more.judged, bodies, more.results].concat());
+            out.extend([margins, more.judged, more.loads, bodies, more.results].concat());
             out
         });
         let outputs = places.filter(|_| fits && recording::is_arithmetic())?;
         let variables = if purpose.any_design { model.variables.len() } else { 0 };
-        let inputs = Inputs::of(&channels, purpose, model.drivers.len());
+        let laws = if purpose.loads { model.laws_of_forces().count() } else { 0 };
+        let inputs = Inputs::of(&channels, purpose, model.drivers.len(), laws);
         let pieces = pieces(topology, &channels);
         let piece_of = |operand| {
             let channel = match operand {
@@ -450,7 +475,7 @@ const PAYS: usize = 100;
 pub(crate) struct Programs {
     execution: Execution,
     steps: Cache<Purpose, StepProgram>,
-    laws: Cache<(), Runnable>,
+    laws: Cache<bool, Runnable>,
     /// The registers of machine code, or why there is none.
     machine: OnceLock<Result<Width, Unsupported>>,
 }
@@ -499,21 +524,23 @@ impl Programs {
         self.steps.get(purpose, |_| record(self.execution))
     }
 
-    /// The drivers' laws of the nominal design at eight times: in one part value, speed and acceleration of each driver, in the next what
-    /// must not be positive. None where a law is no plain formula.
-    pub fn laws(&self, model: &Model) -> Option<Arc<Runnable>> {
-        self.laws.get((), |()| {
+    /// The drivers' laws of the nominal design at eight times: in one part value, speed and acceleration of each driver, and where loads are
+    /// asked for the values of the laws of forces; in the next what must not be positive. None where a law is no plain formula.
+    pub fn laws(&self, model: &Model, loads: bool) -> Option<Arc<Runnable>> {
+        self.laws.get(loads, |_| {
             recording::begin();
             let recorded = record(|| {
                 let t = Number::input(*model.times.first().unwrap_or(&0.0));
                 let of = |law: &Law| law.to_order::<_, 3>(t).derivatives();
-                let laws: Vec<Number> = model.drivers.iter().flat_map(|d| of(&d.law)).collect();
+                let of_drivers = model.drivers.iter().flat_map(|d| of(&d.law));
+                let of_forces = model.laws_of_forces().filter(|_| loads).map(|law| of(law)[0]);
+                let laws: Vec<Number> = of_drivers.chain(of_forces).collect();
                 [laws, recording::limits()].concat()
             });
             let fits = recording::is_arithmetic();
             let program = recorded.program(Options::default()).0;
             let all = program.outputs.len();
-            let laws = ORDERS * model.drivers.len();
+            let laws = ORDERS * model.drivers.len() + model.laws_of_forces().filter(|_| loads).count();
             fits.then(|| Runnable::new(program, [laws, all], self.execution))
         })
     }

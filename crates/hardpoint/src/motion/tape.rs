@@ -148,9 +148,9 @@ impl Tape {
         self.uniforms.as_chunks_mut().0
     }
 
-    /// Value, speed and acceleration of every driver.
+    /// Value, speed and acceleration of every driver, then the laws of forces where loads are asked for.
     #[inline(always)]
-    pub fn drivers_mut(&mut self) -> &mut [Lanes] {
+    pub fn laws_mut(&mut self) -> &mut [Lanes] {
         let Inputs { drivers, ahead, .. } = self.program.inputs;
         &mut lanes_of(&mut self.inputs)[drivers..ahead]
     }
@@ -290,6 +290,12 @@ impl Tape {
         &self.outputs[margins..defects]
     }
 
+    /// Measures of loads, then their derivatives variable by variable, if they are worked out.
+    pub fn loads(&self) -> &[AlignedLanes] {
+        let Outputs { loads, states, .. } = self.program.outputs;
+        &self.outputs[loads..states]
+    }
+
     /// How many numbers all bodies but ground have, and how many their derivatives.
     pub fn sizes(&self) -> [usize; 2] {
         let [_, states, derivatives] = self.program.program.step.sizes();
@@ -298,7 +304,8 @@ impl Tape {
 
     /// Which variable fails which row, by how much, and what of it may be round-off; variable by variable.
     pub fn defects(&self) -> impl Iterator<Item = (VariableId, RowId, &[Lanes; 2])> {
-        let found: &[Lanes] = bytemuck::cast_slice(&self.outputs[self.program.outputs.defects..]);
+        let Outputs { defects, loads, .. } = self.program.outputs;
+        let found: &[Lanes] = bytemuck::cast_slice(&self.outputs[defects..loads]);
         let found = found.as_chunks().0;
         self.program.defects.iter().zip(found).map(|(&(variable, row), found)| (variable, row, found))
     }

@@ -3,16 +3,14 @@
 use std::ops::ControlFlow;
 use std::sync::{Arc, OnceLock};
 
-use hardpoint_tape::Number;
-
 use crate::design::DesignMap;
 use crate::law::Law;
+use crate::load::{self, RecordedLoads};
 use crate::measure::{self, Measured, PreviousStep, StepValues};
-use crate::model::{BodyId, Held, Model};
+use crate::model::{BodyId, Held, MeasureKind, Model};
 use crate::motion::execution::{Cache, Runnable};
-use crate::motion::kinematics::State;
 use crate::motion::parts::PlanGeometry;
-use crate::motion::step_program::{Programs, Purpose, RecordedExtras, StepProgram};
+use crate::motion::step_program::{Programs, Purpose, RecordedExtras, RecordedStep, StepProgram};
 use crate::motion::stepper::Stepper;
 use crate::motion::{BodyState, Execution, Motion, SolvedBy, Stop, StopKind};
 use crate::number::record as recording;
@@ -116,7 +114,7 @@ impl<'m> Analysis<'m> {
     pub fn stream(&self, mut run: Run<'_>, sink: &mut impl Sink) -> Streamed {
         let design = self.prepare(run.design, run.scope);
         let wanted = self.wanted(std::slice::from_ref(sink));
-        let mut walk = Walk::by_programs(self, &design, wanted, false);
+        let mut walk = Walk::by_programs(self, &design, wanted, (false, false));
         let stop = walk.all(sink, &mut *run.progress, |_, _, _, _| ());
         let (steps, effort) = (walk.done, walk.one.effort);
         Streamed { steps, admissibility: walk.admissibility(&design.opens), effort, stop }
@@ -174,23 +172,37 @@ impl<'m> Analysis<'m> {
 
     /// How the even steps of the nominal design's motion are solved, with its measures or without.
     pub(super) fn solved_by(&self, measures: bool) -> SolvedBy {
-        let by_driver = "measures go by a driver that moves alone, or are loads";
-        let hindrance = StepProgram::hindrance(&self.topology, measures);
-        match hindrance.or((measures && self.goes_by_step()).then_some(by_driver)) {
+        let of_measures = || if measures { self.needs_kernel() } else { None };
+        match StepProgram::hindrance(&self.topology, measures).or_else(of_measures) {
             Some(why) => SolvedBy::Kernel(why.into()),
             None => self.programs.solved_by(self.model().times.len()),
         }
     }
 
-    /// Whether measures need more of a step than programs hand out.
+    /// Whether measures need more of a step than where its bodies are.
     pub(super) fn goes_by_step(&self) -> bool {
         (0..self.model().measures.len()).any(|k| self.model().goes_by_step(k))
     }
 
+    /// Whether any load is asked for.
+    pub(super) fn asks_for_loads(&self) -> bool {
+        self.model().measures.iter().any(|m| m.kind.is_load())
+    }
+
+    /// Why measures need more of a step than programs hand out, if they do.
+    pub(super) fn needs_kernel(&self) -> Option<&'static str> {
+        let model = self.model();
+        let is_compliance = |k: usize| matches!(model.measures[k].kind, MeasureKind::Compliance { .. });
+        if (0..model.measures.len()).any(|k| model.goes_by_driver(k) || is_compliance(k)) {
+            return Some("measures go by a driver that moves alone, or say how elastic joints give way");
+        }
+        if self.asks_for_loads() { load::hindrance(model, &self.topology) } else { None }
+    }
+
     /// What evaluates these laws at many times, if they are those of the nominal design and it pays.
-    pub(super) fn laws_program(&self, laws: &[Law]) -> Option<Arc<Runnable>> {
+    pub(super) fn laws_program(&self, laws: &[Law], loads: bool) -> Option<Arc<Runnable>> {
         let nominal = self.model().drivers.iter().zip(laws).all(|(driver, law)| driver.law == *law);
-        if nominal { self.programs.laws(self.model()) } else { None }
+        if nominal { self.programs.laws(self.model(), loads) } else { None }
     }
 
     /// Whether steps of so many designs are worth a program.
@@ -264,12 +276,30 @@ impl<'m> Analysis<'m> {
         }
         self.programs.step(purpose, |execution| {
             let one = self.started()?;
-            let besides = |plan: &Topology, state: &mut State<Number>, values: &[Number]| {
-                if !purpose.sensitivities {
-                    return Some(RecordedExtras::default());
-                }
-                let fields = recording::strictly(|| self.design_map.fields(values));
-                record_derivatives(self.model(), &fields, plan, state)
+            let besides = |step: RecordedStep<'_>| {
+                let RecordedStep { topology, state, values, drivers, laws } = step;
+                let given = (drivers, laws);
+                let new = |state: &mut _| {
+                    RecordedLoads::new(
+                        &self.design_map,
+                        topology,
+                        state,
+                        (values, given),
+                        purpose.sensitivities,
+                    )
+                };
+                let mut loads = purpose.loads.then(|| new(state));
+                let extras = if purpose.sensitivities {
+                    let fields = recording::strictly(|| self.design_map.fields(values));
+                    record_derivatives(self.model(), &fields, topology, state, |by| {
+                        if let Some(loads) = &mut loads {
+                            loads.differentiate(by);
+                        }
+                    })?
+                } else {
+                    RecordedExtras::default()
+                };
+                Some(RecordedExtras { loads: loads.map_or_else(Vec::new, RecordedLoads::numbers), ..extras })
             };
             StepProgram::record(&one, &self.design_map, purpose, besides, execution)
         })

@@ -171,8 +171,14 @@ impl Analysis<'_> {
             return None;
         }
         let program = move |corrections| {
-            let purpose =
-                Purpose { times: false, any_design: true, corrections, sensitivities, margins: false };
+            let purpose = Purpose {
+                times: false,
+                any_design: true,
+                corrections,
+                sensitivities,
+                margins: false,
+                loads: false,
+            };
             self.program(purpose)
         };
         DesignsAbreast::new(self.started()?, Box::new(program), keeps)

@@ -65,7 +65,7 @@ pub(crate) struct Walk<'a> {
 /// What has just been solved: one output time, or several by a program, in these of its lanes.
 pub(crate) enum SolvedSteps<'w, 'a> {
     One(&'w mut Stepper<'a>, Option<&'w LoadSolver<'a>>),
-    Abreast(&'w Tape, Range<usize>),
+    Abreast(&'w Tape, Range<usize>, Option<&'w LoadSolver<'a>>),
 }
 
 impl<'a> Walk<'a> {
@@ -90,7 +90,7 @@ impl<'a> Walk<'a> {
         analysis: &'a Analysis<'a>,
         design: &'a PreparedDesign,
         wanted: Vec<bool>,
-        margins: bool,
+        (margins, loads): (bool, bool),
     ) -> Self {
         let mut walk = Self::new(analysis, design, wanted);
         if analysis.programs_pay(design.scope.of_many) {
@@ -98,10 +98,10 @@ impl<'a> Walk<'a> {
                 (walk.solver.is_some(), design.values.iter().any(|v| *v != 0.0));
             let moved: Vec<_> = walk.solver.iter().flat_map(SensitivitySolver::moved).collect();
             let program = move |corrections| {
-                let purpose = Purpose { times: true, any_design, corrections, sensitivities, margins };
+                let purpose = Purpose { times: true, any_design, corrections, sensitivities, margins, loads };
                 analysis.program(purpose).filter(|program| program.moved == moved)
             };
-            let laws = analysis.laws_program(&design.laws);
+            let laws = analysis.laws_program(&design.laws, loads);
             walk.abreast = TimesAbreast::new(Some(Box::new(program)), &design.values, laws);
         }
         walk
@@ -143,7 +143,7 @@ impl<'a> Walk<'a> {
             } else {
                 (count, stop) = self.tell(at_once, progress);
                 let lanes = self.give_abreast(k, count, sink);
-                SolvedSteps::Abreast(self.abreast.solved(), lanes)
+                SolvedSteps::Abreast(self.abreast.solved(), lanes, self.loads.as_ref())
             };
             then(sink, solved, count, self.solver.as_ref());
             self.done += count;

@@ -90,16 +90,16 @@ impl Analysis<'_> {
     ) -> usize {
         let (model, topology, measures) = (self.model(), self.topology(), design.scope.measures);
         let sensitive = !design.fields.is_empty();
+        let variables = if sensitive { model.variables.len() } else { 0 };
         let slopes = || Slopes::new(self.design_map(), topology, &design.values, sensitive);
         let mut slopes = measures.then(slopes).flatten();
         let wanted = vec![true; model.bodies.len()];
         let giving = || Compliances::new(self.design_map(), topology, &design.values, sensitive);
         let mut compliances = measures.then(giving).flatten();
-        let loads = measures && (LoadSolver::is_asked(model) || compliances.is_some());
-        // What goes by a driver, and loads, ask for more than bodies.
-        let mut walk = match slopes.is_some() || loads {
+        let loads = measures && (self.asks_for_loads() || compliances.is_some());
+        let mut walk = match measures && self.needs_kernel().is_some() {
             true => Walk::new(self, design, wanted),
-            false => Walk::by_programs(self, design, wanted, measures),
+            false => Walk::by_programs(self, design, wanted, (measures, loads)),
         };
         if loads {
             walk.loads = Some(LoadSolver::new(self.design_map(), topology, &design.values, sensitive));
@@ -130,7 +130,6 @@ impl Analysis<'_> {
             match solved {
                 SolvedSteps::One(one, loads) => {
                     if slopes.is_some() || loads.is_some() {
-                        let variables = if sensitive { model.variables.len() } else { 0 };
                         window.slopes.begin(model.measures.len(), variables);
                     }
                     if let Some(found) = &mut slopes {
@@ -139,7 +138,7 @@ impl Analysis<'_> {
                     if let Some(loads) = loads {
                         loads.enter(&mut window.slopes);
                         if let Some(compliances) = &mut compliances {
-                            compliances.add(one, times[0], &loads.near, &mut window.slopes);
+                            compliances.add(one, times[0], loads.near(), &mut window.slopes);
                         }
                     }
                     window.motion.coordinates.set(k, 0, one.coordinates());
@@ -148,7 +147,13 @@ impl Analysis<'_> {
                         window.motion.margins.push(margins.at(&one.topology, &one.state));
                     }
                 }
-                SolvedSteps::Abreast(tape, lanes) => {
+                SolvedSteps::Abreast(tape, lanes, loads) => {
+                    if let Some(loads) = loads {
+                        for lane in lanes.clone() {
+                            window.slopes.begin(model.measures.len(), variables);
+                            loads.enter_recorded(tape.loads(), lane, &mut window.slopes);
+                        }
+                    }
                     tape.coordinates(topology, window.motion.coordinates.block_mut(k));
                     if measures {
                         window.motion.margins.extend(lanes.map(|lane| tape.margin(lane)));

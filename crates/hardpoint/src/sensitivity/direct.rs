@@ -244,11 +244,11 @@ impl<T: Real> PlanVelocity<T> {
     pub fn turn_axes(
         &self,
         topology: &Topology,
-        state: &State<f64>,
-        flow: &Flow<f64>,
-        (x, l): (&mut [Twist], &mut [Wrench]),
+        state: &State<T>,
+        flow: &Flow<T>,
+        (x, l): (&mut [Twist<T>], &mut [Wrench<T>]),
     ) {
-        let (none, e) = (Twist::zero(), |e: Twist<T>| e.value());
+        let none = Twist::zero();
         x.fill(none);
         l.fill(Wrench::zero());
         let in_blocks = self.reach.blocks.iter().flat_map(|&b| topology[b].link_ids());
@@ -257,7 +257,7 @@ impl<T: Real> PlanVelocity<T> {
             // D of the parent's marker, then of the frame behind each freedom
             let mut frame = flow.twists[0][link.parent.0];
             for m in self.links.iter().filter(|m| m.at == k && m.end == 0) {
-                frame += state.pose[m.body].carry(e(m.e));
+                frame += state.pose[m.body].carry(m.e);
             }
             for step in &link.steps {
                 for c in step.coordinates() {
@@ -273,7 +273,7 @@ impl<T: Real> PlanVelocity<T> {
             let closure = &topology[c];
             let mut d = closure.bodies.map(|b| flow.twists[0][b.0]);
             for m in self.closures.iter().filter(|m| m.at == c) {
-                d[m.end] += state.pose[m.body].carry(e(m.e));
+                d[m.end] += state.pose[m.body].carry(m.e);
             }
             let mut rates = MarkerPairRates { v_i: d[0], v_j: d[1], a_i: none, a_j: none };
             if let Some(k) = closure.contact {

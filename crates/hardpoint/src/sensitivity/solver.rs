@@ -27,13 +27,13 @@ pub(crate) struct SensitivitySolver {
 }
 
 /// What the solution for one variable leaves.
-pub(crate) struct Differentiated<'s> {
+pub(crate) struct Differentiated<'s, T = f64> {
     pub variable: VariableId,
     pub topology: &'s Topology,
-    pub state: &'s mut State<f64>,
-    pub field: &'s PlanVelocity<f64>,
+    pub state: &'s mut State<T>,
+    pub field: &'s PlanVelocity<T>,
     /// W, W., W.. of the bodies, and S of the coordinates.
-    pub flow: &'s Flow<f64>,
+    pub flow: &'s Flow<T>,
 }
 
 /// The joints that resist a variable, and the time of the largest defect.
@@ -162,13 +162,14 @@ fn components<T: Real>(flow: &Flow<T>, state: &State<T>, body: usize) -> [T; Bod
     [p.x, p.y, p.z, q.x, q.y, q.z, u.x, u.y, u.z, o.x, o.y, o.z, n.x, n.y, n.z, e.x, e.y, e.z]
 }
 
-/// Records the derivatives of all bodies by all variables with these fields, where the state stands; none where a law changes, which no
-/// program knows.
+/// Records the derivatives of all bodies by all variables with these fields, where the state stands, and what `each` makes of all that
+/// is known of a variable before the next one; none where a law changes, which no program knows.
 pub(crate) fn record_derivatives(
     model: &Model,
     fields: &[DesignVelocity<Number>],
     topology: &Topology,
     state: &mut State<Number>,
+    mut each: impl FnMut(Differentiated<'_, Number>),
 ) -> Option<RecordedExtras> {
     let (mut recorded, mut defects) = (RecordedExtras::default(), Vec::new());
     if fields.is_empty() {
@@ -192,6 +193,8 @@ pub(crate) fn record_derivatives(
             recorded.results.extend(components(&direct.flow, state, body));
             recorded.moved.push((VariableId(v), BodyId(body)));
         }
+        let variable = VariableId(v);
+        each(Differentiated { variable, topology, state, field: &field, flow: &direct.flow });
     }
     recorded.judged = defects;
     Some(recorded)

@@ -11,7 +11,7 @@ use crate::linalg::Factors;
 use crate::model::Model;
 use crate::motion::kinematics::State;
 use crate::motion::level::BINOMIAL;
-use crate::space::{Twist, Wrench};
+use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, LinkId, Term, Topology};
 
 /// The way of some loads to ground.
@@ -34,51 +34,51 @@ impl Way {
 }
 
 /// What the equations of a position have in common: unit twists and wrenches with their derivatives, order by order, and factors.
-pub(crate) struct Transposed<'s> {
+pub(crate) struct Transposed<'s, T = f64> {
     /// Per order and coordinate: x.
-    pub x: [&'s [Twist]; 3],
+    pub x: [&'s [Twist<T>]; 3],
     /// Per order and row: l.
-    pub l: [&'s [Wrench]; 3],
+    pub l: [&'s [Wrench<T>]; 3],
     /// Per block: its Jacobian's.
-    pub factors: &'s mut [Factors<f64>],
+    pub factors: &'s mut [Factors<T>],
     /// Room for the right-hand side of a block.
-    pub rhs: &'s mut [f64],
+    pub rhs: &'s mut [T],
 }
 
-impl<'s> Transposed<'s> {
+impl<'s, T: Real> Transposed<'s, T> {
     /// Of a state, with its rates in time.
-    pub fn of(state: &'s mut State<f64>) -> Self {
+    pub fn of(state: &'s mut State<T>) -> Self {
         let State { x, l, factors, rhs, .. } = state;
         Self { x: x.each_ref().map(Vec::as_slice), l: l.each_ref().map(Vec::as_slice), factors, rhs }
     }
 }
 
 /// What is transmitted, and its first two derivatives; nothing is allocated per step.
-pub(crate) struct Transmission {
+pub(crate) struct Transmission<T = f64> {
     /// Per order and body: what still has to be carried.
-    pub load: [Vec<Wrench>; 3],
+    pub load: [Vec<Wrench<T>>; 3],
     /// Per order and link, or closure: the wrench that it transmits.
-    pub links: [Vec<Wrench>; 3],
-    pub closures: [Vec<Wrench>; 3],
+    pub links: [Vec<Wrench<T>>; 3],
+    pub closures: [Vec<Wrench<T>>; 3],
     /// Per order and row: how much of its wrench that takes, with the sign that makes it a part of a gradient.
-    pub rows: [Vec<f64>; 3],
+    pub rows: [Vec<T>; 3],
     /// Per order and coordinate: what pulls at it besides.
-    pub pulls: [Vec<f64>; 3],
+    pub pulls: [Vec<T>; 3],
     /// Per body of a block: the load on it and all that it carries.
-    below: Vec<Wrench>,
+    below: Vec<Wrench<T>>,
 }
 
-impl Transmission {
+impl<T: Real> Transmission<T> {
     /// Of no load.
     pub fn new(model: &Model, topology: &Topology) -> Self {
-        let none = Wrench::zero();
+        let (zero, none) = (T::zero(), Wrench::zero());
         let three = |n: usize| std::array::from_fn(|_| vec![none; n]);
         Self {
             load: three(model.bodies.len()),
             links: three(topology.links.len()),
             closures: three(topology.closures.len()),
-            rows: std::array::from_fn(|_| vec![0.0; topology.rows.len()]),
-            pulls: std::array::from_fn(|_| vec![0.0; topology.coordinates.len()]),
+            rows: std::array::from_fn(|_| vec![zero; topology.rows.len()]),
+            pulls: std::array::from_fn(|_| vec![zero; topology.coordinates.len()]),
             below: vec![none; model.bodies.len()],
         }
     }
@@ -89,9 +89,9 @@ impl Transmission {
     /// sum_{m=0..n} C(n,m) T_k(m) . x_a(n-m) = 0                     for every unknown coordinate a of link k,
     /// T_c(n) = - sum_r sum_{m=0..n} C(n,m) mu_r(m) l_r(n-m)         for every closure.
     /// ```
-    pub fn transmit(&mut self, topology: &Topology, with: Transposed<'_>, way: &Way, n: usize) {
+    pub fn transmit(&mut self, topology: &Topology, with: Transposed<'_, T>, way: &Way, n: usize) {
         let Self { load, links, closures, rows, pulls, below } = self;
-        let (zero, none) = (0.0, Wrench::zero());
+        let (zero, none) = (T::zero(), Wrench::zero());
         let Transposed { x, l, factors, rhs } = with;
         let load = &mut load[n];
         for &b in &way.blocks {
@@ -163,7 +163,7 @@ impl Transmission {
 
 /// A link transmits what comes to its child, to its parent.
 #[inline(always)]
-fn pass_on(topology: &Topology, k: LinkId, load: &mut [Wrench], links: &mut [Wrench]) {
+fn pass_on<T: Real>(topology: &Topology, k: LinkId, load: &mut [Wrench<T>], links: &mut [Wrench<T>]) {
     let link = &topology[k];
     // T_k = what the child bears with all that came to it; F_p <- F_p + T_k                               (18), first line
     let carried = load[link.child.0];

@@ -2,6 +2,7 @@
 
 use hardpoint::law::Law;
 use hardpoint::measure::outputs;
+use hardpoint::motion::Execution;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
 use hardpoint::study::{Gradients, Method};
@@ -255,6 +256,40 @@ fn model_design(model: &Model, v: usize, h: f64) -> Vec<f64> {
 const RESOLVED: f64 = 2e-7;
 /// Loads are good to this part of the largest, which differences divide by their step.
 const ROUND_OFF: f64 = 1e-12;
+
+#[test]
+fn forces_that_go_by_laws_and_speeds_are_the_same_by_program() {
+    let mut draft = press();
+    for force in &mut draft.forces {
+        // Turns of the cut joint would be counted along the path, which no program does.
+        if let ElementKindDraft::TorsionSpring { joint, .. } = &mut force.kind {
+            *joint = "A".into();
+        }
+    }
+    draft.times = (0..=160).map(|k| 0.8 * f64::from(k) / 160.0).collect();
+    let model = Model::from_draft(&draft).unwrap();
+    let solve = |execution| Analysis::new(&model).unwrap().executed(execution).run();
+    let [right, again] = [Execution::Kernel, Execution::Compiled].map(solve);
+    // All but the first output time, and the last, which is alone in its group of eight.
+    assert_eq!([right.motion.effort.by_program, again.motion.effort.by_program], [0, 159]);
+    for name in LOADS {
+        let m = right.measured.index(name).unwrap();
+        let column = |s: &Solution, of: &dyn Fn(&Solution, usize) -> f64| -> Vec<f64> {
+            (0..s.motion.len()).map(|k| of(s, k)).collect()
+        };
+        let mut all: Vec<Box<dyn Fn(&Solution, usize) -> f64>> =
+            vec![Box::new(move |s, k| s.measured.value(k, m)[0])];
+        for v in 0..model.variables.len() {
+            all.push(Box::new(move |s, k| s.measured.d(k, VariableId(v), m)[0]));
+        }
+        for of in &all {
+            let [x, y] = [&right, &again].map(|s| column(s, of));
+            let size = x.iter().fold(1e-3_f64, |most, x| most.max(x.abs()));
+            let apart = x.iter().zip(&y).fold(0.0_f64, |most, (x, y)| most.max((x - y).abs()));
+            assert!(apart < SAME * size, "{name}: {apart:e} of {size}");
+        }
+    }
+}
 
 #[test]
 fn sensitivities_of_loads_are_those_of_solved_designs() {

@@ -1,0 +1,279 @@
+//! Loads step after step, in one design.
+
+use crate::blocks::AlignedLanes;
+use crate::design::{DesignMap, Geometry};
+use crate::measure::StepValues;
+use crate::model::{Axes, ElementId, JointId, MeasureKind, Model, PointId, ReactionPart, VariableId};
+use crate::motion::kinematics::State;
+use crate::motion::stepper::Stepper;
+use crate::number::{Dual, Real};
+use crate::sensitivity::Differentiated;
+use crate::space::{Vec3, Wrench};
+use crate::topology::Topology;
+
+use super::acting::Acting;
+use super::carry::{Carried, Equilibrium, Scene, is_known};
+use super::friction::Friction;
+use super::measures::Instant;
+use super::turns::Turns;
+
+/// Evaluates loads where a stepper stands, in one design.
+pub(crate) struct LoadSolver<'a> {
+    pub(super) model: &'a Model,
+    /// The measures of loads.
+    asked: Vec<usize>,
+    geometry: Geometry,
+    /// The same as it goes with each variable, and with none.
+    pub(super) changed: Vec<Geometry<Dual>>,
+    pub(super) constant: Geometry<Dual>,
+    turns: Vec<Turns>,
+    pub(super) friction: Friction,
+    pub(super) bodies: Equilibrium<f64>,
+    /// Whether reactions are to be judged: with redundant constraints not all are known.
+    judges: bool,
+    /// Per redundant row: what joints carry where that row pulls by itself.
+    stresses: Vec<Carried<f64>>,
+    /// Per measure: its value, and by variable and measure its derivative; NaN for those of no load.
+    pub(super) values: Vec<f64>,
+    derivatives: Vec<f64>,
+}
+
+impl<'a> LoadSolver<'a> {
+    /// For the design with these values, with derivatives by the variables if they are wanted.
+    pub fn new(
+        design_map: &'a DesignMap<'a>,
+        topology: &Topology,
+        values: &[f64],
+        sensitivities: bool,
+    ) -> Self {
+        let model = design_map.model();
+        let variables = if sensitivities { model.variables.len() } else { 0 };
+        let (measures, elements) = (model.measures.len(), model.elements.len());
+        Self {
+            model,
+            asked: asked(model),
+            geometry: design_map.geometry(values),
+            changed: (0..variables).map(|v| geometry_along(design_map, values, Some(v))).collect(),
+            constant: geometry_along(design_map, values, None),
+            turns: (0..elements).map(|e| Turns::of(model, topology, ElementId(e))).collect(),
+            friction: Friction::new(model),
+            bodies: Equilibrium::new(model, topology),
+            judges: asks_for_reactions(model),
+            stresses: Vec::new(),
+            values: vec![f64::NAN; measures],
+            derivatives: vec![f64::NAN; measures * variables],
+        }
+    }
+
+    /// The same for those who want all reactions, asked for or not.
+    pub fn judging(self) -> Self {
+        Self { judges: true, ..self }
+    }
+
+    /// What was found at the output time: joints and drivers.
+    pub fn found(&self) -> &Carried<f64> {
+        &self.bodies.now.found
+    }
+
+    /// Per element, about what the coordinate is that it acts on.
+    pub fn near(&self) -> &[f64] {
+        &self.bodies.now.near
+    }
+
+    /// Loads where a stepper stands at time t, with velocity and acceleration.
+    pub fn step(&mut self, one: &mut Stepper<'_>, t: f64) {
+        let (topology, state) = (&one.topology, &mut one.state);
+        let model = self.model;
+        self.bodies.stand(state, |d| one.parts.law_of(d).at(t).d());
+        for (law, element) in self.bodies.now.laws.iter_mut().zip(&model.elements) {
+            *law = element.kind.law().map_or(1.0, |law| law.at(t).value());
+        }
+        self.follow_turns(&state.q, t);
+        self.bodies.now.friction.fill(0.0);
+        self.bodies.carry(topology, state, (model, &self.geometry));
+        if self.judges || !self.friction.is_empty() {
+            self.stresses = self.bodies.stresses(model, topology, state);
+        }
+        if !self.friction.is_empty() {
+            self.rub(topology, state);
+        }
+        let mut values = std::mem::take(&mut self.values);
+        let acting = self.acting();
+        let instant = Instant { acting: &acting, carried: &self.bodies.now.found };
+        for &m in &self.asked {
+            let kind = &model.measures[m].kind;
+            let known = is_known(kind, &acting, &self.stresses);
+            values[m] = if known { instant.measure(kind) } else { f64::NAN };
+        }
+        self.values = values;
+    }
+
+    fn acting(&self) -> Acting<'_, f64> {
+        self.bodies.now.acting(self.model, &self.geometry)
+    }
+
+    /// Lets friction act, from the forces that it makes itself.
+    fn rub(&mut self, topology: &Topology, state: &mut State<f64>) {
+        let Self { model, geometry, bodies, friction, stresses, .. } = self;
+        let acting = bodies.now.acting(model, geometry);
+        let units: Vec<_> = friction.elements().map(|e| acting.unit(e)).collect();
+        let response = |unit: Option<(usize, Wrench)>| {
+            let Some((joint, l)) = unit else { return Vec::new() };
+            let [i, j] = model.joints[joint].bodies;
+            bodies.response(topology, state, [(j.0, l), (i.0, Wrench::zero() - l)])
+        };
+        let responses = units.into_iter().map(response).collect();
+        let acting = bodies.now.acting(model, geometry);
+        friction.set(&acting, &bodies.now.found, responses);
+        // Where constraints share the force across a pin nobody knows its friction.
+        friction.solve(|kind| is_known(kind, &acting, stresses));
+        friction.enter(&mut bodies.now.friction);
+        bodies.carry(topology, state, (model, geometry));
+    }
+
+    /// Where a joint is on its body j.
+    pub fn place(&self, joint: JointId) -> Vec3 {
+        let [place, ..] = Instant { acting: &self.acting(), carried: self.found() }.wrench(joint);
+        place
+    }
+
+    /// The force and the moment that a joint puts on its body j, along these axes, the moment about its place there; and whether each
+    /// component is known: where constraints say the same, some of what joints carry depends on how stiff they are.
+    pub fn reaction(&self, joint: JointId, axes: Axes) -> [(Vec3, [bool; 3]); 2] {
+        let acting = self.acting();
+        let instant = Instant { acting: &acting, carried: self.found() };
+        [ReactionPart::ForceAlong as fn(usize) -> _, ReactionPart::MomentAbout].map(|part| {
+            let kinds =
+                [0, 1, 2].map(|k| MeasureKind::Reaction { joint, part: part(k), on: None, axes: Some(axes) });
+            let [x, y, z] = kinds.each_ref().map(|kind| instant.measure(kind));
+            (Vec3::new(x, y, z), kinds.each_ref().map(|kind| is_known(kind, &acting, &self.stresses)))
+        })
+    }
+
+    /// What is known of the force that a joint puts on its body j, global, and along how many directions it is: what redundant constraints
+    /// that pull by themselves can change is left out.
+    pub fn known_force(&self, joint: JointId) -> (Vec3, usize) {
+        let acting = self.acting();
+        let force_of = |carried| Instant { acting: &acting, carried }.wrench(joint)[1];
+        // A basis of what they change: each less what is in those before it.
+        let mut open: Vec<Vec3> = Vec::new();
+        for carried in &self.stresses {
+            let kind = MeasureKind::Reaction { joint, part: ReactionPart::Force, on: None, axes: None };
+            if (Instant { acting: &acting, carried }).excess(&kind) <= 0.0 {
+                continue;
+            }
+            let force = force_of(carried);
+            let rest = across(force, &open);
+            if rest.norm() > PARALLEL * force.norm() {
+                open.push(rest * (1.0 / rest.norm()));
+            }
+        }
+        (across(force_of(self.found()), &open), 3 - open.len())
+    }
+
+    /// What a force puts on the body of one of its points, global: what a spring, a bushing or a given force does there.
+    pub fn push(&self, element: ElementId, at: PointId) -> Vec3 {
+        let mut needed = vec![Wrench::zero(); self.model.bodies.len()];
+        self.acting().add(element, &mut needed);
+        -needed[self.model.points[at.0].body.0].f
+    }
+
+    /// Lets the coordinates that elements act on count their turns.
+    fn follow_turns(&mut self, q: &[f64], t: f64) {
+        let Self { model, geometry, bodies: Equilibrium { now, .. }, turns, .. } = self;
+        for (e, turns) in turns.iter_mut().enumerate() {
+            let coordinate = |now: &Scene<f64>| now.acting(model, geometry).coordinate(ElementId(e));
+            match turns {
+                Turns::None => {}
+                Turns::Coordinate(c) => now.near[e] = q[c.0],
+                Turns::Path(before) => {
+                    let Some([_, rate]) = coordinate(now) else { continue };
+                    if let Some([then, rate_then]) = *before {
+                        // As far as its mean rate takes it
+                        now.near[e] += 0.5 * (rate + rate_then) * (t - then);
+                    }
+                    now.near[e] = coordinate(now).map_or(0.0, |now| now[0]);
+                    *before = Some([t, rate]);
+                }
+            }
+        }
+    }
+
+    /// Enters what was found among the measures of the output time.
+    pub fn enter(&self, out: &mut StepValues) {
+        let measures = self.values.len();
+        for &m in &self.asked {
+            out.set(m, self.values[m]);
+            for (v, d) in self.derivatives.chunks_exact(measures).enumerate() {
+                out.set_d(v, m, d[m]);
+            }
+        }
+    }
+
+    /// The same of what a program has found in one lane, in the order in which it is recorded ([`RecordedLoads::numbers`]).
+    ///
+    /// [`RecordedLoads::numbers`]: super::program::RecordedLoads::numbers
+    pub fn enter_recorded(&self, found: &[AlignedLanes], lane: usize, out: &mut StepValues) {
+        let (excess, found) = found.split_at(self.asked.len());
+        for (k, found) in found.chunks_exact(self.asked.len()).enumerate() {
+            for ((&m, x), excess) in self.asked.iter().zip(found).zip(excess) {
+                let x = if excess.0[lane] <= 0.0 { x.0[lane] } else { f64::NAN };
+                match k.checked_sub(1) {
+                    None => out.set(m, x),
+                    Some(v) => out.set_d(v, m, x),
+                }
+            }
+        }
+    }
+
+    /// Their derivatives by a variable, for which the motion has been solved.
+    pub fn differentiate(&mut self, by: Differentiated<'_>) {
+        let Differentiated { variable: VariableId(v), topology, state, field, flow } = by;
+        let Self { model, changed, bodies, friction, .. } = self;
+        let changed = (*model, &changed[v]);
+        let variable = VariableId(v);
+        bodies.change(Differentiated { variable, topology, state: &mut *state, field, flow });
+        bodies.carry_changed(topology, state, changed);
+        if !friction.is_empty() {
+            friction.differentiate(&bodies.along.acting(changed.0, changed.1), &bodies.along.found);
+            friction.enter_changed(&mut bodies.along.friction);
+            bodies.carry_changed(topology, state, changed);
+        }
+        let acting = bodies.along.acting(changed.0, changed.1);
+        let instant = Instant { acting: &acting, carried: &bodies.along.found };
+        let measures = self.values.len();
+        for &m in &self.asked {
+            let d = instant.measure(&model.measures[m].kind).d;
+            self.derivatives[v * measures + m] = if self.values[m].is_nan() { f64::NAN } else { d };
+        }
+    }
+}
+
+/// The measures of loads.
+pub(super) fn asked(model: &Model) -> Vec<usize> {
+    (0..model.measures.len()).filter(|m| model.measures[*m].kind.is_load()).collect()
+}
+
+/// Whether what joints put on bodies is asked for: with redundant constraints not all of that is known.
+pub(super) fn asks_for_reactions(model: &Model) -> bool {
+    model.measures.iter().any(|m| matches!(m.kind, MeasureKind::Reaction { .. }))
+}
+
+/// What is fixed in the bodies as it goes with a variable, or with none.
+pub(super) fn geometry_along<T: Real>(
+    design_map: &DesignMap<'_>,
+    values: &[T],
+    variable: Option<usize>,
+) -> Geometry<Dual<T>> {
+    let mut duals: Vec<Dual<T>> = values.iter().map(|x| Dual::constant(*x)).collect();
+    variable.iter().for_each(|v| duals[*v] = Dual::variable(values[*v]));
+    design_map.geometry(&duals)
+}
+
+/// Two directions are one where no more than this part of one is across the other.
+const PARALLEL: f64 = 1e-7;
+
+/// What of a vector is across these unit vectors, which are across one another.
+fn across(v: Vec3, directions: &[Vec3]) -> Vec3 {
+    directions.iter().fold(v, |v, u| v - *u * u.dot(v))
+}
