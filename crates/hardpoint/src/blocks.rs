@@ -99,6 +99,15 @@ impl Blocks {
         lanes_of(&mut lines[first..first + width])
     }
 
+    /// The same of output times side by side that were written.
+    #[inline(always)]
+    pub fn block(&self, k: usize) -> &[Lanes] {
+        match &self.place {
+            BlockLayout::Times(lines) => bytemuck::cast_slice(&lines[k / LANES * self.width..][..self.width]),
+            BlockLayout::Designs { .. } => &[],
+        }
+    }
+
     /// Copies some numbers, from this one on, of the eight output times that k is one of; of those that there are.
     #[inline(always)]
     pub fn gather(&self, k: usize, first: usize, to: &mut [Lanes]) {

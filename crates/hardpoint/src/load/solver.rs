@@ -1,5 +1,7 @@
 //! Loads step after step, in one design.
 
+use std::ops::Range;
+
 use crate::blocks::AlignedLanes;
 use crate::design::{DesignMap, Geometry};
 use crate::measure::StepValues;
@@ -210,20 +212,12 @@ impl<'a> LoadSolver<'a> {
         }
     }
 
-    /// The same of what a program has found in one lane, in the order in which it is recorded ([`RecordedLoads::numbers`]).
+    /// The same of what a program has found in some lanes, in the order in which it is recorded ([`RecordedLoads::numbers`]).
     ///
     /// [`RecordedLoads::numbers`]: super::program::RecordedLoads::numbers
-    pub fn enter_recorded(&self, found: &[AlignedLanes], lane: usize, out: &mut StepValues) {
+    pub fn enter_recorded(&self, found: &[AlignedLanes], lanes: Range<usize>, out: &mut StepValues) {
         let (excess, found) = found.split_at(self.asked.len());
-        for (k, found) in found.chunks_exact(self.asked.len()).enumerate() {
-            for ((&m, x), excess) in self.asked.iter().zip(found).zip(excess) {
-                let x = if excess.0[lane] <= 0.0 { x.0[lane] } else { f64::NAN };
-                match k.checked_sub(1) {
-                    None => out.set(m, x),
-                    Some(v) => out.set_d(v, m, x),
-                }
-            }
-        }
+        out.take(lanes, excess, found);
     }
 
     /// Their derivatives by a variable, for which the motion has been solved.

@@ -9,6 +9,7 @@
 mod bodies;
 mod program;
 mod slope;
+mod step_values;
 mod wheel;
 
 use std::collections::BTreeMap;
@@ -19,7 +20,8 @@ use bodies::with_sensitivity;
 use hardpoint_tape::LANES;
 use program::MeasureRun;
 pub(crate) use program::{MeasureProgram, ProgramKey, dependences};
-pub(crate) use slope::{Slopes, StepValues};
+pub(crate) use slope::Slopes;
+pub(crate) use step_values::StepValues;
 use wheel::{WheelAt, camber, toe};
 
 use crate::blocks::Blocks;
@@ -153,6 +155,28 @@ impl Measured {
     fn set_d(&mut self, k: usize, b: VariableId, m: usize, numbers: [f64; 3]) {
         if let Some(place) = self.places[b.0 * self.outputs.len() + m] {
             self.d.set(k, place, numbers);
+        }
+    }
+
+    /// Takes over what the walk has found of the measures that need more of a step than where the bodies are, at the eight output times
+    /// from k on. Their rates are not known.
+    fn take_given(&mut self, k: usize, given: &StepValues) {
+        let Some(block) = given.block(k) else { return };
+        let (count, unknown) = (given.measures().len(), [f64::NAN; LANES]);
+        let numbers = block.chunks_exact(count);
+        for (of, numbers) in numbers.enumerate() {
+            for (&m, x) in given.measures().iter().zip(numbers) {
+                let place = match of.checked_sub(1) {
+                    None => Some(&mut self.values.block_mut(k)[3 * m..]),
+                    Some(b) if b >= self.variables => None,
+                    Some(b) => {
+                        self.places[b * self.outputs.len() + m].map(|place| &mut self.d.block_mut(k)[place..])
+                    }
+                };
+                if let Some(to) = place {
+                    to[..3].copy_from_slice(&[*x, unknown, unknown]);
+                }
+            }
         }
     }
 
@@ -355,7 +379,10 @@ impl<'a> FormulaEvaluator<'a> {
         self.left.truncate(begins);
         self.counted.truncate(first * self.model.measures.len());
         let fits = |m: &usize| run.is_some_and(|run| run.fits(*m, times.len()));
-        self.left.extend((0..self.turns.len()).filter(|m| !fits(m)).map(|m| (first, m)));
+        let model = self.model;
+        let is_given = |m: &usize| *m < model.measures.len() && model.goes_by_step(*m);
+        self.left.extend((0..self.turns.len()).filter(|m| !is_given(m) && !fits(m)).map(|m| (first, m)));
+        measured.take_given(first, self.slopes);
         times.for_each(|k| self.fill_one(k, begins, measured));
         self.left.len() - begins
     }
@@ -372,7 +399,9 @@ impl<'a> FormulaEvaluator<'a> {
             place(poses);
         }
         given.clear();
-        given.extend(self.slopes.at(k).iter().map(|x| only(*x)));
+        if !left.is_empty() {
+            given.extend(self.slopes.at(k).map(only));
+        }
         let instant = Instant { slopes: given, ..Instant::new(model, fixed, poses) };
         for &(_, m) in left {
             measured.set(k, m, instant.output(measured.outputs[m].source).0);
@@ -444,9 +473,9 @@ pub(crate) fn derivatives(
                 let states = motion.at(k);
                 bodies.iter().for_each(|&b| poses[b] = with_sensitivity(&states.body(b), &d.body(b)));
                 given.clear();
-                let both = more.slopes.at(k).iter().zip(more.slopes.d(k, b));
+                let both = more.slopes.at(k).zip(more.slopes.d(k, b));
                 // A measure by a driver has a value and its derivative by b, but no rates.
-                given.extend(both.map(|(x, d)| Dual { v: only(*x), d: only(*d) }));
+                given.extend(both.map(|(x, d)| Dual { v: only(x), d: only(d) }));
                 let turns = more.whole_turns.get(k * model.measures.len()..).unwrap_or_default();
                 whole_turns.clear();
                 whole_turns.extend(

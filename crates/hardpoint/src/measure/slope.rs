@@ -12,56 +12,7 @@ use crate::space::Pose;
 use crate::topology::Topology;
 
 use super::wheel::{TravellingWheel, axle_roll_centre};
-use super::{Instant, bodies_asked_for};
-
-/// Values of the measures that need more of a step than where the bodies are, over a motion, and their derivatives by the design
-/// variables.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct StepValues {
-    /// How many measures there are; 0 if none of them is such.
-    measures: usize,
-    /// Derivatives by so many.
-    variables: usize,
-    /// `values[k * measures + m]`: NaN for those that do not.
-    values: Vec<f64>,
-    /// `d[(k * variables + b) * measures + m]`.
-    d: Vec<f64>,
-}
-
-impl StepValues {
-    /// One more output time, with so many measures and variables.
-    pub fn begin(&mut self, measures: usize, variables: usize) {
-        (self.measures, self.variables) = (measures, variables);
-        self.values.resize(self.values.len() + measures, f64::NAN);
-        self.d.resize(self.d.len() + measures * variables, f64::NAN);
-    }
-
-    /// The value of a measure at that time.
-    pub fn set(&mut self, measure: usize, x: f64) {
-        let first = self.values.len() - self.measures;
-        self.values[first + measure] = x;
-    }
-
-    /// Its derivative by a variable.
-    pub fn set_d(&mut self, variable: usize, measure: usize, x: f64) {
-        let first = self.d.len() - self.measures * self.variables;
-        self.d[first + variable * self.measures + measure] = x;
-    }
-
-    /// Per measure, its value at time k; empty where none is known.
-    pub fn at(&self, k: usize) -> &[f64] {
-        if self.measures == 0 { &[] } else { &self.values[k * self.measures..][..self.measures] }
-    }
-
-    /// Per measure, its derivative by variable b; empty where none is known.
-    pub fn d(&self, k: usize, b: usize) -> &[f64] {
-        if self.measures == 0 {
-            &[]
-        } else {
-            &self.d[(k * self.variables + b) * self.measures..][..self.measures]
-        }
-    }
-}
+use super::{Instant, StepValues, bodies_asked_for};
 
 /// Evaluates the measures that go by a driver, where a stepper stands.
 pub(crate) struct Slopes<'a> {

@@ -118,7 +118,7 @@ impl Analysis<'_> {
             done: 0,
             motion: std::mem::take(&mut solution.motion),
             sensitivities,
-            slopes: StepValues::default(),
+            slopes: StepValues::new(model, variables),
             before: None,
         };
         self.make_room(&mut window.motion, rows);
@@ -130,7 +130,7 @@ impl Analysis<'_> {
             match solved {
                 SolvedSteps::One(one, loads) => {
                     if slopes.is_some() || loads.is_some() {
-                        window.slopes.begin(model.measures.len(), variables);
+                        window.slopes.begin();
                     }
                     if let Some(found) = &mut slopes {
                         found.add(one, times[0], &mut window.slopes);
@@ -149,10 +149,7 @@ impl Analysis<'_> {
                 }
                 SolvedSteps::Abreast(tape, lanes, loads) => {
                     if let Some(loads) = loads {
-                        for lane in lanes.clone() {
-                            window.slopes.begin(model.measures.len(), variables);
-                            loads.enter_recorded(tape.loads(), lane, &mut window.slopes);
-                        }
+                        loads.enter_recorded(tape.loads(), lanes.clone(), &mut window.slopes);
                     }
                     tape.coordinates(topology, window.motion.coordinates.block_mut(k));
                     if measures {
@@ -230,7 +227,7 @@ impl Window {
         });
         (self.motion, self.sensitivities) = (std::mem::take(motion), std::mem::take(sensitivities));
         analysis.make_room(&mut self.motion, rows);
-        self.slopes = StepValues::default();
+        self.slopes.restart();
         self.first = self.done;
     }
 }

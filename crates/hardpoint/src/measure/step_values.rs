@@ -1,0 +1,103 @@
+//! Measures that need more of a step than where the bodies are: their values, as the walk through the motion finds them.
+
+use std::ops::Range;
+
+use hardpoint_tape::Lanes;
+
+use crate::blocks::{AlignedLanes, Blocks};
+use crate::model::Model;
+
+/// Values of the measures that need more of a step than where the bodies are, over a motion, and their derivatives by the design
+/// variables; eight output times side by side.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct StepValues {
+    /// Which measures these are, ascending; none: there are no such numbers.
+    measures: Vec<usize>,
+    /// Per measure of the model: which of these it is.
+    places: Vec<Option<usize>>,
+    /// Derivatives by so many.
+    variables: usize,
+    /// Output times that were begun.
+    steps: usize,
+    /// Per output time the values, then variable by variable the derivatives.
+    numbers: Blocks,
+}
+
+impl StepValues {
+    /// Those of a model, with derivatives by so many variables.
+    pub fn new(model: &Model, variables: usize) -> Self {
+        let count = model.measures.len();
+        let measures: Vec<usize> = (0..count).filter(|m| model.goes_by_step(*m)).collect();
+        let mut places = vec![None; count];
+        measures.iter().enumerate().for_each(|(n, m)| places[*m] = Some(n));
+        let mut numbers = Blocks::default();
+        numbers.shape(measures.len() * (1 + variables), 0);
+        Self { measures, places, variables, steps: 0, numbers }
+    }
+
+    /// The measures, ascending.
+    pub fn measures(&self) -> &[usize] {
+        &self.measures
+    }
+
+    /// Begins anew, in the memory that there is.
+    pub fn restart(&mut self) {
+        self.steps = 0;
+    }
+
+    /// One more output time, of which nothing is known yet.
+    pub fn begin(&mut self) {
+        let unknown = std::iter::repeat_n(f64::NAN, self.measures.len() * (1 + self.variables));
+        self.numbers.set(self.steps, 0, unknown);
+        self.steps += 1;
+    }
+
+    /// The value of a measure at that time.
+    pub fn set(&mut self, measure: usize, x: f64) {
+        if let Some(n) = self.places[measure] {
+            self.numbers.set(self.steps - 1, n, [x]);
+        }
+    }
+
+    /// Its derivative by a variable.
+    pub fn set_d(&mut self, variable: usize, measure: usize, x: f64) {
+        if let Some(n) = self.places[measure] {
+            self.numbers.set(self.steps - 1, (1 + variable) * self.measures.len() + n, [x]);
+        }
+    }
+
+    /// So many more output times at once, which stand in these lanes of what was found: of all measures values, then derivatives variable
+    /// by variable. A measure is not known where its `excess` is above zero.
+    pub fn take(&mut self, lanes: Range<usize>, excess: &[AlignedLanes], found: &[AlignedLanes]) {
+        let to = self.numbers.block_mut(self.steps);
+        for (n, (to, from)) in to.iter_mut().zip(found).enumerate() {
+            let excess = &excess[n % excess.len()].0;
+            for lane in lanes.clone() {
+                to[lane] = if excess[lane] <= 0.0 { from.0[lane] } else { f64::NAN };
+            }
+        }
+        self.steps += lanes.len();
+    }
+
+    /// Of all measures of the model the values at time k, NaN for those that are none of these; nothing where there are none at all.
+    pub fn at(&self, k: usize) -> impl Iterator<Item = f64> {
+        self.all_from(k, 0)
+    }
+
+    /// Likewise their derivatives by variable b.
+    pub fn d(&self, k: usize, b: usize) -> impl Iterator<Item = f64> {
+        self.all_from(k, (1 + b) * self.measures.len())
+    }
+
+    fn all_from(&self, k: usize, first: usize) -> impl Iterator<Item = f64> {
+        let row = (k < self.steps && !self.measures.is_empty()).then(|| self.numbers.row(k));
+        let of = move |place: &Option<usize>| row.zip(*place).map_or(f64::NAN, |(row, n)| row.get(first + n));
+        self.places.iter().map(of)
+    }
+
+    /// The values of the measures in the block of eight output times that begins with k, and after these their derivatives, variable by
+    /// variable; `None` where there are none.
+    pub fn block(&self, k: usize) -> Option<&[Lanes]> {
+        (k < self.steps && !self.measures.is_empty()).then(|| self.numbers.block(k))
+    }
+}
