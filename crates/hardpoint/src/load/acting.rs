@@ -53,15 +53,15 @@ pub(crate) struct Acting<'a, T> {
 }
 
 /// A mass where it is.
-struct Solid<T> {
-    body: BodyId,
-    mass: T,
-    centre: Vec3<T>,
-    inertia: Spread<T>,
+pub(super) struct Solid<T> {
+    pub body: BodyId,
+    pub mass: T,
+    pub centre: Vec3<T>,
+    pub inertia: Spread<T>,
 }
 
 /// Moments of inertia about the centre.
-enum Spread<T> {
+pub(super) enum Spread<T> {
     /// A matrix along these axes.
     Matrix(Mat3<T>, Mat3<T>),
     /// Round about a line: about the line, and about any axis across.
@@ -70,7 +70,7 @@ enum Spread<T> {
 
 impl<T: Real> Spread<T> {
     /// I w.
-    fn on(&self, w: Vec3<T>) -> Vec3<T> {
+    pub fn on(&self, w: Vec3<T>) -> Vec3<T> {
         match self {
             Self::Matrix(axes, matrix) => *axes * (*matrix * axes.transpose_mul(w)),
             // I = I_t 1 + (I_a - I_t) u u^T
@@ -127,7 +127,7 @@ impl<T: Real> Acting<'_, T> {
     }
 
     /// A mass, where it is.
-    fn solid(&self, kind: &ElementKind) -> Option<Solid<T>> {
+    pub fn solid(&self, kind: &ElementKind) -> Option<Solid<T>> {
         let zero = T::zero();
         let body = kind.mass_on(self.model)?;
         Some(match kind {

@@ -8,7 +8,7 @@
 //! | `x`, `l` | x', l' | how unit twists and wrenches turn with the design |
 
 use crate::design::Geometry;
-use crate::model::{DriverId, JointId, MeasureKind, Model};
+use crate::model::{DriverId, ElementId, JointId, MeasureKind, Model};
 use crate::motion::kinematics::State;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{Differentiated, Transmission, Transposed, Way};
@@ -16,6 +16,7 @@ use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::{ClosureId, CoordinateId, LinkId, RowId, Term, Topology};
 
 use super::acting::{Acting, Moving};
+use super::inertia::{Changed, SpatialInertia};
 use super::measures::Instant;
 
 /// Where the force of a driver shows.
@@ -98,6 +99,10 @@ pub(super) struct Equilibrium<T> {
     alone: Transmission<T>,
     x: Vec<Twist<T>>,
     l: Vec<Wrench<T>>,
+    /// Per body: the inertia of its masses, what of F' they need, and the body as it moves, whatever the design.
+    inertia: Vec<SpatialInertia<T>>,
+    inertial: Vec<Wrench<T>>,
+    still: Vec<Moving<Dual<T>>>,
 }
 
 impl<T: Real> Equilibrium<T> {
@@ -114,6 +119,9 @@ impl<T: Real> Equilibrium<T> {
             alone: Transmission::new(model, topology),
             x: vec![Twist::zero(); topology.coordinates.len()],
             l: vec![Wrench::zero(); topology.rows.len()],
+            inertia: vec![SpatialInertia::zero(); model.bodies.len()],
+            inertial: vec![Wrench::zero(); model.bodies.len()],
+            still: vec![Moving::still(); model.bodies.len()],
         }
     }
 
@@ -150,12 +158,22 @@ impl<T: Real> Equilibrium<T> {
         now.needed = needed;
     }
 
+    /// Gets ready for what variables change.
+    pub fn begin_changes(&mut self, (model, geometry): (&Model, &Geometry<T>)) {
+        SpatialInertia::all(&self.now.acting(model, geometry), &mut self.inertia);
+        for (still, body) in self.still.iter_mut().zip(&self.now.bodies) {
+            *still = changed(body, [Twist::zero(); 3]);
+        }
+    }
+
     /// Takes how a variable changes the motion; friction stands, as yet.
-    pub fn change(&mut self, by: Differentiated<'_, T>) {
+    pub fn change(&mut self, model: &Model, by: Differentiated<'_, T>) {
         let Differentiated { topology, state, field, flow, .. } = by;
         let Self { now, along, x, l, .. } = self;
         for b in 1..now.bodies.len() {
-            along.bodies[b] = changed(&now.bodies[b], flow.twists.each_ref().map(|w| w[b]));
+            let twists = flow.twists.each_ref().map(|w| w[b]);
+            along.bodies[b] = changed(&now.bodies[b], twists);
+            self.inertial[b] = self.inertia[b].changed(model.gravity.spread(), &now.bodies[b], twists);
         }
         for (d, speed) in along.found.speeds.iter_mut().enumerate() {
             *speed = Dual { v: now.found.speeds[d], d: field.law_rate(DriverId(d), 1) };
@@ -176,13 +194,22 @@ impl<T: Real> Equilibrium<T> {
         &mut self,
         topology: &Topology,
         state: &mut State<T>,
-        (model, geometry): (&Model, &Geometry<Dual<T>>),
+        (model, Changed { geometry, masses }): (&Model, &Changed<T>),
     ) {
-        let Self { places, along, transmission, x, l, .. } = self;
+        let Self { places, now, along, transmission, x, l, inertial, still, .. } = self;
         let mut needed = std::mem::take(&mut along.needed);
-        along.acting(model, geometry).needed(&mut needed);
-        for (to, from) in transmission.load[1].iter_mut().zip(&needed) {
-            *to = Wrench { m: from.m.map(|x| x.d), f: from.f.map(|x| x.d) };
+        needed.fill(Wrench::zero());
+        let acting = along.acting(model, geometry);
+        let forces = (0..model.elements.len()).filter(|e| !model.elements[*e].kind.has_mass());
+        forces.for_each(|e| acting.add(ElementId(e), &mut needed));
+        // Masses that change need something else of the motion as it is; all of them of how that changes.
+        let standing = Acting { bodies: still, ..acting };
+        masses.iter().for_each(|e| standing.add(*e, &mut needed));
+        for (b, load) in transmission.load[1].iter_mut().enumerate() {
+            let part = &mut needed[b];
+            let change = |whole: Vec3<T>, d: Vec3<Dual<T>>| whole + d.map(|x| x.d);
+            *load = Wrench { m: change(inertial[b].m, part.m), f: change(inertial[b].f, part.f) };
+            *part = Wrench { m: both(now.needed[b].m, load.m), f: both(now.needed[b].f, load.f) };
         }
         let State { x: x_now, l: l_now, factors, rhs, .. } = state;
         let (x_now, l_now) = (&x_now[0], &l_now[0]);
@@ -359,17 +386,19 @@ fn shaking<T: Real>(needed: &[Wrench<T>]) -> Wrench<T> {
     needed.iter().fold(Wrench::zero(), |sum, f| sum - *f)
 }
 
+/// A vector with its derivative.
+fn both<T: Real>(v: Vec3<T>, d: Vec3<T>) -> Vec3<Dual<T>> {
+    Vec3::new(Dual { v: v.x, d: d.x }, Dual { v: v.y, d: d.y }, Dual { v: v.z, d: d.z })
+}
+
 /// A body's motion with its derivative, from its design twist and that's first two rates:
 /// `A' = W_w x A, r' = W at r` and (14) for V' and A'.
 pub(super) fn changed<T: Real>(body: &Moving<T>, [w0, w1, w2]: [Twist<T>; 3]) -> Moving<Dual<T>> {
-    let vector = |v: Vec3<T>, d: Vec3<T>| {
-        Vec3::new(Dual { v: v.x, d: d.x }, Dual { v: v.y, d: d.y }, Dual { v: v.z, d: d.z })
-    };
-    let twist = |t: Twist<T>, d: Twist<T>| Twist { w: vector(t.w, d.w), v: vector(t.v, d.v) };
+    let twist = |t: Twist<T>, d: Twist<T>| Twist { w: both(t.w, d.w), v: both(t.v, d.v) };
     let Moving { pose, v, a } = *body;
-    let cols = pose.rot.cols.map(|c| vector(c, w0.w.cross(c)));
+    let cols = pose.rot.cols.map(|c| both(c, w0.w.cross(c)));
     Moving {
-        pose: Pose { rot: Mat3 { cols }, r: vector(pose.r, w0.at(pose.r)) },
+        pose: Pose { rot: Mat3 { cols }, r: both(pose.r, w0.at(pose.r)) },
         v: twist(v, w1 + w0.ad(v)),
         a: twist(a, w2 + w1.ad(v) + w0.ad(a)),
     }

@@ -82,7 +82,7 @@ impl LoadGradients {
             carried: Carried::new(model),
             needed: vec![Wrench::zero(); bodies],
             felt,
-            touches: solver.changed.iter().map(|g| touches(model, g)).collect(),
+            touches: solver.changed.iter().map(|c| touches(model, &c.geometry)).collect(),
             rubs: Vec::new(),
             turning: Turning::new(topology),
             loads: moving.iter().map(|b| (*b, [Wrench::zero(); 3])).collect(),
@@ -147,7 +147,7 @@ impl LoadGradients {
             }
             let alters = self.touches[v] || self.carried.speeds.iter().any(|speed| speed.d != 0.0);
             let directly =
-                if alters { self.goes(solver, &solver.changed[v], kind, ground, None) } else { 0.0 };
+                if alters { self.goes(solver, &solver.changed[v].geometry, kind, ground, None) } else { 0.0 };
             out[0] = self.work[v][2] + directly;
         }
     }

@@ -10,6 +10,7 @@
 //! | [`carry`] | T, mu, nu | what joints and drivers put on the bodies, and how that changes with the design; over any number |
 //! | [`solver`] | | loads step after step |
 //! | [`program`] | | the same as part of a step's program |
+//! | [`inertia`] | M | what masses need, as one matrix of each body, and how that changes |
 //! | [`compliance`] | C = Y K^-1 Y^T | how elastic joints give way |
 //! | [`gradient`] | dy/db | one load by all variables |
 //! | [`friction`] | M = -c N(T) | what rubs, from the forces that it changes itself |
@@ -20,6 +21,7 @@ mod carry;
 mod compliance;
 mod friction;
 mod gradient;
+mod inertia;
 mod measures;
 mod program;
 mod solver;

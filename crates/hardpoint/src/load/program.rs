@@ -5,14 +5,15 @@
 
 use hardpoint_tape::Number;
 
-use crate::design::{DesignMap, Geometry};
+use crate::design::DesignMap;
 use crate::model::{ElementId, ElementKind, Model};
 use crate::motion::kinematics::State;
-use crate::number::{Dual, record as recording};
+use crate::number::record as recording;
 use crate::sensitivity::Differentiated;
 use crate::topology::Topology;
 
 use super::carry::{Equilibrium, excess};
+use super::inertia::Changed;
 use super::measures::Instant;
 use super::solver::{asked, asks_for_reactions, geometry_along};
 use super::turns::Turns;
@@ -40,7 +41,7 @@ pub(crate) struct RecordedLoads<'a> {
     asked: Vec<usize>,
     bodies: Equilibrium<Number>,
     /// As it goes with each variable.
-    changed: Vec<Geometry<Dual<Number>>>,
+    changed: Vec<Changed<Number>>,
     /// Per measure: how much redundant constraints make of it, its value, and its derivatives by the variables so far.
     found: Vec<Vec<Number>>,
 }
@@ -58,9 +59,8 @@ impl<'a> RecordedLoads<'a> {
         let model = design_map.model();
         let geometry = recording::strictly(|| design_map.geometry(values));
         let variables = if sensitivities { model.variables.len() } else { 0 };
-        let changed =
-            (0..variables).map(|v| recording::strictly(|| geometry_along(design_map, values, Some(v))));
-        let changed = changed.collect();
+        let along = |v| recording::strictly(|| geometry_along(design_map, values, Some(v)));
+        let changed = (0..variables).map(|v| Changed::new(model, along(v))).collect();
         let mut bodies = Equilibrium::new(model, topology);
         bodies.stand(state, |d| drivers[d][1]);
         let with_law = (0..model.elements.len()).filter(|e| model.elements[*e].kind.law().is_some());
@@ -75,6 +75,7 @@ impl<'a> RecordedLoads<'a> {
             true => bodies.stresses(model, topology, state),
             false => Vec::new(),
         };
+        bodies.begin_changes((model, &geometry));
         let asked = asked(model);
         let acting = bodies.now.acting(model, &geometry);
         let instant = Instant { acting: &acting, carried: &bodies.now.found };
@@ -91,9 +92,9 @@ impl<'a> RecordedLoads<'a> {
         let Self { model, asked, bodies, changed, found } = self;
         let changed = (*model, &changed[by.variable.0]);
         let Differentiated { variable, topology, state, field, flow } = by;
-        bodies.change(Differentiated { variable, topology, state: &mut *state, field, flow });
+        bodies.change(model, Differentiated { variable, topology, state: &mut *state, field, flow });
         bodies.carry_changed(topology, state, changed);
-        let acting = bodies.along.acting(changed.0, changed.1);
+        let acting = bodies.along.acting(model, &changed.1.geometry);
         let instant = Instant { acting: &acting, carried: &bodies.along.found };
         found.push(asked.iter().map(|m| instant.measure(&model.measures[*m].kind).d).collect());
     }

@@ -16,6 +16,7 @@ use crate::topology::Topology;
 use super::acting::Acting;
 use super::carry::{Carried, Equilibrium, Scene, is_known};
 use super::friction::Friction;
+use super::inertia::Changed;
 use super::measures::Instant;
 use super::turns::Turns;
 
@@ -26,7 +27,7 @@ pub(crate) struct LoadSolver<'a> {
     asked: Vec<usize>,
     geometry: Geometry,
     /// The same as it goes with each variable, and with none.
-    pub(super) changed: Vec<Geometry<Dual>>,
+    pub(super) changed: Vec<Changed<f64>>,
     pub(super) constant: Geometry<Dual>,
     turns: Vec<Turns>,
     pub(super) friction: Friction,
@@ -55,7 +56,9 @@ impl<'a> LoadSolver<'a> {
             model,
             asked: asked(model),
             geometry: design_map.geometry(values),
-            changed: (0..variables).map(|v| geometry_along(design_map, values, Some(v))).collect(),
+            changed: (0..variables)
+                .map(|v| Changed::new(model, geometry_along(design_map, values, Some(v))))
+                .collect(),
             constant: geometry_along(design_map, values, None),
             turns: (0..elements).map(|e| Turns::of(model, topology, ElementId(e))).collect(),
             friction: Friction::new(model),
@@ -98,6 +101,9 @@ impl<'a> LoadSolver<'a> {
         }
         if !self.friction.is_empty() {
             self.rub(topology, state);
+        }
+        if !self.changed.is_empty() {
+            self.bodies.begin_changes((model, &self.geometry));
         }
         let mut values = std::mem::take(&mut self.values);
         let acting = self.acting();
@@ -226,14 +232,14 @@ impl<'a> LoadSolver<'a> {
         let Self { model, changed, bodies, friction, .. } = self;
         let changed = (*model, &changed[v]);
         let variable = VariableId(v);
-        bodies.change(Differentiated { variable, topology, state: &mut *state, field, flow });
+        bodies.change(model, Differentiated { variable, topology, state: &mut *state, field, flow });
         bodies.carry_changed(topology, state, changed);
         if !friction.is_empty() {
-            friction.differentiate(&bodies.along.acting(changed.0, changed.1), &bodies.along.found);
+            friction.differentiate(&bodies.along.acting(model, &changed.1.geometry), &bodies.along.found);
             friction.enter_changed(&mut bodies.along.friction);
             bodies.carry_changed(topology, state, changed);
         }
-        let acting = bodies.along.acting(changed.0, changed.1);
+        let acting = bodies.along.acting(model, &changed.1.geometry);
         let instant = Instant { acting: &acting, carried: &bodies.along.found };
         let measures = self.values.len();
         for &m in &self.asked {

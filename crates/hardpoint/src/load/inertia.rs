@@ -1,0 +1,102 @@
+//! What a body's masses need of its motion, as one matrix; and how that changes where the body goes another way.
+//!
+//! `f = M (A - [0; g0]) + ad*(V) M V` of `docs/theory.md` (43) in twists, M the spatial inertia in the world. Masses that stay where they are
+//! in their body turn with it, `M' = ad*(W) M - M ad(W)`, so that their part of F' is a few products of each body's, whatever they are made of.
+
+use crate::design::Geometry;
+use crate::model::{ElementId, Model};
+use crate::number::{Dual, Real};
+use crate::space::{Mat3, Twist, Vec3, Wrench};
+
+use super::acting::{Acting, Moving, Solid};
+
+/// The spatial inertia M of a body: its mass, and the first and second moments of that about the world origin.
+#[derive(Clone, Copy)]
+pub(super) struct SpatialInertia<T> {
+    mass: T,
+    /// h = m c.
+    first: Vec3<T>,
+    /// I about the origin.
+    second: Mat3<T>,
+}
+
+impl<T: Real> SpatialInertia<T> {
+    /// That of nothing.
+    pub fn zero() -> Self {
+        Self { mass: T::zero(), first: Vec3::zero(), second: Mat3 { cols: [Vec3::zero(); 3] } }
+    }
+
+    /// Those of all bodies, as they stand.
+    pub fn all(acting: &Acting<'_, T>, out: &mut [Self]) {
+        out.fill(Self::zero());
+        for element in &acting.model.elements {
+            if let Some(solid) = acting.solid(&element.kind) {
+                out[solid.body.0].add(&solid);
+            }
+        }
+    }
+
+    fn add(&mut self, Solid { mass, centre: c, inertia, .. }: &Solid<T>) {
+        self.mass += *mass;
+        self.first += *c * *mass;
+        for (col, axis) in self.second.cols.iter_mut().zip(Vec3::AXES) {
+            // I + m (c^2 1 - c c^T)
+            let axis = axis.spread();
+            *col += inertia.on(axis) + (axis * c.dot(*c) - *c * c.dot(axis)) * *mass;
+        }
+    }
+
+    /// M x.
+    fn on(&self, x: Twist<T>) -> Wrench<T> {
+        // [I w + h x v;  m v - h x w]
+        Wrench {
+            m: self.first.cross_plus(x.v, self.second * x.w),
+            f: x.w.cross_plus(self.first, x.v * self.mass),
+        }
+    }
+
+    /// f' of masses that stay where they are in their body, where its design twists are W, W., W..:
+    ///
+    /// ```text
+    /// f'  =  ad*(W) f  +  M (W.. + ad(W.) V + [0; W_w x g0])  +  ad*(W.) M V  +  ad*(V) M W.
+    /// ```
+    ///
+    /// which is what somebody who turns with the body sees, whose V changes by W. and whose A by W.. + ad(W.) V, and that turned (14).
+    pub fn changed(&self, gravity: Vec3<T>, body: &Moving<T>, [w0, w1, w2]: [Twist<T>; 3]) -> Wrench<T> {
+        let Moving { v, a, .. } = *body;
+        let momentum = self.on(v);
+        // f = M (A - [0; g0]) + ad*(V) M V,    ad*(X) l = -ad(X)^T l
+        let needed = self.on(Twist { w: a.w, v: a.v - gravity }) - v.ad_transposed(momentum);
+        let turned = Twist { w: Vec3::zero(), v: w0.w.cross(gravity) };
+        let seen =
+            self.on(w2 + w1.ad(v) + turned) - w1.ad_transposed(momentum) - v.ad_transposed(self.on(w1));
+        seen - w0.ad_transposed(needed)
+    }
+}
+
+/// What is fixed in the bodies as it goes with a variable.
+pub(super) struct Changed<T> {
+    pub geometry: Geometry<Dual<T>>,
+    /// The masses that change, or move within their bodies.
+    pub masses: Vec<ElementId>,
+}
+
+impl<T: Real> Changed<T> {
+    pub fn new(model: &Model, geometry: Geometry<Dual<T>>) -> Self {
+        let drawn = model.bodies.iter().map(|b| Moving { pose: b.frame.spread(), ..Moving::still() });
+        let bodies: Vec<Moving<Dual<T>>> = drawn.collect();
+        let none: &[Dual<T>] = &[];
+        let acting =
+            Acting { model, geometry: &geometry, bodies: &bodies, laws: none, near: none, friction: none };
+        let moves = |e: &ElementId| {
+            let solid = acting.solid(&model.elements[e.0].kind);
+            solid.is_some_and(|Solid { mass, centre, inertia, .. }| {
+                let turning = Vec3::AXES.map(|axis| inertia.on(axis.spread()));
+                let vectors = turning.iter().chain([&centre]).flat_map(|v| [v.x, v.y, v.z]);
+                !vectors.chain([mass]).all(|x| x.d.vanishes())
+            })
+        };
+        let masses = (0..model.elements.len()).map(ElementId).filter(moves).collect();
+        Self { geometry, masses }
+    }
+}
