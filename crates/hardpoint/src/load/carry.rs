@@ -66,7 +66,7 @@ pub(super) struct Scene<T> {
     pub near: Vec<T>,
     /// Per element: the moment of friction.
     pub friction: Vec<T>,
-    needed: Vec<Wrench<T>>,
+    pub needed: Vec<Wrench<T>>,
     pub found: Carried<T>,
 }
 
@@ -100,9 +100,9 @@ pub(super) struct Equilibrium<T> {
     x: Vec<Twist<T>>,
     l: Vec<Wrench<T>>,
     /// Per body: the inertia of its masses, what of F' they need, and the body as it moves, whatever the design.
-    inertia: Vec<SpatialInertia<T>>,
+    pub inertia: Vec<SpatialInertia<T>>,
     inertial: Vec<Wrench<T>>,
-    still: Vec<Moving<Dual<T>>>,
+    pub still: Vec<Moving<Dual<T>>>,
 }
 
 impl<T: Real> Equilibrium<T> {
@@ -166,9 +166,24 @@ impl<T: Real> Equilibrium<T> {
         }
     }
 
+    /// Takes that nothing changes, as yet.
+    pub fn stand_still(&mut self) {
+        let Self { now, along, .. } = self;
+        let lists = [
+            (&mut along.laws, &now.laws),
+            (&mut along.near, &now.near),
+            (&mut along.friction, &now.friction),
+        ];
+        for (to, from) in lists {
+            to.iter_mut().zip(from).for_each(|(to, from)| *to = Dual::constant(*from));
+        }
+        along.found.keep(&now.found);
+    }
+
     /// Takes how a variable changes the motion; friction stands, as yet.
     pub fn change(&mut self, model: &Model, by: Differentiated<'_, T>) {
         let Differentiated { topology, state, field, flow, .. } = by;
+        self.stand_still();
         let Self { now, along, x, l, .. } = self;
         for b in 1..now.bodies.len() {
             let twists = flow.twists.each_ref().map(|w| w[b]);
@@ -178,15 +193,21 @@ impl<T: Real> Equilibrium<T> {
         for (d, speed) in along.found.speeds.iter_mut().enumerate() {
             *speed = Dual { v: now.found.speeds[d], d: field.law_rate(DriverId(d), 1) };
         }
-        let lists = [
-            (&mut along.laws, &now.laws),
-            (&mut along.near, &now.near),
-            (&mut along.friction, &now.friction),
-        ];
-        for (to, from) in lists {
-            to.iter_mut().zip(from).for_each(|(to, from)| *to = Dual::constant(*from));
-        }
         field.turn_axes(topology, state, flow, (x, l));
+    }
+
+    /// How forces go along what was taken, and masses that change themselves.
+    pub fn act(&mut self, model: &Model, geometry: &Geometry<Dual<T>>, masses: &[ElementId]) {
+        let Self { along, still, .. } = self;
+        let mut needed = std::mem::take(&mut along.needed);
+        needed.fill(Wrench::zero());
+        let acting = along.acting(model, geometry);
+        let forces = (0..model.elements.len()).filter(|e| !model.elements[*e].kind.has_mass());
+        forces.for_each(|e| acting.add(ElementId(e), &mut needed));
+        // Masses that change need something else of the motion as it is; all of them of how that changes.
+        let standing = Acting { bodies: still, ..acting };
+        masses.iter().for_each(|e| standing.add(*e, &mut needed));
+        along.needed = needed;
     }
 
     /// T' and mu' along what was taken, where T and mu stand: the same equation differentiated (45), with x' and l'.
@@ -196,15 +217,9 @@ impl<T: Real> Equilibrium<T> {
         state: &mut State<T>,
         (model, Changed { geometry, masses }): (&Model, &Changed<T>),
     ) {
-        let Self { places, now, along, transmission, x, l, inertial, still, .. } = self;
+        self.act(model, geometry, masses);
+        let Self { places, now, along, transmission, x, l, inertial, .. } = self;
         let mut needed = std::mem::take(&mut along.needed);
-        needed.fill(Wrench::zero());
-        let acting = along.acting(model, geometry);
-        let forces = (0..model.elements.len()).filter(|e| !model.elements[*e].kind.has_mass());
-        forces.for_each(|e| acting.add(ElementId(e), &mut needed));
-        // Masses that change need something else of the motion as it is; all of them of how that changes.
-        let standing = Acting { bodies: still, ..acting };
-        masses.iter().for_each(|e| standing.add(*e, &mut needed));
         for (b, load) in transmission.load[1].iter_mut().enumerate() {
             let part = &mut needed[b];
             let change = |whole: Vec3<T>, d: Vec3<Dual<T>>| whole + d.map(|x| x.d);
@@ -286,6 +301,19 @@ pub(super) fn excess<T: Real>(kind: &MeasureKind, acting: &Acting<'_, T>, stress
 pub(super) fn is_known(kind: &MeasureKind, acting: &Acting<'_, f64>, stresses: &[Carried<f64>]) -> bool {
     // Written so that NaN is not known.
     excess(kind, acting, stresses) <= 0.0
+}
+
+impl<T: Real> Carried<Dual<T>> {
+    /// Takes what is carried as it is, whatever changes.
+    fn keep(&mut self, now: &Carried<T>) {
+        let constant = |v: Vec3<T>| v.map(Dual::constant);
+        let held = |l: &Wrench<T>| Wrench { m: constant(l.m), f: constant(l.f) };
+        self.joints.iter_mut().zip(&now.joints).for_each(|(to, from)| *to = held(from));
+        self.shaking = held(&now.shaking);
+        for (to, from) in [(&mut self.drivers, &now.drivers), (&mut self.speeds, &now.speeds)] {
+            to.iter_mut().zip(from).for_each(|(to, from)| *to = Dual::constant(*from));
+        }
+    }
 }
 
 impl<T: Real> Carried<T> {

@@ -55,6 +55,25 @@ impl<T: Real> SpatialInertia<T> {
         }
     }
 
+    /// How `f' . Y` goes with W, W. and W.. of a body with this Y: what [`SpatialInertia::changed`] comes to on Y, term by term.
+    ///
+    /// ```text
+    /// P2  =  M Y,    P1  =  ad(Y)^T M V - ad(V)^T M Y - M ad(V) Y,    P0  =  ad(Y)^T f + [g0 x (M Y)_f; 0]
+    /// ```
+    pub fn weights(&self, gravity: Vec3<T>, body: &Moving<T>, y: Twist<T>) -> [Wrench<T>; 3] {
+        let Moving { v, .. } = *body;
+        let moved = self.on(y);
+        let p1 = y.ad_transposed(self.on(v)) - v.ad_transposed(moved) - self.on(v.ad(y));
+        let mut p0 = y.ad_transposed(self.needed(gravity, body));
+        p0 += Wrench::moment(gravity.cross(moved.f));
+        [p0, p1, moved]
+    }
+
+    /// f = M (A - [0; g0]) + ad*(V) M V,    ad*(X) l = -ad(X)^T l
+    fn needed(&self, gravity: Vec3<T>, Moving { v, a, .. }: &Moving<T>) -> Wrench<T> {
+        self.on(Twist { w: a.w, v: a.v - gravity }) - v.ad_transposed(self.on(*v))
+    }
+
     /// f' of masses that stay where they are in their body, where its design twists are W, W., W..:
     ///
     /// ```text
@@ -63,10 +82,8 @@ impl<T: Real> SpatialInertia<T> {
     ///
     /// which is what somebody who turns with the body sees, whose V changes by W. and whose A by W.. + ad(W.) V, and that turned (14).
     pub fn changed(&self, gravity: Vec3<T>, body: &Moving<T>, [w0, w1, w2]: [Twist<T>; 3]) -> Wrench<T> {
-        let Moving { v, a, .. } = *body;
-        let momentum = self.on(v);
-        // f = M (A - [0; g0]) + ad*(V) M V,    ad*(X) l = -ad(X)^T l
-        let needed = self.on(Twist { w: a.w, v: a.v - gravity }) - v.ad_transposed(momentum);
+        let Moving { v, .. } = *body;
+        let (momentum, needed) = (self.on(v), self.needed(gravity, body));
         let turned = Twist { w: Vec3::zero(), v: w0.w.cross(gravity) };
         let seen =
             self.on(w2 + w1.ad(v) + turned) - w1.ad_transposed(momentum) - v.ad_transposed(self.on(w1));

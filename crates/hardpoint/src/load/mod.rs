@@ -13,6 +13,7 @@
 //! | [`inertia`] | M | what masses need, as one matrix of each body, and how that changes |
 //! | [`compliance`] | C = Y K^-1 Y^T | how elastic joints give way |
 //! | [`gradient`] | dy/db | one load by all variables |
+//! | [`virtual_motion`] | Y | what a load moves, and what of it turns with the design |
 //! | [`friction`] | M = -c N(T) | what rubs, from the forces that it changes itself |
 //! | [`measures`] | | the measures of loads, over any number |
 
@@ -26,6 +27,7 @@ mod measures;
 mod program;
 mod solver;
 mod turns;
+mod virtual_motion;
 
 pub(crate) use compliance::Compliances;
 pub(crate) use gradient::LoadGradients;

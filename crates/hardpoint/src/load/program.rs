@@ -6,17 +6,20 @@
 use hardpoint_tape::Number;
 
 use crate::design::DesignMap;
-use crate::model::{ElementId, ElementKind, Model};
+use crate::model::{ElementId, ElementKind, MeasureKind, Model};
 use crate::motion::kinematics::State;
-use crate::number::record as recording;
-use crate::sensitivity::Differentiated;
+use crate::number::{Dual, record as recording};
+use crate::sensitivity::{Differentiated, Turning};
+use crate::space::{Twist, Wrench};
 use crate::topology::Topology;
 
-use super::carry::{Equilibrium, excess};
+use super::acting::Acting;
+use super::carry::{Carried, Equilibrium, excess};
 use super::inertia::Changed;
 use super::measures::Instant;
 use super::solver::{asked, asks_for_reactions, geometry_along};
 use super::turns::Turns;
+use super::virtual_motion::{VirtualMotion, Weights};
 
 /// Of more bodies and elements, times variables, no loads are recorded: each takes some hundred operations.
 const MOST_PAIRS: usize = 10_000;
@@ -36,14 +39,28 @@ pub(crate) fn hindrance(model: &Model, topology: &Topology) -> Option<&'static s
 }
 
 /// Loads while they are recorded.
+///
+/// Their derivatives go by what each load moves (`virtual_motion.rs`): how it goes with W, W. and W.. of every body is worked out once, and
+/// a variable, whose W are there, takes a few products for each. That is less than what joints carry of each variable's F' as long as
+/// there are fewer loads than some dozen.
 pub(crate) struct RecordedLoads<'a> {
     model: &'a Model,
-    asked: Vec<usize>,
     bodies: Equilibrium<Number>,
-    /// As it goes with each variable.
+    /// As it goes with each variable, and with none.
     changed: Vec<Changed<Number>>,
-    /// Per measure: how much redundant constraints make of it, its value, and its derivatives by the variables so far.
+    loads: Vec<RecordedLoad<'a>>,
+    /// Per load: how much redundant constraints make of it; its value, and its derivatives by the variables so far.
+    excess: Vec<Number>,
     found: Vec<Vec<Number>>,
+}
+
+/// A load, and how it goes with what bodies need, with their design twists, and with what unit twists and wrenches turn with.
+struct RecordedLoad<'a> {
+    kind: &'a MeasureKind,
+    /// Per body: Y, and the wrenches that go with W, W., W...
+    moves: Vec<Twist<Number>>,
+    loads: Vec<[Wrench<Number>; 3]>,
+    turning: Turning<Number>,
 }
 
 impl<'a> RecordedLoads<'a> {
@@ -58,9 +75,7 @@ impl<'a> RecordedLoads<'a> {
     ) -> Self {
         let model = design_map.model();
         let geometry = recording::strictly(|| design_map.geometry(values));
-        let variables = if sensitivities { model.variables.len() } else { 0 };
-        let along = |v| recording::strictly(|| geometry_along(design_map, values, Some(v)));
-        let changed = (0..variables).map(|v| Changed::new(model, along(v))).collect();
+        let along = |v| recording::strictly(|| geometry_along(design_map, values, v));
         let mut bodies = Equilibrium::new(model, topology);
         bodies.stand(state, |d| drivers[d][1]);
         let with_law = (0..model.elements.len()).filter(|e| model.elements[*e].kind.law().is_some());
@@ -75,32 +90,72 @@ impl<'a> RecordedLoads<'a> {
             true => bodies.stresses(model, topology, state),
             false => Vec::new(),
         };
-        bodies.begin_changes((model, &geometry));
-        let asked = asked(model);
+        let kinds: Vec<&MeasureKind> = asked(model).into_iter().map(|m| &model.measures[m].kind).collect();
         let acting = bodies.now.acting(model, &geometry);
         let instant = Instant { acting: &acting, carried: &bodies.now.found };
-        let kinds = || asked.iter().map(|m| &model.measures[*m].kind);
-        let found = vec![
-            kinds().map(|kind| excess(kind, &acting, &stresses)).collect(),
-            kinds().map(|kind| instant.measure(kind)).collect(),
-        ];
-        Self { model, asked, bodies, changed, found }
+        let excess = kinds.iter().map(|kind| excess(kind, &acting, &stresses)).collect();
+        let found = vec![kinds.iter().map(|kind| instant.measure(kind)).collect()];
+        let mut recorded = Self { model, bodies, changed: Vec::new(), loads: Vec::new(), excess, found };
+        if sensitivities {
+            let variables = (0..model.variables.len()).map(Some).chain([None]);
+            recorded.changed = variables.map(|v| Changed::new(model, along(v))).collect();
+            recorded.bodies.begin_changes((model, &geometry));
+            recorded.loads =
+                kinds.iter().map(|kind| recorded.load(kind, topology, state)).collect::<Vec<_>>();
+        }
+        recorded
+    }
+
+    /// How a load goes with all that a variable may change.
+    fn load(
+        &mut self,
+        kind: &'a MeasureKind,
+        topology: &Topology,
+        state: &mut State<Number>,
+    ) -> RecordedLoad<'a> {
+        let Self { model, bodies, changed, .. } = self;
+        let (constant, count) = (&changed[changed.len() - 1].geometry, model.bodies.len());
+        bodies.stand_still();
+        let mut carried = bodies.along.found.clone();
+        let acting = Acting { bodies: &bodies.still, ..bodies.along.acting(model, constant) };
+        let objective =
+            |carried: &Carried<Dual<Number>>| Instant { acting: &acting, carried }.measure(kind).d;
+        let weights = Weights::of(kind, std::iter::empty(), &mut carried, objective);
+        let mut virtual_motion = VirtualMotion::new(topology, count);
+        virtual_motion.go(&bodies.places, topology, state, &weights);
+        // The wrench on ground is -sum F.
+        let moves: Vec<_> = virtual_motion.twists().iter().map(|y| *y - weights.ground).collect();
+        let gravity = model.gravity.spread();
+        let of_masses = |b: usize| bodies.inertia[b].weights(gravity, &bodies.now.bodies[b], moves[b]);
+        let mut loads: Vec<_> = (0..count).map(of_masses).collect();
+        let of = (&bodies.places, &bodies.transmission);
+        virtual_motion.turn(of, topology, state, &weights, |body, load| loads[body.0][0] += load);
+        RecordedLoad { kind, moves, loads, turning: virtual_motion.turning }
     }
 
     /// Their derivatives by the next variable.
     pub fn differentiate(&mut self, by: Differentiated<'_, Number>) {
-        let Self { model, asked, bodies, changed, found } = self;
-        let changed = (*model, &changed[by.variable.0]);
+        let Self { model, bodies, changed, loads, found, .. } = self;
+        let Changed { geometry, masses } = &changed[by.variable.0];
         let Differentiated { variable, topology, state, field, flow } = by;
         bodies.change(model, Differentiated { variable, topology, state: &mut *state, field, flow });
-        bodies.carry_changed(topology, state, changed);
-        let acting = bodies.along.acting(model, &changed.1.geometry);
+        bodies.act(model, geometry, masses);
+        let acting = bodies.along.acting(model, geometry);
         let instant = Instant { acting: &acting, carried: &bodies.along.found };
-        found.push(asked.iter().map(|m| instant.measure(&model.measures[*m].kind).d).collect());
+        let derivative = |load: &RecordedLoad<'_>| {
+            // y' = sum (P2 . W.. + P1 . W. + P0 . W) + what turns + sum F' . Y of all else + dy/db                       (48)
+            let mut sum = field.work((topology, state), flow, &load.loads, &load.turning);
+            for (needed, y) in bodies.along.needed.iter().zip(&load.moves) {
+                sum += Wrench { m: needed.m.map(|x| x.d), f: needed.f.map(|x| x.d) }.on(*y);
+            }
+            sum + instant.measure(load.kind).d
+        };
+        let derivatives = loads.iter().map(derivative).collect();
+        found.push(derivatives);
     }
 
     /// All of them: how much redundant constraints make of each measure, values, then derivatives variable by variable.
     pub fn numbers(self) -> Vec<Number> {
-        self.found.concat()
+        self.excess.into_iter().chain(self.found.concat()).collect()
     }
 }

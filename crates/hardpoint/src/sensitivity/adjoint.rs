@@ -27,21 +27,21 @@ pub(crate) type Load = [Wrench; 3];
 
 /// Loads on the twists D of the frames that unit twists and wrenches turn with, W of a body and z of its marker together.
 #[derive(Clone, Debug)]
-pub(crate) struct Turning {
+pub(crate) struct Turning<T = f64> {
     /// Per link: on that of its parent's marker.
-    pub starts: Vec<Wrench>,
+    pub starts: Vec<Wrench<T>>,
     /// Per closure: on those of markers i and j.
-    pub ends: Vec<[Wrench; 2]>,
+    pub ends: Vec<[Wrench<T>; 2]>,
     /// Per coordinate: on its S.
-    pub pulls: Vec<f64>,
+    pub pulls: Vec<T>,
 }
 
-impl Turning {
+impl<T: Real> Turning<T> {
     pub fn new(topology: &Topology) -> Self {
         Self {
             starts: vec![Wrench::zero(); topology.links.len()],
             ends: vec![[Wrench::zero(); 2]; topology.closures.len()],
-            pulls: vec![0.0; topology.coordinates.len()],
+            pulls: vec![T::zero(); topology.coordinates.len()],
         }
     }
 }
@@ -235,12 +235,7 @@ impl Adjoint {
         self.add_work(topology, state, support, loads, 3, gradient);
         self.transmission.pulls[2].fill(0.0);
         for (field, gradient) in self.fields.iter().zip(gradient) {
-            for m in field.links.iter().filter(|m| m.end == 0) {
-                gradient[2] += turning.starts[m.at.0].on(state.pose[m.body].carry(m.e));
-            }
-            for m in &field.closures {
-                gradient[2] += turning.ends[m.at.0][m.end].on(state.pose[m.body].carry(m.e));
-            }
+            gradient[2] += field.turning_work(state, turning);
         }
     }
 

@@ -29,6 +29,8 @@ use crate::motion::stepper::LOCKED;
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, ClosureId, LinkId, RowId, Term, Topology};
 
+use super::adjoint::Turning;
+
 /// Design velocities of one variable laid out for the plan: body-fixed marker twists by link and
 /// by closure.
 #[derive(Clone, Debug)]
@@ -284,6 +286,38 @@ impl<T: Real> PlanVelocity<T> {
                 [l[r.0], _] = row.wrench_rates(&state.ends[c.0], &rates);
             }
         }
+    }
+
+    /// What loads on the frames that unit twists and wrenches turn with work on the markers that move within their bodies.
+    pub(super) fn turning_work(&self, state: &State<T>, turning: &Turning<T>) -> T {
+        let starts = self.links.iter().filter(|m| m.end == 0).map(|m| (turning.starts[m.at.0], m.body, m.e));
+        let ends = self.closures.iter().map(|m| (turning.ends[m.at.0][m.end], m.body, m.e));
+        starts.chain(ends).fold(T::zero(), |sum, (load, body, e)| sum + load.on(state.pose[body].carry(e)))
+    }
+
+    /// What they, and loads on bodies `[n][b]` that go by W, W. and W.., work on all that `flow` says this change makes of the motion.
+    pub fn work(
+        &self,
+        (topology, state): (&Topology, &State<T>),
+        flow: &Flow<T>,
+        loads: &[[Wrench<T>; 3]],
+        turning: &Turning<T>,
+    ) -> T {
+        let mut sum = self.turning_work(state, turning);
+        let in_blocks = self.reach.blocks.iter().flat_map(|&b| topology[b].link_ids());
+        for k in self.reach.driven_links.iter().copied().chain(in_blocks) {
+            for step in topology[k].steps.iter().filter(|step| flow.drives || !step.is_driven) {
+                for c in step.coordinates() {
+                    sum += turning.pulls[c.0] * flow.speeds[0][c.0];
+                }
+            }
+        }
+        for &body in &self.reach.bodies {
+            for (twists, load) in flow.twists.iter().zip(&loads[body]) {
+                sum += load.on(twists[body]);
+            }
+        }
+        sum
     }
 
     /// The rows that the change may make fail, since the motion is not solved with them.
