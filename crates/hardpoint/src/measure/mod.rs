@@ -17,7 +17,7 @@ use std::ops::Range;
 
 pub(crate) use bodies::with_rates;
 use bodies::with_sensitivity;
-use hardpoint_tape::LANES;
+use hardpoint_tape::{LANES, Lanes};
 use program::MeasureRun;
 pub(crate) use program::{MeasureProgram, ProgramKey, dependences};
 pub(crate) use slope::Slopes;
@@ -159,22 +159,27 @@ impl Measured {
     }
 
     /// Takes over what the walk has found of the measures that need more of a step than where the bodies are, at the eight output times
-    /// from k on. Their rates are not known.
-    fn take_given(&mut self, k: usize, given: &StepValues) {
+    /// from k on. Their rates are not known; of a program they stand there as such.
+    fn take_given(&mut self, k: usize, given: &StepValues, by_program: bool) {
         let Some(block) = given.block(k) else { return };
-        let (count, unknown) = (given.measures().len(), [f64::NAN; LANES]);
-        let numbers = block.chunks_exact(count);
-        for (of, numbers) in numbers.enumerate() {
-            for (&m, x) in given.measures().iter().zip(numbers) {
-                let place = match of.checked_sub(1) {
-                    None => Some(&mut self.values.block_mut(k)[3 * m..]),
-                    Some(b) if b >= self.variables => None,
-                    Some(b) => {
-                        self.places[b * self.outputs.len() + m].map(|place| &mut self.d.block_mut(k)[place..])
-                    }
-                };
-                if let Some(to) = place {
-                    to[..3].copy_from_slice(&[*x, unknown, unknown]);
+        let outputs = self.outputs.len();
+        let (values, derivatives) = (self.values.block_mut(k), self.d.block_mut(k));
+        let enter = |to: &mut [Lanes], x: &Lanes| {
+            to[0] = *x;
+            if !by_program {
+                to[1..3].fill([f64::NAN; LANES]);
+            }
+        };
+        let (now, changes) = block.split_at(given.measures().len());
+        for (&m, x) in given.measures().iter().zip(now) {
+            enter(&mut values[3 * m..], x);
+        }
+        for (places, changes) in
+            self.places.chunks_exact(outputs).zip(changes.chunks_exact(given.measures().len()))
+        {
+            for (&m, x) in given.measures().iter().zip(changes) {
+                if let Some(place) = places[m] {
+                    enter(&mut derivatives[place..], x);
                 }
             }
         }
@@ -382,7 +387,7 @@ impl<'a> FormulaEvaluator<'a> {
         let model = self.model;
         let is_given = |m: &usize| *m < model.measures.len() && model.goes_by_step(*m);
         self.left.extend((0..self.turns.len()).filter(|m| !is_given(m) && !fits(m)).map(|m| (first, m)));
-        measured.take_given(first, self.slopes);
+        measured.take_given(first, self.slopes, run.is_some());
         times.for_each(|k| self.fill_one(k, begins, measured));
         self.left.len() - begins
     }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use hardpoint_tape::Lanes;
+use hardpoint_tape::{LANES, Lanes};
 
 use crate::blocks::{AlignedLanes, Blocks};
 use crate::model::Model;
@@ -70,10 +70,17 @@ impl StepValues {
     /// by variable. A measure is not known where its `excess` is above zero.
     pub fn take(&mut self, lanes: Range<usize>, excess: &[AlignedLanes], found: &[AlignedLanes]) {
         let to = self.numbers.block_mut(self.steps);
-        for (n, (to, from)) in to.iter_mut().zip(found).enumerate() {
-            let excess = &excess[n % excess.len()].0;
-            for lane in lanes.clone() {
-                to[lane] = if excess[lane] <= 0.0 { from.0[lane] } else { f64::NAN };
+        // Written so that NaN is not known.
+        let all_known = excess.iter().all(|excess| excess.0.iter().fold(true, |all, x| all & (*x <= 0.0)));
+        if all_known && lanes.len() == LANES {
+            to.iter_mut().zip(found).for_each(|(to, from)| *to = from.0);
+        } else {
+            for (to, found) in to.chunks_exact_mut(excess.len()).zip(found.chunks_exact(excess.len())) {
+                for ((to, found), excess) in to.iter_mut().zip(found).zip(excess) {
+                    for lane in lanes.clone() {
+                        to[lane] = if excess.0[lane] <= 0.0 { found.0[lane] } else { f64::NAN };
+                    }
+                }
             }
         }
         self.steps += lanes.len();
