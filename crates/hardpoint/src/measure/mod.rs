@@ -20,7 +20,8 @@ use hardpoint_tape::LANES;
 use program::MeasureRun;
 pub(crate) use program::{MeasureProgram, ProgramKey, dependences};
 pub(crate) use slope::{Slopes, StepValues};
-use wheel::{WheelAt, camber, toe};
+pub(crate) use wheel::WheelAt;
+use wheel::{camber, toe};
 
 use crate::blocks::Blocks;
 use crate::constraint::Row;
