@@ -39,13 +39,22 @@ pub(crate) const FORCE: Kinds = Kinds {
     tables: || TYPES.iter().filter(|t| t.1.table == "forces").map(|t| &t.0).collect(),
 };
 
-/// The types of masses and forces, as the core declares them.
+/// Other names of types of masses.
+const ALIASES: [(&str, &str, &str); 3] = [
+    ("cylinder", "bar", "Another name of `bar`."),
+    ("tube", "bar", "Another name of `bar`, which is one with a `bore`."),
+    ("box", "block", "Another name of `block`."),
+];
+
+/// The types of masses and forces, as the core declares them, with their other names.
 static TYPES: LazyLock<Vec<(Table, &'static ElementType)>> = LazyLock::new(|| {
-    let table = |own: &'static ElementType| {
-        let keys: Vec<Key> = own.fields.iter().map(key).collect();
-        (Table::new(own.name, own.summary, keys.leak()), own)
+    let tables = |own: &'static ElementType| {
+        let keys: &'static [Key] = own.fields.iter().map(key).collect::<Vec<_>>().leak();
+        let others = ALIASES.iter().filter(|(_, of, _)| *of == own.name);
+        let others = others.map(|(name, _, summary)| (Table::new(name, summary, keys), own));
+        [(Table::new(own.name, own.summary, keys), own)].into_iter().chain(others).collect::<Vec<_>>()
     };
-    ElementType::ALL.iter().map(table).collect()
+    ElementType::ALL.iter().flat_map(tables).collect()
 });
 static MASSES: LazyLock<Vec<(Table, &'static ElementType)>> = LazyLock::new(|| of_table("masses"));
 static FORCES: LazyLock<Vec<(Table, &'static ElementType)>> = LazyLock::new(|| of_table("forces"));

@@ -7,7 +7,7 @@ use crate::design::Geometry;
 use crate::measure::WheelAt;
 use crate::model::{
     Axes, BodyId, ElementId, ElementKind, Inertia, Joint, JointId, Length, Model, NumberId, PointId,
-    Stiffness, TorsionalStiffness, Wheel, WheelId,
+    Stiffness, TorsionalStiffness, Wheel, WheelId, about_centre,
 };
 use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 
@@ -410,9 +410,9 @@ impl<T: Real> Acting<'_, T> {
     /// bearing that has a length; the whole force of a ball. As many of them count.
     pub fn presses(&self, e: ElementId, wrench: Wrench<T>) -> ([Vec3<T>; 2], usize) {
         let kind = &self.model.elements[e.0].kind;
-        let (joint, length) = match kind {
-            ElementKind::Friction { joint, length, .. }
-            | ElementKind::SlideFriction { joint, length, .. } => (*joint, length.map(|n| self.number(n.0))),
+        let (joint, length, normal) = match kind {
+            ElementKind::Friction { joint, length, .. } => (*joint, length, None),
+            ElementKind::SlideFriction { joint, length, normal, .. } => (*joint, length, *normal),
             _ => return ([Vec3::zero(); 2], 0),
         };
         if self.ball(kind).is_some() {
@@ -421,11 +421,20 @@ impl<T: Real> Acting<'_, T> {
         let body = self.model.joints[joint.0].bodies[1];
         let marker = self.bodies[body.0].pose.compose(self.geometry.markers[joint.0][1]);
         let z = marker.rot.cols[2];
-        let across = wrench.f - z * z.dot(wrench.f);
-        let Some(length) = length else { return ([across, Vec3::zero()], 1) };
+        let across = |v: Vec3<T>| match normal {
+            None => v - z * z.dot(v),
+            Some(normal) => {
+                // Along p = n x z alone
+                let p = (self.turned(body.0) * normal.spread()).cross(z);
+                p * (p.dot(v) / p.dot(p))
+            }
+        };
+        let force = across(wrench.f);
+        let Some(length) = length else { return ([force, Vec3::zero()], 1) };
         // P = F/2 +- z x M / L, with M about the joint's place
         let moment = wrench.m - marker.r.cross(wrench.f);
-        let (half, couple) = (across * T::constant(0.5), z.cross(moment) * (T::one() / length));
+        let couple = across(z.cross(moment)) * (T::one() / self.number(length.0));
+        let half = force * T::constant(0.5);
         ([half + couple, half - couple], 2)
     }
 
@@ -520,28 +529,6 @@ impl<T: Real> Acting<'_, T> {
         }
         sum
     }
-}
-
-/// Moments and products of inertia about the centre, of such about a point that it is this way from: `I - m (d^2 1 - d d^T)`. Where one of
-/// the moments is left out, as in a plane, what is left out is zero about the centre; else a product that is left out is zero about the
-/// point.
-pub(crate) fn about_centre<T: Real>(
-    mass: T,
-    way: Vec3<T>,
-    [moments, products]: [[Option<T>; 3]; 2],
-) -> [[T; 3]; 2] {
-    let all = moments.iter().all(Option::is_some);
-    let less = |given: Option<T>, by: T| match given {
-        Some(given) => given - mass * by,
-        None if all => -(mass * by),
-        None => T::zero(),
-    };
-    let Vec3 { x, y, z } = way;
-    let ([a, b, c], [d, e, f]) = (moments, products);
-    [
-        [less(a, y * y + z * z), less(b, z * z + x * x), less(c, x * x + y * y)],
-        [less(d, x * y), less(e, y * z), less(f, z * x)],
-    ]
 }
 
 /// Below this speed, rad/s, friction fades unless something else is said; of slides, m/s.

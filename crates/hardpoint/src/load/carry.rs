@@ -327,7 +327,7 @@ impl<'a> LoadSolver<'a> {
                 places.response(topology, state, [(j.0, l), (i.0, Wrench::zero() - l)], alone)
             });
             // Where constraints share the force across a pin nobody knows its friction.
-            friction.solve(|kind| is_known(kind, &acting, stresses));
+            friction.solve(&acting, stresses);
         }
         friction.enter(&mut now.friction);
         self.carry(topology, state);

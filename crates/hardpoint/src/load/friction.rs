@@ -5,12 +5,13 @@
 //! joints that rub, solved by Newton.
 
 use crate::linalg::Elimination;
-use crate::model::{ElementId, ElementKind, JointId, MeasureKind, Model, ReactionPart};
+use crate::model::{ElementId, ElementKind, JointId, Model};
 use crate::number::Dual;
 use crate::space::{Real, Vec3, Wrench};
 
 use super::acting::{Acting, pressing};
 use super::carry::{Carried, LoadSolver};
+use super::measures::Instant;
 
 /// Newton from no friction takes 3 to 7 steps where there is a solution; joints that have none after so many jam.
 const MOST_STEPS: usize = 40;
@@ -30,8 +31,6 @@ pub(super) struct Friction {
 struct Rub {
     element: ElementId,
     joint: JointId,
-    /// What has to be known of what the joint carries.
-    parts: Vec<ReactionPart>,
     /// Its grip c, what is viscous, and what presses without friction.
     grip: f64,
     viscous: f64,
@@ -44,19 +43,13 @@ struct Rub {
 
 impl Rub {
     fn of(model: &Model, element: ElementId) -> Option<Self> {
-        let kind = &model.elements[element.0].kind;
-        let (ElementKind::Friction { joint, length, .. } | ElementKind::SlideFriction { joint, length, .. }) =
-            *kind
+        let (ElementKind::Friction { joint, .. } | ElementKind::SlideFriction { joint, .. }) =
+            model.elements[element.0].kind
         else {
             return None;
         };
-        let parts = match (kind.coordinate(model), length) {
-            (None, _) => vec![ReactionPart::Force],
-            (_, None) => vec![ReactionPart::Radial],
-            (_, Some(_)) => vec![ReactionPart::Radial, ReactionPart::Bending],
-        };
         let (presses, per_moment) = (([Vec3::ZERO; 2], 0), Vec::new());
-        Some(Self { element, joint, parts, grip: 0.0, viscous: 0.0, presses, per_moment, is_shared: false })
+        Some(Self { element, joint, grip: 0.0, viscous: 0.0, presses, per_moment, is_shared: false })
     }
 }
 
@@ -89,12 +82,12 @@ impl Friction {
         }
     }
 
-    /// Finds the moments; they are no numbers where joints jam, or where `is_known` says that one shares what presses with others.
-    pub fn solve(&mut self, is_known: impl Fn(&MeasureKind) -> bool) {
+    /// Finds the moments; they are no numbers where joints jam, or where redundant constraints, each pulling by itself, change what presses.
+    pub fn solve(&mut self, acting: &Acting<'_, f64>, stresses: &[Carried<f64>]) {
         self.moments.fill(0.0);
-        let reaction = |joint, part| MeasureKind::Reaction { joint, part, on: None, axes: None };
         for rub in &mut self.rubs {
-            rub.is_shared = !rub.parts.iter().all(|part| is_known(&reaction(rub.joint, *part)));
+            let leaves = |carried| Instant { acting, carried }.presses_nothing(rub.element, rub.joint);
+            rub.is_shared = !stresses.iter().all(leaves);
         }
         let known = self.shared().next().is_none();
         if !(known && (0..MOST_STEPS).any(|_| self.newton())) {

@@ -1,6 +1,6 @@
 //! The measures of loads, over any number.
 
-use crate::model::{Axes, BodyId, JointId, MeasureKind, ReactionPart};
+use crate::model::{Axes, BodyId, ElementId, JointId, MeasureKind, ReactionPart};
 use crate::space::{Mat3, Real, Vec3, Wrench};
 
 use super::acting::Acting;
@@ -80,18 +80,28 @@ const KNOWN: f64 = 1e-8;
 impl Instant<'_, f64> {
     /// Whether there is nothing of that reaction in loads that a redundant constraint exerts by itself.
     pub fn is_free_of(&self, kind: &MeasureKind) -> bool {
-        let size = self.acting.model.size();
-        let joints = (0..self.acting.model.joints.len()).map(JointId);
-        // Forces, and moments by the size of the mechanism.
-        let most = joints.fold(0.0_f64, |most, joint| {
-            let [_, force, moment] = self.wrench(joint);
-            most.max(force.norm()).max(moment.norm() / size)
-        });
+        let (size, most) = (self.acting.model.size(), self.most());
         let scale = match kind {
             MeasureKind::Reaction { part, .. } if part.is_moment() => most * size,
             _ => most,
         };
         self.measure(kind).abs() <= KNOWN * scale
+    }
+
+    /// The same of what presses where an element rubs.
+    pub fn presses_nothing(&self, e: ElementId, joint: JointId) -> bool {
+        let (presses, count) = self.acting.presses(e, self.carried.joints[joint.0]);
+        presses.iter().take(count).all(|force| force.norm() <= KNOWN * self.most())
+    }
+
+    /// The largest force that a joint carries, moments by the size of the mechanism.
+    fn most(&self) -> f64 {
+        let size = self.acting.model.size();
+        let joints = (0..self.acting.model.joints.len()).map(JointId);
+        joints.fold(0.0_f64, |most, joint| {
+            let [_, force, moment] = self.wrench(joint);
+            most.max(force.norm()).max(moment.norm() / size)
+        })
     }
 }
 

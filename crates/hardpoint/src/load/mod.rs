@@ -21,7 +21,6 @@ mod gradient;
 mod measures;
 mod turns;
 
-pub(crate) use acting::about_centre;
 pub(crate) use carry::LoadSolver;
 pub(crate) use compliance::Compliances;
 pub(crate) use gradient::LoadGradients;

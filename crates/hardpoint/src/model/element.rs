@@ -255,6 +255,9 @@ macro_rules! elements {
             /// The length of its guide, about the joint's place on its second body: then the moment across the axis presses its ends as
             /// well. Default: the force alone counts.
             length: Option<NumberDraft> => Option<Length>,
+            /// A direction across it in which nothing presses, as drawn: forces along it and moments about others do not count. Default, in a
+            /// planar model: square to the plane; else all count.
+            normal: Option<Vec3> => Option<Vec3>,
             /// A further force against the motion in proportion to its speed.
             viscous: Option<NumberDraft> => Option<Damping>,
             /// The speed, per second, below which friction fades: at rest it holds nothing. Default: 1 mm/s.

@@ -40,6 +40,7 @@ pub use measure::{
 pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
 pub use optimization::{Goal, Limit, Limited, Optimization};
+pub(crate) use solid::about_centre;
 pub use solid::{OpenSurface, Solid};
 pub use spring_table::SpringTable;
 pub use sweeping::{SweepMethod, SweepRange, Sweeping};

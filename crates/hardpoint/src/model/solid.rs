@@ -1,7 +1,8 @@
-//! Volume, centre and moments of closed surfaces.
+//! Volume, centre and moments of closed surfaces, and moments about other points.
 
 use std::collections::BTreeMap;
 
+use crate::number::Real;
 use crate::space::Vec3;
 
 /// What a body of even density comes to, per unit of density.
@@ -105,6 +106,28 @@ impl Solid {
         let [xx, yy, zz, xy, yz, zx] = self.second;
         [Vec3::new(yy + zz, -xy, -zx), Vec3::new(-xy, zz + xx, -yz), Vec3::new(-zx, -yz, xx + yy)]
     }
+}
+
+/// Moments and products of inertia about the centre, of such about a point that it is this way from: `I - m (d^2 1 - d d^T)`. Where one of
+/// the moments is left out, as in a plane, what is left out is zero about the centre; else a product that is left out is zero about the
+/// point.
+pub(crate) fn about_centre<T: Real>(
+    mass: T,
+    way: Vec3<T>,
+    [moments, products]: [[Option<T>; 3]; 2],
+) -> [[T; 3]; 2] {
+    let all = moments.iter().all(Option::is_some);
+    let less = |given: Option<T>, by: T| match given {
+        Some(given) => given - mass * by,
+        None if all => -(mass * by),
+        None => T::zero(),
+    };
+    let Vec3 { x, y, z } = way;
+    let ([a, b, c], [d, e, f]) = (moments, products);
+    [
+        [less(a, y * y + z * z), less(b, z * z + x * x), less(c, x * x + y * y)],
+        [less(d, x * y), less(e, y * z), less(f, z * x)],
+    ]
 }
 
 /// The axes of the second moments.

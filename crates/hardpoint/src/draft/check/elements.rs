@@ -4,15 +4,17 @@ use crate::draft::measure::Field;
 use crate::draft::{ElementDraft, FieldDraft, FieldKind, NumberDraft, Section};
 use crate::joint::Quantity;
 use crate::law::Law;
-use crate::load::about_centre;
 use crate::model::{
     Angle, Axes, CubicStiffness, Damping, Density, Element, ElementKind, ElementUnit, Force, GROUND, Inertia,
     JointId, Length, Mass, Moment, NumberId, Plain, PointId, SpringTable, Stiffness, TorsionalDamping,
-    TorsionalStiffness, each_number,
+    TorsionalStiffness, about_centre, each_number,
 };
 use crate::space::Vec3;
 
 use super::{Checker, Here, MeasureCheck};
+
+/// A direction is across another one where the sine between them is at least this.
+const ACROSS: f64 = 1e-3;
 
 /// By so much may a moment of inertia exceed the sum of the other two: what typed digits leave of a flat plate.
 const FLAT: f64 = 1e-3;
@@ -139,7 +141,7 @@ impl Checker<'_> {
                 self.above(numbers.into_iter().chain(length).chain(fades), &e.name, here);
                 self.not_below(viscous.map(|n| n.0), "viscous", &e.name, here);
             }
-            ElementKind::SlideFriction { joint, coefficient, length, viscous, fades } => {
+            ElementKind::SlideFriction { joint, coefficient, length, normal, viscous, fades } => {
                 let kind = self.model.joints[joint.0].kind.name;
                 if !["translational", "cylindrical"].contains(&kind) {
                     let help = match kind {
@@ -149,6 +151,13 @@ impl Checker<'_> {
                         }
                     };
                     self.no_friction(&e.name, *joint, "slide", here, help);
+                } else if let Some(normal) = normal {
+                    let z = self.model.joints[joint.0].frames[0].cols[2];
+                    if normal.cross(z).norm() < ACROSS {
+                        let message = format!("`normal` of `{}` runs along its slide", e.name);
+                        self.fault("HP0251", here.key("normal"), message)
+                            .help("give a direction across the slide, or leave it out");
+                    }
                 }
                 let length = length.map(|n| (n.0, "length"));
                 let fades = fades.map(|n| (n.0, "fades"));
