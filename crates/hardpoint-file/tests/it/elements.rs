@@ -49,17 +49,16 @@ end = 1
 steps = 5
 "#;
 
-/// Triangles as an STL text, which has no unit.
-fn stl(triangles: &[[Vec3; 3]]) -> String {
-    let mut text = String::from("solid body\n");
-    for corners in triangles {
-        text += "facet normal 0 0 0\nouter loop\n";
+/// Triangles as an OBJ text. Readers keep seven digits of a coordinate: whole numbers are exact.
+fn obj(triangles: &[[Vec3; 3]]) -> String {
+    let mut text = String::new();
+    for (k, corners) in triangles.iter().enumerate() {
         for p in corners {
-            writeln!(text, "vertex {:e} {:e} {:e}", p.x, p.y, p.z).unwrap();
+            writeln!(text, "v {:e} {:e} {:e}", p.x, p.y, p.z).unwrap();
         }
-        text += "endloop\nendfacet\n";
+        writeln!(text, "f {} {} {}", 3 * k + 1, 3 * k + 2, 3 * k + 3).unwrap();
     }
-    text + "endsolid body\n"
+    text
 }
 
 /// A box by its centre and its edges.
@@ -111,23 +110,23 @@ fn a_mesh_weighs_what_its_block_does_however_it_is_said() {
         "{LEVER}{body}[masses]\nleft_mass = {{ type = \"box\", centre = {{ body = \"left_arm\", at = {centre:?} }}, x = 60, y = 90, z = 40, density = 2700 }}\n"
     );
     let plain = solved(&parse(&block, "lever.toml").unwrap_or_else(|e| panic!("{e}")));
-    // The file is in metres, of a model in mm.
-    let metres = brick(centre.map(|x| 0.001 * x), size.map(|x| 0.001 * x));
+    // The file is in half millimetres, of a model in mm.
+    let halves = brick(centre.map(|x| 2.0 * x), size.map(|x| 2.0 * x));
     // Its own key, the body's, and in the body's frame, which counts from there.
     let from_frame = brick([0, 1, 2].map(|k| centre[k] - [5.0, 10.0, 15.0][k]), size);
-    let files = [("metres.stl", stl(&metres)), ("own.stl", stl(&from_frame))];
+    let files = [("halves.obj", obj(&halves)), ("own.obj", obj(&from_frame))];
     let files = [(files[0].0, files[0].1.as_str()), (files[1].0, files[1].1.as_str())];
     let mass = |more: &str| {
         format!("[masses]\nleft_mass = {{ type = \"mesh\", body = \"left_arm\", density = 2700{more} }}\n")
     };
     let said = [
-        format!("{LEVER}{body}{}", mass(", mesh = { file = \"metres.stl\", scale = 1000 }")),
+        format!("{LEVER}{body}{}", mass(", mesh = { file = \"halves.obj\", scale = 0.5 }")),
         format!(
-            "{LEVER}[bodies]\nleft_arm = {{ mesh = {{ file = \"metres.stl\", scale = 1000 }} }}\n{}",
+            "{LEVER}[bodies]\nleft_arm = {{ mesh = {{ file = \"halves.obj\", scale = 0.5 }} }}\n{}",
             mass("")
         ),
         format!(
-            "{LEVER}[bodies]\nleft_arm = {{ frame = {{ position = [5, 10, 15] }}, mesh = {{ file = \"own.stl\", frame = \"body\" }} }}\n{}",
+            "{LEVER}[bodies]\nleft_arm = {{ frame = {{ position = [5, 10, 15] }}, mesh = {{ file = \"own.obj\", frame = \"body\" }} }}\n{}",
             mass("")
         ),
     ];
@@ -153,9 +152,9 @@ fn a_ball_of_triangles_comes_to_weigh_what_a_ball_does() {
     let radius = 80.0;
     let motion = |parted: usize| {
         let text = format!(
-            "{LEVER}[bodies]\nleft_arm = {{}}\n[masses]\nball = {{ type = \"mesh\", body = \"left_arm\", mesh = \"ball.stl\", density = 7850 }}\n"
+            "{LEVER}[bodies]\nleft_arm = {{}}\n[masses]\nball = {{ type = \"mesh\", body = \"left_arm\", mesh = \"ball.obj\", density = 7850 }}\n"
         );
-        let (_folder, file) = in_folder(&[("ball.stl", &stl(&ball(radius, parted)))], &text);
+        let (_folder, file) = in_folder(&[("ball.obj", &obj(&ball(radius, parted)))], &text);
         file.unwrap_or_else(|e| panic!("{e}")).model.mass()
     };
     let exact = 7850.0 * 4.0 / 3.0 * std::f64::consts::PI * (0.001 * radius).powi(3);
@@ -175,16 +174,16 @@ fn surfaces_without_an_inside_are_told() {
     let [a, b, c] = flat;
     for (triangles, words) in [(open, "is not closed"), (vec![flat, [a, c, b]], "encloses no volume")] {
         let text = format!(
-            "{LEVER}[bodies]\nleft_arm = {{ mesh = \"body.stl\" }}\n[masses]\nm = {{ type = \"mesh\", body = \"left_arm\", density = 1000 }}\n"
+            "{LEVER}[bodies]\nleft_arm = {{ mesh = \"body.obj\" }}\n[masses]\nm = {{ type = \"mesh\", body = \"left_arm\", density = 1000 }}\n"
         );
-        let (_folder, file) = in_folder(&[("body.stl", &stl(&triangles))], &text);
+        let (_folder, file) = in_folder(&[("body.obj", &obj(&triangles))], &text);
         let error = file.err().unwrap();
         assert!(error.contains("HP0118") && error.contains(words), "{error}");
     }
     // Drawn it may be all the same.
     let rigid = "m = { type = \"rigid\", centre = { body = \"left_arm\", at = \"left_B\" }, mass = 1 }";
-    let text = format!("{LEVER}[bodies]\nleft_arm = {{ mesh = \"body.stl\" }}\n[masses]\n{rigid}\n");
-    let (_folder, file) = in_folder(&[("body.stl", &stl(&[flat]))], &text);
+    let text = format!("{LEVER}[bodies]\nleft_arm = {{ mesh = \"body.obj\" }}\n[masses]\n{rigid}\n");
+    let (_folder, file) = in_folder(&[("body.obj", &obj(&[flat]))], &text);
     assert!(file.is_ok(), "{:?}", file.err());
 }
 

@@ -249,7 +249,6 @@ fn box_of(centre: Vec3, [x, y, z]: [f64; 3]) -> Solid {
 
 #[test]
 fn a_box_as_a_mesh_weighs_what_a_block_does() {
-    let (centre, size) = (Vec3::new(0.25, 0.5, 0.2), [0.1, 0.2, 0.3]);
     let draft = |kind: fn(&str, Vec3, Pose) -> ElementKindDraft| {
         let mut draft = heavy("macpherson");
         let frame = Pose { rot: Mat3::IDENTITY, r: Vec3::new(0.1, 0.3, 0.2) };
@@ -261,7 +260,6 @@ fn a_box_as_a_mesh_weighs_what_a_block_does() {
         draft.masses.push(ElementDraft::new("box", kind));
         asking_for_all(draft)
     };
-    let _ = (centre, size);
     let block = draft(|body, centre, _| {
         let [x, y, z] = [0.1, 0.2, 0.3].map(NumberDraft::from);
         ElementKindDraft::Block { centre: on(body, centre.to_array()), x, y, z, density: 700.0.into() }
