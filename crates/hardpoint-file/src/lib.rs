@@ -415,7 +415,7 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
     let plane = planar::normal(&whole.table);
     let raw = reader.model(&whole.table, &whole.twins);
     let (units, texts, origins) = (reader.units, reader.texts, reader.origins);
-    let remarks = diagnostic::in_order(told_once(reader.remarks, &origins));
+    let remarks = told_once(reader.remarks, &origins);
     let mut found = reader.found;
     let model = match Model::from_draft(&raw.draft) {
         Ok(model) => Some(model),
@@ -428,7 +428,7 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
     match model {
         Some(model) if found.is_empty() => {
             let (description, drawing, places) = (raw.description, raw.drawing, raw.places);
-            Ok(ModelFile {
+            let mut file = ModelFile {
                 plane,
                 model,
                 units,
@@ -440,7 +440,10 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
                 case: None,
                 source,
                 places,
-            })
+            };
+            file.remarks.extend(read::weightless(&file));
+            file.remarks = diagnostic::in_order(file.remarks);
+            Ok(file)
         }
         _ => Err(Diagnostics::new(source, found)),
     }

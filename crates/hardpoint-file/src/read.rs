@@ -38,6 +38,8 @@ use crate::places::{EntryPlace, Places};
 use crate::tree::{Field, Fields, LINE, MOST_ENTRIES, PLACE, Reader, Subject, Value, above_tables, quoted};
 use crate::units::{AngleUnit, LengthUnit};
 
+pub(crate) use elements::weightless;
+pub(crate) use mesh::BodyMesh;
 pub use mesh::triangles;
 
 /// The axis of a marker that a joint's `axis` is.
@@ -137,7 +139,7 @@ const BODY: Table = table! {
     /// Its reference frame in the design configuration. Default: origin at the mean of the body's joint places, axes parallel
     /// to the global ones. Only results expressed in the frame depend on it.
     may "frame": Shape::Kinds(&FRAME), "{ position = [0, 0, 0] }";
-    /// Its shape, for the drawing: a file of triangles in the model's folder or below it, STL, OBJ or glTF. It changes no result.
+    /// Its shape, for the drawing, and for masses of `type = "mesh"`: a file of triangles in the model's folder or below it, STL, OBJ or glTF.
     may "mesh": mesh::MESH, "\"knuckle.stl\"";
 };
 const FRAME: Kinds = Kinds {
@@ -251,7 +253,7 @@ fn coordinates() -> Vec<(&'static str, String)> {
 
 /// The tables that `docs/file-format.md` shows, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 38] {
+pub(crate) fn tables() -> [(&'static str, Shape); 39] {
     [
         ("include", Shape::Table(&include::INCLUDE_TABLE)),
         ("mirror", Shape::Table(&mirror::MIRROR)),
@@ -282,6 +284,7 @@ pub(crate) fn tables() -> [(&'static str, Shape); 38] {
         ("cases", Shape::Table(&cases::CASE)),
         ("grids", Shape::Kinds(&cases::SWEEP)),
         ("targets in files", Shape::Table(&results::TARGET_FILE)),
+        ("forces in files", Shape::Table(&results::FORCE_FILE)),
         ("optimize", Shape::Table(&optimize::OPTIMIZE)),
         ("goals", Shape::Table(&optimize::GOAL)),
         ("limits", Shape::Kinds(&optimize::LIMIT)),
@@ -615,10 +618,16 @@ impl Reader<'_> {
             let fields = self.entry("body", &entry, BODY.keys());
             let mut place = EntryPlace::of(&fields);
             let frame = self.given(&fields, "frame", |r, f| r.frame(&fields, f, &mut place, raw));
-            if let Some(mesh) = self.given(&fields, "mesh", |r, f| r.mesh(&fields, f)) {
-                // Ground comes first in the model.
-                raw.drawing.bodies.insert(raw.draft.bodies.len() + 1, mesh);
+            let mut mesh = BodyMesh::None;
+            if fields.get("mesh").is_some() {
+                let said = self.given(&fields, "mesh", |r, f| r.mesh(&fields, f));
+                if let Some(drawn) = said.as_ref().and_then(|said| self.drawn(said)) {
+                    // Ground comes first in the model.
+                    raw.drawing.bodies.insert(raw.draft.bodies.len() + 1, drawn);
+                }
+                mesh = said.map_or(BodyMesh::Faulty, BodyMesh::Said);
             }
+            self.meshes.insert(entry.0.clone(), mesh);
             self.push(raw, Section::Bodies, place);
             raw.draft.bodies.push(BodyDraft { name: entry.0, frame: frame.unwrap_or_default() });
         }

@@ -15,6 +15,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Diagnostic, Severity, Source, closest, shown};
 use crate::format::{HARDPOINT, Key, LENGTH, NUMBER, Need, Shape, THREE_NUMBERS, Table, table};
+use crate::read::BodyMesh;
 use crate::read::mirror::Origins;
 use crate::units::Units;
 
@@ -63,7 +64,7 @@ impl<'a> Fields<'a> {
         self.keys.iter().find(|k| k.key == key).expect("only declared keys are read")
     }
 
-    fn example(&self, key: &str) -> String {
+    pub fn example(&self, key: &str) -> String {
         format!("`{key} = {}`", self.key(key).example)
     }
 
@@ -127,7 +128,7 @@ pub(crate) enum Folder<'f> {
     None,
     /// In this folder or below it.
     On(&'f Path),
-    /// They came with the text: all but meshes, which change no result.
+    /// They came with the text: of meshes what they bound.
     Given(&'f Texts),
 }
 
@@ -141,6 +142,8 @@ pub(crate) struct Reader<'s> {
     pub units: Units,
     /// What the file's parameters are, as soon as they are read.
     pub nominal: Nominal,
+    /// What is said of the shapes of bodies, by their names.
+    pub meshes: BTreeMap<String, BodyMesh>,
     /// How many bytes of included files it has been made of.
     pub included: u64,
     /// What was made from something else, by name.
@@ -157,13 +160,14 @@ pub(crate) struct Reader<'s> {
 impl<'s> Reader<'s> {
     pub fn new(source: &'s Source, folder: Folder<'s>) -> Self {
         let (units, nominal) = (Units::default(), Nominal::default());
-        let (texts, origins, law_formulas, found, unread, remarks) = Default::default();
+        let (texts, meshes, origins, law_formulas, found, unread, remarks) = Default::default();
         Self {
             source,
             folder,
             texts,
             units,
             nominal,
+            meshes,
             included: 0,
             origins,
             law_formulas,

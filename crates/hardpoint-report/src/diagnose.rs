@@ -1,11 +1,12 @@
 //! Why a mechanism cannot be driven, a run ended early, or a variable has no sensitivity: as diagnostics of
 //! the model file, in the user's names and units.
 
-use hardpoint::motion::{Closing, Stop, StopKind};
+use hardpoint::Analysis;
+use hardpoint::motion::{Closing, Motion, Stop, StopKind};
 use hardpoint::topology::TopologyFault;
 use hardpoint::{
     draft::Section,
-    model::{DesignVariable, ElementKind, JointId, Measure, MeasureKind, Model, OutputSource},
+    model::{DesignVariable, ElementKind, JointId, MeasureKind, Model, OutputSource},
 };
 use hardpoint_file::{Diagnostic, ModelFile, Severity};
 
@@ -176,29 +177,74 @@ pub(crate) fn driver_values(file: &ModelFile, stop: &Stop) -> String {
 fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
     let (model, found) = (&file.model, &course.kept);
     let has_none = |m: usize| (0..found.measured.len()).find(|k| found.measured.value(*k, m)[0].is_nan());
-    let of = |(m, measure): (usize, &Measure)| {
+    // What redundant constraints share of friction is asked for once, where it is wanted at all.
+    let mut shared = None;
+    let mut list = Vec::new();
+    for (m, measure) in model.measures.iter().enumerate() {
         let is_compliance = matches!(measure.kind, MeasureKind::Compliance { .. });
         if !measure.kind.is_load() && !is_compliance {
-            return None;
+            continue;
         }
-        let output = found.measured.outputs.iter().position(|o| o.source == OutputSource::Measure(m))?;
-        let t = number(found.motion.times[has_none(output)?]);
+        let output = found.measured.outputs.iter().position(|o| o.source == OutputSource::Measure(m));
+        let Some(k) = output.and_then(has_none) else { continue };
+        let t = number(found.motion.times[k]);
         let message = format!("`{}` has no number at t = {t} s", measure.name);
         let d = file.diagnostic(Severity::Warning, "HP0409", message, Some((Section::Measures, m)));
-        let rubs = model.elements.iter().any(|e| matches!(e.kind, ElementKind::Friction { .. }));
-        Some(if is_compliance {
+        let without_length =
+            model.elements.iter().filter(|e| has_no_length(model, &found.motion, k, &e.kind));
+        let without_length: Vec<String> = without_length.map(|e| e.name.clone()).collect();
+        let rubs = model.elements.iter().any(|e| e.kind.rubs());
+        let names = |kinds: &dyn Fn(usize) -> bool| -> Vec<String> {
+            let of =
+                model.elements.iter().enumerate().filter(|(e, element)| element.kind.rubs() && kinds(*e));
+            of.map(|(_, element)| element.name.clone()).collect()
+        };
+        list.push(if !without_length.is_empty() {
+            d.note(format!("both ends of {} are at one place there: a spring of no length pulls nowhere", names_of(&without_length)))
+                .help("move one of its ends, or use a `bushing`")
+        } else if is_compliance {
             d.note("what gives must be held by something, and constraints that say the same hold one another")
                 .help("release no driver that nothing else holds, and remove redundant constraints: `check` names them")
-        } else if matches!(measure.kind, MeasureKind::Reaction { .. }) && !rubs {
+        } else if !rubs {
             d.note("redundant constraints share it, by how stiff they are")
                 .help("measure what is not shared (in a plane `radial`, or components in it), or remove a redundant constraint: `check` names them")
         } else {
-            d.note("the hinges jam there: so much friction stands against the motion that no forces move it, or redundant constraints \
-                share what presses a pin")
-                .help("give less friction or thinner pins, or remove redundant constraints: `check` names them")
-        })
-    };
-    model.measures.iter().enumerate().filter_map(of).collect()
+            let shared = shared.get_or_insert_with(|| {
+                let analysis = Analysis::new(model);
+                analysis.map_or_else(|_| Vec::new(), |analysis| analysis.loads(&[]).shared_friction)
+            });
+            if shared.is_empty() {
+                d.note(format!("{} jams there: so much friction stands against the motion that no forces move it", names_of(&names(&|_| true))))
+                    .help("give less friction, thinner pins or longer guides")
+            } else {
+                let of = names(&|e| shared.iter().any(|s| s.0 == e));
+                d.note(format!("redundant constraints share what presses where {} rubs, by how stiff they are", names_of(&of)))
+                    .help("remove a redundant constraint: `check` names them; or the friction")
+            }
+        });
+    }
+    list
+}
+
+/// Whether a spring or a damper has both ends at one place at an output time.
+fn has_no_length(model: &Model, motion: &Motion, k: usize, kind: &ElementKind) -> bool {
+    let ElementKind::Spring { from, to, .. } = kind else { return false };
+    let [p, q] = [from, to].map(|p| {
+        let point = &model.points[p.0];
+        let as_drawn = model.hardpoints[point.at.0].position;
+        let in_body = model.bodies[point.body.0].frame.inverse().point(as_drawn);
+        let state = motion.at(k).body(point.body.0);
+        state.r + state.rotation * in_body
+    });
+    (q - p).norm() <= COINCIDE * model.size()
+}
+
+/// Places nearer to each other than this part of the mechanism's size are one.
+const COINCIDE: f64 = 1e-12;
+
+/// Names in quotes.
+fn names_of(list: &[String]) -> String {
+    names(list.iter().map(String::as_str))
 }
 
 /// A warning where the motion comes so close to a singular position that its velocities are not to be relied on.

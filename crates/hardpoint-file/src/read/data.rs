@@ -142,6 +142,20 @@ pub(super) const TARGET: Curve = Curve {
     write: "write an abscissa and a value on each line, in the units of the model file, like `-20, 0.15`",
 };
 
+/// The force of a spring.
+pub(super) const FORCE: Curve = Curve {
+    wanted: Wanted {
+        purpose: "table",
+        example: "data/bump_stop.csv",
+        without_folder: "write the table as `[[0, 0], [20, 400]]`, or read the model from a file",
+        ..TABLE.wanted
+    },
+    abscissa: "way",
+    abscissas: "ways",
+    unit: "",
+    write: "write a way in the model's length unit and a force in N on each line, like `12.5, 340`",
+};
+
 /// What is in a file, as text.
 pub(super) fn text_from(bytes: Vec<u8>, name: &str) -> Result<String, DataError> {
     String::from_utf8(bytes).map_err(|_| {

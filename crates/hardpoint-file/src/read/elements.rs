@@ -2,10 +2,12 @@
 
 use std::sync::LazyLock;
 
-use hardpoint::draft::{ElementDraft, ElementKindDraft, ElementType, NumberDraft, Section};
+use hardpoint::draft::{ElementDraft, ElementKindDraft, ElementType, NumberDraft, Section, some_of};
 use hardpoint::law::Law;
-use hardpoint::model::ElementUnit;
+use hardpoint::model::{BodyId, ElementUnit};
 
+use crate::ModelFile;
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::format::{Key, Kinds, NUMBER, Table, table};
 use crate::places::EntryPlace;
 use crate::tree::{DIRECTION, Field, Fields, Reader};
@@ -37,13 +39,22 @@ pub(crate) const FORCE: Kinds = Kinds {
     tables: || TYPES.iter().filter(|t| t.1.table == "forces").map(|t| &t.0).collect(),
 };
 
-/// The types of masses and forces, as the core declares them.
+/// Other names of types of masses.
+const ALIASES: [(&str, &str, &str); 3] = [
+    ("cylinder", "bar", "Another name of `bar`."),
+    ("tube", "bar", "Another name of `bar`, which is one with a `bore`."),
+    ("box", "block", "Another name of `block`."),
+];
+
+/// The types of masses and forces, as the core declares them, with their other names.
 static TYPES: LazyLock<Vec<(Table, &'static ElementType)>> = LazyLock::new(|| {
-    let table = |own: &'static ElementType| {
-        let keys: Vec<Key> = own.fields.iter().map(key).collect();
-        (Table::new(own.name, own.summary, keys.leak()), own)
+    let tables = |own: &'static ElementType| {
+        let keys: &'static [Key] = own.fields.iter().map(key).collect::<Vec<_>>().leak();
+        let others = ALIASES.iter().filter(|(_, of, _)| *of == own.name);
+        let others = others.map(|(name, _, summary)| (Table::new(name, summary, keys), own));
+        [(Table::new(own.name, own.summary, keys), own)].into_iter().chain(others).collect::<Vec<_>>()
     };
-    ElementType::ALL.iter().map(table).collect()
+    ElementType::ALL.iter().flat_map(tables).collect()
 });
 static MASSES: LazyLock<Vec<(Table, &'static ElementType)>> = LazyLock::new(|| of_table("masses"));
 static FORCES: LazyLock<Vec<(Table, &'static ElementType)>> = LazyLock::new(|| of_table("forces"));
@@ -51,6 +62,36 @@ static FORCES: LazyLock<Vec<(Table, &'static ElementType)>> = LazyLock::new(|| o
 fn of_table(name: &str) -> Vec<(Table, &'static ElementType)> {
     TYPES.iter().filter(|t| t.1.table == name).copied().collect()
 }
+
+/// HP0253: what to tell of a model with loads whose bodies have no mass, or whose gravity has nothing to act on.
+pub(crate) fn weightless(file: &ModelFile) -> Option<Diagnostic> {
+    let model = &file.model;
+    let heavy: Vec<BodyId> = model.elements.iter().filter_map(|e| e.kind.mass_on(model)).collect();
+    if heavy.is_empty() {
+        let falls = model.gravity.norm() > 0.0;
+        return falls.then(|| {
+            file.diagnostic(Severity::Note, "HP0253", "gravity acts on nothing: no body has mass", None)
+                .help("give the bodies `[masses]`, or remove `[gravity]`")
+        });
+    }
+    let light = (1..model.bodies.len()).filter(|b| !heavy.contains(&BodyId(*b)));
+    let light: Vec<usize> = light.collect();
+    let names: Vec<String> = light.iter().map(|b| format!("`{}`", model.bodies[*b].name)).collect();
+    let message = match &names[..] {
+        [] => return None,
+        [one] => format!("body {one} has no mass"),
+        several => format!("{} bodies have no mass: {}", several.len(), some_of(several, ", ", MOST_NAMES)),
+    };
+    let first = (Section::Bodies, light[0] - 1);
+    let d = file.diagnostic(Severity::Note, "HP0253", message, Some(first));
+    Some(
+        d.note("without mass a body carries forces and needs none")
+            .help("give it `[masses]` if its weight or inertia counts"),
+    )
+}
+
+/// So many bodies without mass are named.
+const MOST_NAMES: usize = 8;
 
 impl Reader<'_> {
     pub(super) fn gravity(&mut self, model: &Fields<'_>, raw: &mut Raw) {

@@ -1,15 +1,18 @@
-//! Shapes of bodies: files of triangles beside the model file. What they look like otherwise (materials, colours, normals) is not read.
+//! Shapes of bodies: files of triangles beside the model file, to be drawn, and for what they weigh. What they look like otherwise
+//! (materials, colours, normals) is not read.
 
 mod gltf;
 mod obj;
 mod stl;
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::path::Path;
 
+use hardpoint::model::{OpenSurface, Solid};
 use hardpoint::space::Vec3;
 
-use crate::diagnostic::shown;
+use crate::diagnostic::{closest, shown};
 use crate::drawing::{MESH_FRAMES, Mesh, MeshFrame};
 use crate::format::{NUMBER, Shape, Table, table};
 use crate::tree::{Field, Fields, Folder, Reader};
@@ -141,53 +144,174 @@ pub fn triangles(name: &str, bytes: &[u8]) -> Result<Vec<[[f64; 3]; 3]>, String>
     }
 }
 
+/// What a model says of a mesh.
+#[derive(Clone)]
+pub(crate) struct MeshSaid {
+    /// The name of its file, and where that is said.
+    file: (String, Range<usize>),
+    frame: MeshFrame,
+    /// The unit of its coordinates, in the model's length unit.
+    scale: f64,
+    /// The axis across which it is mirrored.
+    mirror: Option<usize>,
+}
+
+/// What is known of the shape of a body.
+#[derive(Clone)]
+pub(crate) enum BodyMesh {
+    /// It has none.
+    None,
+    /// What is said of it.
+    Said(MeshSaid),
+    /// It could not be read.
+    Faulty,
+}
+
 impl Reader<'_> {
     /// The shape of a body: a file's name, or a table with it.
-    pub(super) fn mesh(&mut self, body: &Fields<'_>, f: Field<'_>) -> Option<Mesh> {
-        let (name, at, frame, scale, mirror) = if f.value.get_ref().is_str() {
-            (self.text(body, f)?, f.value.span(), MeshFrame::World, 1.0, None)
-        } else {
-            let subject = body.subject(f.key);
-            let table = self.table(f.value, &subject, "the name of a file, or a table with it")?;
-            let what = format!("the mesh of {}", body.what);
-            let fields = self.fields(what, f.value.span(), table, MESH_TABLE.keys());
-            let frame = self.word_of(&fields, "frame").map(|k| MeshFrame::ALL[k]);
-            let scale = self.number_of(&fields, "scale");
-            let mirror = self.word_of(&fields, "mirror");
-            let file = self.need(&fields, "file");
-            let name = file.and_then(|file| self.text(&fields, file));
-            if let (Some(x), Some(f)) = (scale.filter(|x| !(*x > 0.0)), fields.get("scale")) {
-                let message = format!("{} cannot be {x}", fields.subject("scale").name);
-                self.senseless(f.value.span(), message).help = Some(
-                    "write what one unit of the file is in the model's length unit, like `0.001`".into(),
-                );
-                return None;
-            }
-            (name?, file?.value.span(), frame?, scale?, mirror)
-        };
-        // It changes no result, and whoever gives the text has drawn it already: the engine of a page does without the readers of meshes.
+    pub(super) fn mesh(&mut self, body: &Fields<'_>, f: Field<'_>) -> Option<MeshSaid> {
+        if f.value.get_ref().is_str() {
+            let file = (self.text(body, f)?, f.value.span());
+            return Some(MeshSaid { file, frame: MeshFrame::World, scale: 1.0, mirror: None });
+        }
+        let subject = body.subject(f.key);
+        let table = self.table(f.value, &subject, "the name of a file, or a table with it")?;
+        let what = format!("the mesh of {}", body.what);
+        let fields = self.fields(what, f.value.span(), table, MESH_TABLE.keys());
+        let frame = self.word_of(&fields, "frame").map(|k| MeshFrame::ALL[k]);
+        let scale = self.number_of(&fields, "scale");
+        let mirror = self.word_of(&fields, "mirror");
+        let file = self.need(&fields, "file");
+        let name = file.and_then(|file| self.text(&fields, file));
+        if let (Some(x), Some(f)) = (scale.filter(|x| !(*x > 0.0)), fields.get("scale")) {
+            let message = format!("{} cannot be {x}", fields.subject("scale").name);
+            self.senseless(f.value.span(), message).help =
+                Some("write what one unit of the file is in the model's length unit, like `0.001`".into());
+            return None;
+        }
+        Some(MeshSaid { file: (name?, file?.value.span()), frame: frame?, scale: scale?, mirror })
+    }
+
+    /// A mesh as it is drawn.
+    pub(super) fn drawn(&mut self, said: &MeshSaid) -> Option<Mesh> {
+        // Drawing it changes no result, and whoever gives the text has drawn it already: the engine of a page does without the readers
+        // of meshes.
         if cfg!(target_family = "wasm") || matches!(self.folder, Folder::Given(_)) {
             return None;
         }
-        match triangles_of(self.folder, &name) {
-            Ok(found) => {
-                let metres = |x: f64| self.units.length.metres(x * scale);
-                let vertex = |&[x, y, z]: &[f64; 3]| {
-                    let at = Vec3::new(x, y, z).map(metres);
-                    mirror.map_or(at, |axis| at.mirrored(Vec3::AXES[axis]))
-                };
-                let vertices = found.vertices.iter().map(vertex).collect();
-                // Seen in a mirror, corners go round the other way.
-                let corners = |[a, b, c]: [u32; 3]| if mirror.is_some() { [a, c, b] } else { [a, b, c] };
-                let triangles = found.triangles.into_iter().map(corners).collect();
-                Some(Mesh { file: name, frame, vertices, triangles })
+        let (name, at) = &said.file;
+        let found = match triangles_of(self.folder, name) {
+            Ok(found) => found,
+            Err(e) => {
+                self.data_error(at.clone(), e);
+                return None;
+            }
+        };
+        let metres = |x: f64| self.units.length.metres(x * said.scale);
+        let vertex = |&[x, y, z]: &[f64; 3]| {
+            let at = Vec3::new(x, y, z).map(metres);
+            said.mirror.map_or(at, |axis| at.mirrored(Vec3::AXES[axis]))
+        };
+        let vertices = found.vertices.iter().map(vertex).collect();
+        // Seen in a mirror, corners go round the other way.
+        let corners = |[a, b, c]: [u32; 3]| if said.mirror.is_some() { [a, c, b] } else { [a, b, c] };
+        let triangles = found.triangles.into_iter().map(corners).collect();
+        Some(Mesh { file: name.clone(), frame: said.frame, vertices, triangles })
+    }
+
+    /// What the surface of a mass bounds: the mesh under this key, or else that of its body.
+    pub(super) fn solid(&mut self, mass: &Fields<'_>, key: &'static str) -> Option<Solid> {
+        let said = match mass.get(key) {
+            Some(f) => self.mesh(mass, f)?,
+            None => {
+                // What is wrong with the body is told where it stands.
+                let f = mass.get("body")?;
+                let body = f.value.get_ref().as_str()?;
+                match self.meshes.get(body).cloned() {
+                    Some(BodyMesh::Said(said)) => said,
+                    Some(BodyMesh::Faulty) => return None,
+                    None if body == "ground" => {
+                        let message = format!("{} is on ground, where it moves nothing", mass.what);
+                        self.report("HP0251", f.value.span(), message).help =
+                            Some("put it on the body that it belongs to, or remove it".into());
+                        return None;
+                    }
+                    None => {
+                        let close = closest(body, self.meshes.keys().map(String::as_str)).map(str::to_owned);
+                        let message = format!("there is no body named `{}`", shown(body));
+                        self.report("HP0204", f.value.span(), message).help =
+                            close.map(|c| format!("did you mean `{c}`?"));
+                        return None;
+                    }
+                    Some(BodyMesh::None) => {
+                        let message =
+                            format!("{} has no `{key}`, and neither has body `{}`", mass.what, shown(body));
+                        self.report("HP0104", mass.at.clone(), message).help =
+                            Some(format!("add it, for example {}", mass.example(key)));
+                        return None;
+                    }
+                }
+            }
+        };
+        let place = mass.get(key).map_or_else(|| mass.at.clone(), |f| f.value.span());
+        match self.solid_in_file(&said) {
+            Ok(solid) => {
+                let solid = solid.scaled(self.units.length.metres(said.scale));
+                let solid = said.mirror.map_or(solid, |axis| solid.mirrored(axis));
+                Some(Solid { in_body: said.frame == MeshFrame::Body, ..solid })
             }
             Err(e) => {
-                let d = self.report(e.code, at, e.message);
-                d.notes = e.notes;
-                d.help = e.help;
+                self.data_error(place, e);
                 None
             }
         }
     }
+
+    /// What the surface in a file bounds, in the file's own unit and axes.
+    fn solid_in_file(&mut self, said: &MeshSaid) -> Result<Solid, DataError> {
+        let (name, _) = &said.file;
+        // Meshes do not go with a model's text, what they weigh does.
+        let known = format!("{name} as a solid");
+        if let Folder::Given(texts) = self.folder {
+            let found = texts.get(&known).and_then(|text| {
+                self.texts.insert(known.clone(), text.clone());
+                let numbers: Option<Vec<f64>> = text.split_whitespace().map(|x| x.parse().ok()).collect();
+                <[f64; 10]>::try_from(numbers?).ok()
+            });
+            let [volume, x, y, z, second @ ..] = found.ok_or_else(|| {
+                let message = format!("the mesh `{}` did not come with this model", shown(name));
+                DataError::unreadable(message, "read the model from its folder, where the mesh is")
+            })?;
+            return Ok(Solid { volume, centre: Vec3::new(x, y, z), second, in_body: false });
+        }
+        let Triangles { vertices, triangles, .. } = triangles_of(self.folder, name)?;
+        let vertices: Vec<Vec3> = vertices.into_iter().map(Vec3::from).collect();
+        let solid = Solid::of(&vertices, &triangles).map_err(|open| bounds_nothing(name, open))?;
+        let Solid { volume, centre, second, .. } = solid;
+        let numbers = [volume].into_iter().chain(centre.to_array()).chain(second);
+        // The shortest text that is the number again
+        let numbers: Vec<String> = numbers.map(|x| format!("{x:e}")).collect();
+        self.texts.insert(known, numbers.join(" "));
+        Ok(solid)
+    }
+}
+
+/// HP0118: a surface of which there is no inside.
+fn bounds_nothing(name: &str, open: OpenSurface) -> DataError {
+    let (message, note) = match open {
+        OpenSurface::Edges(count, [a, b]) => {
+            let edges = if count == 1 { "1 edge".into() } else { format!("{count} edges") };
+            let [a, b] = [a, b].map(|p| format!("({}, {}, {})", p.x, p.y, p.z));
+            let note = format!(
+                "at {edges} it does not go on: triangles there do not meet one that goes round the same way; one runs from {a} to {b} in the file's coordinates"
+            );
+            (format!("the surface in `{}` is not closed, so that it bounds no volume", shown(name)), note)
+        }
+        OpenSurface::Flat => (
+            format!("the surface in `{}` encloses no volume", shown(name)),
+            "its triangles lie in a plane, or one side is as far out as the other".into(),
+        ),
+    };
+    let help = "export the body as a watertight solid, in full precision (binary STL, OBJ or glTF), or give its mass as `rigid`";
+    DataError { code: "HP0118", ..DataError::unreadable(message, help) }.note(note)
 }

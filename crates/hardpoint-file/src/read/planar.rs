@@ -108,6 +108,9 @@ impl Reader<'_> {
             if word(force, "type").as_deref() == Some("moment") {
                 square(force, "about");
             }
+            if word(force, "type").as_deref() == Some("slide_friction") {
+                square(force, "normal");
+            }
         });
         sections(model, "drivers", &mut |driver| {
             if driver.contains_key("body") {

@@ -21,6 +21,7 @@ use crate::places::EntryPlace;
 use crate::tree::{DIRECTION, Field, Fields, LINE, PLACE, Reader, Subject, Value};
 
 use super::law::{COLUMN, LAW};
+use super::mesh::MESH;
 use super::{COORDINATE, DRAW, Raw, data};
 
 /// More output times than this are surely a slip.
@@ -101,6 +102,19 @@ pub(super) const TARGET_FILE: Table = table! {
     /// A CSV file in the model's folder or below it: abscissas and values, in the units of the model file.
     must "file": Shape::File, "\"target.csv\"";
     /// The file's columns of abscissa and value, by name or by number from 1. Default: the first two.
+    may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
+};
+const FORCE_TABLE: Shape = Shape::Any(
+    "ForceTable",
+    "A force in N over a way in the length unit.",
+    &[Shape::list(&TWO_NUMBERS), Shape::File, Shape::Table(&FORCE_FILE)],
+);
+pub(super) const FORCE_FILE: Table = table! {
+    /// A force over a way in a CSV file.
+    "ForceFile":
+    /// A CSV file in the model's folder or below it: ways in the length unit, and forces in N.
+    must "file": Shape::File, "\"bump_stop.csv\"";
+    /// The file's columns of way and force, by name or by number from 1. Default: the first two.
     may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
 };
 const TAKE: Shape = Shape::Any(
@@ -257,8 +271,13 @@ pub(super) fn key(field: &MeasureField) -> Key {
         FieldKind::Number(ElementUnit::Density) => (NUMBER, "7850"),
         FieldKind::Number(_) => (NUMBER, "2.5"),
         FieldKind::Law => (LAW, "\"sin(2*pi*t)\""),
+        FieldKind::Wheel => (Shape::Name("a wheel"), "\"front_left\""),
+        FieldKind::Table => (FORCE_TABLE, "[[0, 0], [20, 400], [35, 1500]]"),
+        FieldKind::Mesh => (MESH, "\"knuckle.stl\""),
     };
-    let need = if field.required { Need::Required } else { Need::Optional };
+    // Where no surface is named, the body has one.
+    let is_needed = field.required && field.kind != FieldKind::Mesh;
+    let need = if is_needed { Need::Required } else { Need::Optional };
     Key { key: field.key, shape, need, example, doc: with_unit(field) }
 }
 
@@ -370,6 +389,7 @@ impl Reader<'_> {
             | FieldKind::Output
             | FieldKind::Driver
             | FieldKind::Force
+            | FieldKind::Wheel
             | FieldKind::Body => self.name_of(fields, key).map(FieldDraft::Name),
             FieldKind::OrientationAngle => {
                 self.word_of(fields, key).map(|k| FieldDraft::Angle(OrientationAngle::at(k)))
@@ -382,6 +402,15 @@ impl Reader<'_> {
                 self.given(fields, key, |r, f| r.element_number(fields, f, unit)).map(FieldDraft::Number)
             }
             FieldKind::Law => self.given(fields, key, |r, f| r.factor_law(fields, f)).map(FieldDraft::Law),
+            FieldKind::Table => {
+                self.given(fields, key, |r, f| r.force_table(fields, f)).map(FieldDraft::Table)
+            }
+            FieldKind::Mesh => {
+                let solid = self.solid(fields, key);
+                // It has been told why there is none.
+                *unread |= solid.is_none();
+                solid.map(FieldDraft::Solid)
+            }
             FieldKind::Point => self.point_of(fields, key).map(FieldDraft::Point),
             FieldKind::Direction => self.vector_of(fields, key).map(FieldDraft::Direction),
             FieldKind::Line => self.line_of(fields, key, place).map(FieldDraft::Line),
@@ -478,29 +507,46 @@ impl Reader<'_> {
 
     /// The curve that an `rms` compares with, given here or in a file.
     fn target(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
+        self.points_given(fields, f, &TARGET_FILE, &data::TARGET)
+    }
+
+    /// A force over a way, given here or in a file.
+    fn force_table(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
+        let points = self.points_given(fields, f, &FORCE_FILE, &data::FORCE)?;
+        Some(points.into_iter().map(|[way, force]| [self.units.length.metres(way), force]).collect())
+    }
+
+    /// Points, the name of a file that holds them, or a table with it.
+    fn points_given(
+        &mut self,
+        fields: &Fields<'_>,
+        f: Field<'_>,
+        table_of_file: &'static Table,
+        of: &data::Curve,
+    ) -> Option<Vec<[f64; 2]>> {
         let subject = fields.subject(f.key);
         match f.value.get_ref() {
             DeValue::Table(table) => {
-                let fields = self.fields(subject.name, f.value.span(), table, TARGET_FILE.keys());
+                let fields = self.fields(subject.name, f.value.span(), table, table_of_file.keys());
                 let file = self.need(&fields, "file")?;
-                self.points_in_file(&fields, file, &data::TARGET)
+                self.points_in_file(&fields, file, of)
             }
-            DeValue::String(name) => match self.points_of_text(name, &data::FIRST_TWO, &data::TARGET) {
+            DeValue::String(name) => match self.points_of_text(name, &data::FIRST_TWO, of) {
                 Ok(points) => Some(points),
                 Err(e) => {
                     self.data_error(f.value.span(), e);
                     None
                 }
             },
-            _ => self.pairs(f.value, &subject),
+            _ => self.pairs(f.value, &subject, of.abscissa),
         }
     }
 
     /// A list of pairs of numbers.
-    fn pairs(&mut self, value: &Value<'_>, subject: &Subject) -> Option<Vec<[f64; 2]>> {
-        let expected = "points `[abscissa, value]`, or the name of a CSV file";
-        let list = self.list(value, subject, expected)?;
-        list.iter().map(|pair| self.numbers::<2>(pair, subject, expected)).collect()
+    fn pairs(&mut self, value: &Value<'_>, subject: &Subject, abscissa: &str) -> Option<Vec<[f64; 2]>> {
+        let expected = format!("points `[{abscissa}, value]`, or the name of a CSV file");
+        let list = self.list(value, subject, &expected)?;
+        list.iter().map(|pair| self.numbers::<2>(pair, subject, &expected)).collect()
     }
 
     /// A point that a key names.

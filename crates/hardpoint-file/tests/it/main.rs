@@ -6,6 +6,7 @@ mod cases;
 mod diagnostics;
 mod docs;
 mod edit;
+mod elements;
 mod gallery;
 mod gallery_models;
 mod grids;

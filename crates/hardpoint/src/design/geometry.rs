@@ -5,6 +5,7 @@
 //! | `markers[j][e]`: `r`, `rot` | M_i, M_j = (s, C) | s (3.1), C (2.2) | position, m, and axes of a joint's marker in its body's frame |
 //! | `kept[j]` | L, d0, c0, r0 | C of (4.10), squared there | what its rows compare with |
 //! | `points[k]` | | `s_o` of any point of the body | m, in its body's frame |
+//! | `spin_axes[w]` | e' | | of a wheel, in its body's frame |
 
 use crate::constraint::Row;
 use crate::number::Real;
@@ -19,6 +20,8 @@ pub struct Geometry<T = f64> {
     pub kept: Vec<JointConstants<T>>,
     /// Per point of the model, its position in its body's frame, m.
     pub points: Vec<Vec3<T>>,
+    /// Per wheel of the model, its spin axis in its body's frame, a unit vector.
+    pub spin_axes: Vec<Vec3<T>>,
     /// Per number of the model's masses and forces, its value, SI.
     pub numbers: Vec<T>,
 }

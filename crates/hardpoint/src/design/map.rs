@@ -93,6 +93,7 @@ impl<'m> DesignMap<'m> {
             markers: (0..model.joints.len()).map(|j| [0, 1].map(|e| design.marker(j, e))).collect(),
             kept: (0..model.joints.len()).map(|j| design.kept(j)).collect(),
             points: (0..model.points.len()).map(|k| design.point(k)).collect(),
+            spin_axes: model.wheels.iter().map(|w| design.in_body(w.body, w.spin_axis)).collect(),
             numbers: (0..model.numbers.len()).map(|k| design.number(k)).collect(),
         }
     }
@@ -459,11 +460,13 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
 
     /// The directions that a measure goes by, in their bodies' frames.
     fn directions(&self, measure: &Measure) -> [Option<Vec3<T>>; 2] {
-        let in_body = |(body, axis): (BodyId, Direction)| {
-            // A^T h
-            self.frame(body).rot.transpose_mul(self.direction(axis, &self.values))
-        };
+        let in_body = |(body, axis)| self.in_body(body, axis);
         self.design_map.model().directions(measure).map(|d| d.map(in_body))
+    }
+
+    /// A direction in a body's frame: `A^T h`.
+    fn in_body(&self, body: BodyId, axis: Direction) -> Vec3<T> {
+        self.frame(body).rot.transpose_mul(self.direction(axis, &self.values))
     }
 }
 

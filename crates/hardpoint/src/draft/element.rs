@@ -5,7 +5,8 @@ use crate::expression::Expression;
 use crate::law::Law;
 use crate::model::{
     Angle, Axes, BodyId, CubicStiffness, Damping, Density, ElementKind, Force, Inertia, JointId, Length,
-    Mass, Moment, Plain, PointId, Stiffness, TorsionalDamping, TorsionalStiffness, elements,
+    Mass, Moment, Plain, PointId, Solid, SpringTable, Stiffness, TorsionalDamping, TorsionalStiffness,
+    WheelId, elements,
 };
 use crate::space::Vec3;
 

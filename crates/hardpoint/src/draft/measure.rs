@@ -5,7 +5,8 @@ use crate::expression::Expression;
 use crate::law::Law;
 use crate::model::{
     Axes, AxleMeasure, BodyId, Combination, Direction, DriverId, ElementId, ElementUnit, JointId,
-    MeasureKind, OrientationAngle, OutputSource, PointId, Ray, ReactionPart, WheelMeasure, measures,
+    MeasureKind, OrientationAngle, OutputSource, PointId, Ray, ReactionPart, Solid, WheelId, WheelMeasure,
+    measures,
 };
 use crate::space::Vec3;
 
@@ -64,6 +65,12 @@ pub enum FieldKind {
     Axes,
     /// The name of a force.
     Force,
+    /// The name of a wheel.
+    Wheel,
+    /// A force over a way, as points of a table.
+    Table,
+    /// A closed surface.
+    Mesh,
     /// A number, which may be an expression over parameters.
     Number(ElementUnit),
     /// A number over time.
@@ -95,6 +102,10 @@ pub enum FieldDraft {
     Number(NumberDraft),
     /// A number over time.
     Law(Law),
+    /// Points of a table, SI.
+    Table(Vec<[f64; 2]>),
+    /// What a closed surface bounds.
+    Solid(Solid),
     /// An expression.
     Expression(Expression),
 }

@@ -4,6 +4,7 @@
 mod factors;
 mod least_squares;
 mod matrix;
+mod monotone;
 mod rank;
 pub(crate) mod semidefinite;
 mod sparse;
@@ -13,5 +14,6 @@ pub(crate) mod svd;
 pub(crate) use factors::{Factors, LARGEST_DENSE};
 pub(crate) use least_squares::least_squares;
 pub(crate) use matrix::{Elimination, MOST_GROWTH, Watched};
+pub(crate) use monotone::monotone;
 pub(crate) use rank::FullPivot;
 pub(crate) use spline::{Basis, EndKind, Segment};

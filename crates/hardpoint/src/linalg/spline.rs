@@ -197,7 +197,7 @@ impl Basis {
 }
 
 /// The polynomial over a duration h with the values and derivatives `at(end, order)` at its ends.
-fn hermite(h: f64, rates: usize, at: impl Fn(usize, usize) -> f64) -> Segment {
+pub(super) fn hermite(h: f64, rates: usize, at: impl Fn(usize, usize) -> f64) -> Segment {
     // In u = s/h, with v = h d and a = h² dd.
     let rise = at(1, 0) - at(0, 0);
     let [v0, v1] = [at(0, 1) * h, at(1, 1) * h];

@@ -4,8 +4,10 @@
 
 use crate::constraint::MarkerPair;
 use crate::design::Geometry;
+use crate::measure::WheelAt;
 use crate::model::{
-    Axes, BodyId, ElementId, ElementKind, Length, Model, NumberId, PointId, Stiffness, TorsionalStiffness,
+    Axes, BodyId, ElementId, ElementKind, Inertia, Joint, JointId, Length, Model, NumberId, PointId,
+    Stiffness, TorsionalStiffness, Wheel, WheelId, about_centre,
 };
 use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 
@@ -48,7 +50,7 @@ pub(crate) struct Acting<'a, T> {
     pub laws: &'a [T],
     /// Per element: about what the coordinate is that it acts on, to count angles through whole turns.
     pub near: &'a [T],
-    /// Per element: the moment that friction exerts on its coordinate.
+    /// Per element: the moment or force that friction exerts on its coordinate; of a ball per unit of its turn.
     pub friction: &'a [T],
 }
 
@@ -131,12 +133,27 @@ impl<T: Real> Acting<'_, T> {
         let zero = T::zero();
         let body = kind.mass_on(self.model)?;
         Some(match kind {
-            ElementKind::Rigid { centre, mass, ixx, iyy, izz, ixy, iyz, izx } => {
-                let of = |n: &Option<crate::model::Inertia>| self.or_zero(n.map(|n| n.0));
-                let [a, b, c, d, e, f] = [ixx, iyy, izz, ixy, iyz, izx].map(of);
+            ElementKind::Rigid { centre, mass, ixx, iyy, izz, ixy, iyz, izx, about } => {
+                let of = |n: &Option<Inertia>| n.map(|n| self.number(n.0));
+                let given = [[ixx, iyy, izz].map(of), [ixy, iyz, izx].map(of)];
+                let mass = self.number(mass.0);
+                let [[a, b, c], [d, e, f]] = match about {
+                    Some(about) => about_centre(mass, self.as_drawn(*centre) - self.as_drawn(*about), given),
+                    None => given.map(|list| list.map(|n| n.unwrap_or(zero))),
+                };
                 let cols = [Vec3::new(a, -d, -f), Vec3::new(-d, b, -e), Vec3::new(-f, -e, c)];
                 let inertia = Spread::Matrix(self.turned(body.0), Mat3 { cols });
-                Solid { body, mass: self.number(mass.0), centre: self.point(*centre), inertia }
+                Solid { body, mass, centre: self.point(*centre), inertia }
+            }
+            ElementKind::Mesh { mesh, density, .. } => {
+                let density = self.number(density.0);
+                let (pose, frame) = (self.bodies[body.0].pose, self.model.bodies[body.0].frame);
+                let place = if mesh.in_body { mesh.centre } else { frame.inverse().point(mesh.centre) };
+                let axes = if mesh.in_body { pose.rot } else { self.turned(body.0) };
+                let cols = mesh.inertia().map(|col| col.spread() * density);
+                let inertia = Spread::Matrix(axes, Mat3 { cols });
+                let centre = pose.point(place.spread());
+                Solid { body, mass: density * T::constant(mesh.volume), centre, inertia }
             }
             ElementKind::Bar { from, to, diameter, bore, density } => {
                 let [p, q] = [*from, *to].map(|p| self.point(p));
@@ -189,10 +206,12 @@ impl<T: Real> Acting<'_, T> {
             }
             ElementKind::JointSpring { .. }
             | ElementKind::TorsionSpring { .. }
-            | ElementKind::Friction { .. } => {
-                let Some((joint, ends, row)) = self.row_of(kind) else { return };
+            | ElementKind::Friction { .. }
+            | ElementKind::SlideFriction { .. } => {
+                let Some((joint, l)) = self.unit(e) else { return };
+                let tau = if kind.rubs() { self.friction[e.0] } else { self.size(e) };
                 // g_j = tau l, g_i = -tau l: tau works on the coordinate                                        (44)
-                let push = row.wrench(&ends).times_plus(self.size(e), Wrench::zero());
+                let push = l.times_plus(tau, Wrench::zero());
                 let [i, j] = self.model.joints[joint].bodies;
                 out[j.0] -= push;
                 out[i.0] += push;
@@ -201,6 +220,10 @@ impl<T: Real> Acting<'_, T> {
                 let body = self.body(*at);
                 let push = self.along(*along, *axes, body) * self.size(e);
                 out[body] -= Wrench::force(push, self.point(*at));
+            }
+            ElementKind::WheelForce { wheel, .. } => {
+                let (contact, push) = self.road(e, *wheel);
+                out[self.model.wheels[wheel.0].body.0] -= Wrench::force(push, contact);
             }
             ElementKind::BodyMoment { body, about, axes, .. } => {
                 let turn = self.along(*about, *axes, body.0) * self.size(e);
@@ -214,6 +237,7 @@ impl<T: Real> Acting<'_, T> {
             ElementKind::Rigid { .. }
             | ElementKind::Bar { .. }
             | ElementKind::Block { .. }
+            | ElementKind::Mesh { .. }
             | ElementKind::ElasticJoint { .. } => {}
         }
     }
@@ -228,7 +252,7 @@ impl<T: Real> Acting<'_, T> {
 
     /// The joint whose coordinate an element acts on, its markers, and the row that measures the coordinate.
     fn row_of(&self, kind: &ElementKind) -> Option<(usize, MarkerPair<T>, crate::constraint::Row)> {
-        let (joint, coordinate) = kind.coordinate()?;
+        let (joint, coordinate) = kind.coordinate(self.model)?;
         let j = &self.model.joints[joint.0];
         let [m_i, m_j] = self.geometry.markers[joint.0];
         let [i, j_pose] = j.bodies.map(|b| self.bodies[b.0].pose);
@@ -241,19 +265,15 @@ impl<T: Real> Acting<'_, T> {
     pub fn size(&self, e: ElementId) -> T {
         let kind = &self.model.elements[e.0].kind;
         match kind {
-            ElementKind::Spring { from, to, stiffness, cubic, free_length, preload, damping } => {
+            ElementKind::Spring { from, to, preload, damping, .. } => {
                 let (p, q) = (self.point(*from), self.point(*to));
                 let d = q - p;
                 let length = d.norm();
-                let way = length - self.free_length(*from, *to, *free_length);
                 let velocity =
                     self.bodies[self.body(*to)].velocity(q) - self.bodies[self.body(*from)].velocity(p);
                 let rate = d.dot(velocity) / length;
-                // s = p + k (L - L_o) + k_3 (L - L_o)^3 + c L.
-                let mut tension = self.number(stiffness.0) * way + self.or_zero(preload.map(|n| n.0));
-                if let Some(cubic) = cubic {
-                    tension += self.number(cubic.0) * way * way * way;
-                }
+                // s = p + k (L - L_o) + k_3 (L - L_o)^3 + f T(L - L_o) + c L.
+                let mut tension = self.pull(kind, length)[0] + self.or_zero(preload.map(|n| n.0));
                 if let Some(damping) = damping {
                     tension += self.number(damping.0) * rate;
                 }
@@ -265,33 +285,157 @@ impl<T: Real> Acting<'_, T> {
             ElementKind::TorsionSpring { stiffness, free, damping, .. } => {
                 self.on_coordinate(e, stiffness.0, free.map(|n| n.0), damping.map(|n| n.0))
             }
-            ElementKind::Friction { .. } => self.friction[e.0],
+            ElementKind::Friction { .. } | ElementKind::SlideFriction { .. } => match self.ball(kind) {
+                Some((_, turn)) => self.friction[e.0] * magnitude(self.heading(kind, turn), STILL),
+                None => self.friction[e.0],
+            },
+            ElementKind::WheelForce { wheel, .. } => pressing(self.road(e, *wheel).1),
             ElementKind::PointForce { force, .. } => self.number(force.0) * self.laws[e.0],
             ElementKind::BodyMoment { moment, .. } => self.number(moment.0) * self.laws[e.0],
-            ElementKind::Bushing { .. } => self.bushing(kind).f.norm(),
+            ElementKind::Bushing { .. } => pressing(self.bushing(kind).f),
             ElementKind::Rigid { .. }
             | ElementKind::Bar { .. }
             | ElementKind::Block { .. }
+            | ElementKind::Mesh { .. }
             | ElementKind::ElasticJoint { .. } => T::zero(),
         }
     }
 
-    /// The wrench that works on the coordinate that an element acts on, one unit of it.
+    /// What a spring's deflection makes of its tension, and how that goes with its length.
+    fn pull(&self, kind: &ElementKind, length: T) -> [T; 2] {
+        let ElementKind::Spring { from, to, stiffness, cubic, scale, free_length, .. } = kind else {
+            return [T::zero(); 2];
+        };
+        let way = length - self.free_length(*from, *to, *free_length);
+        let stiffness = self.or_zero(stiffness.map(|n| n.0));
+        let (mut pull, mut slope) = (stiffness * way, stiffness);
+        if let Some(cubic) = cubic {
+            let cubic = self.number(cubic.0) * way * way;
+            // ds/dL = k + 3 k_3 (L - L_o)^2 + f T'(L - L_o)
+            (pull, slope) = (pull + cubic * way, slope + cubic * T::constant(3.0));
+        }
+        if let Some(table) = kind.table() {
+            let scale = scale.map_or_else(T::one, |n| self.number(n.0));
+            let [force, by_way] = table.at(way);
+            (pull, slope) = (pull + scale * force, slope + scale * by_way);
+        }
+        [pull, slope]
+    }
+
+    /// Where the road pushes a wheel, and how.
+    fn road(&self, e: ElementId, wheel: WheelId) -> (Vec3<T>, Vec3<T>) {
+        let ElementKind::WheelForce { outboard, forward, up, .. } = &self.model.elements[e.0].kind else {
+            return (Vec3::zero(), Vec3::zero());
+        };
+        let now = self.wheel(wheel);
+        let [o, f, z] = [outboard, forward, up].map(|n| self.or_zero(n.map(|n| n.0)));
+        let push = now.outboard() * o + now.forward() * f + Vec3::AXES[2].spread() * z;
+        (now.contact(), push * self.laws[e.0])
+    }
+
+    /// A wheel where it is.
+    pub fn wheel(&self, wheel: WheelId) -> WheelAt<T> {
+        let Wheel { body, centre, radius, side, .. } = &self.model.wheels[wheel.0];
+        WheelAt {
+            centre: self.point(*centre),
+            // e = A e', e' fixed in the knuckle
+            spin_axis: self.bodies[body.0].pose.rot * self.geometry.spin_axes[wheel.0],
+            radius: T::constant(*radius),
+            side: T::constant(side.sign()),
+            kingpin: None,
+            planes: None,
+            spring: None,
+        }
+    }
+
+    /// Of friction in a ball joint the joint, and the angular velocity of its second body relative to the first.
+    fn ball(&self, kind: &ElementKind) -> Option<(JointId, Vec3<T>)> {
+        let ElementKind::Friction { joint, .. } = kind else { return None };
+        let Joint { kind: of, bodies, .. } = &self.model.joints[joint.0];
+        let [i, j] = bodies.map(|b| self.bodies[b.0].v.w);
+        of.coordinates.is_empty().then(|| (*joint, j - i))
+    }
+
+    /// The direction that a ball turns in, shorter than 1 where that is slow: `omega / sqrt(omega^2 + w_0^2)`.
+    fn heading(&self, kind: &ElementKind, turn: Vec3<T>) -> Vec3<T> {
+        turn * (T::one() / magnitude_with(turn, self.fades(kind)))
+    }
+
+    /// The wrench that works on what an element acts on, one unit of it: on a coordinate, or on the turn of a ball.
     pub fn unit(&self, e: ElementId) -> Option<(usize, Wrench<T>)> {
-        let (joint, ends, row) = self.row_of(&self.model.elements[e.0].kind)?;
+        let kind = &self.model.elements[e.0].kind;
+        if let Some((joint, turn)) = self.ball(kind) {
+            return Some((joint.0, Wrench::moment(self.heading(kind, turn))));
+        }
+        let (joint, ends, row) = self.row_of(kind)?;
         Some((joint, row.wrench(&ends)))
     }
 
-    /// How much friction a hinge has per force across its axis, against its motion: `mu r s`, with s from -1 to 1, 0 at rest.
-    pub fn grip(&self, e: ElementId) -> T {
-        let ElementKind::Friction { coefficient, radius, fades, .. } = &self.model.elements[e.0].kind else {
-            return T::zero();
+    /// The speed below which friction fades.
+    fn fades(&self, kind: &ElementKind) -> T {
+        let given = match kind {
+            ElementKind::Friction { fades, .. } => (fades.map(|n| n.0), FADES),
+            ElementKind::SlideFriction { fades, .. } => (fades.map(|n| n.0), SLIDE_FADES),
+            _ => (None, FADES),
         };
-        let Some([_, rate]) = self.coordinate(e) else { return T::zero() };
-        let fades = fades.map_or_else(|| T::constant(FADES), |n| self.number(n.0));
+        given.0.map_or_else(|| T::constant(given.1), |n| self.number(n))
+    }
+
+    /// How much friction there is per force that presses, against the motion, and how much besides: `mu r s` and `c w` of a hinge, `mu s` and
+    /// `c v` of a slide, with s from -1 to 1, 0 at rest; of a ball, whose unit has s in it, `mu r` and `c sqrt(omega^2 + w_0^2)`.
+    pub fn grip(&self, e: ElementId) -> [T; 2] {
+        let kind = &self.model.elements[e.0].kind;
+        let (coefficient, radius, viscous) = match kind {
+            ElementKind::Friction { coefficient, radius, viscous, .. } => {
+                (coefficient, Some(radius), viscous.map(|n| n.0))
+            }
+            ElementKind::SlideFriction { coefficient, viscous, .. } => {
+                (coefficient, None, viscous.map(|n| n.0))
+            }
+            _ => return [T::zero(); 2],
+        };
+        let grip = self.number(coefficient.0);
+        let grip = radius.map_or(grip, |radius| grip * self.number(radius.0));
+        let (fades, viscous) = (self.fades(kind), self.or_zero(viscous));
+        if let Some((_, turn)) = self.ball(kind) {
+            return [grip, viscous * magnitude_with(turn, fades)];
+        }
+        let Some([_, rate]) = self.coordinate(e) else { return [T::zero(); 2] };
         // s = w / sqrt(w^2 + w_0^2)
         let s = rate / (rate * rate + fades * fades).sqrt();
-        self.number(coefficient.0) * self.number(radius.0) * s
+        [grip * s, viscous * rate]
+    }
+
+    /// What presses where an element rubs, of a wrench that its joint puts on its second body: the force across the axis, or both ends of a
+    /// bearing that has a length; the whole force of a ball. As many of them count.
+    pub fn presses(&self, e: ElementId, wrench: Wrench<T>) -> ([Vec3<T>; 2], usize) {
+        let kind = &self.model.elements[e.0].kind;
+        let (joint, length, normal) = match kind {
+            ElementKind::Friction { joint, length, .. } => (*joint, length, None),
+            ElementKind::SlideFriction { joint, length, normal, .. } => (*joint, length, *normal),
+            _ => return ([Vec3::zero(); 2], 0),
+        };
+        if self.ball(kind).is_some() {
+            return ([wrench.f, Vec3::zero()], 1);
+        }
+        let body = self.model.joints[joint.0].bodies[1];
+        let marker = self.bodies[body.0].pose.compose(self.geometry.markers[joint.0][1]);
+        let z = marker.rot.cols[2];
+        let across = |v: Vec3<T>| match normal {
+            None => v - z * z.dot(v),
+            Some(normal) => {
+                // Along p = n x z alone
+                let p = (self.turned(body.0) * normal.spread()).cross(z);
+                p * (p.dot(v) / p.dot(p))
+            }
+        };
+        let force = across(wrench.f);
+        let Some(length) = length else { return ([force, Vec3::zero()], 1) };
+        // P = F/2 +- z x M / L, with M about the joint's place
+        let moment = wrench.m - marker.r.cross(wrench.f);
+        let couple = across(z.cross(moment)) * (T::one() / self.number(length.0));
+        let half = force * T::constant(0.5);
+        ([half + couple, half - couple], 2)
     }
 
     /// tau = -k (chi - chi_o) - c chi.,  chi counted from the drawing.
@@ -311,15 +455,9 @@ impl<T: Real> Acting<'_, T> {
     pub fn deflections(&self, e: ElementId, mut each: impl FnMut(T, T)) {
         let kind = &self.model.elements[e.0].kind;
         match kind {
-            ElementKind::Spring { from, to, stiffness, cubic, free_length, .. } => {
+            ElementKind::Spring { from, to, .. } => {
                 let length = (self.point(*to) - self.point(*from)).norm();
-                let mut slope = self.number(stiffness.0);
-                if let Some(cubic) = cubic {
-                    let way = length - self.free_length(*from, *to, *free_length);
-                    // ds/dL = k + 3 k_3 (L - L_o)^2
-                    slope += self.number(cubic.0) * way * way * T::constant(3.0);
-                }
-                each(length, slope);
+                each(length, self.pull(kind, length)[1]);
             }
             ElementKind::JointSpring { stiffness: Stiffness(n), .. }
             | ElementKind::TorsionSpring { stiffness: TorsionalStiffness(n), .. } => {
@@ -393,8 +531,29 @@ impl<T: Real> Acting<'_, T> {
     }
 }
 
-/// Below this speed, rad/s, friction fades unless something else is said.
+/// Below this speed, rad/s, friction fades unless something else is said; of slides, m/s.
 const FADES: f64 = 0.01;
+const SLIDE_FADES: f64 = 0.001;
+
+/// Forces below this, N, are none: the size of a force has a derivative at zero.
+const NO_FORCE: f64 = 1e-9;
+/// The same of a direction.
+const STILL: f64 = 1e-12;
+
+/// The size of a vector, which below some size has a derivative all the same.
+pub(super) fn magnitude<T: Real>(v: Vec3<T>, none: f64) -> T {
+    magnitude_with(v, T::constant(none))
+}
+
+/// `sqrt(v^2 + a^2)`.
+fn magnitude_with<T: Real>(v: Vec3<T>, a: T) -> T {
+    (v.dot(v) + a * a).sqrt()
+}
+
+/// The size of a force.
+pub(super) fn pressing<T: Real>(force: Vec3<T>) -> T {
+    magnitude(force, NO_FORCE)
+}
 
 /// Below this square of its sine an angle is its sine and a third power, to round-off.
 const SMALL: f64 = 1e-6;
@@ -406,11 +565,15 @@ fn rotation_vector<T: Real>(rot: Mat3<T>) -> Vec3<T> {
     // sin(theta) n and cos(theta)
     let sine = Vec3::new(y.z - z.y, z.x - x.z, x.y - y.x) * half;
     let square = sine.dot(sine);
+    let small = T::constant(SMALL);
+    // A recording is told which of the two must hold where it is run.
     if square.decisive() < SMALL {
+        small.exceeds(square);
         // theta / sin(theta) = 1 + s^2/6 + 3 s^4/40
         let more = square * T::constant(3.0 / 40.0) + T::constant(1.0 / 6.0);
         sine * (square * more + T::one())
     } else {
+        square.exceeds(small);
         let cosine = (x.x + y.y + z.z - T::one()) * half;
         let size = sine.norm();
         sine * (size.atan2(cosine) / size)

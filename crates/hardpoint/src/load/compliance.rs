@@ -7,11 +7,13 @@
 use crate::design::{BodyFixed, DesignMap, Geometry};
 use crate::linalg::Elimination;
 use crate::measure::{Instant, StepValues, bodies_asked_for};
-use crate::model::{DriverId, ElementId, ElementKind, GROUND, MeasureKind, Model, NumberId, VariableId};
+use crate::model::{
+    DriverId, ElementId, ElementKind, GROUND, MeasureKind, Model, NumberId, VariableId, WheelId,
+};
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{PairDirection, Seconds};
-use crate::space::{Pose, Twist, Vec3};
+use crate::space::{Mat3, Pose, Twist, Vec3};
 use crate::topology::Topology;
 
 use super::acting::{Acting, Moving};
@@ -159,7 +161,9 @@ impl<'a> Compliances<'a> {
             given.push(list);
         }
         for &m in &self.asked {
-            let MeasureKind::Compliance { of, at, along, .. } = &model.measures[m].kind else { continue };
+            let MeasureKind::Compliance { of, at, wheel, along, .. } = &model.measures[m].kind else {
+                continue;
+            };
             let released = released_by(model, m);
             let counts = |way: &Way| match way {
                 Way::Opening(_) => true,
@@ -172,8 +176,11 @@ impl<'a> Compliances<'a> {
             for &w in &chosen {
                 let poses = &self.poses[w];
                 gives.push(Instant::new(model, fixed, poses).output(*of).d);
-                let point = &model.points[at.0];
-                let p = poses[point.body.0].point(fixed.points[at.0]);
+                let p = match (at, wheel) {
+                    (Some(at), _) => poses[model.points[at.0].body.0].point(fixed.points[at.0]),
+                    (None, Some(wheel)) => self.contact(poses, geometry, *wheel),
+                    (None, None) => Vec3::zero(),
+                };
                 works.push(along.spread::<Number>().dot(p).d);
             }
             let mut stiffness = Elimination::<Dual>::new(chosen.len());
@@ -199,6 +206,23 @@ impl<'a> Compliances<'a> {
             };
             if by < self.variables { out.set_d(by, m, x.d) } else { out.set(m, x.v) }
         }
+    }
+}
+
+impl Compliances<'_> {
+    /// Where a wheel stands, as the point of its body that is there now goes along a way: it is that which the road pushes, while the contact
+    /// point wanders on the wheel.
+    fn contact(&self, poses: &[Pose<Number>], geometry: &Geometry<Number>, wheel: WheelId) -> Vec3<Number> {
+        let body = self.model.wheels[wheel.0].body.0;
+        let now = |x: Number| Dual::constant(x.v);
+        let held =
+            |p: &Pose<Number>| Pose { rot: Mat3 { cols: p.rot.cols.map(|c| c.map(now)) }, r: p.r.map(now) };
+        let mut bodies = vec![Moving::still(); poses.len()];
+        bodies[body].pose = held(&poses[body]);
+        let (laws, near, friction) = (&self.laws, &self.near, &self.friction);
+        let acting = Acting { model: self.model, geometry, bodies: &bodies, laws, near, friction };
+        let contact = acting.wheel(wheel).contact();
+        poses[body].point(bodies[body].pose.inverse().point(contact))
     }
 }
 

@@ -1,80 +1,90 @@
-//! Coulomb friction in hinges: from the force across the pin, which it changes itself; (46) of `docs/theory.md`.
+//! Coulomb friction in joints: from the forces that press there, which it changes itself; (46) of `docs/theory.md`.
 //!
-//! With M the moments of all hinges that rub, what joints carry is `T(M) = T_0 + B M`, since loads superpose; each moment is to be
-//! `M = -c N(T(M))`, with N the force across its pin and `c = mu r s` its grip. That is as many equations as hinges, solved by Newton.
+//! With M the moments of all hinges, and forces of all slides, that rub, what joints carry is `T(M) = T_0 + B M`, since loads superpose; each
+//! is to be `M = -c N(T(M)) - d`, with N what presses, c its grip (`mu r s` of a hinge) and d what is viscous. That is as many equations as
+//! joints that rub, solved by Newton.
 
 use crate::linalg::Elimination;
-use crate::model::{ElementId, ElementKind, JointId, MeasureKind, Model, ReactionPart};
+use crate::model::{ElementId, ElementKind, JointId, Model};
 use crate::number::Dual;
 use crate::space::{Real, Vec3, Wrench};
 
-use super::acting::Acting;
+use super::acting::{Acting, pressing};
 use super::carry::Carried;
+use super::measures::Instant;
+use super::solver::LoadSolver;
 
-/// Newton from no friction takes 3 to 7 steps where there is a solution; hinges that have none after so many jam.
+/// Newton from no friction takes 3 to 7 steps where there is a solution; joints that have none after so many jam.
 const MOST_STEPS: usize = 40;
-/// Moments are solved to this part of the largest term.
+/// Moments and forces are solved to this part of the largest term.
 const SOLVED: f64 = 1e-13;
-/// Forces below this, N, press no pin: the size of a force has a derivative at zero.
-const PRESSES: f64 = 1e-9;
 
-/// The hinges that rub.
+/// The joints that rub.
 pub(super) struct Friction {
-    hinges: Vec<Hinge>,
+    rubs: Vec<Rub>,
     /// `1 + diag(c) dN/dM` where it was solved.
     matrix: Elimination<f64>,
-    /// Per hinge: the moment, and its derivative by a variable.
+    /// Per joint that rubs: the moment or force, and its derivative by a variable.
     moments: Vec<f64>,
     changes: Vec<f64>,
 }
 
-struct Hinge {
+struct Rub {
     element: ElementId,
     joint: JointId,
-    /// Its grip c, and the force across its pin without friction.
+    /// Its grip c, what is viscous, and what presses without friction.
     grip: f64,
-    across: Vec3,
-    /// Per hinge: that force per unit moment there.
-    per_moment: Vec<Vec3>,
+    viscous: f64,
+    presses: ([Vec3; 2], usize),
+    /// Per joint that rubs: what presses here per unit moment there.
+    per_moment: Vec<[Vec3; 2]>,
+    /// Whether redundant constraints share what presses.
+    is_shared: bool,
+}
+
+impl Rub {
+    fn of(model: &Model, element: ElementId) -> Option<Self> {
+        let (ElementKind::Friction { joint, .. } | ElementKind::SlideFriction { joint, .. }) =
+            model.elements[element.0].kind
+        else {
+            return None;
+        };
+        let (presses, per_moment) = (([Vec3::ZERO; 2], 0), Vec::new());
+        Some(Self { element, joint, grip: 0.0, viscous: 0.0, presses, per_moment, is_shared: false })
+    }
 }
 
 impl Friction {
     pub fn new(model: &Model) -> Self {
-        let hinge = |(e, element): (usize, &crate::model::Element)| match element.kind {
-            ElementKind::Friction { joint, .. } => Some(Hinge {
-                element: ElementId(e),
-                joint,
-                grip: 0.0,
-                across: Vec3::ZERO,
-                per_moment: Vec::new(),
-            }),
-            _ => None,
-        };
-        let hinges: Vec<Hinge> = model.elements.iter().enumerate().filter_map(hinge).collect();
-        let n = hinges.len();
-        Self { hinges, matrix: Elimination::new(n), moments: vec![0.0; n], changes: vec![0.0; n] }
+        let elements = (0..model.elements.len()).map(ElementId);
+        let rubs: Vec<Rub> = elements.filter_map(|e| Rub::of(model, e)).collect();
+        let n = rubs.len();
+        Self { rubs, matrix: Elimination::new(n), moments: vec![0.0; n], changes: vec![0.0; n] }
     }
 
     pub fn is_empty(&self) -> bool {
-        self.hinges.is_empty()
+        self.rubs.is_empty()
     }
 
-    /// Takes what pins carry without friction; `responses` say what all joints carry of a unit moment in each hinge.
-    pub fn set(&mut self, acting: &Acting<'_, f64>, carried: &Carried<f64>, responses: Vec<Vec<Wrench>>) {
-        for hinge in &mut self.hinges {
-            hinge.grip = acting.grip(hinge.element);
-            hinge.across = across(acting, hinge.joint, carried.joints[hinge.joint.0]);
-            let per = |all: &Vec<Wrench>| across(acting, hinge.joint, all[hinge.joint.0]);
-            hinge.per_moment = responses.iter().map(per).collect();
+    /// Takes what joints carry without friction; `responses` say what all of them carry of a unit moment in each that rubs.
+    pub fn set(&mut self, acting: &Acting<'_, f64>, carried: &Carried<f64>, responses: &[Vec<Wrench>]) {
+        for rub in &mut self.rubs {
+            [rub.grip, rub.viscous] = acting.grip(rub.element);
+            rub.presses = acting.presses(rub.element, carried.joints[rub.joint.0]);
+            // What presses is linear in what the joint carries.
+            let per = |all: &Vec<Wrench>| acting.presses(rub.element, all[rub.joint.0]).0;
+            rub.per_moment = responses.iter().map(per).collect();
         }
     }
 
-    /// Finds the moments; they are no numbers where hinges jam, or where `is_known` says that a pin shares its force with others.
-    pub fn solve(&mut self, is_known: impl Fn(&MeasureKind) -> bool) {
+    /// Finds the moments; they are no numbers where joints jam, or where redundant constraints, each pulling by itself, change what presses.
+    pub fn solve(&mut self, acting: &Acting<'_, f64>, stresses: &[Carried<f64>]) {
         self.moments.fill(0.0);
-        let radial =
-            |joint| MeasureKind::Reaction { joint, part: ReactionPart::Radial, on: None, axes: None };
-        let known = self.hinges.iter().all(|h| is_known(&radial(h.joint)));
+        for rub in &mut self.rubs {
+            let leaves = |carried| Instant { acting, carried }.presses_nothing(rub.element, rub.joint);
+            rub.is_shared = !stresses.iter().all(leaves);
+        }
+        let known = self.shared().next().is_none();
         if !(known && (0..MOST_STEPS).any(|_| self.newton())) {
             self.moments.fill(f64::NAN);
         }
@@ -82,20 +92,27 @@ impl Friction {
 
     /// One step; whether the moments were solved before it.
     fn newton(&mut self) -> bool {
-        let n = self.hinges.len();
+        let n = self.rubs.len();
         let mut rhs = vec![0.0; n];
         let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
-        for (k, hinge) in self.hinges.iter().enumerate() {
-            let force =
-                hinge.per_moment.iter().zip(&self.moments).fold(hinge.across, |f, (b, m)| f + *b * *m);
-            let size = pressing(force);
-            // M + c N = 0
-            rhs[k] = -(self.moments[k] + hinge.grip * size);
-            worst = worst.max(rhs[k].abs());
-            largest = largest.max(self.moments[k].abs()).max((hinge.grip * size).abs());
-            for (c, entry) in self.matrix.row_mut(k).iter_mut().enumerate() {
-                *entry = f64::from(u8::from(c == k)) + hinge.grip * force.dot(hinge.per_moment[c]) / size;
+        for (k, rub) in self.rubs.iter().enumerate() {
+            let (presses, count) = rub.presses;
+            let row = self.matrix.row_mut(k);
+            row.iter_mut().enumerate().for_each(|(c, entry)| *entry = f64::from(u8::from(c == k)));
+            let mut size = 0.0;
+            for (end, force) in presses.into_iter().enumerate().take(count) {
+                let here = rub.per_moment.iter().map(|b| b[end]);
+                let force = here.clone().zip(&self.moments).fold(force, |f, (b, m)| f + b * *m);
+                let pressed = pressing(force);
+                size += pressed;
+                for (entry, b) in row.iter_mut().zip(here) {
+                    *entry += rub.grip * force.dot(b) / pressed;
+                }
             }
+            // M + c N + d = 0
+            rhs[k] = -(self.moments[k] + rub.grip * size + rub.viscous);
+            worst = worst.max(rhs[k].abs());
+            largest = largest.max(self.moments[k].abs()).max((rub.grip * size).abs()).max(rub.viscous.abs());
         }
         self.matrix.factor();
         if worst <= SOLVED * largest {
@@ -106,26 +123,30 @@ impl Friction {
         false
     }
 
-    /// How the moments change, from what pins carry while these stand.
+    /// How the moments change, from what joints carry while these stand.
     pub fn differentiate(&mut self, acting: &Acting<'_, Dual>, carried: &Carried<Dual>) {
-        for (change, hinge) in self.changes.iter_mut().zip(&self.hinges) {
-            let force = across(acting, hinge.joint, carried.joints[hinge.joint.0]);
-            // (1 + diag(c) dN/dM) M' = -(c' N + c N')
-            *change = -(acting.grip(hinge.element) * pressing(force)).d;
+        for (change, rub) in self.changes.iter_mut().zip(&self.rubs) {
+            // (1 + diag(c) dN/dM) M' = -(c' N + c N' + d')
+            *change = -resistance(acting, rub, carried).d;
         }
         self.matrix.solve(&mut self.changes);
     }
 
+    /// Those whose forces nobody knows, because redundant constraints share what presses.
+    pub fn shared(&self) -> impl Iterator<Item = ElementId> {
+        self.rubs.iter().filter(|rub| rub.is_shared).map(|rub| rub.element)
+    }
+
     /// The elements that rub, and their joints.
     pub fn elements(&self) -> impl Iterator<Item = ElementId> {
-        self.hinges.iter().map(|h| h.element)
+        self.rubs.iter().map(|h| h.element)
     }
 
     pub fn joints(&self) -> impl Iterator<Item = JointId> {
-        self.hinges.iter().map(|h| h.joint)
+        self.rubs.iter().map(|h| h.joint)
     }
 
-    /// By how much each equation `M + c N = 0` counts for a load with these derivatives by the moments: `E_M^T lambda = -y_M`.
+    /// By how much each equation `M + c N + d = 0` counts for a load with these derivatives by the moments: `E_M^T lambda = -y_M`.
     pub fn multipliers(&self, by_moments: Vec<f64>) -> Vec<f64> {
         let mut lambda: Vec<f64> = by_moments.iter().map(|x| -x).collect();
         self.matrix.clone().solve_transposed(&mut lambda);
@@ -134,34 +155,35 @@ impl Friction {
 
     /// By how much the equations miss, each as much as it counts.
     pub fn misses(&self, acting: &Acting<'_, Dual>, carried: &Carried<Dual>, counts: &[f64]) -> Dual {
-        let of = |(hinge, counts): (&Hinge, &f64)| {
-            let force = across(acting, hinge.joint, carried.joints[hinge.joint.0]);
-            // M + c N
-            (acting.friction[hinge.element.0] + acting.grip(hinge.element) * pressing(force)) * *counts
+        let of = |(rub, counts): (&Rub, &f64)| {
+            // M + c N + d
+            (acting.friction[rub.element.0] + resistance(acting, rub, carried)) * *counts
         };
-        self.hinges.iter().zip(counts).map(of).fold(Dual::zero(), |sum, x| sum + x)
+        self.rubs.iter().zip(counts).map(of).fold(Dual::zero(), |sum, x| sum + x)
     }
 
     /// Enters the moments by element.
     pub fn enter(&self, out: &mut [f64]) {
-        self.hinges.iter().zip(&self.moments).for_each(|(hinge, m)| out[hinge.element.0] = *m);
+        self.rubs.iter().zip(&self.moments).for_each(|(rub, m)| out[rub.element.0] = *m);
     }
 
     /// The same with their derivatives.
     pub fn enter_changed(&self, out: &mut [Dual]) {
         let both = self.moments.iter().zip(&self.changes);
-        self.hinges.iter().zip(both).for_each(|(hinge, (v, d))| out[hinge.element.0] = Dual { v: *v, d: *d });
+        self.rubs.iter().zip(both).for_each(|(rub, (v, d))| out[rub.element.0] = Dual { v: *v, d: *d });
     }
 }
 
-/// The force across a hinge's axis.
-fn across<T: Real>(acting: &Acting<'_, T>, joint: JointId, wrench: Wrench<T>) -> Vec3<T> {
-    let body = acting.model.joints[joint.0].bodies[1];
-    let z = acting.bodies[body.0].pose.rot * acting.geometry.markers[joint.0][1].rot.cols[2];
-    wrench.f - z * z.dot(wrench.f)
+impl LoadSolver<'_> {
+    /// Friction that nobody knows at the step that was solved, because redundant constraints share what presses there.
+    pub fn shared_friction(&self) -> impl Iterator<Item = ElementId> {
+        self.friction.shared()
+    }
 }
 
-/// Its size.
-fn pressing<T: Real>(force: Vec3<T>) -> T {
-    (force.dot(force) + T::constant(PRESSES * PRESSES)).sqrt()
+/// `c N + d`.
+fn resistance<T: Real>(acting: &Acting<'_, T>, rub: &Rub, carried: &Carried<T>) -> T {
+    let [grip, viscous] = acting.grip(rub.element);
+    let (presses, count) = acting.presses(rub.element, carried.joints[rub.joint.0]);
+    presses.into_iter().take(count).fold(viscous, |sum, force| sum + grip * pressing(force))
 }

@@ -225,14 +225,14 @@ impl LoadGradients {
 /// Whether a variable changes numbers, points, or markers that loads go by.
 fn touches(model: &Model, changed: &Geometry<Dual>) -> bool {
     let goes = |v: Vec3<Dual>| [v.x, v.y, v.z].iter().any(|x| x.d != 0.0);
-    let of_elements = model.elements.iter().filter_map(|e| e.kind.coordinate()).map(|(joint, _)| joint);
+    let of_elements = model.elements.iter().filter_map(|e| e.kind.coordinate(model)).map(|(joint, _)| joint);
     let of_measures = model.measures.iter().filter_map(|m| match m.kind {
         MeasureKind::Reaction { joint, .. } => Some(joint),
         _ => None,
     });
     let marker = |m: &Pose<Dual>| goes(m.r) || m.rot.cols.iter().any(|c| goes(*c));
     changed.numbers.iter().any(|n| n.d != 0.0)
-        || changed.points.iter().any(|p| goes(*p))
+        || changed.points.iter().chain(&changed.spin_axes).any(|p| goes(*p))
         || of_elements.chain(of_measures).any(|joint| {
             changed.markers[joint.0].iter().any(marker)
                 || changed.kept[joint.0].numbers().iter().any(|x| x.d != 0.0)

@@ -1,6 +1,6 @@
 //! The measures of loads, over any number.
 
-use crate::model::{Axes, BodyId, JointId, MeasureKind, ReactionPart};
+use crate::model::{Axes, BodyId, ElementId, JointId, MeasureKind, ReactionPart};
 use crate::space::{Mat3, Real, Vec3, Wrench};
 
 use super::acting::Acting;
@@ -81,18 +81,30 @@ impl<T: Real> Instant<'_, T> {
     /// How much of that reaction there is in loads that a redundant constraint exerts by itself; not above zero where it is nothing but
     /// round-off.
     pub fn excess(&self, kind: &MeasureKind) -> T {
-        let size = self.acting.model.size();
-        let joints = (0..self.acting.model.joints.len()).map(JointId);
-        // Forces, and moments by the size of the mechanism.
-        let most = joints.fold(T::zero(), |most, joint| {
-            let [_, force, moment] = self.wrench(joint);
-            most.larger(force.norm()).larger(moment.norm() * (1.0 / size))
-        });
+        let (size, most) = (self.acting.model.size(), self.most());
         let scale = match kind {
             MeasureKind::Reaction { part, .. } if part.is_moment() => most * size,
             _ => most,
         };
         self.measure(kind).abs() - scale * KNOWN
+    }
+
+    /// The largest force that a joint carries, moments by the size of the mechanism.
+    fn most(&self) -> T {
+        let size = self.acting.model.size();
+        let joints = (0..self.acting.model.joints.len()).map(JointId);
+        joints.fold(T::zero(), |most, joint| {
+            let [_, force, moment] = self.wrench(joint);
+            most.larger(force.norm()).larger(moment.norm() * (1.0 / size))
+        })
+    }
+}
+
+impl Instant<'_, f64> {
+    /// Whether there is nothing of what presses where an element rubs.
+    pub fn presses_nothing(&self, e: ElementId, joint: JointId) -> bool {
+        let (presses, count) = self.acting.presses(e, self.carried.joints[joint.0]);
+        presses.iter().take(count).all(|force| force.norm() <= KNOWN * self.most())
     }
 }
 

@@ -1,7 +1,7 @@
 //! Loads as part of a step's program: what joints and drivers carry is recorded where the position is, with its factors.
 //!
-//! Not recorded are hinges that rub, whose moments are iterated, and elements on angles that are counted along the path: these go by the
-//! kernel. Which reactions are known is a result like others: in some positions redundant constraints share what they do not in others.
+//! Not recorded are joints that rub, with forces that are iterated, springs by tables, and elements on angles that are counted along the path:
+//! these go by the kernel. Which reactions are known is a result like others: in some positions redundant constraints share what they do not in others.
 
 use hardpoint_tape::Number;
 
@@ -30,8 +30,11 @@ pub(crate) fn hindrance(model: &Model, topology: &Topology) -> Option<&'static s
         return Some("the program of its loads would be too long");
     }
     let kinds = || model.elements.iter().map(|e| &e.kind);
-    if kinds().any(|kind| matches!(kind, ElementKind::Friction { .. })) {
-        return Some("hinges rub, whose moments are iterated");
+    if kinds().any(ElementKind::rubs) {
+        return Some("joints rub, with forces that are iterated");
+    }
+    if !kinds().all(ElementKind::is_arithmetic) {
+        return Some("the force of a spring is looked up in a table");
     }
     let counted =
         (0..model.elements.len()).any(|e| matches!(Turns::of(model, topology, ElementId(e)), Turns::Path(_)));

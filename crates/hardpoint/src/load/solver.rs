@@ -130,11 +130,11 @@ impl<'a> LoadSolver<'a> {
             let [i, j] = model.joints[joint].bodies;
             bodies.response(topology, state, [(j.0, l), (i.0, Wrench::zero() - l)])
         };
-        let responses = units.into_iter().map(response).collect();
+        let responses: Vec<_> = units.into_iter().map(response).collect();
         let acting = bodies.now.acting(model, geometry);
-        friction.set(&acting, &bodies.now.found, responses);
+        friction.set(&acting, &bodies.now.found, &responses);
         // Where constraints share the force across a pin nobody knows its friction.
-        friction.solve(|kind| is_known(kind, &acting, stresses));
+        friction.solve(&acting, stresses);
         friction.enter(&mut bodies.now.friction);
         bodies.carry(topology, state, (model, geometry));
     }

@@ -16,7 +16,7 @@ pub(super) enum Turns {
 
 impl Turns {
     pub fn of(model: &Model, topology: &Topology, e: ElementId) -> Self {
-        let Some((joint, coordinate)) = model.elements[e.0].kind.coordinate() else { return Self::None };
+        let Some((joint, coordinate)) = model.elements[e.0].kind.coordinate(model) else { return Self::None };
         let link = topology.links.iter().find(|link| link.joint == Some(joint));
         match link.zip(model.joints[joint.0].kind.coordinates[coordinate].freedom) {
             Some((link, freedom)) => {

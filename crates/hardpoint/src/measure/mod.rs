@@ -22,7 +22,8 @@ use program::MeasureRun;
 pub(crate) use program::{MeasureProgram, ProgramKey, dependences};
 pub(crate) use slope::Slopes;
 pub(crate) use step_values::StepValues;
-use wheel::{WheelAt, camber, toe};
+pub(crate) use wheel::WheelAt;
+use wheel::{camber, toe};
 
 use crate::blocks::Blocks;
 use crate::constraint::Row;

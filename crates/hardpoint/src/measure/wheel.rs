@@ -16,7 +16,7 @@ use crate::space::{Twist, Vec3};
 
 /// A wheel somewhere on its way: z is up and the ground level.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct WheelAt<T> {
+pub(crate) struct WheelAt<T> {
     /// Wheel centre.
     pub centre: Vec3<T>,
     /// Unit vector, outboard.
@@ -140,14 +140,14 @@ impl<T: Real> WheelAt<T> {
     }
 
     /// Outboard along the ground: the horizontal part of the spin axis, of unit length.
-    fn outboard(&self) -> Vec3<T> {
+    pub fn outboard(&self) -> Vec3<T> {
         // o = (e_x, e_y, 0) / sqrt(e_x^2 + e_y^2)
         let Vec3 { x, y, .. } = self.spin_axis;
         Vec3::new(x, y, T::zero()) * (T::one() / (x * x + y * y).sqrt())
     }
 
     /// Forward along the ground: where the wheel's plane and the ground meet.
-    fn forward(&self) -> Vec3<T> {
+    pub fn forward(&self) -> Vec3<T> {
         // f = (s o_y, -s o_x, 0): o turned by a right angle, to the right of a left wheel's outboard and to the left of a right one's
         let Vec3 { x, y, z } = self.outboard();
         Vec3::new(self.side * y, -self.side * x, z)

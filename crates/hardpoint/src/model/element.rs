@@ -1,7 +1,8 @@
 //! What a mechanism's loads come from: masses, springs, given forces.
 
+use crate::joint::Quantity;
 use crate::law::Law;
-use crate::model::{BodyId, Dimension, JointId, Model, PointId};
+use crate::model::{BodyId, Dimension, JointId, Model, PointId, Solid, SpringTable, WheelId};
 use crate::space::Vec3;
 
 /// Something that has mass, or that pushes bodies.
@@ -120,7 +121,7 @@ macro_rules! elements {
             centre: PointRef => PointId,
             /// Its mass.
             mass: NumberDraft => Mass,
-            /// Moment of inertia about its centre, about the global x axis as drawn.
+            /// Moment of inertia about its centre, or about the point `about`: about the global x axis as drawn.
             ixx: Option<NumberDraft> => Option<Inertia>,
             /// The same about y.
             iyy: Option<NumberDraft> => Option<Inertia>,
@@ -132,6 +133,8 @@ macro_rules! elements {
             iyz: Option<NumberDraft> => Option<Inertia>,
             /// The integral of z x.
             izx: Option<NumberDraft> => Option<Inertia>,
+            /// The point of the same body that these are about. Default: its centre.
+            about: Option<PointRef> => Option<PointId>,
         }
 
         /// A round bar or tube between two points of a body; it follows them when the design moves them.
@@ -162,17 +165,35 @@ macro_rules! elements {
             density: NumberDraft => Density,
         }
 
+        /// A body of even density with the shape of a closed mesh. It stays as drawn: changes of the design do not bend it.
+        Mesh "mesh" masses {
+            /// The body that it belongs to.
+            body: String => BodyId,
+            /// Its surface. Default: the `mesh` of its body.
+            mesh: Solid => Solid,
+            /// Its density, kg/m^3; steel has 7850.
+            density: NumberDraft => Density,
+        }
+
         /// A spring and damper between two points.
         Spring "spring" forces {
             /// One end.
             from: PointRef => PointId,
             /// The other one.
             to: PointRef => PointId,
-            /// Its stiffness.
-            stiffness: NumberDraft => Stiffness,
+            /// Its stiffness. May be left out where a table gives its force.
+            stiffness: Option<NumberDraft> => Option<Stiffness>,
             /// The further force per cube of its deflection: progressive, if it is above zero.
             cubic: Option<NumberDraft> => Option<CubicStiffness>,
-            /// Its length without force. Default: that of the drawing, or what `preload` makes it.
+            /// Its force by a table: points `[way, force]` of how far it is shorter than its free length, and how hard it pushes there; or the
+            /// name of a CSV file that holds them.
+            compression: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            /// The same of how far it is longer, and how hard it pulls.
+            extension: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            /// What the forces of the table are multiplied by. Default: 1.
+            scale: Option<NumberDraft> => Option<Plain>,
+            /// The length that its deflection counts from, at which a spring without a table has no force. Default: that of the drawing, or
+            /// what `preload` makes it.
             free_length: Option<NumberDraft> => Option<Length>,
             /// The force with which it pulls its ends together as drawn; a spring that pushes them apart has one below zero.
             preload: Option<NumberDraft> => Option<Force>,
@@ -208,16 +229,39 @@ macro_rules! elements {
             damping: Option<NumberDraft> => Option<TorsionalDamping>,
         }
 
-        /// Coulomb friction in a hinge, from the force that it carries across its axis.
+        /// Coulomb friction in a hinge or ball joint, from the force that it carries, and viscous friction besides.
         Friction "friction" forces {
-            /// The joint: a revolute.
+            /// The joint: a revolute, a cylindrical joint as far as it turns, or a spherical one.
             joint: String => JointId,
             /// The coefficient of friction.
             coefficient: NumberDraft => Plain,
-            /// The radius of its pin.
+            /// The radius of its pin or ball.
             radius: NumberDraft => Length,
+            /// The length of its bearing, about the joint's place on its second body: then the moment across the axis presses its ends as
+            /// well. Default: the force alone counts.
+            length: Option<NumberDraft> => Option<Length>,
+            /// A further moment against the motion in proportion to its speed.
+            viscous: Option<NumberDraft> => Option<TorsionalDamping>,
             /// The speed, per second, below which friction fades: at rest it holds nothing. Default: 0.01 rad/s.
             fades: Option<NumberDraft> => Option<Angle>,
+        }
+
+        /// Coulomb friction in a slide, from the force that it carries across its axis, and viscous friction besides.
+        SlideFriction "slide_friction" forces {
+            /// The joint: a translational one, or a cylindrical one as far as it slides.
+            joint: String => JointId,
+            /// The coefficient of friction.
+            coefficient: NumberDraft => Plain,
+            /// The length of its guide, about the joint's place on its second body: then the moment across the axis presses its ends as
+            /// well. Default: the force alone counts.
+            length: Option<NumberDraft> => Option<Length>,
+            /// A direction across it in which nothing presses, as drawn: forces along it and moments about others do not count. Default, in a
+            /// planar model: square to the plane; else all count.
+            normal: Option<Vec3> => Option<Vec3>,
+            /// A further force against the motion in proportion to its speed.
+            viscous: Option<NumberDraft> => Option<Damping>,
+            /// The speed, per second, below which friction fades: at rest it holds nothing. Default: 1 mm/s.
+            fades: Option<NumberDraft> => Option<Length>,
         }
 
         /// A given force on a point.
@@ -231,6 +275,20 @@ macro_rules! elements {
             /// Whether that direction turns with the body.
             axes: Option<Axes> => Option<Axes>,
             /// What it is multiplied by over time.
+            law: Option<Law> => Option<Law>,
+        }
+
+        /// A given force of the road on a wheel, at its contact point, along the wheel's own directions.
+        WheelForce "wheel_force" forces {
+            /// The wheel's name.
+            wheel: String => WheelId,
+            /// Along the ground, away from the vehicle: the horizontal part of the spin axis.
+            outboard: Option<NumberDraft> => Option<Force>,
+            /// Along the ground in the wheel's plane.
+            forward: Option<NumberDraft> => Option<Force>,
+            /// Along z: the wheel load.
+            up: Option<NumberDraft> => Option<Force>,
+            /// What all three are multiplied by over time.
             law: Option<Law> => Option<Law>,
         }
 
@@ -312,13 +370,34 @@ elements!(in_models);
 impl ElementKind {
     /// Whether it has mass; all others are forces.
     pub fn has_mass(&self) -> bool {
-        matches!(self, Self::Rigid { .. } | Self::Bar { .. } | Self::Block { .. })
+        matches!(self, Self::Rigid { .. } | Self::Bar { .. } | Self::Block { .. } | Self::Mesh { .. })
+    }
+
+    /// Whether it rubs: by a force that the reactions say, which it changes.
+    pub fn rubs(&self) -> bool {
+        matches!(self, Self::Friction { .. } | Self::SlideFriction { .. })
+    }
+
+    /// Whether its formulas are arithmetic on where bodies are, which can be recorded. A table is looked up: which of its pieces counts is
+    /// another one as the spring moves.
+    pub fn is_arithmetic(&self) -> bool {
+        !matches!(self, Self::Spring { compression: Some(_), .. } | Self::Spring { extension: Some(_), .. })
+    }
+
+    /// Its table, if it is a spring that has one: of tension over deflection.
+    pub(crate) fn table(&self) -> Option<&SpringTable> {
+        match self {
+            Self::Spring { compression, extension, .. } => extension.as_ref().or(compression.as_ref()),
+            _ => None,
+        }
     }
 
     /// The law that a given force or moment is multiplied by.
     pub(crate) fn law(&self) -> Option<&Law> {
         match self {
-            Self::PointForce { law, .. } | Self::BodyMoment { law, .. } => law.as_ref(),
+            Self::PointForce { law, .. } | Self::BodyMoment { law, .. } | Self::WheelForce { law, .. } => {
+                law.as_ref()
+            }
             _ => None,
         }
     }
@@ -332,10 +411,12 @@ impl ElementKind {
                 of(&[*from, *to])
             }
             Self::PointForce { at, .. } => of(&[*at]),
-            Self::BodyMoment { body, .. } => vec![*body],
+            Self::BodyMoment { body, .. } | Self::Mesh { body, .. } => vec![*body],
+            Self::WheelForce { wheel, .. } => vec![model.wheels[wheel.0].body],
             Self::JointSpring { joint, .. }
             | Self::TorsionSpring { joint, .. }
             | Self::Friction { joint, .. }
+            | Self::SlideFriction { joint, .. }
             | Self::ElasticJoint { joint, .. } => model.joints[joint.0].bodies.to_vec(),
         }
     }
@@ -345,6 +426,7 @@ impl ElementKind {
         match self {
             Self::Rigid { centre, .. } | Self::Block { centre, .. } => Some(model.points[centre.0].body),
             Self::Bar { from, .. } => Some(model.points[from.0].body),
+            Self::Mesh { body, .. } => Some(*body),
             _ => None,
         }
     }
@@ -358,12 +440,18 @@ impl ElementKind {
     }
 
     /// The joint whose coordinate it acts on.
-    pub(crate) fn coordinate(&self) -> Option<(JointId, usize)> {
+    pub(crate) fn coordinate(&self, model: &Model) -> Option<(JointId, usize)> {
+        let of = |joint: JointId, quantity| {
+            let kind = model.joints[joint.0].kind;
+            Some((joint, kind.coordinates.iter().position(|c| c.quantity == quantity)?))
+        };
         match *self {
             Self::JointSpring { joint, coordinate, .. } | Self::TorsionSpring { joint, coordinate, .. } => {
                 Some((joint, coordinate))
             }
-            Self::Friction { joint, .. } => Some((joint, 0)),
+            // A ball turns by no coordinate.
+            Self::Friction { joint, .. } => of(joint, Quantity::Angle),
+            Self::SlideFriction { joint, .. } => of(joint, Quantity::Length),
             _ => None,
         }
     }
@@ -377,17 +465,27 @@ impl ElementKind {
             Self::PointForce { force, .. } => of(force.0),
             Self::BodyMoment { moment, .. } => of(moment.0) / model.size(),
             Self::Spring { preload: Some(preload), .. } => of(preload.0),
+            Self::WheelForce { outboard, forward, up, .. } => {
+                [outboard, forward, up].into_iter().flatten().map(|n| of(n.0)).fold(0.0, f64::max)
+            }
+            Self::Spring { .. } => {
+                let most =
+                    |table: &SpringTable| table.points().iter().map(|p| p[1].abs()).fold(0.0, f64::max);
+                self.table().map_or(0.0, most)
+            }
             _ => 0.0,
         }
     }
 }
 
 impl Model {
-    /// Where forces act on points: of each spring, bushing and given force its points.
+    /// Where forces act on points: of each spring, bushing and given force its points, of what a wheel stands on its centre.
     pub fn pushed(&self) -> Vec<(ElementId, PointId)> {
         let points = |kind: &ElementKind| match kind {
             ElementKind::Spring { from, to, .. } | ElementKind::Bushing { from, to, .. } => vec![*from, *to],
             ElementKind::PointForce { at, .. } => vec![*at],
+            // Its contact point wanders.
+            ElementKind::WheelForce { wheel, .. } => vec![self.wheels[wheel.0].centre],
             _ => Vec::new(),
         };
         let of = |(e, element): (usize, &Element)| {
@@ -413,6 +511,7 @@ impl Model {
                 of(density.0) * area * (b - a).norm()
             }
             ElementKind::Block { x, y, z, density, .. } => of(x.0) * of(y.0) * of(z.0) * of(density.0),
+            ElementKind::Mesh { mesh, density, .. } => mesh.volume * of(density.0),
             _ => 0.0,
         };
         self.elements.iter().map(|e| mass(&e.kind)).sum()

@@ -262,7 +262,9 @@ macro_rules! measures {
         /// The measure, or `POINT.x`.
         of: String => OutputSource,
         /// The point that the force pushes.
-        at: PointRef => PointId,
+        at: Option<PointRef> => Option<PointId>,
+        /// Or the wheel that the road pushes, at its contact point.
+        wheel: Option<String> => Option<WheelId>,
         /// Its direction, of any length.
         along: Vec3 => Vec3,
         /// A driver that is released: it holds nothing, springs do. Default: all drivers hold.
@@ -270,7 +272,11 @@ macro_rules! measures {
     } |m, w|
         m.dimension(*of).over(Dimension::FORCE),
         moving(1),
-        format!("{} per force on {} along {}", w.output(*of), w.point(*at), (w.direction)(*along));
+        {
+            let of_wheel = |wheel: WheelId| format!("the contact of wheel `{}`", w.model.wheels[wheel.0].name);
+            let place = at.map(|p| w.point(p)).or_else(|| wheel.map(of_wheel)).unwrap_or_default();
+            format!("{} per force on {place} along {}", w.output(*of), (w.direction)(*along))
+        };
     } };
 }
 pub(crate) use measures;
@@ -382,6 +388,18 @@ impl OnBodies for PointId {
 impl OnBodies for WheelId {
     fn bodies(&self, model: &Model) -> Vec<BodyId> {
         vec![model.wheels[self.0].body]
+    }
+}
+
+impl OnBodies for Option<PointId> {
+    fn bodies(&self, model: &Model) -> Vec<BodyId> {
+        self.map_or_else(Vec::new, |p| p.bodies(model))
+    }
+}
+
+impl OnBodies for Option<WheelId> {
+    fn bodies(&self, model: &Model) -> Vec<BodyId> {
+        self.map_or_else(Vec::new, |w| w.bodies(model))
     }
 }
 

@@ -13,6 +13,8 @@ mod held;
 mod measure;
 mod metric;
 mod optimization;
+mod solid;
+mod spring_table;
 mod sweeping;
 mod tolerancing;
 mod wheel;
@@ -38,6 +40,9 @@ pub use measure::{
 pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
 pub use optimization::{Goal, Limit, Limited, Optimization};
+pub(crate) use solid::about_centre;
+pub use solid::{OpenSurface, Solid};
+pub use spring_table::SpringTable;
 pub use sweeping::{SweepMethod, SweepRange, Sweeping};
 pub use tolerancing::{Allocating, AllocationRule, Correlation, Scatter, Tolerance, Tolerancing};
 pub use wheel::{ArmPlane, Axle, AxleMeasure, Side, Vehicle, VehicleEnd, Wheel, WheelMeasure, WheelNeed};

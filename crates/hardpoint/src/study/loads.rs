@@ -1,7 +1,7 @@
 //! What joints and drivers carry over a motion.
 
 use crate::load::LoadSolver;
-use crate::model::{Axes, JointId};
+use crate::model::{Axes, ElementId, JointId};
 use crate::motion::Stop;
 use crate::run::{Analysis, Walk};
 use crate::space::Vec3;
@@ -48,6 +48,8 @@ pub struct Loads {
     pub drivers: Vec<DriverLoad>,
     /// `pushes[k * n + i]` at time k of [`Model::pushed`](crate::model::Model::pushed)'s place i, of n: the force on its body there, global, N.
     pub pushes: Vec<Vec3>,
+    /// Friction that nobody knows at some time, because redundant constraints share what presses there: then no load is known.
+    pub shared_friction: Vec<ElementId>,
     /// Why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
 }
@@ -85,6 +87,11 @@ impl Analysis<'_> {
             let Some(&t) = times.next() else { return };
             solver.step(one, t);
             result.times.push(t);
+            for element in solver.shared_friction() {
+                if !result.shared_friction.contains(&element) {
+                    result.shared_friction.push(element);
+                }
+            }
             for joint in (0..model.joints.len()).map(JointId) {
                 let [(force, f), (moment, m)] = solver.reaction(joint, Axes::Global);
                 let in_body = solver.reaction(joint, Axes::Body);

@@ -15,7 +15,7 @@ use crate::workbench::*;
 /// Two ways to the same number agree to this part of the largest that stands in it.
 const SAME: f64 = 1e-11;
 
-fn on(body: &str, at: impl Into<PlaceDraft>) -> PointRef {
+pub fn on(body: &str, at: impl Into<PlaceDraft>) -> PointRef {
     PointRef::On { body: body.into(), at: at.into() }
 }
 
@@ -33,26 +33,35 @@ pub fn rigid(
     inertia: [f64; 6],
 ) -> ElementDraft {
     let [ixx, iyy, izz, ixy, iyz, izx] = inertia.map(|i| Some(i.into()));
-    let kind =
-        ElementKindDraft::Rigid { centre: on(body, at), mass: mass.into(), ixx, iyy, izz, ixy, iyz, izx };
+    let kind = ElementKindDraft::Rigid {
+        centre: on(body, at),
+        mass: mass.into(),
+        ixx,
+        iyy,
+        izz,
+        ixy,
+        iyz,
+        izx,
+        about: None,
+    };
     ElementDraft::new(name, kind)
 }
 
-fn driver_force(driver: &str) -> MeasureKindDraft {
+pub fn driver_force(driver: &str) -> MeasureKindDraft {
     MeasureKindDraft::DriverForce { driver: Some(driver.into()) }
 }
 
-fn reaction(joint: &str, part: ReactionPart) -> MeasureKindDraft {
+pub fn reaction(joint: &str, part: ReactionPart) -> MeasureKindDraft {
     MeasureKindDraft::Reaction { joint: joint.into(), part, on: None, axes: None }
 }
 
 /// Values of a measure over a motion.
-fn values(solution: &Solution, name: &str) -> Vec<f64> {
+pub fn values(solution: &Solution, name: &str) -> Vec<f64> {
     let m = solution.measured.index(name).unwrap();
     (0..solution.motion.len()).map(|k| solution.measured.value(k, m)[0]).collect()
 }
 
-fn run(draft: &Draft, formulation: Formulation) -> Solution {
+pub fn run(draft: &Draft, formulation: Formulation) -> Solution {
     let model = Model::from_draft(draft).unwrap_or_else(|f| panic!("{f:?}"));
     let solution = Analysis::with(&model, formulation).unwrap().run();
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
@@ -60,7 +69,7 @@ fn run(draft: &Draft, formulation: Formulation) -> Solution {
 }
 
 /// A body of unit-like mass, turned about z at the origin by this law.
-fn rotor(law: &str) -> Draft {
+pub fn rotor(law: &str) -> Draft {
     Draft::new("rotor")
         .body("rotor")
         .revolute("pivot", ["ground", "rotor"], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0])
@@ -110,7 +119,7 @@ fn a_pendulum_needs_its_weight_and_its_inertia() {
 }
 
 /// A slider-crank in the plane with everything that can push, in tilted and offset places.
-fn press() -> Draft {
+pub fn press() -> Draft {
     let z = [0.0, 0.0, 1.0];
     let mut draft = Draft::new("press")
         .hardpoint("A", [0.0, 0.0, 0.0])
@@ -156,8 +165,11 @@ fn press() -> Draft {
             ElementKindDraft::Spring {
                 from: on("ground", [0.5, 0.1, 0.0]),
                 to: on("ram", "C"),
-                stiffness: 2000.0.into(),
+                stiffness: Some(2000.0.into()),
                 cubic: Some(30000.0.into()),
+                compression: None,
+                extension: None,
+                scale: None,
                 free_length: None,
                 preload: Some((-40.0).into()),
                 damping: Some(25.0.into()),
@@ -216,7 +228,7 @@ fn both_formulations_carry_the_same_loads_with_the_same_sensitivities() {
 }
 
 /// Sensitivities of the loads of a draft against differences between solved designs.
-fn compare_with_solved(draft: &Draft, names: &[&str]) {
+pub fn compare_with_solved(draft: &Draft, names: &[&str]) {
     let model = Model::from_draft(draft).unwrap_or_else(|f| panic!("{f:?}"));
     let analysis = Analysis::new(&model).unwrap();
     let nominal = analysis.run();
@@ -315,7 +327,7 @@ fn power_is_balanced() {
 }
 
 /// A reference mechanism whose bodies have masses, made up but each another one, off their origins and unevenly spread.
-fn heavy(name: &str) -> Draft {
+pub fn heavy(name: &str) -> Draft {
     made_heavy(reference_draft(name))
 }
 
@@ -357,6 +369,7 @@ fn newton_euler(
         ixy,
         iyz,
         izx,
+        about: None,
     } = draft.masses[k - 1].kind.clone()
     else {
         unreachable!("made so")
@@ -442,7 +455,13 @@ fn driver_forces_of_every_reference_follow_the_design() {
 }
 
 fn compliance(of: &str, at: PointRef, along: [f64; 3]) -> MeasureKindDraft {
-    MeasureKindDraft::Compliance { of: of.into(), at, along: along.into(), released: None }
+    MeasureKindDraft::Compliance {
+        of: of.into(),
+        at: Some(at),
+        wheel: None,
+        along: along.into(),
+        released: None,
+    }
 }
 
 fn elastic(name: &str, joint: &str, stiffness: [f64; 3], about_z: Option<f64>) -> ElementDraft {
@@ -471,7 +490,7 @@ fn a_lever_in_a_bushing_gives_by_force_over_stiffness_and_arm_squared() {
 }
 
 /// A suspension whose balls and hinges stand in rubber, pushed at a point of its last body.
-fn soft(name: &str) -> (Draft, Vec<String>) {
+pub fn soft(name: &str) -> (Draft, Vec<String>) {
     let mut draft = reference_draft(name);
     let model = Model::from_draft(&draft).unwrap();
     draft.measures.clear();
@@ -549,8 +568,11 @@ fn with_its_driver_released_a_strut_gives_against_its_spring() {
         ElementKindDraft::Spring {
             from: on("ground", [0.2, -0.3, 0.0]),
             to: on("rotor", [0.2, 0.0, 0.0]),
-            stiffness: k.into(),
+            stiffness: Some(k.into()),
             cubic: None,
+            compression: None,
+            extension: None,
+            scale: None,
             free_length: None,
             preload: None,
             damping: None,
@@ -558,7 +580,8 @@ fn with_its_driver_released_a_strut_gives_against_its_spring() {
     ));
     let kind = MeasureKindDraft::Compliance {
         of: "tip.y".into(),
-        at: on("rotor", [arm, 0.0, 0.0]),
+        at: Some(on("rotor", [arm, 0.0, 0.0])),
+        wheel: None,
         along: [0.0, 1.0, 0.0].into(),
         released: Some("motor".into()),
     };
@@ -567,11 +590,13 @@ fn with_its_driver_released_a_strut_gives_against_its_spring() {
     assert!((values(&solution, "give")[0] - expected).abs() < 1e-12 * expected);
 }
 
-fn friction(name: &str, joint: &str, coefficient: f64, radius: f64) -> ElementDraft {
+pub fn friction(name: &str, joint: &str, coefficient: f64, radius: f64) -> ElementDraft {
     let kind = ElementKindDraft::Friction {
         joint: joint.into(),
         coefficient: coefficient.into(),
         radius: radius.into(),
+        length: None,
+        viscous: None,
         fades: None,
     };
     ElementDraft::new(name, kind)
@@ -850,7 +875,7 @@ fn a_four_bar_has_the_mechanical_advantage_of_the_textbooks() {
 }
 
 /// Gradients of all loads of a draft, the adjoint way and the direct one, as a part of the largest of each load.
-fn compare_both_ways(draft: &Draft, formulation: Formulation) -> usize {
+pub fn compare_both_ways(draft: &Draft, formulation: Formulation) -> usize {
     let model = Model::from_draft(draft).unwrap_or_else(|f| panic!("{f:?}"));
     let analysis = Analysis::with(&model, formulation).unwrap();
     let all = outputs(&model);
@@ -888,7 +913,7 @@ const LITTLE: f64 = 1e-3;
 const BOTH_WAYS: f64 = 1e-10;
 
 /// With a measure of every kind of load.
-fn asking_for_all(mut draft: Draft) -> Draft {
+pub fn asking_for_all(mut draft: Draft) -> Draft {
     let model = Model::from_draft(&draft).unwrap();
     draft.measures.clear();
     draft.metrics.clear();

@@ -5,6 +5,7 @@ mod allocation;
 mod assembly;
 mod design_variables;
 mod diagnosis;
+mod elements;
 mod formulas;
 mod house;
 mod identities;

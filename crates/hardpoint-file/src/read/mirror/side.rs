@@ -104,9 +104,15 @@ impl<'a> Side<'_, 'a> {
                     put(table, "at", at);
                 }
             }
-            "bodies" => self.mesh(table),
-            // The products of inertia with what goes across.
+            "bodies" => {
+                let by_points = table.get("frame").is_some_and(|f| is_by_points(f.get_ref().as_table()));
+                self.mesh(table, by_points);
+            }
+            // The shape, and the products of inertia with what goes across.
             "masses" => {
+                let body = self.entry("masses", name).and_then(|mass| word(mass, "body"));
+                let frame = body.and_then(|body| self.entry("bodies", body)).and_then(|b| b.get("frame"));
+                self.mesh(table, is_by_points(frame.and_then(|f| f.get_ref().as_table())));
                 let products = [["ixy", "izx"], ["ixy", "iyz"], ["iyz", "izx"]][self.rule.across];
                 let found = products.into_iter().filter_map(|key| table.remove(key).map(|v| (key, v)));
                 for (key, mut product) in found.collect::<Vec<_>>() {
@@ -176,10 +182,9 @@ impl<'a> Side<'_, 'a> {
         ));
     }
 
-    /// The shape of a body in the mirror.
-    fn mesh(&self, body: &mut DeTable<'a>) {
-        let by_points = body.get("frame").is_some_and(|f| is_by_points(f.get_ref().as_table()));
-        let Some(mesh) = body.get_mut("mesh") else { return };
+    /// The shape of a body, or of a mass on it, in the mirror; a frame by points has another axis there.
+    fn mesh(&self, entry: &mut DeTable<'a>, by_points: bool) {
+        let Some(mesh) = entry.get_mut("mesh") else { return };
         if mesh.get_ref().is_str() {
             let file = mesh.clone();
             *mesh = Spanned::new(mesh.span(), DeValue::Table(DeTable::new()));

@@ -6,11 +6,15 @@ use crate::joint::Quantity;
 use crate::law::Law;
 use crate::model::{
     Angle, Axes, CubicStiffness, Damping, Density, Element, ElementKind, ElementUnit, Force, GROUND, Inertia,
-    Length, Mass, Moment, NumberId, Plain, PointId, Stiffness, TorsionalDamping, TorsionalStiffness,
-    each_number,
+    JointId, Length, Mass, Moment, NumberId, Plain, PointId, SpringTable, Stiffness, TorsionalDamping,
+    TorsionalStiffness, about_centre, each_number,
 };
+use crate::space::Vec3;
 
 use super::{Checker, Here, MeasureCheck};
+
+/// A direction is across another one where the sine between them is at least this.
+const ACROSS: f64 = 1e-3;
 
 /// By so much may a moment of inertia exceed the sum of the other two: what typed digits leave of a flat plate.
 const FLAT: f64 = 1e-3;
@@ -36,8 +40,19 @@ impl Checker<'_> {
         let faults = self.faults.len();
         let kind = e.kind.resolve(&mut MeasureCheck::new(self, &e.name, here))?;
         match &kind {
-            ElementKind::Rigid { centre, .. } | ElementKind::Block { centre, .. } => {
+            ElementKind::Rigid { centre, about, .. } => {
                 self.on_moving(*centre, &e.name, here, "centre");
+                if about.is_some_and(|about| self.body_of(about) != self.body_of(*centre)) {
+                    let message = format!("`about` of `{}` is on another body than its centre", e.name);
+                    self.fault("HP0251", here.key("about"), message)
+                        .help("give both on the body that it belongs to");
+                }
+            }
+            ElementKind::Block { centre, .. } => self.on_moving(*centre, &e.name, here, "centre"),
+            ElementKind::Mesh { body, .. } => {
+                if *body == GROUND {
+                    self.mass_on_ground(&e.name, here, "body");
+                }
             }
             ElementKind::Bar { from, to, .. } => {
                 self.on_moving(*from, &e.name, here, "from");
@@ -50,7 +65,7 @@ impl Checker<'_> {
                     self.fault("HP0251", here.key("to"), message).help("give ends that lie apart");
                 }
             }
-            ElementKind::Spring { from, to, free_length, preload, .. } => {
+            ElementKind::Spring { from, to, stiffness, free_length, preload, .. } => {
                 if self.body_of(*from) == self.body_of(*to) {
                     let message = format!("both ends of `{}` are on one body, which it cannot move", e.name);
                     self.fault("HP0251", here.key("to"), message)
@@ -61,7 +76,19 @@ impl Checker<'_> {
                         .note("a spring of no length pulls nowhere")
                         .help("put its ends apart, or use a `bushing`");
                 }
-                if free_length.is_some() && preload.is_some() {
+                self.spring_forces(&kind, &e.name, here);
+                let table = kind.table().is_some();
+                if stiffness.is_none() && !table {
+                    let message = format!("`{}` has neither a stiffness nor a table", e.name);
+                    self.fault("HP0251", here.key("type"), message).help(
+                        "give its `stiffness`, or its force over its way as `compression` or `extension`",
+                    );
+                } else if preload.is_some() && table {
+                    let message = format!("`{}` has both a table and a `preload`", e.name);
+                    self.fault("HP0251", here.key("preload"), message)
+                        .note("without a `free_length` the way counts from the drawing, and the table's force at 0 is that as drawn")
+                        .help("leave the preload out: shift the table by it, or give the `free_length`");
+                } else if free_length.is_some() && preload.is_some() {
                     let message = format!("`{}` has both a `free_length` and a `preload`", e.name);
                     self.fault("HP0251", here.key("preload"), message)
                         .help("leave one of them out: with the stiffness each follows from the other");
@@ -91,21 +118,65 @@ impl Checker<'_> {
                         .help(format!("write `type = \"{other}\"`, or name another coordinate"));
                 }
             }
-            ElementKind::Friction { joint, coefficient, radius, fades } => {
-                let joint = &self.model.joints[joint.0];
-                if joint.kind.name != "revolute" {
-                    let message = format!("`{}` is in joint `{}`, which is no revolute", e.name, joint.name);
-                    self.fault("HP0251", here.key("joint"), message).help(
-                        "name a revolute; for viscous friction of others use the `damping` of a spring",
-                    );
+            ElementKind::Friction { joint, coefficient, radius, length, viscous, fades } => {
+                let kind = self.model.joints[joint.0].kind.name;
+                if !["revolute", "cylindrical", "spherical"].contains(&kind) {
+                    let help = match kind {
+                        "translational" => "write `type = \"slide_friction\"` for a slide",
+                        "universal" => {
+                            "of a universal joint make two revolutes and a body between; for viscous friction alone use the `damping` of a `torsion_spring`"
+                        }
+                        _ => {
+                            "name a revolute, cylindrical or spherical joint; for viscous friction of others use the `damping` of a `torsion_spring`"
+                        }
+                    };
+                    self.no_friction(&e.name, *joint, "hinge or ball joint", here, help);
+                } else if let (Some(_), "spherical") = (length, kind) {
+                    let message = format!("`{}` has a length, but a ball has none", e.name);
+                    self.fault("HP0251", here.key("length"), message).help("remove it");
                 }
-                let numbers = [(coefficient.0, "coefficient"), (radius.0, "radius")].into_iter();
-                for (number, key) in numbers.chain(fades.map(|n| (n.0, "fades"))) {
-                    if !(self.value(number) > 0.0) {
-                        let message = format!("the {key} of `{}` is not above zero", e.name);
-                        self.fault("HP0252", here.key(key), message)
-                            .help("correct it, or remove the friction");
+                let numbers = [(coefficient.0, "coefficient"), (radius.0, "radius")];
+                let length = length.map(|n| (n.0, "length"));
+                let fades = fades.map(|n| (n.0, "fades"));
+                self.above(numbers.into_iter().chain(length).chain(fades), &e.name, here);
+                self.not_below(viscous.map(|n| n.0), "viscous", &e.name, here);
+            }
+            ElementKind::SlideFriction { joint, coefficient, length, normal, viscous, fades } => {
+                let kind = self.model.joints[joint.0].kind.name;
+                if !["translational", "cylindrical"].contains(&kind) {
+                    let help = match kind {
+                        "revolute" | "spherical" => "write `type = \"friction\"` for a hinge or ball joint",
+                        _ => {
+                            "name a translational or cylindrical joint; for viscous friction of others use the `damping` of a `joint_spring`"
+                        }
+                    };
+                    self.no_friction(&e.name, *joint, "slide", here, help);
+                } else if let Some(normal) = normal {
+                    let z = self.model.joints[joint.0].frames[0].cols[2];
+                    if normal.cross(z).norm() < ACROSS {
+                        let message = format!("`normal` of `{}` runs along its slide", e.name);
+                        self.fault("HP0251", here.key("normal"), message)
+                            .help("give a direction across the slide, or leave it out");
                     }
+                }
+                let length = length.map(|n| (n.0, "length"));
+                let fades = fades.map(|n| (n.0, "fades"));
+                self.above(
+                    [(coefficient.0, "coefficient")].into_iter().chain(length).chain(fades),
+                    &e.name,
+                    here,
+                );
+                self.not_below(viscous.map(|n| n.0), "viscous", &e.name, here);
+            }
+            ElementKind::WheelForce { wheel, outboard, forward, up, .. } => {
+                if [outboard, forward, up].iter().all(|n| n.is_none()) {
+                    let message = format!("`{}` does not say how the road pushes", e.name);
+                    self.fault("HP0251", here.key("type"), message)
+                        .help("give its force `up`, `outboard` or `forward`, or remove it");
+                }
+                if self.model.wheels[wheel.0].body == GROUND {
+                    let message = format!("`{}` pushes a wheel on ground, which does not move", e.name);
+                    self.fault("HP0251", here.key("wheel"), message).help("name a wheel of another body");
                 }
             }
             ElementKind::ElasticJoint { joint, x, y, z, about_x, about_y, about_z } => {
@@ -167,9 +238,71 @@ impl Checker<'_> {
 
     fn on_moving(&mut self, point: PointId, name: &str, here: Here, key: &'static str) {
         if self.body_of(point) == GROUND.0 {
-            let message = format!("mass `{name}` is on ground, where it moves nothing");
-            self.fault("HP0251", here.key(key), message)
-                .help("put it on the body that it belongs to, or remove it");
+            self.mass_on_ground(name, here, key);
+        }
+    }
+
+    fn mass_on_ground(&mut self, name: &str, here: Here, key: &'static str) {
+        let message = format!("mass `{name}` is on ground, where it moves nothing");
+        self.fault("HP0251", here.key(key), message)
+            .help("put it on the body that it belongs to, or remove it");
+    }
+
+    /// HP0251: friction in a joint that is no such thing.
+    fn no_friction(&mut self, name: &str, joint: JointId, what: &str, here: Here, help: &str) {
+        let message =
+            format!("`{name}` is in joint `{}`, which is no {what}", self.model.joints[joint.0].name);
+        self.fault("HP0251", here.key("joint"), message).help(help);
+    }
+
+    /// HP0252: numbers of friction that have to be above zero.
+    fn above(&mut self, numbers: impl Iterator<Item = (NumberId, &'static str)>, name: &str, here: Here) {
+        for (number, key) in numbers {
+            if !(self.value(number) > 0.0) {
+                let message = format!("the {key} of `{name}` is not above zero");
+                self.fault("HP0252", here.key(key), message).help("correct it, or leave it out");
+            }
+        }
+    }
+
+    /// HP0252: a number below zero that would drive what it should brake.
+    fn not_below(&mut self, number: Option<NumberId>, key: &'static str, name: &str, here: Here) {
+        if number.is_some_and(|n| !(self.value(n) >= 0.0)) {
+            let message = format!("`{key}` of `{name}` is below zero");
+            self.fault("HP0252", here.key(key), message).help("correct it, or leave it out");
+        }
+    }
+
+    /// The table of a spring, as tension over deflection.
+    pub(super) fn spring_table(
+        &mut self,
+        points: &[[f64; 2]],
+        name: &str,
+        here: Here,
+        key: &'static str,
+    ) -> Option<SpringTable> {
+        let pushes = key == "compression";
+        let table = SpringTable::new(&if pushes { SpringTable::turned(points) } else { points.to_vec() });
+        if let Err(why) = &table {
+            let message = format!("the table of `{name}` {why}");
+            self.fault("HP0252", here.key(key), message)
+                .help("give points `[way, force]`, two at least, their ways increasing");
+        }
+        table.ok()
+    }
+
+    /// HP0251: what a spring's force goes by does not fit together.
+    fn spring_forces(&mut self, kind: &ElementKind, name: &str, here: Here) {
+        let ElementKind::Spring { compression, extension, scale, .. } = kind else { return };
+        if compression.is_some() && extension.is_some() {
+            let message = format!("`{name}` has two tables");
+            self.fault("HP0251", here.key("extension"), message)
+                .note("a way in compression is one below zero in extension, and a push a pull below zero")
+                .help("put both into one of them");
+        }
+        if scale.is_some() && compression.is_none() && extension.is_none() {
+            let message = format!("`{name}` has a `scale` but no table");
+            self.fault("HP0251", here.key("scale"), message).help("remove it, or scale its `stiffness`");
         }
     }
 
@@ -193,6 +326,7 @@ impl Checker<'_> {
                     }
                 }
             }
+            ElementKind::Mesh { density, .. } => above.push((density.0, "density")),
             ElementKind::Block { x, y, z, density, .. } => {
                 above.extend([(x.0, "x"), (y.0, "y"), (z.0, "z"), (density.0, "density")]);
             }
@@ -206,15 +340,40 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0252: moments of inertia that no body can have.
+    /// HP0252: moments of inertia that no body can have, about the centre.
     fn inertia(&mut self, kind: &ElementKind, name: &str, here: Here) {
-        let ElementKind::Rigid { ixx, iyy, izz, ixy, iyz, izx, .. } = kind else { return };
-        // Who gives only those that a plane asks for says nothing of the others.
-        if [ixx, iyy, izz].iter().any(|n| n.is_none()) {
+        let ElementKind::Rigid { centre, mass, ixx, iyy, izz, ixy, iyz, izx, about } = kind else { return };
+        let given = [ixx, iyy, izz].map(|n| n.map(|n| self.value(n.0)));
+        let products = [ixy, iyz, izx].map(|n| n.map(|n| self.value(n.0)));
+        let way = about.map_or(Vec3::ZERO, |about| {
+            let [c, p] = [*centre, about].map(|p| self.model.position(self.model.points[p.0].at));
+            c - p
+        });
+        let [moments, [d, e, f]] = about_centre(self.value(mass.0), way, [given, products]);
+        let [a, b, c] = moments;
+        let shown = || {
+            format!(
+                "about its centre they are {a:.4}, {b:.4} and {c:.4} kg m^2, with products {d:.4}, {e:.4} and {f:.4}"
+            )
+        };
+        let moved = about.is_some();
+        let below = given.iter().zip(["ixx", "iyy", "izz"]).zip(moments);
+        let below = below.filter(|((n, _), i)| n.is_some() && !(*i >= 0.0)).map(|((_, key), _)| key).next();
+        if let Some(key) = below {
+            let message =
+                format!("`{key}` of `{name}` is below zero{}", if moved { " about its centre" } else { "" });
+            let fault = self.fault("HP0252", here.key(key), message);
+            if moved {
+                fault.note(shown()).help("moments about another point are never less than those of the mass at its centre: check `about`, `centre` and the units");
+            } else {
+                fault.help("correct it, or leave it out");
+            }
             return;
         }
-        let of = |n: &Option<Inertia>| n.map_or(0.0, |n| self.value(n.0));
-        let [a, b, c, d, e, f] = [ixx, iyy, izz, ixy, iyz, izx].map(of);
+        // Who gives only those that a plane asks for says nothing of the others.
+        if given.iter().any(|n| n.is_none()) {
+            return;
+        }
         let largest = a.max(b).max(c);
         let slack = largest * FLAT;
         // Principal moments obey I1 + I2 >= I3: the matrix (tr I / 2) 1 - I, the second moments of the mass, has no negative eigenvalue.
@@ -225,9 +384,12 @@ impl Checker<'_> {
         let cubed = slack * slack * slack;
         if !(minors.iter().all(|m| *m >= 0.0) && determinant >= -cubed) {
             let message = format!("no body can have the moments of inertia of `{name}`");
-            self.fault("HP0252", here.key("ixx"), message)
-                .note("none is above the sum of the other two, in any axes; products are the integrals of x y, y z and z x")
-                .help("take all three about the centre of mass; where the products come as entries of the inertia matrix, change their signs");
+            let fault = self.fault("HP0252", here.key("ixx"), message);
+            fault.note("none is above the sum of the other two, in any axes; products are the integrals of x y, y z and z x");
+            if moved {
+                fault.note(shown());
+            }
+            fault.help("take all three about the centre of mass, or say about which point as `about`; where the products come as entries of the inertia matrix, change their signs");
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::expression::Expression;
 use crate::model::{
     AxleMeasure, BodyId, CaseId, Combination, Dimension, Direction, DriverId, Element, ElementId,
     ElementKind, JointId, KnownOrders, Measure, MeasureKind, Metric, NumberId, OrientationAngle,
-    OutputSource, PointId, Ray, ReactionPart, Reduction, WheelMeasure,
+    OutputSource, PointId, Ray, ReactionPart, Reduction, Solid, SpringTable, WheelId, WheelMeasure,
 };
 use crate::space::Vec3;
 
@@ -62,9 +62,9 @@ impl Checker<'_> {
                 e.kind,
                 ElementKind::PointForce { .. }
                     | ElementKind::BodyMoment { .. }
-                    | ElementKind::Friction { .. }
+                    | ElementKind::WheelForce { .. }
             );
-            !e.kind.has_mass() && !rigid
+            !e.kind.has_mass() && !rigid && !e.kind.rubs()
         };
         let rigid = !self.model.elements.iter().any(gives);
         if matches!(kind, MeasureKind::Compliance { .. })
@@ -75,6 +75,18 @@ impl Checker<'_> {
             self.fault("HP0250", here.key("type"), message)
                 .help("give joints that yield as `[forces]` of `type = \"elastic_joint\"`");
         }
+        if let MeasureKind::Compliance { at, wheel, .. } = kind
+            && at.is_some() == wheel.is_some()
+        {
+            let (message, help) = match at {
+                Some(_) => ("is pushed at a point and at a wheel", "leave `at` or `wheel` out"),
+                None => (
+                    "has no place that is pushed",
+                    "say the point as `at`, or the `wheel` that the road pushes",
+                ),
+            };
+            self.fault("HP0251", here.key("at"), format!("`{}` {message}", m.name)).help(help);
+        }
         if let MeasureKind::Reaction { joint, on: Some(on), .. } = kind {
             let joint = &self.model.joints[joint.0];
             if !joint.bodies.contains(on) {
@@ -84,6 +96,13 @@ impl Checker<'_> {
                 self.fault("HP0251", here.key("on"), message).help(format!("write `{i}` or `{j}`"));
             }
         }
+    }
+
+    /// The wheel of that name.
+    fn wheel_named(&mut self, name: &str, at: Locus) -> Option<WheelId> {
+        let draft = self.draft;
+        let k = self.find("wheel", name, at, draft.wheels.iter().map(|w| w.name.as_str()))?;
+        self.wheel_ids[k]
     }
 
     /// The force of that name.
@@ -447,6 +466,20 @@ field!(usize, Coordinate, Name: Option<String>, may |name, _key, c| {
     c.check.coordinate(c.joint?, name.as_deref(), c.here)
 });
 field!(PointId, Point, Point: PointRef, |point, key, c| c.check.point(point, c.owner, c.here.key(key)));
+field!(Option<PointId>, Point, Point: Option<PointRef>, may |point, key, c| match point {
+    Some(point) => PointId::resolve(point, key, c).map(Some),
+    None => Some(None),
+});
+field!(WheelId, Wheel, Name: String, |name, key, c| c.check.wheel_named(name, c.here.key(key)));
+field!(Option<WheelId>, Wheel, Name: Option<String>, may |name, key, c| match name {
+    Some(name) => WheelId::resolve(name, key, c).map(Some),
+    None => Some(None),
+});
+field!(Solid, Mesh, Solid: Solid, |solid, _key, _c| Some(*solid));
+field!(Option<SpringTable>, Table, Table: Option<Vec<[f64; 2]>>, may |points, key, c| match points {
+    Some(points) => c.check.spring_table(points, c.owner, c.here, key).map(Some),
+    None => Some(None),
+});
 field!(Vec3, Direction, Direction: Vec3, |v, key, c| {
     Some(c.check.line(&LineDraft::Along(*v), c.owner, c.here, key)?.1)
 });

@@ -1,0 +1,544 @@
+//! Masses and forces, type by type: closed forms, the same said in two ways, sensitivities against re-solving.
+
+use hardpoint::expression::Expression;
+use hardpoint::joint::Quantity;
+use hardpoint::law::Law;
+use hardpoint::space::{Mat3, Pose, Vec3};
+use hardpoint::topology::Formulation;
+use hardpoint::{Analysis, Solution};
+use hardpoint::{draft::*, model::*};
+
+use crate::loads::{
+    asking_for_all, compare_both_ways, compare_with_solved, driver_force, friction, heavy, on, point_mass,
+    press, rotor, run, values,
+};
+use crate::workbench::*;
+
+/// Two ways to the same number agree to this part of the largest that stands in it.
+const SAME: f64 = 1e-11;
+
+/// A draft with a parameter, a design variable of the same name.
+fn with_parameter(mut draft: Draft, name: &str, value: f64) -> Draft {
+    draft.parameters.push(ParameterDraft { name: name.into(), value, quantity: Quantity::Number });
+    let change = ChangeDraft::Parameter { parameter: name.into(), rate: 1.0 };
+    draft.variable(VariableDraft::new(name, [change]))
+}
+
+/// A number that an expression gives.
+fn given(expression: &str) -> NumberDraft {
+    NumberDraft { value: 0.0, expression: Some(Expression::parse(expression).unwrap()), per_unit: 1.0 }
+}
+
+fn same(a: &Solution, b: &Solution, names: &[&str]) {
+    for name in names {
+        let (x, y) = (values(a, name), values(b, name));
+        let scale = x.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        assert!(scale > 0.0, "{name}");
+        x.iter().zip(&y).for_each(|(x, y)| assert!((x - y).abs() < SAME * scale, "{name}: {x} {y}"));
+    }
+}
+
+/// Gradients agree both ways in both formulations, and with re-solving.
+fn differentiated(draft: &Draft, names: &[&str]) {
+    compare_with_solved(draft, names);
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        assert!(compare_both_ways(draft, formulation) > 0, "{}", draft.name);
+    }
+}
+
+const LOADS: [&str; 6] = ["torque", "power", "spring", "B", "guide", "shaking"];
+
+/// The press with a spring of its own in the place of the other one.
+fn press_with(spring: impl Fn(&mut ElementKindDraft)) -> Draft {
+    let mut draft = press();
+    let place = draft.forces.iter().position(|f| f.name == "spring").unwrap();
+    spring(&mut draft.forces[place].kind);
+    draft
+}
+
+/// Without what a linear spring has.
+fn only_table(kind: &mut ElementKindDraft, table: Vec<[f64; 2]>, pushes: bool, free: Option<NumberDraft>) {
+    let ElementKindDraft::Spring { stiffness, cubic, preload, compression, extension, free_length, .. } =
+        kind
+    else {
+        unreachable!("the press has a spring")
+    };
+    (*stiffness, *cubic, *preload, *free_length) = (None, None, None, free);
+    *if pushes { compression } else { extension } = Some(table);
+}
+
+#[test]
+fn a_table_on_a_line_is_a_stiffness_whichever_way_it_is_said() {
+    let free = || Some(0.3.into());
+    let plain = press_with(|kind| {
+        let ElementKindDraft::Spring { stiffness, cubic, preload, free_length, .. } = kind else { return };
+        (*stiffness, *cubic, *preload, *free_length) = (Some(2000.0.into()), None, None, free());
+    });
+    // Far too short a table: beyond it the line goes on.
+    let points = [-0.01, 0.0, 0.02, 0.05].map(|x| [x, 2000.0 * x]).to_vec();
+    for pushes in [false, true] {
+        let tabled = press_with(|kind| only_table(kind, points.clone(), pushes, free()));
+        for formulation in [Formulation::Relative, Formulation::Absolute] {
+            same(&run(&plain, formulation), &run(&tabled, formulation), &LOADS);
+        }
+    }
+}
+
+#[test]
+fn a_progressive_spring_follows_its_free_length_and_its_scale() {
+    let table = vec![[-0.02, -40.0], [0.0, 0.0], [0.06, 90.0], [0.11, 330.0], [0.2, 1500.0]];
+    let draft = press_with(|kind| {
+        only_table(kind, table.clone(), false, Some(given("free")));
+        let ElementKindDraft::Spring { scale, .. } = kind else { return };
+        *scale = Some(given("1 + harder"));
+    });
+    let draft = with_parameter(with_parameter(draft, "free", 0.2), "harder", 0.1);
+    // Over the motion the spring is from 0.12 to 0.36 m long: within the table, and beyond it on either side.
+    let solution = run(&draft, Formulation::Relative);
+    let pulls = values(&solution, "spring");
+    assert!(pulls.iter().any(|s| *s > 100.0) && pulls.iter().any(|s| *s < 100.0), "{pulls:?}");
+    differentiated(&draft, &LOADS);
+    // In compression, counted from the drawing.
+    let draft = press_with(|kind| only_table(kind, table.clone(), true, None));
+    differentiated(&draft, &LOADS);
+}
+
+#[test]
+fn a_point_of_a_table_has_the_force_that_stands_there() {
+    // The lever's spring, 0.3 m long as drawn, gets 0.05 m shorter: it pushes with what the table says there.
+    let mut draft = Draft::new("bump stop")
+        .body("piston")
+        .translational("slide", ["ground", "piston"], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0])
+        .driver("ram", "slide", Law::parse("t").unwrap())
+        .measure("ram", driver_force("ram"))
+        .times([0.0, 0.01, 0.03, 0.05, 0.06]);
+    let table = vec![[-0.1, 0.0], [0.02, 0.0], [0.03, 200.0], [0.05, 1700.0]];
+    draft.forces.push(ElementDraft::new(
+        "stop",
+        ElementKindDraft::Spring {
+            from: on("piston", [0.0, 0.0, 0.0]),
+            to: on("ground", [0.0, 0.0, 0.3]),
+            stiffness: None,
+            cubic: None,
+            compression: Some(table),
+            extension: None,
+            scale: None,
+            free_length: None,
+            preload: None,
+            damping: None,
+        },
+    ));
+    let forces = values(&run(&draft, Formulation::Relative), "ram");
+    for (force, expected) in forces.iter().zip([0.0, 0.0, 200.0, 1700.0]) {
+        assert!((force - expected).abs() < SAME * 1700.0, "{forces:?}");
+    }
+    assert!(forces[4] > 1700.0);
+}
+
+#[test]
+fn what_gives_against_a_table_gives_by_its_slope() {
+    let (arm, k) = (0.5, 3e4);
+    let give = |kind: ElementKindDraft| {
+        let mut draft = rotor("0*t").point("tip", "rotor", [arm, 0.0, 0.0]);
+        draft.forces.push(ElementDraft::new("spring", kind));
+        let kind = MeasureKindDraft::Compliance {
+            of: "tip.y".into(),
+            at: Some(on("rotor", [arm, 0.0, 0.0])),
+            wheel: None,
+            along: [0.0, 1.0, 0.0].into(),
+            released: Some("motor".into()),
+        };
+        values(&run(&draft.measure("give", kind), Formulation::Relative), "give")[0]
+    };
+    let spring = |compression| ElementKindDraft::Spring {
+        from: on("ground", [0.2, -0.3, 0.0]),
+        to: on("rotor", [0.2, 0.0, 0.0]),
+        stiffness: Some((0.25 * k).into()),
+        cubic: None,
+        compression: Some(compression),
+        extension: None,
+        scale: Some(1.5.into()),
+        free_length: None,
+        preload: None,
+        damping: None,
+    };
+    // Symmetric about the drawing: the slope there is that of the chords beside it.
+    let found =
+        give(spring(vec![[-0.02, -2.0 * k], [-0.01, -0.005 * k], [0.01, 0.005 * k], [0.02, 2.0 * k]]));
+    let h = 1e-6;
+    let at = |x: f64| {
+        let mut draft =
+            rotor("0*t").measure("spring", MeasureKindDraft::SpringForce { force: "spring".into() });
+        let table = vec![[-0.02, -2.0 * k], [-0.01, -0.005 * k], [0.01, 0.005 * k], [0.02, 2.0 * k]];
+        let mut kind = spring(table);
+        let ElementKindDraft::Spring { free_length, .. } = &mut kind else { unreachable!() };
+        *free_length = Some((0.3 - x).into());
+        draft.forces.push(ElementDraft::new("spring", kind));
+        values(&run(&draft, Formulation::Relative), "spring")[0]
+    };
+    let slope = (at(h) - at(-h)) / (2.0 * h);
+    // Central differences of a cubic piece: their error is the square of the step.
+    let expected = (arm / 0.2_f64).powi(2) / slope;
+    assert!((found - expected).abs() < 1e-6 * expected, "{found} {expected}");
+}
+
+/// What a body of ten tumbles with: its moments about its centre, and about another point.
+#[test]
+fn moments_about_another_point_are_those_of_the_parallel_axis_theorem() {
+    let (mass, way) = (3.0, Vec3::new(0.1, -0.2, 0.15));
+    let inertia = [0.5, 0.6, 0.45, 0.05, -0.02, 0.03];
+    let moved = {
+        let Vec3 { x, y, z } = way;
+        let more = [y * y + z * z, z * z + x * x, x * x + y * y, x * y, y * z, z * x];
+        std::array::from_fn(|k| inertia[k] + mass * more[k])
+    };
+    let draft = |inertia: [f64; 6], about: Option<[f64; 3]>| {
+        let mut draft = heavy("macpherson");
+        let body = draft.bodies.last().unwrap().name.clone();
+        draft = draft.hardpoint("C", [0.3, 0.6, 0.1]).variable_moving("centre", "C", [0.3, 1.0, -0.5]);
+        let [ixx, iyy, izz, ixy, iyz, izx] = inertia.map(|i| Some(i.into()));
+        let about = about.map(|at| on(&body, at));
+        let (centre, mass) = (on(&body, "C"), mass.into());
+        let kind = ElementKindDraft::Rigid { centre, mass, ixx, iyy, izz, ixy, iyz, izx, about };
+        draft.masses.push(ElementDraft::new("tumbles", kind));
+        draft
+    };
+    let about = (Vec3::new(0.3, 0.6, 0.1) - way).to_array();
+    let [a, b] = [draft(inertia, None), draft(moved, Some(about))].map(asking_for_all);
+    let [x, y] = [&a, &b].map(|draft| run(draft, Formulation::Relative));
+    for measure in &a.measures {
+        let (x, y) = (values(&x, &measure.name), values(&y, &measure.name));
+        let scale = x.iter().filter(|x| x.is_finite()).fold(0.0_f64, |most, x| most.max(x.abs()));
+        for (x, y) in x.iter().zip(&y).filter(|(x, _)| x.is_finite()) {
+            assert!((x - y).abs() <= SAME * scale.max(1.0), "{}: {x} {y}", measure.name);
+        }
+    }
+    // Of a centre that moves: the moments about the point stay.
+    let mut few = b;
+    few.times.truncate(3);
+    few.measures.truncate(2);
+    differentiated(&few, &["load 0"]);
+    // In a plane the one that counts is enough.
+    let turned = |izz: f64, about: Option<PointRef>| {
+        let mut draft = rotor("2*t^2").measure("motor", driver_force("motor"));
+        let (centre, mass) = (on("rotor", [0.4, 0.0, 0.0]), 2.0.into());
+        let (ixx, iyy, izz, ixy, iyz, izx) = (None, None, Some(izz.into()), None, None, None);
+        let kind = ElementKindDraft::Rigid { centre, mass, ixx, iyy, izz, ixy, iyz, izx, about };
+        draft.masses.push(ElementDraft::new("arm", kind));
+        values(&run(&draft, Formulation::Relative), "motor")
+    };
+    let expected = (0.1 + 2.0 * 0.4 * 0.4) * 4.0;
+    for torque in turned(0.1, None).into_iter().chain(turned(0.1 + 2.0 * 0.16, Some(on("rotor", [0.0; 3])))) {
+        assert!((torque - expected).abs() < SAME * expected, "{torque} {expected}");
+    }
+}
+
+/// The corners and triangles of a box.
+fn box_of(centre: Vec3, [x, y, z]: [f64; 3]) -> Solid {
+    let corners: Vec<Vec3> = (0..8)
+        .map(|k| {
+            let side = |bit: u32, size: f64| if k & bit == 0 { -0.5 * size } else { 0.5 * size };
+            centre + Vec3::new(side(1, x), side(2, y), side(4, z))
+        })
+        .collect();
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles: Vec<[u32; 3]> =
+        faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    Solid::of(&corners, &triangles).unwrap()
+}
+
+#[test]
+fn a_box_as_a_mesh_weighs_what_a_block_does() {
+    let draft = |kind: fn(&str, Vec3, Pose) -> ElementKindDraft| {
+        let mut draft = heavy("macpherson");
+        let frame = Pose { rot: Mat3::IDENTITY, r: Vec3::new(0.1, 0.3, 0.2) };
+        // A frame that is turned: the mesh may count in it.
+        let turned = Pose { rot: Mat3 { cols: [Vec3::AXES[1], Vec3::AXES[2], Vec3::AXES[0]] }, ..frame };
+        let body = draft.bodies.last_mut().unwrap();
+        body.frame = FrameDraft::Pose(turned);
+        let kind = kind(&body.name.clone(), Vec3::new(0.25, 0.5, 0.2), turned);
+        draft.masses.push(ElementDraft::new("box", kind));
+        asking_for_all(draft)
+    };
+    let block = draft(|body, centre, _| {
+        let [x, y, z] = [0.1, 0.2, 0.3].map(NumberDraft::from);
+        ElementKindDraft::Block { centre: on(body, centre.to_array()), x, y, z, density: 700.0.into() }
+    });
+    let world = draft(|body, centre, _| {
+        let mesh = box_of(centre, [0.1, 0.2, 0.3]);
+        ElementKindDraft::Mesh { body: body.into(), mesh, density: 700.0.into() }
+    });
+    let own = draft(|body, centre, frame| {
+        // Global x, y, z are the frame's z, x, y.
+        let mesh = Solid { in_body: true, ..box_of(frame.inverse().point(centre), [0.2, 0.3, 0.1]) };
+        ElementKindDraft::Mesh { body: body.into(), mesh, density: 700.0.into() }
+    });
+    let solutions = [&block, &world, &own].map(|draft| run(draft, Formulation::Relative));
+    let mut compared = 0;
+    for measure in &block.measures {
+        let [x, y, z] = solutions.each_ref().map(|s| values(s, &measure.name));
+        let scale = x.iter().filter(|x| x.is_finite()).fold(0.0_f64, |most, x| most.max(x.abs()));
+        for k in (0..x.len()).filter(|k| x[*k].is_finite()) {
+            let most = (x[k] - y[k]).abs().max((x[k] - z[k]).abs());
+            assert!(most <= SAME * scale.max(1.0), "{} {} {} {}", measure.name, x[k], y[k], z[k]);
+            compared += 1;
+        }
+    }
+    assert!(compared > 0);
+    let mass = [&block, &world].map(|draft| Model::from_draft(draft).unwrap().mass());
+    assert!((mass[0] - mass[1]).abs() < SAME * mass[0]);
+}
+
+/// The strut with a wheel on its knuckle, toed in and leaning, and nothing else that pushes.
+fn strut_on_its_wheel(push: [Option<NumberDraft>; 3]) -> Draft {
+    let mut draft = heavy("macpherson");
+    draft.masses.clear();
+    draft.gravity = Vec3::ZERO;
+    draft =
+        draft.hardpoint("wheel", [0.01, 0.75, 0.02]).variable_moving("wheel out", "wheel", [0.2, 1.0, 0.3]);
+    draft.wheels.push(WheelDraft {
+        name: "fl".into(),
+        body: "knuckle".into(),
+        centre: "wheel".into(),
+        spin: WheelSpinDraft::Axis(LineDraft::from([0.05, 1.0, -0.08])),
+        radius: 0.31,
+        side: None,
+        kingpin: None,
+        bump: draft.drivers.first().map(|d| d.name.clone()),
+        steer: None,
+        planes: None,
+        spring: None,
+        end: None,
+    });
+    let [outboard, forward, up] = push;
+    let kind = ElementKindDraft::WheelForce { wheel: "fl".into(), outboard, forward, up, law: None };
+    draft.forces.push(ElementDraft::new("road", kind));
+    for what in [WheelMeasure::ContactX, WheelMeasure::ContactY, WheelMeasure::ContactZ, WheelMeasure::Toe] {
+        draft = draft.measure(what.name(), MeasureKindDraft::Wheel { wheel: "fl".into(), what });
+    }
+    draft
+}
+
+#[test]
+fn the_road_works_on_the_point_of_the_wheel_that_stands_on_it() {
+    let [outboard, forward, up] = [-1500.0, 700.0, 4000.0];
+    let draft = strut_on_its_wheel([outboard, forward, up].map(|x| Some(x.into())));
+    let mut draft = draft.measure("road", MeasureKindDraft::SpringForce { force: "road".into() });
+    for driver in draft.drivers.clone() {
+        let power = MeasureKindDraft::DriverPower { driver: Some(driver.name.clone()) };
+        draft = draft.measure(format!("power of {}", driver.name), power);
+    }
+    let model = Model::from_draft(&draft).unwrap();
+    let knuckle = model.bodies.iter().position(|b| b.name == "knuckle").unwrap();
+    let solution = run(&draft, Formulation::Relative);
+    let mut worked = 0.0_f64;
+    for k in 0..solution.motion.len() {
+        let of = |name: &str| values(&solution, name)[k];
+        let contact = Vec3::new(of("contact_x"), of("contact_y"), of("contact_z"));
+        // Of a left wheel: toe is atan2(e_x, e_y), outboard (sin, cos, 0), forward (cos, -sin, 0).
+        let (sin, cos) = of("toe").sin_cos();
+        let push = Vec3::new(sin, cos, 0.0) * outboard + Vec3::new(cos, -sin, 0.0) * forward;
+        let push = push + Vec3::AXES[2] * up;
+        let s = solution.motion.at(k).body(knuckle);
+        let velocity = s.v + s.omega.cross(contact - s.r);
+        let given: f64 = draft.drivers.iter().map(|d| of(&format!("power of {}", d.name))).sum();
+        assert!((given + push.dot(velocity)).abs() < 1e-10 * 4000.0 * velocity.norm().max(1e-3), "{k}");
+        assert!((of("road") - push.norm()).abs() < SAME * push.norm());
+        worked = worked.max(given.abs());
+    }
+    assert!(worked > 1.0);
+}
+
+#[test]
+fn loads_of_the_road_follow_the_wheel_and_its_forces() {
+    let draft = strut_on_its_wheel([Some(given("0 - side")), None, Some(4000.0.into())]);
+    let mut draft = asking_for_all(with_parameter(draft, "side", 1500.0));
+    draft.times = draft.times.iter().copied().step_by(usize::max(draft.times.len() / 3, 1)).collect();
+    let names: Vec<String> = draft.measures.iter().map(|m| m.name.clone()).take(4).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    differentiated(&draft, &names);
+}
+
+#[test]
+fn a_wheel_gives_to_the_road_as_its_point_of_the_knuckle_does() {
+    let (mut draft, _) = crate::loads::soft("macpherson");
+    let wheel = strut_on_its_wheel([None, None, Some(1.0.into())]);
+    draft.wheels = wheel.wheels;
+    draft =
+        draft.hardpoint("wheel", [0.01, 0.75, 0.02]).variable_moving("wheel out", "wheel", [0.2, 1.0, 0.3]);
+    for what in [WheelMeasure::ContactX, WheelMeasure::ContactY, WheelMeasure::ContactZ, WheelMeasure::Toe] {
+        draft = draft.measure(what.name(), MeasureKindDraft::Wheel { wheel: "fl".into(), what });
+    }
+    let give = |at: Option<PointRef>, wheel: Option<String>| MeasureKindDraft::Compliance {
+        of: "toe".into(),
+        at,
+        wheel,
+        along: [0.0, 1.0, 0.0].into(),
+        released: None,
+    };
+    draft = draft.measure("gives", give(None, Some("fl".into())));
+    let solution = run(&draft, Formulation::Relative);
+    let last = solution.motion.len() - 1;
+    // The same point, where it was in the drawing, at one output time.
+    let of = |name: &str| values(&solution, name)[last];
+    let model = Model::from_draft(&draft).unwrap();
+    let knuckle = model.bodies.iter().position(|b| b.name == "knuckle").unwrap();
+    let s = solution.motion.at(last).body(knuckle);
+    let contact = Vec3::new(of("contact_x"), of("contact_y"), of("contact_z"));
+    let drawn = model.bodies[knuckle].frame.point(s.rotation.transpose() * (contact - s.r));
+    let fixed = draft.clone().measure("fixed", give(Some(on("knuckle", drawn.to_array())), None));
+    let fixed = values(&run(&fixed, Formulation::Relative), "fixed")[last];
+    assert!(
+        of("gives").abs() > 0.0 && (of("gives") - fixed).abs() < SAME * fixed.abs(),
+        "{} {fixed}",
+        of("gives")
+    );
+    compare_with_solved(&draft, &["gives"]);
+}
+
+fn slide_friction(joint: &str, coefficient: f64, length: Option<f64>, viscous: Option<f64>) -> ElementDraft {
+    let kind = ElementKindDraft::SlideFriction {
+        joint: joint.into(),
+        coefficient: coefficient.into(),
+        length: length.map(NumberDraft::from),
+        normal: None,
+        viscous: viscous.map(NumberDraft::from),
+        fades: None,
+    };
+    ElementDraft::new(format!("rubs at {joint}"), kind)
+}
+
+/// A block that slides along x at a steady speed, pushed down off its guide's middle.
+fn sledge(length: Option<f64>, viscous: Option<f64>) -> Draft {
+    let mut draft = Draft::new("sledge")
+        .body("block")
+        .translational("slide", ["ground", "block"], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0])
+        .driver("rope", "slide", Law::parse("0.5*t").unwrap())
+        .measure("rope", driver_force("rope"))
+        .times([0.0, 1.0]);
+    // Down at 0.3 m behind the middle, and aside at 0.1 m before it.
+    draft.masses.push(point_mass("load", "block", [-0.3, 0.0, 0.0], 10.0));
+    draft.masses.push(point_mass("other", "block", [0.1, 0.0, 0.0], 5.0));
+    draft.gravity = Vec3::new(0.0, 0.0, -10.0);
+    draft.forces.push(slide_friction("slide", 0.2, length, viscous));
+    draft
+}
+
+/// Friction of slides fades below 1 mm/s: at half a metre per second it is whole to this part.
+const WHOLE: f64 = 1e-5;
+
+#[test]
+fn a_slide_rubs_by_what_presses_its_guide() {
+    // 150 N down; its moment about the middle is 100 * 0.3 - 50 * 0.1 = 25 N m.
+    let pressed = |length: f64| (75.0 + 25.0 / length).abs() + (75.0 - 25.0 / length).abs();
+    let cases = [
+        (None, None, 0.2 * 150.0),
+        // The ends are pressed the same way: their sum is the weight.
+        (Some(0.5), None, 0.2 * 150.0),
+        // The guide is so short that the couple lifts one end.
+        (Some(0.2), None, 0.2 * pressed(0.2)),
+        (None, Some(8.0), 0.2 * 150.0 + 8.0 * 0.5),
+    ];
+    assert!((pressed(0.2) - 250.0).abs() < 1e-12);
+    for (length, viscous, expected) in cases {
+        for formulation in [Formulation::Relative, Formulation::Absolute] {
+            for pull in values(&run(&sledge(length, viscous), formulation), "rope") {
+                assert!(
+                    (pull - expected).abs() < WHOLE * expected,
+                    "{length:?} {viscous:?}: {pull} {expected}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_ball_rubs_by_its_load_and_its_radius() {
+    let mut draft = Draft::new("top")
+        .body("top")
+        .spherical("ball", ["ground", "top"], [0.0, 0.0, 0.0])
+        .joint(joint("upright", "parallel", ["ground", "top"], &[], Some([0.0, 0.0, 1.0])))
+        .joint(joint("spins", "heading", ["ground", "top"], &[], Some([0.0, 0.0, 1.0])))
+        .driver("motor", "spins", Law::parse("9*t").unwrap())
+        .measure("motor", driver_force("motor"))
+        .measure("friction", MeasureKindDraft::SpringForce { force: "ball".into() })
+        .times([0.0, 0.7]);
+    draft.masses.push(point_mass("disc", "top", [0.0, 0.0, 0.4], 12.0));
+    draft.gravity = Vec3::new(0.0, 0.0, -10.0);
+    let mut ball = friction("ball", "ball", 0.1, 0.015);
+    let ElementKindDraft::Friction { viscous, .. } = &mut ball.kind else { unreachable!() };
+    *viscous = Some(0.003.into());
+    draft.forces.push(ball);
+    let expected = 0.1 * 0.015 * 120.0 + 0.003 * 9.0;
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let solution = run(&draft, formulation);
+        for (torque, rubs) in values(&solution, "motor").into_iter().zip(values(&solution, "friction")) {
+            assert!((torque - expected).abs() < WHOLE * expected, "{torque} {expected}");
+            assert!((rubs + expected).abs() < WHOLE * expected, "{rubs} {expected}");
+        }
+    }
+}
+
+#[test]
+fn friction_of_all_kinds_follows_the_design() {
+    // A strut whose balls, slide and hinges rub together.
+    let mut draft = heavy("macpherson");
+    let model = Model::from_draft(&draft).unwrap();
+    let mut kinds = Vec::new();
+    for joint in &model.joints {
+        let mut element = match joint.kind.name {
+            "revolute" | "spherical" => friction(&format!("rubs at {}", joint.name), &joint.name, 0.15, 0.02),
+            "cylindrical" | "translational" => slide_friction(&joint.name, 0.1, Some(0.2), Some(30.0)),
+            _ => continue,
+        };
+        if let ElementKindDraft::Friction { length, viscous, .. } = &mut element.kind {
+            *length = (joint.kind.name == "revolute").then(|| 0.3.into());
+            *viscous = Some(0.5.into());
+        }
+        kinds.push(joint.kind.name);
+        draft.forces.push(element);
+    }
+    assert!(kinds.contains(&"spherical") && kinds.contains(&"revolute"), "{kinds:?}");
+    let mut draft = asking_for_all(draft);
+    draft.times = draft.times.iter().copied().step_by(usize::max(draft.times.len() / 3, 1)).collect();
+    let solution = run(&draft, Formulation::Relative);
+    let known = |name: &&str| values(&solution, name).iter().all(|x| x.is_finite());
+    let names: Vec<String> = draft.measures.iter().map(|m| m.name.clone()).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).filter(known).collect();
+    assert!(names.len() > 10, "{names:?}");
+    differentiated(&draft, &names[..6]);
+    // And the guide of a press, pressed at its ends: in the plane, as its constraints out of it are redundant.
+    let mut press = press();
+    press.forces.push(friction("rubs at B", "B", 0.2, 0.04));
+    press.forces.push(slide_friction("guide", 0.1, Some(0.3), Some(20.0)));
+    let open = Model::from_draft(&press).unwrap();
+    let shared = Analysis::new(&open).unwrap().loads(&[]).shared_friction;
+    assert_eq!(shared, [open.element("rubs at guide").unwrap()]);
+    let ElementKindDraft::SlideFriction { normal, fades, .. } = &mut press.forces.last_mut().unwrap().kind
+    else {
+        unreachable!()
+    };
+    // Near its dead centre the ram is as slow as friction fades; differences see only what goes more slowly.
+    (*normal, *fades) = (Some(Vec3::AXES[2]), Some(0.2.into()));
+    differentiated(&press, &["torque", "guide", "B"]);
+}
+
+#[test]
+fn what_presses_is_known_or_friction_is_named() {
+    // A door in two hinges: the force across either is shared with the moment of the other.
+    let z = [0.0, 0.0, 1.0];
+    let mut draft = Draft::new("door")
+        .body("door")
+        .revolute("lower", ["ground", "door"], [0.0, 0.0, 0.0], z)
+        .revolute("upper", ["ground", "door"], [0.0, 0.0, 2.0], z)
+        .driver("hand", "lower", Law::parse("t").unwrap())
+        .measure("hand", driver_force("hand"))
+        .times([0.0, 0.5]);
+    draft.masses.push(point_mass("leaf", "door", [0.5, 0.0, 1.0], 20.0));
+    draft.gravity = Vec3::new(0.0, 0.0, -10.0);
+    draft.forces.push(friction("squeaks", "upper", 0.1, 0.01));
+    let model = Model::from_draft(&draft).unwrap();
+    let analysis = Analysis::new(&model).unwrap();
+    assert!(values(&analysis.run(), "hand").iter().all(|x| x.is_nan()));
+    assert_eq!(analysis.loads(&[]).shared_friction, [model.element("squeaks").unwrap()]);
+}
