@@ -1,6 +1,7 @@
 //! Adams/Solver datasets (`.adm`): parts, markers, joints, primitives, motions, couplers, gears.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::TAU;
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 
@@ -60,6 +61,11 @@ impl Statement {
 
     fn has(&self, key: &str) -> bool {
         self.text(key).is_some()
+    }
+
+    /// Whether it has a flag, which may be cut short.
+    fn flag(&self, flag: &str) -> bool {
+        self.keys.iter().any(|(k, v)| v.is_empty() && k.len() >= SHORTEST && flag.starts_with(k.as_str()))
     }
 
     fn called(&self) -> Called<'_> {
@@ -127,14 +133,26 @@ fn read(source: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         parts: BTreeMap::new(),
         markers: BTreeMap::new(),
         faulty: BTreeSet::new(),
+        refused: BTreeSet::new(),
+        unplaced: BTreeSet::new(),
         joints: BTreeMap::new(),
         splines: BTreeMap::new(),
+        variables: BTreeMap::new(),
     };
     reader.parts(&statements);
     reader.markers(&statements);
     reader.constraints(&statements);
     reader.motions(&statements);
     reader.rest(&statements);
+    if !source.text.lines().rev().any(|l| l.trim().eq_ignore_ascii_case("END")) {
+        let at = At { text: 0, start: source.text.len(), end: source.text.len() };
+        reader.notes.approximated(
+            "END",
+            "",
+            Some(at),
+            "there is no such statement: the file may be cut short",
+        );
+    }
     let m = reader.m;
     (m.bodies.len() > 1).then_some(m)
 }
@@ -203,7 +221,9 @@ fn statement(at: At, code: &str, label: &str) -> Option<Statement> {
             let is_value = part.chars().next().is_some_and(|c| c.is_ascii_digit() || "+-.(".contains(c));
             match out.keys.last_mut() {
                 Some((key, text))
-                    if !text.is_empty() && (is_value || "FUNCTION".starts_with(key.as_str())) =>
+                    if !text.is_empty()
+                        && (is_value || "FUNCTION".starts_with(key.as_str()))
+                        && !FLAGS.contains(&part.to_ascii_uppercase().as_str()) =>
                 {
                     text.push(',');
                     text.push_str(part);
@@ -217,21 +237,39 @@ fn statement(at: At, code: &str, label: &str) -> Option<Statement> {
     Some(out)
 }
 
-/// The parts between commas outside of parentheses; a backslash or a seam before a key parts too.
+/// Flags that may stand behind a function.
+const FLAGS: [&str; 5] = ["ROTATIONAL", "TRANSLATIONAL", "DISPLACEMENT", "VELOCITY", "ACCELERATION"];
+
+/// The parts between commas outside of parentheses; a backslash parts too, and a seam before a key or a flag: the comma at the beginning
+/// of a line only continues it where it stands in the middle of a list or a function.
 fn parts_of(text: &str) -> Vec<String> {
     let (mut out, mut depth) = (vec![String::new()], 0_i32);
     let chars: Vec<char> = text.chars().collect();
     for (k, c) in chars.iter().enumerate() {
         depth += i32::from(*c == '(') - i32::from(*c == ')');
-        let key_follows = || {
-            let rest: String = chars[k + 1..].iter().take(40).collect();
-            rest.split_once('=').is_some_and(|(key, _)| {
-                let key = key.trim();
-                key.starts_with(|c: char| c.is_ascii_alphabetic())
-                    && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+        let is_function = || {
+            out.last().is_some_and(|part| {
+                let key = part
+                    .split('=')
+                    .next()
+                    .unwrap_or_default()
+                    .trim_matches([' ', '\t', SEAM])
+                    .to_ascii_uppercase();
+                part.contains('=') && key.len() >= SHORTEST && "FUNCTION".starts_with(&key)
             })
         };
-        let parts = (*c == ',' && depth <= 0) || *c == '\\' || (*c == SEAM && depth <= 0 && key_follows());
+        let begins = || {
+            let rest: String = chars[k + 1..].iter().take(60).collect();
+            let rest = rest.trim_start();
+            let word =
+                rest.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).next().unwrap_or_default();
+            let behind = rest[word.len()..].trim_start_matches([' ', '\t']).chars().next();
+            let ends = behind.is_none_or(|c| [',', SEAM, '\\'].contains(&c));
+            let known = FLAGS.contains(&word.to_ascii_uppercase().as_str());
+            let is_word = word.starts_with(|c: char| c.is_ascii_alphabetic());
+            is_word && (behind == Some('=') || (ends && (known || !is_function())))
+        };
+        let parts = (*c == ',' && depth <= 0) || *c == '\\' || (*c == SEAM && depth <= 0 && begins());
         match out.last_mut() {
             Some(last) if !parts => last.push(*c),
             _ => out.push(String::new()),
@@ -290,6 +328,35 @@ fn units(statements: &[Statement], notes: &mut Notes) -> (f64, &'static str, &'s
     out
 }
 
+/// Points of time and way over the first second, of a rate of this order: Simpson's rule in steps much shorter than the points' distance.
+fn summed(text: &str, order: usize, scale: f64, begin: f64, rate: f64) -> Result<Vec<[f64; 2]>, String> {
+    const POINTS: usize = 200;
+    const STEPS: usize = 10;
+    let law = hardpoint::law::Law::parse(text).map_err(|_| format!("`{text}` cannot be evaluated"))?;
+    let at = |t: f64| scale * law.at(t).0[0];
+    let h = 1.0 / (POINTS * STEPS) as f64;
+    let (mut x, mut v) = (begin, rate);
+    let mut points = vec![[0.0, begin]];
+    for k in 0..POINTS * STEPS {
+        let t = k as f64 * h;
+        let [a, b, c] = [at(t), at(t + h / 2.0), at(t + h)];
+        if order == 1 {
+            x += h / 6.0 * (a + 4.0 * b + c);
+        } else {
+            x += h * v + h * h / 6.0 * (a + 2.0 * b);
+            v += h / 6.0 * (a + 4.0 * b + c);
+        }
+        if (k + 1) % STEPS == 0 {
+            points.push([(k + 1) as f64 * h, x]);
+        }
+    }
+    if points.iter().all(|p| p[1].is_finite()) {
+        Ok(points)
+    } else {
+        Err("its rate is no number at some time".into())
+    }
+}
+
 struct Reader<'n> {
     m: Mechanism,
     notes: &'n mut Notes,
@@ -299,8 +366,14 @@ struct Reader<'n> {
     markers: BTreeMap<String, Marker>,
     /// Markers that could not be read.
     faulty: BTreeSet<String>,
+    /// Joints that no model file can say.
+    refused: BTreeSet<String>,
+    /// Markers whose place is not in the file.
+    unplaced: BTreeSet<String>,
     joints: BTreeMap<String, Joined>,
     splines: BTreeMap<String, Vec<[f64; 2]>>,
+    /// Functions of variables.
+    variables: BTreeMap<String, String>,
 }
 
 impl Reader<'_> {
@@ -399,8 +472,15 @@ impl Reader<'_> {
             if s.name != "MARKER" {
                 continue;
             }
-            if s.has("FLOATING") || s.has("NODE_ID") && s.has("FLEX_BODY") && !s.has("QP") {
-                self.notes.refused("MARKER", &s.label, Some(s.at), "its place is not in the file");
+            let elastic = s.has("FE_PART") || (s.has("NODE_ID") && s.has("FLEX_BODY") && !s.has("QP"));
+            if s.has("FLOATING") || elastic {
+                let why = if s.has("FE_PART") {
+                    "it is on an elastic part"
+                } else {
+                    "its place is not in the file"
+                };
+                self.notes.refused("MARKER", &s.label, Some(s.at), why);
+                self.unplaced.insert(s.id.clone());
                 continue;
             }
             let named =
@@ -428,6 +508,15 @@ impl Reader<'_> {
 
     /// The markers of a statement: Adams' J first, against which Adams' I moves.
     fn pair(&mut self, s: &Statement) -> Option<[Marker; 2]> {
+        let unplaced = |key: &&str| s.reference(key).is_some_and(|id| self.unplaced.contains(id));
+        if let Some(key) = ["I", "J"].into_iter().find(unplaced) {
+            let why = format!(
+                "its marker {key}, MARKER/{}, has no place here",
+                s.reference(key).unwrap_or_default()
+            );
+            self.notes.refused(&s.name, &s.label, Some(s.at), why);
+            return None;
+        }
         let mut found = Vec::new();
         for key in ["J", "I"] {
             let id = s.reference(key);
@@ -449,7 +538,12 @@ impl Reader<'_> {
     fn constraints(&mut self, statements: &[Statement]) {
         for s in statements {
             match s.name.as_str() {
-                "JOINT" => self.joint(s),
+                "JOINT" => {
+                    self.joint(s);
+                    if !self.joints.contains_key(&s.id) {
+                        self.refused.insert(s.id.clone());
+                    }
+                }
                 "JPRIM" => self.primitive(s),
                 _ => {}
             }
@@ -577,6 +671,11 @@ impl Reader<'_> {
                 lists[0].iter().copied().zip(lists[1].iter().copied()).map(|(x, y)| [x, y]).collect(),
             );
         }
+        for s in statements.iter().filter(|s| s.name == "VARIABLE") {
+            if let Some(function) = s.text("FUNCTION") {
+                self.variables.insert(s.id.clone(), function.to_owned());
+            }
+        }
         for s in statements {
             match s.name.as_str() {
                 "MOTION" => self.motion(s),
@@ -596,18 +695,12 @@ impl Reader<'_> {
                 format!("{why}; what it drives is held as drawn"),
             );
         };
-        if ["VELOCITY", "ACCELERATION"].iter().any(|k| s.has(k)) {
-            return refuse(
-                self,
-                "it prescribes a velocity or an acceleration: write the displacement that it comes to",
-            );
-        }
+        let order = if s.flag("VELOCITY") { 1 } else { 2 * usize::from(s.flag("ACCELERATION")) };
         let Some(function) = s.text("FUNCTION") else { return refuse(self, "it has no FUNCTION") };
-        let function = function.to_owned();
+        let function = self.written_out(function);
         if let Some(id) = s.reference("JOINT") {
             let Some(joint) = self.joints.get(id) else {
-                let seen = self.notes.report.of(crate::Fate::Refused).any(|e| e.kind == "JOINT");
-                if seen {
+                if self.refused.contains(id) {
                     return refuse(self, &format!("JOINT/{id} is refused"));
                 }
                 self.notes.problem(
@@ -618,10 +711,7 @@ impl Reader<'_> {
                 return;
             };
             let drawn = offset(&joint.markers[0], &joint.markers[1]);
-            let turns = s
-                .keys
-                .iter()
-                .any(|(k, v)| v.is_empty() && k.len() >= SHORTEST && "ROTATIONAL".starts_with(k.as_str()));
+            let turns = s.flag("ROTATIONAL") || (joint.kind == "revolute" && !s.flag("TRANSLATIONAL"));
             let (name, drawn, scale) = if turns {
                 ("angle", drawn.angle, 1.0)
             } else {
@@ -638,10 +728,19 @@ impl Reader<'_> {
             if self.m.is_driven(coordinate) {
                 return refuse(self, "the joint is driven already");
             }
-            match self.law(&function, scale, drawn, turns) {
+            let law = match order {
+                0 => self.law(&function, scale, drawn, turns),
+                _ => self.integral(s, &function, order, scale, drawn, turns),
+            };
+            match law {
                 Ok(law) => {
                     self.m.driver(&s.label, s.called().note(self.notes), Drives::Coordinate(coordinate), law);
-                    self.notes.taken("MOTION", &s.label, Some(s.at));
+                    let why = "its rate is summed up over the first second, and a spline goes through that";
+                    if order > 0 && matches!(self.m.drivers.last().map(|d| &d.law), Some(Law::Table(_))) {
+                        self.notes.approximated("MOTION", &s.label, Some(s.at), why);
+                    } else {
+                        self.notes.taken("MOTION", &s.label, Some(s.at));
+                    }
                 }
                 Err(why) => refuse(self, &why),
             }
@@ -650,7 +749,7 @@ impl Reader<'_> {
         let Some([j, i]) = self.pair(s) else { return };
         let axis = ["X", "Y", "Z"].iter().position(|k| s.has(k)).map(|k| j.pose.rot.cols[k]);
         match axis {
-            Some(along) if j.body == GROUND && i.body != GROUND => {
+            Some(along) if j.body == GROUND && i.body != GROUND && order == 0 => {
                 match self.law(&function, self.scale, along.dot(i.pose.r - j.pose.r), false) {
                     Ok(law) => {
                         self.m.driver(
@@ -666,9 +765,27 @@ impl Reader<'_> {
             }
             _ => refuse(
                 self,
-                "it drives an angle between two markers, or a way that is not against the ground",
+                "it drives an angle between two markers, or a way that is not against the ground, or by its rate",
             ),
         }
+    }
+
+    /// A function with those of the variables that it names in their place: `VARVAL(3)`. What names itself stays as it is.
+    fn written_out(&self, function: &str) -> String {
+        const DEEPEST: usize = 8;
+        const LONGEST: usize = 100_000;
+        let mut text = function.to_owned();
+        for _ in 0..DEEPEST {
+            // Letters of other alphabets would move in capitals.
+            let Some(start) = text.to_ascii_uppercase().find("VARVAL") else { break };
+            let inner = text[start..].find('(').zip(text[start..].find(')'));
+            let Some((open, close)) = inner.filter(|(open, close)| open < close) else { break };
+            let id =
+                text[start + open + 1..start + close].trim_matches(|c: char| c.is_whitespace() || c == SEAM);
+            let Some(own) = self.variables.get(id).filter(|f| f.len() + text.len() < LONGEST) else { break };
+            text.replace_range(start..=start + close, &format!("({own})"));
+        }
+        text
     }
 
     /// A function as the law of a coordinate, counted from the drawing.
@@ -687,6 +804,43 @@ impl Reader<'_> {
         let text = if scale == 1.0 { text } else { format!("{scale}*({text})") };
         let text = counted(&text, drawn, turns);
         if law::constant(&text) == Some(0.0) { Ok(Law::Held) } else { Ok(Law::Text(text)) }
+    }
+
+    /// The law that a velocity (of order 1) or an acceleration (2) comes to: an expression where that is constant, or else a table.
+    fn integral(
+        &mut self,
+        s: &Statement,
+        function: &str,
+        order: usize,
+        scale: f64,
+        drawn: f64,
+        turns: bool,
+    ) -> Result<Law, String> {
+        let function = function.replace(SEAM, " ");
+        let text =
+            law::translate_with(function.trim().trim_matches(['\'', '"']), Language::Adams, self.time)?;
+        let mut first = |key: &str| s.numbers(key, self.notes).and_then(|list| list.first().copied());
+        // Where it starts: as it is said, or else as drawn.
+        let [start, rate] = [first("ICDISP"), first("ICVEL")];
+        let per_second = self.per_second().powi(order as i32);
+        let begin = start.map_or(0.0, |x| x * scale - drawn);
+        let rate = if order == 2 { rate.unwrap_or(0.0) * scale * self.per_second() } else { 0.0 };
+        let Some(constant) = law::constant(&text).map(|x| x * scale * per_second) else {
+            let begin = if turns { begin - (begin / TAU).round() * TAU } else { begin };
+            return summed(&text, order, scale * per_second, begin, rate).map(Law::Table);
+        };
+        // x = x0 + v t, or x0 + v t + a/2 t^2
+        let text =
+            if order == 1 { format!("{constant}*t") } else { format!("{rate}*t + {}*t^2", constant / 2.0) };
+        Ok(if begin == 0.0 { Law::Text(text) } else { Law::Text(counted(&text, -begin, turns)) })
+    }
+
+    /// How many of the source's units of time a second has.
+    fn per_second(&self) -> f64 {
+        law::translate_with("time", Language::Adams, self.time)
+            .ok()
+            .and_then(|t| hardpoint::law::Law::parse(&t).ok())
+            .map_or(1.0, |law| law.at(1.0).0[0])
     }
 
     /// `a*AKISPL(TIME, 0, id) + b` and the like: the spline's points.
@@ -728,6 +882,11 @@ impl Reader<'_> {
         let mut terms = Vec::new();
         for (k, id) in names.iter().enumerate() {
             let Some(joint) = self.joints.get(*id) else {
+                if self.refused.contains(*id) {
+                    let why = format!("JOINT/{id} is refused");
+                    self.notes.refused("COUPLER", &s.label, Some(s.at), why);
+                    return;
+                }
                 self.notes.problem(
                     "HP0803",
                     Some(s.at),
@@ -763,6 +922,10 @@ impl Reader<'_> {
         let cv = s.reference("CV").and_then(|id| self.markers.get(id)).copied();
         let joints: Vec<&Joined> = names.iter().filter_map(|id| self.joints.get(*id)).collect();
         let (Some(cv), [a, b]) = (cv, &joints[..]) else {
+            if names.iter().any(|id| self.refused.contains(*id)) {
+                self.notes.refused("GEAR", &s.label, Some(s.at), "one of its joints is refused");
+                return;
+            }
             self.notes.problem(
                 "HP0803",
                 Some(s.at),
@@ -811,7 +974,10 @@ impl Reader<'_> {
         ];
         const HOLD: [&str; 8] = ["PTCV", "CVCV", "PTSF", "CURVE", "UCON", "GCON", "SURFACE", "NFORCE"];
         for s in statements.iter().filter(|s| !DONE.contains(&s.name.as_str())) {
-            if HOLD[..6].contains(&s.name.as_str()) && s.name != "CURVE" {
+            if s.name == "FE_PART" {
+                let why = "an elastic part: what is on it is refused";
+                self.notes.refused(&s.name, &s.label, Some(s.at), why);
+            } else if HOLD[..6].contains(&s.name.as_str()) && s.name != "CURVE" {
                 self.notes.refused(
                     &s.name,
                     &s.label,
