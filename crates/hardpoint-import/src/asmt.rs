@@ -292,6 +292,13 @@ impl Reader<'_> {
     }
 
     fn markers_of(&mut self, owner: &Node<'_>, path: &str, body: usize, pose: Pose) {
+        // Motions and forces may be of the centre of mass.
+        if let Some(mass) = owner.child("PrincipalMassMarker") {
+            let pose = pose.compose(mass.pose(self.notes));
+            self.markers.insert(format!("{path}/{}", mass.name()), Marker { body, pose });
+        }
+        let mass = owner.child("PrincipalMassMarker").map(|m| format!("{path}/{}", m.name()));
+        let is_mass = |path: &str| mass.as_deref() == Some(path);
         let points = owner.child("RefPoints").map_or(&[][..], |p| &p.children);
         for point in points {
             let place = pose.compose(point.pose(self.notes));
@@ -299,7 +306,7 @@ impl Reader<'_> {
             for marker in markers {
                 let pose = place.compose(marker.pose(self.notes));
                 let path = format!("{path}/{}", marker.name());
-                if self.markers.insert(path.clone(), Marker { body, pose }).is_some() {
+                if self.markers.insert(path.clone(), Marker { body, pose }).is_some() && !is_mass(&path) {
                     self.notes.problem_with(
                         "HP0803",
                         Some(marker.at),

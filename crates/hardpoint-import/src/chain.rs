@@ -46,7 +46,7 @@ pub fn drive(
     let (mut steps, mut pose) = (Vec::new(), i.pose);
     for (k, law) in ways.into_iter().enumerate() {
         let (axis, first) = (i.pose.rot.cols[k], value(&law)?);
-        pose.r = pose.r + axis * first;
+        pose.r += axis * first;
         steps.push(Step { kind: "translational", axis, law, first });
     }
     for (k, law) in turns {

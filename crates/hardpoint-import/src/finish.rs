@@ -38,11 +38,9 @@ pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
     };
     let only_one = left.0 == 1 && !moves;
     if left.0 > MOST_HELD {
-        return Some(notes.diagnostic(
-            "HP0808",
-            None,
-            format!("{} motions of it are driven by nothing", left.0),
-        ));
+        let message = format!("{} motions of it are driven by nothing", left.0);
+        let help = "leave out of the source what need not move, or give the model drivers";
+        return Some(notes.diagnostic("HP0808", None, message).help(help));
     }
     let mut tried = HashSet::new();
     while left.0 > 0 {
@@ -55,7 +53,8 @@ pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
             return Some(
                 notes
                     .diagnostic("HP0808", None, message)
-                    .note(format!("joints that still move: {}", names.join(", "))),
+                    .note(format!("joints that still move: {}", names.join(", ")))
+                    .help("give the model drivers for these, or joints that hold them"),
             );
         };
         tried.insert(key(&group));
