@@ -6,7 +6,7 @@ use crate::corner::{Corner, Link, Mount, Role, spin_axis};
 use crate::mechanism::Mechanism;
 use crate::report::Notes;
 use crate::tree::{self, Tree};
-use crate::{Format, Input};
+use crate::{Format, Input, chrono_generic};
 
 /// See the module.
 pub const FORMAT: Format = Format {
@@ -19,7 +19,7 @@ pub const FORMAT: Format = Format {
 };
 
 /// Templates whose topology is known here.
-const TEMPLATES: [&str; 7] = [
+const TEMPLATES: [&str; 8] = [
     "DoubleWishbone",
     "DoubleWishboneReduced",
     "SAEToeBarDoubleWishbone",
@@ -27,7 +27,10 @@ const TEMPLATES: [&str; 7] = [
     "MultiLink",
     "SemiTrailingArm",
     "ThreeLinkIRS",
+    GENERIC,
 ];
+/// The template whose file has its bodies and joints one by one.
+const GENERIC: &str = "GenericWheeledSuspension";
 
 /// The static angles of the wheel.
 const ANGLES: [&str; 2] = ["Camber Angle (deg)", "Toe Angle (deg)"];
@@ -55,6 +58,10 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     };
     let title = root.text_of("Name").filter(|n| !n.trim().is_empty()).unwrap_or(input.stem);
     let mut m = Mechanism::new(title, "m", "deg");
+    if *known == GENERIC {
+        let angle = |key: &str| root.get(key).and_then(Tree::number).unwrap_or(0.0).to_radians();
+        return chrono_generic::read(&root, m, ANGLES.map(angle), notes);
+    }
     let mut reader = Reader {
         root: &root,
         m: &mut m,

@@ -570,7 +570,7 @@ impl Corner {
     }
 
     /// The rack of the axle.
-    fn rack_of(&self, m: &mut Mechanism, notes: &mut Notes, rack: &mut Option<usize>, at: Vec3) -> usize {
+    pub fn rack_of(&self, m: &mut Mechanism, notes: &mut Notes, rack: &mut Option<usize>, at: Vec3) -> usize {
         if let Some(body) = *rack {
             return body;
         }
@@ -678,7 +678,8 @@ impl Corner {
         }
     }
 
-    fn wheel(&self, m: &mut Mechanism, notes: &mut Notes, upright: usize, centre: Vec3) {
+    /// The wheel on an upright, which goes up and down.
+    pub fn wheel(&self, m: &mut Mechanism, notes: &mut Notes, upright: usize, centre: Vec3) {
         use Role::*;
         let name = format!("wheel{}", self.suffix);
         let per_mm = match m.length {

@@ -21,6 +21,7 @@ mod adams;
 mod asmt;
 mod chain;
 mod chrono;
+mod chrono_generic;
 mod corner;
 mod explorer;
 mod finish;

@@ -154,3 +154,28 @@ fn parts_that_are_drawn_open_stand_where_their_stored_motion_begins() {
     let d = imported.series.unwrap().compare(&file, &solution);
     assert!(d.place < 1e-10 && d.turn < 1e-10, "{d:?}");
 }
+
+#[test]
+fn a_chrono_suspension_told_body_by_body_moves_as_its_template() {
+    // The points of `chrono/generic.json`, as the template of two wishbones has them.
+    let template = r#"{"Name": "Front", "Type": "Suspension", "Template": "DoubleWishbone",
+        "Camber Angle (deg)": -0.5, "Toe Angle (deg)": 0.1,
+        "Spindle": {"COM": [0.0, 0.78, 0.0]},
+        "Upper Control Arm": {"Location Chassis Front": [0.1, 0.42, 0.17], "Location Chassis Back": [-0.1, 0.42, 0.17], "Location Upright": [-0.02, 0.69, 0.15]},
+        "Lower Control Arm": {"Location Chassis Front": [0.1, 0.34, -0.10], "Location Chassis Back": [-0.1, 0.34, -0.10], "Location Upright": [0.01, 0.74, -0.13]},
+        "Tierod": {"Location Chassis": [-0.16, 0.36, -0.04], "Location Upright": [-0.15, 0.71, -0.05]}}"#;
+    let imported = hardpoint_import::import(template.as_bytes(), "front.json", &|_| None)
+        .unwrap_or_else(|e| panic!("{e}"));
+    let file = model(&imported);
+    let solution = Analysis::new(&file.model).unwrap().solve(Run::new().without_sensitivities());
+    let upright = BodyId(file.model.bodies.iter().position(|b| b.name == "upright").unwrap());
+    let generic = Moving::of("chrono/generic.json");
+    let own = generic.body("Upright");
+    let mut most = 0.0_f64;
+    for k in generic.steps() {
+        let [a, b] = [solution.body(k, upright).rotation, generic.solution.body(k, own).rotation];
+        assert!(a.angle_to(b) < SAME, "step {k}: {}", a.angle_to(b));
+        most = most.max(a.angle_to(solution.body(0, upright).rotation));
+    }
+    assert!(most > 0.01, "{most}");
+}
