@@ -18,6 +18,7 @@
 //! ```
 
 mod adams;
+mod adams_statement;
 mod asmt;
 mod chain;
 mod chrono;
