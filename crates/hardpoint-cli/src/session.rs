@@ -320,12 +320,14 @@ impl Session {
         };
         match to {
             Some(to) if same(model, to) => {
-                let why =
-                    format!("`--save {}` is the model file itself; save under another name", to.display());
+                let why = format!(
+                    "`{}` would overwrite what is read: the model file itself, or its source; write under another name",
+                    to.display()
+                );
                 Err(self.misunderstood(&why))
             }
             Some(to) if to.file_name().is_none() => {
-                Err(self.misunderstood(&format!("`--save {}` names no file", to.display())))
+                Err(self.misunderstood(&format!("`{}` names no file", to.display())))
             }
             _ => Ok(()),
         }

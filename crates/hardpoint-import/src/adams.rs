@@ -1,11 +1,13 @@
 //! Adams/Solver datasets (`.adm`): parts, markers, joints, primitives, motions, couplers, gears.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::TAU;
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 
+use crate::adams_statement::{SEAM, SHORTEST, Statement, number, statements};
 use crate::law::{self, Language};
-use crate::markers::{Called, Joined, Marker, carrying, counted, join, offset, way};
+use crate::markers::{Joined, Marker, carrying, counted, join, offset, way};
 use crate::mechanism::{Coordinate, Drives, GROUND, Law, Mechanism};
 use crate::report::{At, Notes};
 use crate::turn::{from_z_and_x, home, sequence};
@@ -29,90 +31,6 @@ pub const FORMAT: Format = Format {
     binary: false,
 };
 
-/// Words may be cut short to so many letters.
-const SHORTEST: usize = 3;
-/// The statements whose names may be cut short, first those that are often so.
-const NAMES: [&str; 10] =
-    ["PART", "MARKER", "JOINT", "JPRIM", "MOTION", "COUPLER", "GEAR", "UNITS", "SPLINE", "FLEX_BODY"];
-
-/// Where a statement was continued: a blank, or in the middle of a function perhaps a comma.
-const SEAM: char = '\u{1}';
-
-/// A statement: `NAME/id, KEY = values, FLAG, ...`.
-#[derive(Debug, Default)]
-struct Statement {
-    name: String,
-    id: String,
-    at: At,
-    /// What the modeller calls it, from the comment before it.
-    label: String,
-    /// In capital letters, with what stands behind the equals sign; flags with nothing.
-    keys: Vec<(String, String)>,
-}
-
-impl Statement {
-    /// What stands behind a key, which may be cut short as far as it is clear.
-    fn text(&self, key: &str) -> Option<&str> {
-        let short = |k: &str| k.len() >= SHORTEST && key.starts_with(k);
-        let found = self.keys.iter().find(|(k, _)| k == key);
-        found.or_else(|| self.keys.iter().find(|(k, v)| !v.is_empty() && short(k))).map(|(_, v)| v.as_str())
-    }
-
-    fn has(&self, key: &str) -> bool {
-        self.text(key).is_some()
-    }
-
-    fn called(&self) -> Called<'_> {
-        Called { kind: &self.name, name: &self.label, at: Some(self.at) }
-    }
-
-    /// Numbers behind a key; angles in rad. What is wrong with them is told.
-    fn numbers(&self, key: &str, notes: &mut Notes) -> Option<Vec<f64>> {
-        let text = self.text(key)?;
-        let words =
-            text.split(|c: char| c == ',' || c == SEAM || c.is_whitespace()).filter(|w| !w.is_empty());
-        let list: Option<Vec<f64>> = words.map(number).collect();
-        if list.is_none() {
-            let text = text.replace(SEAM, " ");
-            notes.problem(
-                "HP0804",
-                Some(self.at),
-                format!("`{key}` of {}/{} is no list of numbers: `{}`", self.name, self.id, text.trim()),
-            );
-        }
-        list
-    }
-
-    fn vector(&self, key: &str, notes: &mut Notes) -> Option<Vec3> {
-        let list = self.numbers(key, notes)?;
-        match <[f64; 3]>::try_from(list) {
-            Ok(v) => Some(v.into()),
-            Err(list) => {
-                notes.problem(
-                    "HP0804",
-                    Some(self.at),
-                    format!("`{key}` of {}/{} is three numbers, not {}", self.name, self.id, list.len()),
-                );
-                None
-            }
-        }
-    }
-
-    /// The number that a key refers to.
-    fn reference<'s>(&'s self, key: &str) -> Option<&'s str> {
-        self.text(key).map(str::trim)
-    }
-}
-
-/// `30D` is an angle in degrees; exponents are as in Fortran.
-fn number(word: &str) -> Option<f64> {
-    let lower = word.to_ascii_lowercase();
-    let degrees = lower.strip_suffix('d');
-    let value: f64 = degrees.unwrap_or(&lower).replace('d', "e").parse().ok()?;
-    let value = if degrees.is_some() { value.to_radians() } else { value };
-    value.is_finite().then_some(value)
-}
-
 fn read(source: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     let statements = statements(source.text);
     let (scale, length, time) = units(&statements, notes);
@@ -127,117 +45,28 @@ fn read(source: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         parts: BTreeMap::new(),
         markers: BTreeMap::new(),
         faulty: BTreeSet::new(),
+        refused: BTreeSet::new(),
+        unplaced: BTreeSet::new(),
         joints: BTreeMap::new(),
         splines: BTreeMap::new(),
+        variables: BTreeMap::new(),
     };
     reader.parts(&statements);
     reader.markers(&statements);
     reader.constraints(&statements);
     reader.motions(&statements);
     reader.rest(&statements);
+    if !source.text.lines().rev().any(|l| l.trim().eq_ignore_ascii_case("END")) {
+        let at = At { text: 0, start: source.text.len(), end: source.text.len() };
+        reader.notes.approximated(
+            "END",
+            "",
+            Some(at),
+            "there is no such statement: the file may be cut short",
+        );
+    }
     let m = reader.m;
     (m.bodies.len() > 1).then_some(m)
-}
-
-/// The statements of a dataset: comments and continuations resolved.
-fn statements(text: &str) -> Vec<Statement> {
-    let mut lines: Vec<(At, String, String)> = Vec::new();
-    let mut label = String::new();
-    let mut start = 0;
-    for (k, whole) in text.split_inclusive('\n').enumerate() {
-        let line = whole.trim_end_matches(['\n', '\r']);
-        let from = start + line.len() - line.trim_start().len();
-        let at = At { text: 0, start: from, end: start + line.trim_end().len() };
-        start += whole.len();
-        let (code, remark) = line.split_once('!').unwrap_or((line, ""));
-        if let Some((_, name)) = remark.split_once("adams_view_name=") {
-            label = name.trim().trim_matches(['\'', '"']).to_owned();
-        }
-        let code = code.trim();
-        // The first line is a title, whatever it looks like.
-        let is_title = k == 0 && code.to_ascii_uppercase().starts_with("ADAMS");
-        if code.is_empty() || is_title {
-            continue;
-        }
-        // A line goes on where the next begins with a comma or `&`, or where it ends with one.
-        let goes_on = lines.last().is_some_and(|l| l.1.ends_with([',', '&']));
-        let rest = code.strip_prefix([',', '&']).or(goes_on.then_some(code));
-        match (rest, lines.last_mut()) {
-            (Some(rest), Some(last)) => {
-                let kept = last.1.trim_end_matches('&').len();
-                last.1.truncate(kept);
-                last.1.push(SEAM);
-                last.1.push_str(rest);
-            }
-            _ => lines.push((at, code.to_owned(), std::mem::take(&mut label))),
-        }
-    }
-    lines.iter().filter_map(|(at, code, label)| statement(*at, code, label)).collect()
-}
-
-fn statement(at: At, code: &str, label: &str) -> Option<Statement> {
-    let code = code.trim_end_matches([';', ' ']);
-    let end = code.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(code.len());
-    let (name, rest) = code.split_at(end);
-    let Some(rest) = rest.trim_start().strip_prefix('/') else {
-        // A title, `END`.
-        return None;
-    };
-    let name = name.to_ascii_uppercase();
-    let whole = NAMES.iter().find(|n| name.len() >= SHORTEST && n.starts_with(name.as_str()));
-    let name = whole.map_or(name.clone(), |n| (*n).to_owned());
-    let mut out = Statement { name, at, ..Statement::default() };
-    for part in parts_of(rest) {
-        let part = part.trim_matches(|c: char| c.is_whitespace() || c == SEAM);
-        let keyed = part.split_once('=').filter(|(key, _)| {
-            let key = key.trim_matches(|c: char| c.is_whitespace() || c == SEAM);
-            !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '\\')
-        });
-        if let Some((key, text)) = keyed {
-            let key = key.trim_matches(|c: char| c.is_whitespace() || c == SEAM);
-            out.keys.push((key.to_ascii_uppercase(), text.trim().to_owned()));
-        } else if out.keys.is_empty() && out.id.is_empty() && part.chars().all(|c| c.is_ascii_digit()) {
-            out.id = part.to_owned();
-        } else {
-            // A further value of the key before, or a flag.
-            let is_value = part.chars().next().is_some_and(|c| c.is_ascii_digit() || "+-.(".contains(c));
-            match out.keys.last_mut() {
-                Some((key, text))
-                    if !text.is_empty() && (is_value || "FUNCTION".starts_with(key.as_str())) =>
-                {
-                    text.push(',');
-                    text.push_str(part);
-                }
-                _ if part.is_empty() => {}
-                _ => out.keys.push((part.to_ascii_uppercase(), String::new())),
-            }
-        }
-    }
-    out.label = if label.is_empty() { format!("{}_{}", out.name, out.id) } else { label.to_owned() };
-    Some(out)
-}
-
-/// The parts between commas outside of parentheses; a backslash or a seam before a key parts too.
-fn parts_of(text: &str) -> Vec<String> {
-    let (mut out, mut depth) = (vec![String::new()], 0_i32);
-    let chars: Vec<char> = text.chars().collect();
-    for (k, c) in chars.iter().enumerate() {
-        depth += i32::from(*c == '(') - i32::from(*c == ')');
-        let key_follows = || {
-            let rest: String = chars[k + 1..].iter().take(40).collect();
-            rest.split_once('=').is_some_and(|(key, _)| {
-                let key = key.trim();
-                key.starts_with(|c: char| c.is_ascii_alphabetic())
-                    && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
-            })
-        };
-        let parts = (*c == ',' && depth <= 0) || *c == '\\' || (*c == SEAM && depth <= 0 && key_follows());
-        match out.last_mut() {
-            Some(last) if !parts => last.push(*c),
-            _ => out.push(String::new()),
-        }
-    }
-    out
 }
 
 /// The factor of lengths, the length unit of the model, and the time of functions.
@@ -290,6 +119,35 @@ fn units(statements: &[Statement], notes: &mut Notes) -> (f64, &'static str, &'s
     out
 }
 
+/// Points of time and way over the first second, of a rate of this order: Simpson's rule in steps much shorter than the points' distance.
+fn summed(text: &str, order: usize, scale: f64, begin: f64, rate: f64) -> Result<Vec<[f64; 2]>, String> {
+    const POINTS: usize = 200;
+    const STEPS: usize = 10;
+    let law = hardpoint::law::Law::parse(text).map_err(|_| format!("`{text}` cannot be evaluated"))?;
+    let at = |t: f64| scale * law.at(t).0[0];
+    let h = 1.0 / (POINTS * STEPS) as f64;
+    let (mut x, mut v) = (begin, rate);
+    let mut points = vec![[0.0, begin]];
+    for k in 0..POINTS * STEPS {
+        let t = k as f64 * h;
+        let [a, b, c] = [at(t), at(t + h / 2.0), at(t + h)];
+        if order == 1 {
+            x += h / 6.0 * (a + 4.0 * b + c);
+        } else {
+            x += h * v + h * h / 6.0 * (a + 2.0 * b);
+            v += h / 6.0 * (a + 4.0 * b + c);
+        }
+        if (k + 1) % STEPS == 0 {
+            points.push([(k + 1) as f64 * h, x]);
+        }
+    }
+    if points.iter().all(|p| p[1].is_finite()) {
+        Ok(points)
+    } else {
+        Err("its rate is no number at some time".into())
+    }
+}
+
 struct Reader<'n> {
     m: Mechanism,
     notes: &'n mut Notes,
@@ -299,8 +157,14 @@ struct Reader<'n> {
     markers: BTreeMap<String, Marker>,
     /// Markers that could not be read.
     faulty: BTreeSet<String>,
+    /// Joints that no model file can say.
+    refused: BTreeSet<String>,
+    /// Markers whose place is not in the file.
+    unplaced: BTreeSet<String>,
     joints: BTreeMap<String, Joined>,
     splines: BTreeMap<String, Vec<[f64; 2]>>,
+    /// Functions of variables.
+    variables: BTreeMap<String, String>,
 }
 
 impl Reader<'_> {
@@ -399,8 +263,15 @@ impl Reader<'_> {
             if s.name != "MARKER" {
                 continue;
             }
-            if s.has("FLOATING") || s.has("NODE_ID") && s.has("FLEX_BODY") && !s.has("QP") {
-                self.notes.refused("MARKER", &s.label, Some(s.at), "its place is not in the file");
+            let elastic = s.has("FE_PART") || (s.has("NODE_ID") && s.has("FLEX_BODY") && !s.has("QP"));
+            if s.has("FLOATING") || elastic {
+                let why = if s.has("FE_PART") {
+                    "it is on an elastic part"
+                } else {
+                    "its place is not in the file"
+                };
+                self.notes.refused("MARKER", &s.label, Some(s.at), why);
+                self.unplaced.insert(s.id.clone());
                 continue;
             }
             let named =
@@ -428,6 +299,15 @@ impl Reader<'_> {
 
     /// The markers of a statement: Adams' J first, against which Adams' I moves.
     fn pair(&mut self, s: &Statement) -> Option<[Marker; 2]> {
+        let unplaced = |key: &&str| s.reference(key).is_some_and(|id| self.unplaced.contains(id));
+        if let Some(key) = ["I", "J"].into_iter().find(unplaced) {
+            let why = format!(
+                "its marker {key}, MARKER/{}, has no place here",
+                s.reference(key).unwrap_or_default()
+            );
+            self.notes.refused(&s.name, &s.label, Some(s.at), why);
+            return None;
+        }
         let mut found = Vec::new();
         for key in ["J", "I"] {
             let id = s.reference(key);
@@ -449,7 +329,12 @@ impl Reader<'_> {
     fn constraints(&mut self, statements: &[Statement]) {
         for s in statements {
             match s.name.as_str() {
-                "JOINT" => self.joint(s),
+                "JOINT" => {
+                    self.joint(s);
+                    if !self.joints.contains_key(&s.id) {
+                        self.refused.insert(s.id.clone());
+                    }
+                }
                 "JPRIM" => self.primitive(s),
                 _ => {}
             }
@@ -577,6 +462,11 @@ impl Reader<'_> {
                 lists[0].iter().copied().zip(lists[1].iter().copied()).map(|(x, y)| [x, y]).collect(),
             );
         }
+        for s in statements.iter().filter(|s| s.name == "VARIABLE") {
+            if let Some(function) = s.text("FUNCTION") {
+                self.variables.insert(s.id.clone(), function.to_owned());
+            }
+        }
         for s in statements {
             match s.name.as_str() {
                 "MOTION" => self.motion(s),
@@ -596,18 +486,12 @@ impl Reader<'_> {
                 format!("{why}; what it drives is held as drawn"),
             );
         };
-        if ["VELOCITY", "ACCELERATION"].iter().any(|k| s.has(k)) {
-            return refuse(
-                self,
-                "it prescribes a velocity or an acceleration: write the displacement that it comes to",
-            );
-        }
+        let order = if s.flag("VELOCITY") { 1 } else { 2 * usize::from(s.flag("ACCELERATION")) };
         let Some(function) = s.text("FUNCTION") else { return refuse(self, "it has no FUNCTION") };
-        let function = function.to_owned();
+        let function = self.written_out(function);
         if let Some(id) = s.reference("JOINT") {
             let Some(joint) = self.joints.get(id) else {
-                let seen = self.notes.report.of(crate::Fate::Refused).any(|e| e.kind == "JOINT");
-                if seen {
+                if self.refused.contains(id) {
                     return refuse(self, &format!("JOINT/{id} is refused"));
                 }
                 self.notes.problem(
@@ -618,10 +502,7 @@ impl Reader<'_> {
                 return;
             };
             let drawn = offset(&joint.markers[0], &joint.markers[1]);
-            let turns = s
-                .keys
-                .iter()
-                .any(|(k, v)| v.is_empty() && k.len() >= SHORTEST && "ROTATIONAL".starts_with(k.as_str()));
+            let turns = s.flag("ROTATIONAL") || (joint.kind == "revolute" && !s.flag("TRANSLATIONAL"));
             let (name, drawn, scale) = if turns {
                 ("angle", drawn.angle, 1.0)
             } else {
@@ -638,10 +519,19 @@ impl Reader<'_> {
             if self.m.is_driven(coordinate) {
                 return refuse(self, "the joint is driven already");
             }
-            match self.law(&function, scale, drawn, turns) {
+            let law = match order {
+                0 => self.law(&function, scale, drawn, turns),
+                _ => self.integral(s, &function, order, scale, drawn, turns),
+            };
+            match law {
                 Ok(law) => {
                     self.m.driver(&s.label, s.called().note(self.notes), Drives::Coordinate(coordinate), law);
-                    self.notes.taken("MOTION", &s.label, Some(s.at));
+                    let why = "its rate is summed up over the first second, and a spline goes through that";
+                    if order > 0 && matches!(self.m.drivers.last().map(|d| &d.law), Some(Law::Table(_))) {
+                        self.notes.approximated("MOTION", &s.label, Some(s.at), why);
+                    } else {
+                        self.notes.taken("MOTION", &s.label, Some(s.at));
+                    }
                 }
                 Err(why) => refuse(self, &why),
             }
@@ -650,7 +540,7 @@ impl Reader<'_> {
         let Some([j, i]) = self.pair(s) else { return };
         let axis = ["X", "Y", "Z"].iter().position(|k| s.has(k)).map(|k| j.pose.rot.cols[k]);
         match axis {
-            Some(along) if j.body == GROUND && i.body != GROUND => {
+            Some(along) if j.body == GROUND && i.body != GROUND && order == 0 => {
                 match self.law(&function, self.scale, along.dot(i.pose.r - j.pose.r), false) {
                     Ok(law) => {
                         self.m.driver(
@@ -666,9 +556,27 @@ impl Reader<'_> {
             }
             _ => refuse(
                 self,
-                "it drives an angle between two markers, or a way that is not against the ground",
+                "it drives an angle between two markers, or a way that is not against the ground, or by its rate",
             ),
         }
+    }
+
+    /// A function with those of the variables that it names in their place: `VARVAL(3)`. What names itself stays as it is.
+    fn written_out(&self, function: &str) -> String {
+        const DEEPEST: usize = 8;
+        const LONGEST: usize = 100_000;
+        let mut text = function.to_owned();
+        for _ in 0..DEEPEST {
+            // Letters of other alphabets would move in capitals.
+            let Some(start) = text.to_ascii_uppercase().find("VARVAL") else { break };
+            let inner = text[start..].find('(').zip(text[start..].find(')'));
+            let Some((open, close)) = inner.filter(|(open, close)| open < close) else { break };
+            let id =
+                text[start + open + 1..start + close].trim_matches(|c: char| c.is_whitespace() || c == SEAM);
+            let Some(own) = self.variables.get(id).filter(|f| f.len() + text.len() < LONGEST) else { break };
+            text.replace_range(start..=start + close, &format!("({own})"));
+        }
+        text
     }
 
     /// A function as the law of a coordinate, counted from the drawing.
@@ -687,6 +595,43 @@ impl Reader<'_> {
         let text = if scale == 1.0 { text } else { format!("{scale}*({text})") };
         let text = counted(&text, drawn, turns);
         if law::constant(&text) == Some(0.0) { Ok(Law::Held) } else { Ok(Law::Text(text)) }
+    }
+
+    /// The law that a velocity (of order 1) or an acceleration (2) comes to: an expression where that is constant, or else a table.
+    fn integral(
+        &mut self,
+        s: &Statement,
+        function: &str,
+        order: usize,
+        scale: f64,
+        drawn: f64,
+        turns: bool,
+    ) -> Result<Law, String> {
+        let function = function.replace(SEAM, " ");
+        let text =
+            law::translate_with(function.trim().trim_matches(['\'', '"']), Language::Adams, self.time)?;
+        let mut first = |key: &str| s.numbers(key, self.notes).and_then(|list| list.first().copied());
+        // Where it starts: as it is said, or else as drawn.
+        let [start, rate] = [first("ICDISP"), first("ICVEL")];
+        let per_second = self.per_second().powi(order as i32);
+        let begin = start.map_or(0.0, |x| x * scale - drawn);
+        let rate = if order == 2 { rate.unwrap_or(0.0) * scale * self.per_second() } else { 0.0 };
+        let Some(constant) = law::constant(&text).map(|x| x * scale * per_second) else {
+            let begin = if turns { begin - (begin / TAU).round() * TAU } else { begin };
+            return summed(&text, order, scale * per_second, begin, rate).map(Law::Table);
+        };
+        // x = x0 + v t, or x0 + v t + a/2 t^2
+        let text =
+            if order == 1 { format!("{constant}*t") } else { format!("{rate}*t + {}*t^2", constant / 2.0) };
+        Ok(if begin == 0.0 { Law::Text(text) } else { Law::Text(counted(&text, -begin, turns)) })
+    }
+
+    /// How many of the source's units of time a second has.
+    fn per_second(&self) -> f64 {
+        law::translate_with("time", Language::Adams, self.time)
+            .ok()
+            .and_then(|t| hardpoint::law::Law::parse(&t).ok())
+            .map_or(1.0, |law| law.at(1.0).0[0])
     }
 
     /// `a*AKISPL(TIME, 0, id) + b` and the like: the spline's points.
@@ -728,6 +673,11 @@ impl Reader<'_> {
         let mut terms = Vec::new();
         for (k, id) in names.iter().enumerate() {
             let Some(joint) = self.joints.get(*id) else {
+                if self.refused.contains(*id) {
+                    let why = format!("JOINT/{id} is refused");
+                    self.notes.refused("COUPLER", &s.label, Some(s.at), why);
+                    return;
+                }
                 self.notes.problem(
                     "HP0803",
                     Some(s.at),
@@ -763,6 +713,10 @@ impl Reader<'_> {
         let cv = s.reference("CV").and_then(|id| self.markers.get(id)).copied();
         let joints: Vec<&Joined> = names.iter().filter_map(|id| self.joints.get(*id)).collect();
         let (Some(cv), [a, b]) = (cv, &joints[..]) else {
+            if names.iter().any(|id| self.refused.contains(*id)) {
+                self.notes.refused("GEAR", &s.label, Some(s.at), "one of its joints is refused");
+                return;
+            }
             self.notes.problem(
                 "HP0803",
                 Some(s.at),
@@ -811,7 +765,10 @@ impl Reader<'_> {
         ];
         const HOLD: [&str; 8] = ["PTCV", "CVCV", "PTSF", "CURVE", "UCON", "GCON", "SURFACE", "NFORCE"];
         for s in statements.iter().filter(|s| !DONE.contains(&s.name.as_str())) {
-            if HOLD[..6].contains(&s.name.as_str()) && s.name != "CURVE" {
+            if s.name == "FE_PART" {
+                let why = "an elastic part: what is on it is refused";
+                self.notes.refused(&s.name, &s.label, Some(s.at), why);
+            } else if HOLD[..6].contains(&s.name.as_str()) && s.name != "CURVE" {
                 self.notes.refused(
                     &s.name,
                     &s.label,

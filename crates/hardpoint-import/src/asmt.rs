@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 
+use crate::chain;
 use crate::law::{self, Language};
-use crate::markers::{Called, Joined, Marker, carrying, counted, join, offset, way};
+use crate::markers::{Called, Joined, Marker, carrying, counted, is_drawn, join, linked, offset, screw, way};
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Times};
 use crate::report::{At, Notes};
 use crate::series::{Series, Stored};
@@ -29,6 +30,9 @@ pub const FORMAT: Format = Format {
 const DEEPEST: usize = 64;
 /// So many output times at most; more are asked for in no file.
 const MOST_TIMES: f64 = 100_000.0;
+
+/// Parts that are stored nearer than this to where they are drawn, in the file's unit and rad, are not moved.
+const OFF: f64 = 1e-12;
 
 /// Lines as they are, and where they stand.
 type Lines<'t> = Vec<(&'t str, At)>;
@@ -106,12 +110,23 @@ fn number(word: &str) -> Option<f64> {
 }
 
 fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
-    let (nodes, series) = tree(input.text, notes)?;
+    let (nodes, lines) = tree(input.text, notes)?;
     let Some(assembly) = nodes.iter().find(|n| n.text == "Assembly") else {
         let help = "export the assembly as .asmt again";
         notes.problem_with("HP0803", None, "there is no `Assembly` in the file", help);
         return None;
     };
+    for section in ["ConstraintSets", "SimulationParameters"] {
+        if assembly.child(section).is_none() {
+            let at = assembly.children.last().map_or(assembly.at, |c| c.at);
+            let message = format!(
+                "the assembly has no `{section}`: the file is cut short, `{}` is the last that it has",
+                assembly.children.last().map_or("", |c| c.text)
+            );
+            notes.problem_with("HP0802", Some(at), message, "export the assembly again");
+            return None;
+        }
+    }
     // What FreeCAD writes is in its millimetres; the solver's own examples say that theirs is in SI.
     let by_freecad = input.text.starts_with("OndselSolver");
     let unit = if by_freecad { "mm" } else { "m" };
@@ -124,16 +139,26 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     let mut m =
         Mechanism::new(if assembly.name().is_empty() { input.stem } else { assembly.name() }, unit, "rad");
     m.times = times(assembly, notes);
-    let mut reader =
-        Reader { m, notes, markers: BTreeMap::new(), joints: BTreeMap::new(), parts: BTreeMap::new() };
+    let stored = stored(&lines.unwrap_or_default(), notes);
+    // The solver closes what is drawn open before it moves: its first stored positions are what moves.
+    let begins = m.times.is_none_or(|t| stored.0.first() == Some(&t.start));
+    let first = |t: &Told<'_>| Some((t.path.to_owned(), t.states.as_ref()?.first()?.pose));
+    let closed = stored.1.iter().filter(|_| begins).filter_map(first).collect();
+    let mut reader = Reader {
+        m,
+        notes,
+        markers: BTreeMap::new(),
+        joints: BTreeMap::new(),
+        parts: BTreeMap::new(),
+        closed,
+        moved: 0,
+    };
     reader.parts(assembly);
     reader.joints(assembly);
     reader.motions(assembly);
     reader.rest(assembly);
     let (m, parts) = (reader.m, reader.parts);
-    if let Some(series) = series {
-        input.series = stored(&series, &m, &parts, notes);
-    }
+    input.series = series(stored, &m, &parts, notes);
     (m.bodies.len() > 1).then_some(m)
 }
 
@@ -209,6 +234,10 @@ struct Reader<'n> {
     markers: BTreeMap<String, Marker>,
     joints: BTreeMap<String, Joined>,
     parts: BTreeMap<String, usize>,
+    /// Where the stored motion has the parts when it begins.
+    closed: BTreeMap<String, Pose>,
+    /// How many are drawn elsewhere.
+    moved: usize,
 }
 
 impl Reader<'_> {
@@ -222,12 +251,18 @@ impl Reader<'_> {
                 self.notes.refused(part.text, part.name(), Some(part.at), "only parts are known here");
                 continue;
             }
-            let pose = whole.compose(part.pose(self.notes));
+            let path = format!("{path}/{}", part.name());
+            let drawn = whole.compose(part.pose(self.notes));
             let is_fixed = part.value("isFixed").is_some_and(|(v, _)| v == "true");
+            let off = |p: &&Pose| {
+                (p.r - drawn.r).norm() > OFF * p.r.norm().max(1.0) || p.rot.angle_to(drawn.rot) > OFF
+            };
+            let closed = self.closed.get(&path).filter(off).filter(|_| !is_fixed).copied();
+            self.moved += usize::from(closed.is_some());
+            let pose = closed.unwrap_or(drawn);
             let called = Called { kind: "Part", name: part.name(), at: Some(part.at) };
             let body =
                 if is_fixed { GROUND } else { self.m.body(part.name(), called.note(self.notes), Some(pose)) };
-            let path = format!("{path}/{}", part.name());
             if self.parts.insert(path.clone(), body).is_some() {
                 self.notes.problem_with(
                     "HP0803",
@@ -238,6 +273,13 @@ impl Reader<'_> {
             }
             self.markers_of(part, &path, body, pose);
             self.notes.taken("Part", part.name(), Some(part.at));
+        }
+        if self.moved > 0 {
+            let why = format!(
+                "{} of them are drawn where no joint holds them: they stand where the stored motion begins",
+                self.moved
+            );
+            self.notes.approximated("Parts", "", assembly.child("Parts").map(|p| p.at), why);
         }
         if let Some(list) = assembly.child("Assemblies").filter(|l| !l.children.is_empty()) {
             self.notes.refused(
@@ -250,6 +292,13 @@ impl Reader<'_> {
     }
 
     fn markers_of(&mut self, owner: &Node<'_>, path: &str, body: usize, pose: Pose) {
+        // Motions and forces may be of the centre of mass.
+        if let Some(mass) = owner.child("PrincipalMassMarker") {
+            let pose = pose.compose(mass.pose(self.notes));
+            self.markers.insert(format!("{path}/{}", mass.name()), Marker { body, pose });
+        }
+        let mass = owner.child("PrincipalMassMarker").map(|m| format!("{path}/{}", m.name()));
+        let is_mass = |path: &str| mass.as_deref() == Some(path);
         let points = owner.child("RefPoints").map_or(&[][..], |p| &p.children);
         for point in points {
             let place = pose.compose(point.pose(self.notes));
@@ -257,7 +306,7 @@ impl Reader<'_> {
             for marker in markers {
                 let pose = place.compose(marker.pose(self.notes));
                 let path = format!("{path}/{}", marker.name());
-                if self.markers.insert(path.clone(), Marker { body, pose }).is_some() {
+                if self.markers.insert(path.clone(), Marker { body, pose }).is_some() && !is_mass(&path) {
                     self.notes.problem_with(
                         "HP0803",
                         Some(marker.at),
@@ -299,6 +348,9 @@ impl Reader<'_> {
         for joint in joints {
             self.joint(joint);
         }
+        for joint in joints.iter().filter(|j| j.text == "ScrewJoint") {
+            self.screw(joint);
+        }
         for joint in joints.iter().filter(|j| ["GearJoint", "RackPinionJoint"].contains(&j.text)) {
             self.gear(joint);
         }
@@ -315,7 +367,6 @@ impl Reader<'_> {
             "UniversalJoint" => "universal",
             "ConstantVelocityJoint" => "constant_velocity",
             "PlanarJoint" => "planar",
-            "ScrewJoint" => "screw",
             "NoRotationJoint" => "orientation",
             "ParallelAxesJoint" => "parallel",
             "PerpendicularJoint" => "dot1",
@@ -324,23 +375,18 @@ impl Reader<'_> {
             "SphericalSphericalJoint" | "SphSphJoint" => "distance",
             "AngleJoint" => "angle",
             "LineInPlaneJoint" => "line_in_plane",
-            "RevRevJoint" | "RevCylJoint" | "CylSphJoint" => {
-                self.notes.refused(
-                    joint.text,
-                    joint.name(),
-                    Some(joint.at),
-                    "a joint of this type is known to no model file",
-                );
+            "RevRevJoint" => return self.link(joint, ["revolute", "revolute"]),
+            "RevCylJoint" => return self.link(joint, ["revolute", "cylindrical"]),
+            "CylSphJoint" => return self.link(joint, ["cylindrical", "spherical"]),
+            "GearJoint" | "RackPinionJoint" | "ScrewJoint" => return,
+            contact if contact.ends_with("Contact") => {
+                let why = "contacts have no equivalent: what it holds is held by a driver";
+                self.notes.refused(contact, joint.name(), Some(joint.at), why);
                 return;
             }
-            "GearJoint" | "RackPinionJoint" => return,
             _ => {
-                self.notes.refused(
-                    joint.text,
-                    joint.name(),
-                    Some(joint.at),
-                    "its type is none that is known",
-                );
+                let why = "its type is none that is known";
+                self.notes.refused(joint.text, joint.name(), Some(joint.at), why);
                 return;
             }
         };
@@ -350,52 +396,88 @@ impl Reader<'_> {
             m.joint(made)
         };
         let note = called.note(self.notes);
+        let said = |reader: &mut Self, key: &str| {
+            joint.child(key).and_then(|_| joint.numbers::<1>(key, reader.notes)).map(|[x]| x)
+        };
         let number = match kind {
             "distance" => {
-                let rod = Joint::new(joint.name(), note, "distance", [i.body, j.body], i.pose.r)
+                let mut rod = Joint::new(joint.name(), note, "distance", [i.body, j.body], i.pose.r)
                     .between(i.pose.r, j.pose.r);
-                if (j.pose.r - i.pose.r).norm() == 0.0 {
-                    self.notes.refused(
-                        joint.text,
-                        joint.name(),
-                        Some(joint.at),
-                        "both its markers are at one place",
-                    );
+                let drawn = (j.pose.r - i.pose.r).norm();
+                let length = said(self, "distanceIJ").unwrap_or(drawn);
+                let why = if drawn == 0.0 || i.body == j.body {
+                    "both its markers are at one place, or on one body"
+                } else if length <= 0.0 {
+                    "its length is zero, which says less than a ball joint"
+                } else {
+                    ""
+                };
+                if !why.is_empty() {
+                    self.notes.refused(joint.text, joint.name(), Some(joint.at), why);
                     return;
+                }
+                if !is_drawn(&self.m, length, drawn) {
+                    rod.length = Some(length);
                 }
                 Some(place(&mut self.m, self.notes, rod))
             }
-            "angle" if i.z().cross(j.z()).norm() > 1e-6 => {
+            "angle" if i.z().cross(j.z()).norm() > 1e-6 && i.body != j.body => {
+                let drawn = i.z().dot(j.z()).clamp(-1.0, 1.0).acos();
                 let angle = Joint::new(joint.name(), note, "angle", [i.body, j.body], i.pose.r)
                     .with_axes(i.z(), j.z());
-                Some(place(&mut self.m, self.notes, angle))
+                match said(self, "theIzJz").filter(|a| (a.cos() - drawn.cos()).abs() > 1e-6) {
+                    Some(said) => {
+                        let why =
+                            format!("drawn at {drawn} rad where {said} rad are said: it is taken as drawn");
+                        self.notes.approximated(joint.text, joint.name(), Some(joint.at), why);
+                        Some(self.m.joint(angle))
+                    }
+                    None => Some(place(&mut self.m, self.notes, angle)),
+                }
             }
             "angle" => join(&mut self.m, self.notes, called, "parallel", [i, j]),
-            // The z axis of marker I lies in the xy plane of marker J.
-            "line_in_plane" => {
-                let in_plane = join(&mut self.m, self.notes, called, "inplane", [j, i]);
-                let square = Marker { body: j.body, pose: j.pose };
-                join(&mut self.m, self.notes, called, "dot1", [square, i]);
-                in_plane
+            // The origin of marker J stays on a plane square to z of marker I, `offset` from it.
+            "planar" | "inplane" | "line_in_plane" => {
+                let offset = said(self, "offset").unwrap_or(0.0);
+                let i = Marker { body: i.body, pose: Pose { r: i.pose.r + i.z() * offset, ..i.pose } };
+                if kind == "line_in_plane" {
+                    join(&mut self.m, self.notes, called, "dot1", [i, j]);
+                    join(&mut self.m, self.notes, called, "inplane", [i, j])
+                } else {
+                    join(&mut self.m, self.notes, called, kind, [i, j])
+                }
             }
-            // The point of marker I stays on the plane, or the line, of marker J.
-            "inline" | "inplane" => join(&mut self.m, self.notes, called, kind, [j, i]),
             _ => join(&mut self.m, self.notes, called, kind, [i, j]),
         };
         let Some(number) = number else { return };
-        if kind == "screw" {
-            let pitch = joint.numbers::<1>("pitch", self.notes).map(|[p]| p);
-            match pitch {
-                Some(pitch) if pitch != 0.0 => self.m.joints[number].lead = Some(pitch),
-                _ => self.notes.problem_with(
-                    "HP0804",
-                    Some(joint.at),
-                    format!("the screw `{}` has no pitch", joint.name()),
-                    "give it a `pitch` other than zero",
-                ),
-            }
-        }
         self.joints.insert(joint.name().to_owned(), Joined { number, kind, markers: [i, j] });
+    }
+
+    /// A joint with a link between its two ends.
+    fn link(&mut self, joint: &Node<'_>, kinds: [&'static str; 2]) {
+        let Some(markers) = self.pair(joint) else { return };
+        let called = Called { kind: joint.text, name: joint.name(), at: Some(joint.at) };
+        let distance = joint.child("distanceIJ").and_then(|_| joint.numbers::<1>("distanceIJ", self.notes));
+        linked(&mut self.m, self.notes, called, kinds, markers, distance.map(|[d]| d));
+    }
+
+    /// A screw holds one coordinate: 2 pi z = pitch * angle, of marker J against marker I. What else holds the parts are other joints.
+    fn screw(&mut self, joint: &Node<'_>) {
+        let Some([i, j]) = self.pair(joint) else { return };
+        let called = Called { kind: joint.text, name: joint.name(), at: Some(joint.at) };
+        let Some(pitch) = joint.numbers::<1>("pitch", self.notes).map(|[p]| p).filter(|p| *p != 0.0) else {
+            let message = format!("the screw `{}` has no pitch", joint.name());
+            let help = "give it a `pitch` other than zero";
+            self.notes.problem_with("HP0804", Some(joint.at), message, help);
+            return;
+        };
+        let joints: Vec<Joined> = self.joints.values().copied().collect();
+        if screw(&mut self.m, self.notes, called, &joints, [i, j], pitch).is_none()
+            && let Some(number) = join(&mut self.m, self.notes, called, "screw", [i, j])
+        {
+            self.m.joints[number].lead = Some(pitch);
+            self.joints.insert(joint.name().to_owned(), Joined { number, kind: "screw", markers: [i, j] });
+        }
     }
 
     /// Gears, and a rack with its pinion: couplers of the joints that carry their parts.
@@ -421,13 +503,13 @@ impl Reader<'_> {
             }
         } else {
             let radius = radius(self, "pitchRadius");
-            // The rack moves along the x axis of marker I, the pinion turns about the z axis of marker J.
+            // The rack moves along the x axis of marker I, s, the pinion turns about the z axis of marker J: s = r angle.
             let slide = carrying(self.joints.values(), i.body, &["translational", "cylindrical"], i.x());
             let hinge = carrying(self.joints.values(), j.body, &hinges, j.z());
             match (radius, slide, hinge) {
                 (Some(r), Some(slide), Some(hinge)) => Some(vec![
                     (Coordinate { joint: slide.number, name: "displacement" }, way(slide, i.body, i.x())),
-                    (Coordinate { joint: hinge.number, name: "angle" }, r * way(hinge, j.body, j.z())),
+                    (Coordinate { joint: hinge.number, name: "angle" }, -r * way(hinge, j.body, j.z())),
                 ]),
                 _ => None,
             }
@@ -464,11 +546,16 @@ impl Reader<'_> {
         let (key, name) = match motion.text {
             "RotationalMotion" => ("RotationZ", "angle"),
             "TranslationalMotion" => ("TranslationZ", "displacement"),
-            _ => return Err("it drives all six coordinates of two markers".into()),
+            "GeneralMotion" => return self.general(motion),
+            _ => return Err("its type is none that is known".into()),
         };
         let (path, at) = motion.value("MotionJoint").unwrap_or(("", motion.at));
         let wanted = path.rsplit('/').next().unwrap_or_default();
-        let Some(joint) = self.joints.get(wanted).copied() else {
+        let found = if path.is_empty() { self.between(motion)? } else { self.joints.get(wanted).copied() };
+        let Some(joint) = found else {
+            if path.is_empty() {
+                return Ok(());
+            }
             if self.notes.report.of(crate::Fate::Refused).any(|e| e.name == wanted) {
                 return Err(format!("the joint `{wanted}` is refused"));
             }
@@ -501,6 +588,36 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// A motion of all six coordinates of marker J against marker I.
+    fn general(&mut self, motion: &Node<'_>) -> Result<(), String> {
+        let text = |key: &str| -> Result<String, String> {
+            let (function, _) = motion.value(key).ok_or_else(|| format!("it has no `{key}`"))?;
+            law::translate(function, Language::Ondsel)
+        };
+        let ways = [text("rIJI1")?, text("rIJI2")?, text("rIJI3")?];
+        let angles = [text("angIJJ1")?, text("angIJJ2")?, text("angIJJ3")?];
+        let order = match motion.child("RotationOrder") {
+            Some(_) => motion.numbers::<3>("RotationOrder", self.notes).unwrap_or([1.0, 2.0, 3.0]),
+            None => [1.0, 2.0, 3.0],
+        };
+        let axis = order.map(|x| [1.0, 2.0, 3.0].iter().position(|k| *k == x));
+        let [Some(a), Some(b), Some(c)] = axis else {
+            return Err("its `RotationOrder` is none of axes 1 to 3".into());
+        };
+        let Some(markers) = self.pair(motion) else { return Ok(()) };
+        let [p, q, r] = angles;
+        let called = Called { kind: motion.text, name: motion.name(), at: Some(motion.at) };
+        chain::drive(&mut self.m, self.notes, called, markers, ways, [(a, p), (b, q), (c, r)])
+    }
+
+    /// The joint between the markers of a motion that names no joint.
+    fn between(&mut self, motion: &Node<'_>) -> Result<Option<Joined>, String> {
+        let Some([i, j]) = self.pair(motion) else { return Ok(None) };
+        let same = |a: &Marker, b: &Marker| a.body == b.body && a.pose == b.pose;
+        let found = self.joints.values().find(|k| same(&k.markers[0], &i) && same(&k.markers[1], &j));
+        found.copied().map(Some).ok_or_else(|| "no joint is between its two markers".into())
+    }
+
     fn rest(&mut self, assembly: &Node<'_>) {
         let sets = assembly.child("ConstraintSets");
         for limit in sets.and_then(|c| c.child("Limits")).map_or(&[][..], |p| &p.children) {
@@ -520,67 +637,77 @@ impl Reader<'_> {
     }
 }
 
-/// The series of the parts: the column of the input, and then one for each output time.
-fn stored(
-    lines: &[(&str, At)],
-    m: &Mechanism,
-    parts: &BTreeMap<String, usize>,
-    notes: &mut Notes,
-) -> Option<Series> {
+/// What the file has stored of a part.
+struct Told<'t> {
+    path: &'t str,
+    at: At,
+    /// One for each of the times, or none where a number is missing.
+    states: Option<Vec<Stored>>,
+}
+
+/// The stored times, and the series of the parts: the column of the input, and then one for each output time.
+fn stored<'t>(lines: &[(&'t str, At)], notes: &mut Notes) -> (Vec<f64>, Vec<Told<'t>>) {
     let row = |line: &str| -> Vec<Option<f64>> { line.split_whitespace().skip(1).map(number).collect() };
-    let (line, at) = lines.iter().find(|(l, _)| l.starts_with("Time") && !l.starts_with("TimeSeries"))?;
+    let nothing = (Vec::new(), Vec::new());
+    let is_times = |l: &str| l.starts_with("Time") && !l.starts_with("TimeSeries");
+    let Some((line, at)) = lines.iter().find(|(l, _)| is_times(l)) else { return nothing };
     let times = row(line);
     let skipped = times.iter().take_while(|t| t.is_none()).count();
     let times: Option<Vec<f64>> = times[skipped..].iter().copied().collect();
     let Some(times) = times.filter(|t| !t.is_empty()) else {
         notes.refused("TimeSeries", "", Some(*at), "its times are no numbers");
-        return None;
+        return nothing;
     };
-    let mut series = Series { times, bodies: Vec::new() };
+    let mut told = Vec::new();
     let mut k = 0;
     while k < lines.len() {
         let (head, at) = lines[k];
         k += 1;
         let Some(path) = head.strip_prefix("PartSeries") else { continue };
-        let body = parts.get(path.trim()).copied();
         let mut rows: BTreeMap<&str, Vec<Option<f64>>> = BTreeMap::new();
         while let Some((line, _)) = lines.get(k).filter(|(l, _)| !l.contains("Series")) {
             rows.insert(line.split_whitespace().next().unwrap_or_default(), row(line));
             k += 1;
         }
-        let body = match body {
-            Some(body) if body != GROUND => body,
-            _ => {
-                notes.ignored("PartSeries", Some(at));
-                continue;
-            }
-        };
         let vector = |names: [&str; 3], step: usize| -> Option<Vec3> {
             let [x, y, z] = names.map(|n| rows.get(n).and_then(|r| r.get(step + skipped).copied().flatten()));
             Some([x?, y?, z?].into())
         };
-        let all: Option<Vec<Stored>> = (0..series.times.len())
-            .map(|step| {
-                let r = vector(["X", "Y", "Z"], step)?;
-                let angles = vector(["Bryantx", "Bryanty", "Bryantz"], step)?;
-                let rates = [
-                    ["VX", "VY", "VZ"],
-                    ["OmegaX", "OmegaY", "OmegaZ"],
-                    ["AX", "AY", "AZ"],
-                    ["AlphaX", "AlphaY", "AlphaZ"],
-                ];
-                Some(Stored {
-                    pose: Pose { rot: sequence("xyz", angles.to_array()), r },
-                    rates: rates.map(|names| vector(names, step)),
-                })
+        let state = |step| {
+            let r = vector(["X", "Y", "Z"], step)?;
+            let angles = vector(["Bryantx", "Bryanty", "Bryantz"], step)?;
+            let rates = [
+                ["VX", "VY", "VZ"],
+                ["OmegaX", "OmegaY", "OmegaZ"],
+                ["AX", "AY", "AZ"],
+                ["AlphaX", "AlphaY", "AlphaZ"],
+            ];
+            Some(Stored {
+                pose: Pose { rot: sequence("xyz", angles.to_array()), r },
+                rates: rates.map(|names| vector(names, step)),
             })
-            .collect();
-        match all {
-            Some(all) => {
-                series.bodies.push((m.bodies[body].name.clone(), all));
-                notes.taken("PartSeries", path.trim(), Some(at));
+        };
+        told.push(Told { path: path.trim(), at, states: (0..times.len()).map(state).collect() });
+    }
+    (times, told)
+}
+
+/// The stored motion of the bodies.
+fn series(
+    (times, told): (Vec<f64>, Vec<Told<'_>>),
+    m: &Mechanism,
+    parts: &BTreeMap<String, usize>,
+    notes: &mut Notes,
+) -> Option<Series> {
+    let mut series = Series { times, bodies: Vec::new() };
+    for Told { path, at, states } in told {
+        match (parts.get(path).filter(|b| **b != GROUND), states) {
+            (Some(body), Some(states)) => {
+                series.bodies.push((m.bodies[*body].name.clone(), states));
+                notes.taken("PartSeries", path, Some(at));
             }
-            None => notes.refused("PartSeries", path.trim(), Some(at), "a number is missing in it"),
+            (Some(_), None) => notes.refused("PartSeries", path, Some(at), "a number is missing in it"),
+            (None, _) => notes.ignored("PartSeries", Some(at)),
         }
     }
     (!series.bodies.is_empty()).then_some(series)

@@ -2,11 +2,11 @@
 
 use hardpoint::space::Vec3;
 
-use crate::corner::{Corner, Link, Mount, Role};
+use crate::corner::{Corner, Link, Mount, Role, spin_axis};
 use crate::mechanism::Mechanism;
 use crate::report::Notes;
 use crate::tree::{self, Tree};
-use crate::{Format, Input};
+use crate::{Format, Input, chrono_generic};
 
 /// See the module.
 pub const FORMAT: Format = Format {
@@ -19,14 +19,21 @@ pub const FORMAT: Format = Format {
 };
 
 /// Templates whose topology is known here.
-const TEMPLATES: [&str; 6] = [
+const TEMPLATES: [&str; 8] = [
     "DoubleWishbone",
     "DoubleWishboneReduced",
     "SAEToeBarDoubleWishbone",
     "MacPhersonStrut",
     "MultiLink",
     "SemiTrailingArm",
+    "ThreeLinkIRS",
+    GENERIC,
 ];
+/// The template whose file has its bodies and joints one by one.
+const GENERIC: &str = "GenericWheeledSuspension";
+
+/// The static angles of the wheel.
+const ANGLES: [&str; 2] = ["Camber Angle (deg)", "Toe Angle (deg)"];
 
 fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     let root = tree::json(input.text, notes)?;
@@ -51,6 +58,10 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     };
     let title = root.text_of("Name").filter(|n| !n.trim().is_empty()).unwrap_or(input.stem);
     let mut m = Mechanism::new(title, "m", "deg");
+    if *known == GENERIC {
+        let angle = |key: &str| root.get(key).and_then(Tree::number).unwrap_or(0.0).to_radians();
+        return chrono_generic::read(&root, m, ANGLES.map(angle), notes);
+    }
     let mut reader = Reader {
         root: &root,
         m: &mut m,
@@ -75,18 +86,25 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
             for link in ["Lateral", "Trailing Link"] {
                 reader.link(link);
             }
-            reader.pair(
-                "Shock",
-                [Role::DamperChassis, Role::DamperMoving],
-                &["Location Link", "Location Upright"],
-            );
-            reader.pair(
-                "Spring",
-                [Role::SpringChassis, Role::SpringMoving],
-                &["Location Link", "Location Upright"],
-            );
-            reader.corner.spring_on = Some(Mount::Nothing("trailing_link".into()));
-            reader.corner.damper_on = Some(Mount::Upright);
+            // Spring and shock are on the trailing link.
+            let ends = ["Location Link", "Location Upright"];
+            reader.pair("Shock", [Role::DamperChassis, Role::DamperMoving], &ends);
+            reader.pair("Spring", [Role::SpringChassis, Role::SpringMoving], &ends);
+            reader.corner.spring_on = Some(Mount::Link("trailing_link".into()));
+        }
+        "ThreeLinkIRS" => {
+            reader.point("Trailing Arm", &["Location Chassis"], Role::TrailingBall);
+            for link in ["Upper Link", "Lower Link"] {
+                reader.link(link);
+            }
+            for part in ["Shock", "Spring"] {
+                let roles = match part {
+                    "Shock" => [Role::DamperChassis, Role::DamperMoving],
+                    _ => [Role::SpringChassis, Role::SpringMoving],
+                };
+                reader.pair(part, roles, &["Location Arm"]);
+            }
+            reader.corner.spring_on = Some(Mount::Upright);
         }
         "SemiTrailingArm" => {
             reader.arm(
@@ -117,14 +135,16 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
             reader.corner.spring_on = Some(if reduced { Mount::Upright } else { Mount::Lower });
         }
     }
-    if *known != "SemiTrailingArm" {
+    if !["SemiTrailingArm", "ThreeLinkIRS"].contains(known) {
         reader.pair("Tierod", [Role::TieInner, Role::TieOuter], &["Location Upright"]);
     }
     reader.wheel();
     let corner = reader.corner;
     for (key, at, value) in root.entries() {
         let is_made = value.entries().iter().any(|(k, ..)| k.starts_with("Location"));
-        if !is_made && !["Name", "Type", "Template", "Spindle"].contains(&key.as_str()) {
+        if ANGLES.contains(&key.as_str()) {
+            notes.taken(key, value.text().unwrap_or_default(), Some(*at));
+        } else if !is_made && !["Name", "Type", "Template", "Spindle"].contains(&key.as_str()) {
             notes.ignored(key, Some(*at));
         }
     }
@@ -199,13 +219,21 @@ impl Reader<'_> {
     }
 
     fn link(&mut self, part: &str) {
-        let ends = [self.location(part, &["Location Chassis"]), self.location(part, &["Location Upright"])];
+        let outer = ["Location Upright", "Location Arm"];
+        let ends = [self.location(part, &["Location Chassis"]), self.location(part, &outer)];
         if let [Some(i), Some(j)] = ends {
             let name = crate::corner::plain(part);
+            let pin = |key: &str| self.root.get(part)?.get(key)?.vector().map(Vec3::from);
+            let pins = pin("Universal Joint Axis Chassis").zip(pin("Universal Joint Axis Link"));
             for (end, v) in [("chassis", i), ("upright", j)] {
                 self.m.hardpoints.push((format!("{name}_{end}"), v));
             }
-            self.corner.links.push(Link { name, ends: [i, j], at: self.root.get(part).map(|t| t.at) });
+            self.corner.links.push(Link {
+                name,
+                ends: [i, j],
+                pins: pins.map(Into::into),
+                at: self.root.get(part).map(|t| t.at),
+            });
         }
     }
 
@@ -215,11 +243,10 @@ impl Reader<'_> {
             self.m.hardpoints.push(("spindle".into(), centre));
             self.corner.points.insert(Role::WheelCentre, centre);
             let angle = |key: &str| self.root.get(key).and_then(Tree::number).unwrap_or(0.0).to_radians();
-            let (camber, toe) = (angle("Camber Angle (deg)"), angle("Toe Angle (deg)"));
+            let [camber, toe] = ANGLES.map(angle);
             let side = if centre.y < 0.0 { -1.0 } else { 1.0 };
             // Toe-in turns the outboard axis forward, camber tilts it down.
-            let axis = Vec3::from([toe.sin() * camber.cos(), side * toe.cos() * camber.cos(), -camber.sin()]);
-            self.corner.spin_axis = Some(axis);
+            self.corner.spin_axis = Some(spin_axis(side, camber, toe));
         }
     }
 }

@@ -6,6 +6,7 @@ use hardpoint::space::Vec3;
 
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Wheel};
 use crate::report::{At, Notes};
+use crate::turn::{X, Y, from_z_and_x};
 
 /// What a hardpoint of a corner is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -54,6 +55,8 @@ pub enum Role {
     TrailingA,
     /// See there.
     TrailingB,
+    /// The ball joint of a trailing arm that has one alone.
+    TrailingBall,
 }
 
 /// Names of hardpoints, in small letters and with `_` between words, by what they are. The first that fits is taken.
@@ -191,6 +194,8 @@ const NAMES: &[(Role, &[&str])] = &[
             "strut_lower",
             "lower_strut_point",
             "strut_lwr_mount",
+            "lwr_strut_mount",
+            "lower_strut_mount",
             "strut_slider_bottom",
             "strut_lower_point",
             "strut_lower_mount",
@@ -275,6 +280,9 @@ const NAMES: &[(Role, &[&str])] = &[
             "upper_spring_pivot_point",
             "spring_chassis",
             "upper_spring_seat",
+            "upr_spring_seat",
+            "spring_upr_seat",
+            "spring_upper_seat",
             "spring_upper",
         ],
     ),
@@ -285,6 +293,9 @@ const NAMES: &[(Role, &[&str])] = &[
             "lower_spring_pivot_point",
             "spring_rocker",
             "lwr_spring_seat",
+            "lower_spring_seat",
+            "spring_lwr_seat",
+            "spring_lower_seat",
             "spring_lower",
         ],
     ),
@@ -320,6 +331,8 @@ pub enum Mount {
     Upper,
     /// The upright.
     Upright,
+    /// A link, which has a body of its own then.
+    Link(String),
     /// Nothing that has a body of its own.
     Nothing(String),
 }
@@ -331,8 +344,21 @@ pub struct Link {
     pub name: String,
     /// Its ends, inboard first.
     pub ends: [Vec3; 2],
+    /// Both pins of the cross at its inner end, of the body's and of its own, where the source has one.
+    pub pins: Option<[Vec3; 2]>,
     /// Where it stands.
     pub at: Option<At>,
+}
+
+impl Link {
+    /// The pins of its cross, square to each other: the source's as nearly as can be, or else ones across it.
+    fn cross(&self) -> [Vec3; 2] {
+        let along = (self.ends[1] - self.ends[0]).unit().unwrap_or(X.into());
+        let square = |a: Vec3, b: Vec3| Some([a.unit()?, from_z_and_x(a, b)?.cols[0]]);
+        let own = self.pins.and_then(|[a, b]| square(a, b));
+        own.or_else(|| square(along.any_square(), along.cross(along.any_square())))
+            .unwrap_or([X.into(), Y.into()])
+    }
 }
 
 /// One corner of a vehicle.
@@ -365,6 +391,12 @@ const BUMP: f64 = 60.0;
 /// The radius of a wheel, in mm, of which the source says none.
 const RADIUS: f64 = 330.0;
 
+/// The spin axis, outboard, of a wheel with static camber and toe-in, in rad: toe-in turns it forward, camber tilts it down. `side` is 1
+/// on the left and -1 on the right.
+pub fn spin_axis(side: f64, camber: f64, toe: f64) -> Vec3 {
+    Vec3::from([toe.sin() * camber.cos(), side * toe.cos() * camber.cos(), -camber.sin()])
+}
+
 impl Corner {
     fn get(&self, role: Role) -> Option<Vec3> {
         self.points.get(&role).copied()
@@ -381,7 +413,7 @@ impl Corner {
         let mut out = self.clone();
         out.suffix = suffix.to_owned();
         out.points.values_mut().for_each(|p| *p = over(*p));
-        out.links.iter_mut().for_each(|l| l.ends = l.ends.map(over));
+        out.links.iter_mut().for_each(|l| (l.ends, l.pins) = (l.ends.map(over), l.pins.map(|p| p.map(over))));
         out.spin_axis = self.spin_axis.map(over);
         out
     }
@@ -393,9 +425,11 @@ impl Corner {
         let upper = self.all([UpperFront, UpperRear, UpperOuter]);
         let strut = self.all([StrutTop, StrutBottom]);
         let trailing = self.all([TrailingA, TrailingB]);
+        let ball = self.get(TrailingBall);
         let tie = self.all([TieInner, TieOuter]);
         let ties = self.links.len() + usize::from(tie.is_some());
-        let held = 2 * (usize::from(lower.is_some()) + usize::from(upper.is_some())) + ties;
+        let arms_held = 2 * (usize::from(lower.is_some()) + usize::from(upper.is_some()));
+        let held = arms_held + 3 * usize::from(ball.is_some()) + ties;
         let is_strut = lower.is_some() && upper.is_none() && strut.is_some() && self.links.is_empty();
         if !(trailing.is_some() || is_strut || held >= 5) {
             return false;
@@ -467,12 +501,43 @@ impl Corner {
             );
             notes.taken("arm", &name("trailing_arm"), self.at);
         }
+        if let Some(at) = ball {
+            let kind = "spherical";
+            m.joint(Joint::new(&name("trailing_arm_ball"), String::new(), kind, [GROUND, upright], at));
+            notes.taken("arm", &name("trailing_arm"), self.at);
+        }
+        let carries = |link: &Link| {
+            let mounts = [&self.rod_on, &self.spring_on, &self.damper_on];
+            mounts.into_iter().any(|m| matches!(m, Some(Mount::Link(name)) if *name == link.name))
+        };
+        let mut bodies: BTreeMap<&str, usize> = BTreeMap::new();
         for link in self.links.iter().filter(|l| l.ends[0] != l.ends[1]) {
-            m.joint(
-                Joint::new(&name(&link.name), String::new(), "distance", [GROUND, upright], link.ends[0])
-                    .between(link.ends[0], link.ends[1]),
-            );
-            notes.taken("link", &name(&link.name), link.at);
+            let [inner, outer] = link.ends;
+            let own = name(&link.name);
+            if carries(link) {
+                let body = m.body(&own, String::new(), frame(inner));
+                let [a, b] = link.cross();
+                let cross =
+                    Joint::new(&format!("{own}_cross"), String::new(), "universal", [GROUND, body], inner);
+                m.joint(cross.with_axes(a, b));
+                m.joint(Joint::new(
+                    &format!("{own}_ball"),
+                    String::new(),
+                    "spherical",
+                    [body, upright],
+                    outer,
+                ));
+                bodies.insert(&link.name, body);
+                if link.pins.is_none() {
+                    let why = "something is on it: how it turns about itself is not in the file, a cross at its inner end holds it";
+                    notes.approximated("link", &own, link.at, why);
+                    continue;
+                }
+            } else {
+                let rod = Joint::new(&own, String::new(), "distance", [GROUND, upright], inner);
+                m.joint(rod.between(inner, outer));
+            }
+            notes.taken("link", &own, link.at);
         }
         if let Some([inner, outer]) = tie {
             let carrier = if self.rack { self.rack_of(m, notes, rack, inner) } else { GROUND };
@@ -486,6 +551,7 @@ impl Corner {
             Mount::Lower => arms.get("lower_arm").copied(),
             Mount::Upper => arms.get("upper_arm").copied(),
             Mount::Upright => Some(upright),
+            Mount::Link(name) => bodies.get(name.as_str()).copied(),
             Mount::Nothing(_) => None,
         };
         let rocker = self.rocker(m, notes, &on);
@@ -504,7 +570,7 @@ impl Corner {
     }
 
     /// The rack of the axle.
-    fn rack_of(&self, m: &mut Mechanism, notes: &mut Notes, rack: &mut Option<usize>, at: Vec3) -> usize {
+    pub fn rack_of(&self, m: &mut Mechanism, notes: &mut Notes, rack: &mut Option<usize>, at: Vec3) -> usize {
         if let Some(body) = *rack {
             return body;
         }
@@ -599,7 +665,7 @@ impl Corner {
             let guess = if self.get(LowerOuter).is_some() { Mount::Lower } else { Mount::Upright };
             let own = self.damper_on.clone().filter(|_| base == "damper");
             let mount = own.or_else(|| self.spring_on.clone()).unwrap_or(guess);
-            let carrier = if base == "coilover" { on(&mount) } else { rocker.or_else(|| on(&mount)) };
+            let carrier = rocker.or_else(|| on(&mount));
             let Some(carrier) = carrier else {
                 notes.refused(base, &name, self.at, "what its lower end is on has no body here");
                 continue;
@@ -612,7 +678,8 @@ impl Corner {
         }
     }
 
-    fn wheel(&self, m: &mut Mechanism, notes: &mut Notes, upright: usize, centre: Vec3) {
+    /// The wheel on an upright, which goes up and down.
+    pub fn wheel(&self, m: &mut Mechanism, notes: &mut Notes, upright: usize, centre: Vec3) {
         use Role::*;
         let name = format!("wheel{}", self.suffix);
         let per_mm = match m.length {

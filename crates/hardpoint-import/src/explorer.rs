@@ -31,8 +31,9 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     };
     let name = root.text_of("name").filter(|n| !n.trim().is_empty()).unwrap_or(input.stem);
     let mut m = Mechanism::new(name, units(&root, notes), "deg");
-    if let Some(kind) =
-        root.get("type").filter(|t| !t.text().is_some_and(|t| TYPES.contains(&plain(t).as_str())))
+    if let Some(kind) = root
+        .get("type")
+        .filter(|t| !t.text().is_some_and(|t| TYPES.contains(&plain(t).trim_end_matches("_axle"))))
     {
         let why = "the type is not known here: built from the names of its hardpoints alone";
         notes.approximated("type", kind.text().unwrap_or_default(), Some(kind.at), why);
@@ -42,7 +43,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     let mut known = true;
     let mut made = false;
     if sides.is_empty() {
-        let mut corner = Corner { at: Some(points.at), ..settings(&root, notes) };
+        let mut corner = Corner { at: Some(points.at), ..settings(&root, m.length, notes) };
         collect(points, "", &mut corner, &mut m, notes, "");
         mount(&root, &mut corner);
         if root.text_of("side").is_some_and(|s| s.eq_ignore_ascii_case("right"))
@@ -60,7 +61,8 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     }
     for side in &sides {
         let Some(list) = points.get(side) else { continue };
-        let mut corner = Corner { suffix: format!("_{side}"), at: Some(list.at), ..settings(&root, notes) };
+        let mut corner =
+            Corner { suffix: format!("_{side}"), at: Some(list.at), ..settings(&root, m.length, notes) };
         collect(list, "", &mut corner, &mut m, notes, &format!("_{side}"));
         mount(&root, &mut corner);
         known &= corner.build(&mut m, notes, &mut rack);
@@ -141,21 +143,22 @@ fn units(root: &Tree, notes: &mut Notes) -> &'static str {
 }
 
 /// Steering, and the wheel.
-fn settings(root: &Tree, notes: &mut Notes) -> Corner {
+fn settings(root: &Tree, unit: &str, notes: &mut Notes) -> Corner {
     let config = root.get("axle_config").or_else(|| root.get("config")).or_else(|| root.get("configuration"));
     let steering = config.and_then(|c| c.get("steering"));
     let kind = steering.and_then(|s| s.text_of("type").or(s.text())).unwrap_or("rack");
+    let steered = config.and_then(|c| c.text_of("steered")).is_none_or(|s| s != "false");
     let tire = config.and_then(|c| c.get("wheel")).and_then(|w| w.get("tire").or_else(|| w.get("tyre")));
     let number = |key: &str| tire.and_then(|t| t.get(key)).and_then(Tree::number);
-    let inches = |x: f64| {
-        if root.text_of("units").is_some_and(|u| u.starts_with("m") && !u.starts_with("mi") && u != "mm") {
-            x * 0.0254
-        } else {
-            x * 25.4
-        }
+    // A rim is in inches and a tyre in millimetres, whatever the hardpoints are in.
+    let per_mm = match unit {
+        "m" => 1e-3,
+        "cm" => 0.1,
+        "in" => 1.0 / 25.4,
+        _ => 1.0,
     };
     let radius = match (number("aspect_ratio"), number("section_width"), number("rim_diameter")) {
-        (Some(aspect), Some(width), Some(rim)) => Some(aspect * width + inches(rim) / 2.0),
+        (Some(aspect), Some(width), Some(rim)) => Some((aspect * width + rim * 25.4 / 2.0) * per_mm),
         _ => number("nominal_radius").or_else(|| number("radius")),
     };
     let offset = config.and_then(|c| c.get("wheel")).and_then(|w| w.get("offset"));
@@ -167,21 +170,23 @@ fn settings(root: &Tree, notes: &mut Notes) -> Corner {
             "the wheel's centre is taken where the axle ends, without its offset",
         );
     }
-    if let Some(shim) = config.and_then(|c| c.get("camber_shim")) {
-        let same = shim.get("design_thickness").and_then(Tree::number)
-            == shim.get("setup_thickness").and_then(Tree::number);
-        if same {
-            notes.ignored("camber_shim", Some(shim.at));
+    let own = config.iter().flat_map(|c| c.entries()).filter(|(key, ..)| !key.ends_with("_setup"));
+    let setups = ["setup", "left_setup", "right_setup"].into_iter();
+    let setups = setups.filter_map(|key| config.and_then(|c| c.get(key)));
+    for (key, at, shim) in setups.flat_map(|s| s.entries()).chain(own) {
+        let thickness = ["design_thickness", "setup_thickness"].map(|k| shim.get(k).and_then(Tree::number));
+        if !key.ends_with("_shim") {
+            if !["steering", "wheel", "actuation", "steered"].contains(&key.as_str()) {
+                notes.ignored(key, Some(*at));
+            }
+        } else if thickness[0] == thickness[1] {
+            notes.ignored(key, Some(*at));
         } else {
-            notes.refused(
-                "camber_shim",
-                "",
-                Some(shim.at),
-                "the upright is taken as designed, without the shim of the setup",
-            );
+            let why = "the parts are taken as designed, without the shim of the setup";
+            notes.refused(key, "", Some(*at), why);
         }
     }
-    Corner { rack: !kind.eq_ignore_ascii_case("none"), radius, ..Corner::default() }
+    Corner { rack: steered && !kind.eq_ignore_ascii_case("none"), radius, ..Corner::default() }
 }
 
 /// What the rod or the coilover is on.
@@ -192,6 +197,7 @@ fn mount(root: &Tree, corner: &mut Corner) {
         "lower_wishbone" | "lower_arm" => Mount::Lower,
         "upper_wishbone" | "upper_arm" => Mount::Upper,
         "upright" | "trailing_arm" => Mount::Upright,
+        link if link.ends_with("_link") => Mount::Link(link.to_owned()),
         other => Mount::Nothing(other.to_owned()),
     });
     corner.rod_on = mount.clone();
@@ -246,7 +252,7 @@ fn collect(
     }
     for (name, ends, at) in links {
         match ends {
-            [Some(i), Some(j)] => corner.links.push(Link { name, ends: [i, j], at: Some(at) }),
+            [Some(i), Some(j)] => corner.links.push(Link { name, ends: [i, j], pins: None, at: Some(at) }),
             _ => notes.problem_with(
                 "HP0803",
                 Some(at),

@@ -38,53 +38,83 @@ pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
     };
     let only_one = left.0 == 1 && !moves;
     if left.0 > MOST_HELD {
-        return Some(notes.diagnostic(
-            "HP0808",
-            None,
-            format!("{} motions of it are driven by nothing", left.0),
-        ));
+        let message = format!("{} motions of it are driven by nothing", left.0);
+        let help = "leave out of the source what need not move, or give the model drivers";
+        return Some(notes.diagnostic("HP0808", None, message).help(help));
     }
     let mut tried = HashSet::new();
     while left.0 > 0 {
-        let Some((name, drives)) = candidates(m, &left.1).find(|(name, _)| !tried.contains(name)) else {
+        let key = |group: &[(String, Drives)]| {
+            group.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(" ")
+        };
+        let Some(group) = candidates(m, &left.1).find(|group| !tried.contains(&key(group))) else {
             let names: Vec<String> = left.1.iter().map(|j| format!("`{}`", m.joints[*j].name)).collect();
             let message = format!("{} motions remain that no driver could be found for", left.0);
             return Some(
                 notes
                     .diagnostic("HP0808", None, message)
-                    .note(format!("joints that still move: {}", names.join(", "))),
+                    .note(format!("joints that still move: {}", names.join(", ")))
+                    .help("give the model drivers for these, or joints that hold them"),
             );
         };
-        tried.insert(name.clone());
-        m.driver(
-            &format!("{name}_held"),
-            "nothing drives it in the source: held as drawn".into(),
-            drives,
-            Law::Held,
-        );
+        tried.insert(key(&group));
+        let before = m.drivers.len();
+        for (name, drives) in &group {
+            let note = "nothing drives it in the source: held as drawn".into();
+            m.driver(&format!("{name}_held"), note, *drives, Law::Held);
+        }
         match freedom(m, notes) {
             // A body that would only spin idly is none of the freedoms, and one once its spin is held.
             Ok(now) if now.0 < left.0 || (now.0 == left.0 && now.1.len() < left.1.len()) => {
                 left = now;
-                if !only_one {
-                    notes.approximated(
-                        "motion",
-                        &name,
-                        None,
-                        "nothing drives it in the source: a driver holds it as drawn",
-                    );
+                for (name, _) in group.iter().filter(|_| !only_one) {
+                    let why = "nothing drives it in the source: a driver holds it as drawn";
+                    notes.approximated("motion", name, None, why);
                 }
             }
-            _ => {
-                m.drivers.pop();
-            }
+            _ => m.drivers.truncate(before),
         }
     }
+    as_drawn(m, notes);
     if only_one {
         swing(m, notes);
     }
     unfollowed(m, notes);
     None
+}
+
+/// Takes as closed what is drawn open where it does not close, since what nothing drives is held as drawn.
+fn as_drawn(m: &mut Mechanism, notes: &mut Notes) {
+    let rods = ["distance", "leg", "revolute_spherical"];
+    let is_open = |j: &Joint| j.length.is_some() || (j.at.len() > 1 && !rods.contains(&j.kind));
+    if !m.joints.iter().any(is_open) || assembles(m) {
+        return;
+    }
+    let mut closed = m.clone();
+    let mut names = Vec::new();
+    for joint in closed.joints.iter_mut().filter(|j| is_open(j)) {
+        names.push(format!("`{}`", joint.name));
+        joint.length = None;
+        if !rods.contains(&joint.kind) {
+            joint.at.drain(..1);
+        }
+    }
+    if assembles(&closed) {
+        *m = closed;
+        let why = format!(
+            "what is held as drawn keeps them from closing: they are taken as they are drawn: {}",
+            names.join(", ")
+        );
+        notes.approximated("joints", "", None, why);
+    }
+}
+
+/// Whether it assembles at its first time.
+fn assembles(m: &Mechanism) -> bool {
+    parsed(m).is_ok_and(|mut file| {
+        file.model.times.truncate(1);
+        Analysis::new(&file.model).is_ok_and(|a| a.solve(Run::new().without_sensitivities()).stop.is_none())
+    })
 }
 
 /// A point to look at first, where the source names none: of the last body of the longest chain of joints that move, at its place that
@@ -221,8 +251,9 @@ fn parsed(m: &Mechanism) -> Result<hardpoint_file::ModelFile, String> {
     })
 }
 
-/// What could be held, best first: coordinates of the joints that move, then the turning of their bodies.
-fn candidates<'m>(m: &'m Mechanism, joints: &'m [usize]) -> impl Iterator<Item = (String, Drives)> + 'm {
+/// What could be held, best first: coordinates of the joints that move, then the turns and ways of their bodies, then of any body. Some
+/// come together: to hold one turn of a body that else spins idly leaves as much to hold as before.
+fn candidates<'m>(m: &'m Mechanism, joints: &'m [usize]) -> impl Iterator<Item = Vec<(String, Drives)>> + 'm {
     let coordinates = joints.iter().flat_map(move |&joint| {
         let j = &m.joints[joint];
         let all = ALL.iter().find(|k| k.name == j.kind).map_or(&[][..], |k| k.coordinates);
@@ -231,26 +262,43 @@ fn candidates<'m>(m: &'m Mechanism, joints: &'m [usize]) -> impl Iterator<Item =
         free.filter_map(move |c| {
             let coordinate = Coordinate { joint, name: c.name };
             let name = if all.len() == 1 { j.name.clone() } else { format!("{}_{}", j.name, c.name) };
-            (!m.is_driven(coordinate)).then_some((name, Drives::Coordinate(coordinate)))
+            (!m.is_driven(coordinate)).then_some(vec![(name, Drives::Coordinate(coordinate))])
         })
     });
     let axes = [("x", [1.0, 0.0, 0.0]), ("y", [0.0, 1.0, 0.0]), ("z", [0.0, 0.0, 1.0])];
-    let turns = joints.iter().flat_map(move |&joint| {
+    let turns_of = move |joint: usize, of: &[usize]| -> Vec<(String, Drives)> {
         let j = &m.joints[joint];
-        axes.map(|(letter, axis)| {
+        let turn = |k: &usize| {
+            let (letter, axis) = axes[*k];
             let drives = Drives::Heading { body: j.bodies[1], about: axis.into(), relative_to: j.bodies[0] };
             (format!("{}_about_{letter}", j.name), drives)
-        })
-    });
+        };
+        of.iter().map(turn).collect()
+    };
+    const TOGETHER: [&[usize]; 7] = [&[0], &[1], &[2], &[0, 1, 2], &[0, 1], &[0, 2], &[1, 2]];
+    let [turns, more_turns] = [&TOGETHER[..3], &TOGETHER[3..]]
+        .map(|sets| joints.iter().flat_map(move |&joint| sets.iter().map(move |of| turns_of(joint, of))));
     let ways = joints.iter().flat_map(move |&joint| {
         let j = &m.joints[joint];
         let at = j.at.last().copied().unwrap_or_else(|| Vec3::from([0.0; 3]));
         axes.map(|(letter, axis)| {
             let drives = Drives::Way { body: j.bodies[1], at, along: axis.into() };
-            (format!("{}_along_{letter}", m.bodies[j.bodies[1]].name), drives)
+            vec![(format!("{}_along_{letter}", m.bodies[j.bodies[1]].name), drives)]
         })
     });
-    coordinates.chain(turns).chain(ways)
+    // What no joint lets move is a body that has none: held by itself.
+    let bodies = m.bodies.iter().enumerate().skip(1).flat_map(move |(b, body)| {
+        let at = body.pose.map_or_else(Vec3::zero, |p| p.r);
+        let way = axes.map(|(letter, axis)| {
+            vec![(format!("{}_along_{letter}", body.name), Drives::Way { body: b, at, along: axis.into() })]
+        });
+        let turn = axes.map(|(letter, axis)| {
+            let drives = Drives::Heading { body: b, about: axis.into(), relative_to: GROUND };
+            vec![(format!("{}_about_{letter}", body.name), drives)]
+        });
+        way.into_iter().chain(turn)
+    });
+    coordinates.chain(turns).chain(more_turns).chain(ways).chain(bodies)
 }
 
 /// The one degree of freedom is plainly the input: it swings, as far as it can.

@@ -7,7 +7,7 @@ use hardpoint::space::{Pose, Quat, Vec3};
 use roxmltree::Node;
 
 use crate::law::{self, Language};
-use crate::markers::{Called, Joined, Marker, carrying, counted, join, offset, way};
+use crate::markers::{Called, Joined, Marker, carrying, counted, is_drawn, join, linked, offset, screw, way};
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Times};
 use crate::report::{At, Notes};
 use crate::turn::home;
@@ -40,6 +40,8 @@ const TYPES: [&str; 13] = [
     "Gears",
     "Belt",
 ];
+/// A distance that is drawn to this part of the mechanism's size is the one that is said: documents are saved solved.
+const DRAWN: f64 = 1e-5;
 /// Groups are nested so deep at most.
 const DEEPEST: usize = 40;
 
@@ -174,6 +176,29 @@ impl<'a, 'i> Object<'a, 'i> {
         Some((name, sub.to_owned(), node.attribute("file").unwrap_or_default()))
     }
 
+    /// The object that it is a link to.
+    fn linked(&self) -> Option<&'a str> {
+        self.link("LinkedObject").map(|(name, ..)| name)
+    }
+
+    /// Whether it is a link to an object of another document.
+    fn is_elsewhere(&self) -> bool {
+        self.link("LinkedObject").is_some_and(|(_, _, file)| !file.is_empty())
+    }
+
+    /// Whether it has a shape of its own, in whose frame what is in it is drawn.
+    fn is_shape(&self) -> bool {
+        self.kind.starts_with("PartDesign::Body")
+            || (self.kind.starts_with("Part::") && !self.kind.starts_with("Part::Datum"))
+    }
+
+    /// Whether it is in a body with a frame of its own: a sketch, a datum.
+    fn is_drawn_in_its_frame(&self) -> bool {
+        const DATUMS: [&str; 4] = ["Plane", "Line", "Point", "CoordinateSystem"];
+        let datum = self.kind.strip_prefix("PartDesign::").is_some_and(|k| DATUMS.contains(&k));
+        datum || self.kind.starts_with("Part::Datum") || self.kind.starts_with("Sketcher::")
+    }
+
     /// The objects in a group.
     fn group(&self) -> Vec<&'a str> {
         let list = self.value("Group").into_iter().flat_map(children);
@@ -195,7 +220,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             self.objects.values().filter(|o| o.kind == "Assembly::AssemblyObject").map(|o| o.name).collect();
         // The one that is in no other.
         let inner: BTreeSet<&'a str> = roots.iter().flat_map(|r| self.objects[r].group()).collect();
-        let Some(root) = roots.iter().copied().find(|r| !inner.contains(r)) else {
+        let mut outermost = roots.iter().copied().filter(|r| !inner.contains(r));
+        let Some(root) = outermost.next() else {
             self.notes.problem_with(
                 "HP0803",
                 None,
@@ -204,6 +230,11 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             );
             return;
         };
+        for other in outermost {
+            let object = &self.objects[other];
+            let why = "a document becomes one mechanism: its first assembly is taken, this is another";
+            self.notes.refused("assembly", object.label(), object.at(), why);
+        }
         self.m.name = self.objects[root].label().to_owned();
         let outer = self.objects[root].pose(self.notes);
         let mut joints = Vec::new();
@@ -224,7 +255,12 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             } else {
                 self.m.body(object.label(), called.note(self.notes), Some(pose))
             };
-            self.notes.taken("part", called.name, called.at);
+            if object.kind == "Assembly::AssemblyLink" && object.text_of("Rigid") == Some("false") {
+                let why = "an assembly whose parts may move: taken as one rigid part";
+                self.notes.approximated("part", called.name, called.at, why);
+            } else {
+                self.notes.taken("part", called.name, called.at);
+            }
             self.bodies.insert(part, body);
         }
         for joint in &joints {
@@ -252,7 +288,9 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     fn sort(&mut self, group: &'a str, parts: &mut Vec<&'a str>, joints: &mut Vec<&'a str>, depth: usize) {
         let Some(object) = self.objects.get(group).filter(|_| depth < DEEPEST) else { return };
         for name in object.group() {
-            let Some(inner) = self.objects.get(name) else { continue };
+            // An assembly lists what is in its groups too.
+            let known = parts.contains(&name) || joints.contains(&name);
+            let Some(inner) = self.objects.get(name).filter(|_| !known) else { continue };
             let is_joint =
                 inner.properties.contains_key("JointType") || inner.properties.contains_key("ObjectToGround");
             let has_place = ["Placement", "LinkPlacement"].iter().any(|p| inner.properties.contains_key(p));
@@ -306,9 +344,26 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         };
         let body = self.bodies[path[first]];
         let mut pose = outer;
-        for part in &path[first..] {
-            if let Some(object) = self.objects.get(part) {
-                pose = pose.compose(object.pose(self.notes));
+        for (k, part) in path[first..].iter().enumerate() {
+            let Some(object) = self.objects.get(part) else { continue };
+            pose = pose.compose(object.pose(self.notes));
+            let object = &self.objects[part];
+            let rest = &path[first + k + 1..];
+            if object.is_elsewhere() {
+                if !rest.is_empty() {
+                    let why = format!(
+                        "`{}` is in another document: its places in there are taken for none",
+                        rest.join(".")
+                    );
+                    self.notes.approximated("reference", label, at, why);
+                }
+                break;
+            }
+            // What is in a body is drawn in the body's frame, but for sketches and datums, which have their own.
+            let shape = object.linked().and_then(|name| self.objects.get(name)).unwrap_or(object);
+            let has_frame = |name: &&str| self.objects.get(name).is_some_and(Object::is_drawn_in_its_frame);
+            if shape.is_shape() && !rest.first().is_some_and(has_frame) {
+                break;
             }
         }
         Some(Marker { body, pose: pose.compose(inner) })
@@ -328,8 +383,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
         let limited = ["EnableLengthMin", "EnableLengthMax", "EnableAngleMin", "EnableAngleMax"];
         let has_limits = limited.iter().any(|k| object.text_of(k) == Some("true"));
-        let (distance, lead) = (object.number("Distance"), object.number("Distance"));
-        if ["RackPinion", "Gears", "Belt"].contains(&kind.as_str()) {
+        let distance = object.number("Distance");
+        if ["RackPinion", "Gears", "Belt", "Screw"].contains(&kind.as_str()) {
             return;
         }
         let type_name = match kind.as_str() {
@@ -341,7 +396,6 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             "Parallel" => "parallel",
             "Perpendicular" => "dot1",
             "Angle" => "angle",
-            "Screw" => "screw",
             "Distance" => "distance",
             _ => {
                 let message = format!("`{label}` is of the unknown type `{kind}`");
@@ -354,22 +408,9 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let called = Called { kind: &kind, name: label, at };
         let note = called.note(self.notes);
         let number = match type_name {
-            "distance" if (j.pose.r - i.pose.r).norm() > 0.0 && i.body != j.body => {
-                let why = format!(
-                    "as a rod between two points, of {} mm as drawn; which surfaces were meant is not in the file",
-                    distance.unwrap_or(0.0)
-                );
-                self.notes.approximated(&kind, label, at, why);
-                Some(
-                    self.m.joint(
-                        Joint::new(label, note, "distance", [i.body, j.body], i.pose.r)
-                            .between(i.pose.r, j.pose.r),
-                    ),
-                )
-            }
             "distance" => {
-                self.notes.approximated(&kind, label, at, "a distance of zero: as a ball joint");
-                join(&mut self.m, self.notes, called, "spherical", [i, j])
+                let elements = [1, 2].map(|k| self.element(joint, k));
+                return self.distance(called, elements, [i, j], distance.unwrap_or(0.0));
             }
             "angle" if i.z().cross(j.z()).norm() > 1e-6 && i.body != j.body => {
                 self.notes.taken(&kind, label, at);
@@ -381,37 +422,135 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             other => join(&mut self.m, self.notes, called, other, [i, j]),
         };
         let Some(number) = number else { return };
-        if type_name == "screw" {
-            match lead.filter(|l| *l != 0.0) {
-                Some(lead) => self.m.joints[number].lead = Some(lead),
-                None => self.notes.problem_with(
-                    "HP0804",
-                    at,
-                    format!("the screw `{label}` has no pitch"),
-                    "give it a distance other than zero",
-                ),
-            }
-        }
+        self.m.joints[number].limits = self.limits(joint, type_name, &i, &j);
         if has_limits {
             self.notes.refused("limits", label, at, "drivers prescribe what moves: nothing stops at a limit");
         }
         self.joints.insert(joint, Joined { number, kind: type_name, markers: [i, j] });
     }
 
-    /// Racks, gears and belts: couplers of the joints that carry their parts.
+    /// Between which values a hinge or a slide may go, counted from the drawing.
+    fn limits(&self, joint: &'a str, kind: &str, i: &Marker, j: &Marker) -> Option<[f64; 2]> {
+        let object = &self.objects[joint];
+        let drawn = offset(i, j);
+        let (what, drawn, per_unit) = match kind {
+            "revolute" => ("Angle", drawn.angle, 1_f64.to_radians()),
+            "translational" => ("Length", drawn.displacement, 1.0),
+            _ => return None,
+        };
+        let limit = |end: &str| {
+            let is_set = object.text_of(&format!("Enable{what}{end}")) == Some("true");
+            Some(object.number(&format!("{what}{end}")).filter(|_| is_set)? * per_unit - drawn)
+        };
+        let ends = [limit("Min"), limit("Max")];
+        let open = [f64::NEG_INFINITY, f64::INFINITY];
+        (ends != [None, None]).then(|| [0, 1].map(|k| ends[k].unwrap_or(open[k])))
+    }
+
+    /// What an end of a joint is on: `Face`, `Edge` or `Vertex`; or a whole part.
+    fn element(&self, joint: &'a str, k: usize) -> &'static str {
+        let reference = self.objects[joint].link(&format!("Reference{k}"));
+        let sub = reference.map(|(_, sub, _)| sub).unwrap_or_default();
+        let last = sub.rsplit('.').next().unwrap_or_default();
+        ["Face", "Edge", "Vertex"].into_iter().find(|e| last.starts_with(e)).unwrap_or_default()
+    }
+
+    /// A distance between two surfaces, lines or points. What kind of surface a face is stands in its shape alone; how its frame lies as
+    /// drawn, where the distance holds, mostly tells.
+    fn distance(&mut self, called: Called<'_>, elements: [&str; 2], ends: [Marker; 2], said: f64) {
+        // The face, or else the edge, comes first.
+        let rank = |e: &str| ["Face", "Edge", "Vertex"].iter().position(|x| *x == e).unwrap_or(3);
+        let swapped = rank(elements[1]) < rank(elements[0]);
+        let [i, j] = if swapped { [ends[1], ends[0]] } else { ends };
+        let elements = if swapped { [elements[1], elements[0]] } else { elements };
+        let gap = j.pose.r - i.pose.r;
+        let along = gap.dot(i.z());
+        let across = (gap - i.z() * along).norm();
+        let near = |a: f64, b: f64| (a.abs() - b.abs()).abs() <= DRAWN * self.m.size().max(a.abs());
+        let parallel = i.z().cross(j.z()).norm() <= DRAWN;
+        let square = i.z().dot(j.z()).abs() <= DRAWN;
+        let shifted = Marker { body: i.body, pose: Pose { r: i.pose.r + i.z() * along, ..i.pose } };
+        let how = match elements {
+            ["Vertex", "Vertex"] if near(said, 0.0) => "spherical",
+            ["Vertex", "Vertex"] => "distance",
+            ["Face", "Face"] | ["Face", "Edge"] if parallel && near(along, said) => "planar",
+            ["Face", "Edge"] if square && near(along, said) => "line in plane",
+            ["Face" | "Edge", "Vertex"] if near(along, said) && !near(across, said) => "inplane",
+            ["Face" | "Edge", "Vertex"] => "point and axis",
+            ["Face", "Face"] | ["Edge", "Edge"] if parallel => "axes",
+            _ => "",
+        };
+        if i.body == j.body {
+            let why = "both its markers are on the same body";
+            self.notes.refused(called.kind, called.name, called.at, why);
+            return;
+        }
+        // What the joints tell of themselves is told of the distance instead.
+        let told = self.notes.report.entries.len();
+        let name = match how {
+            "spherical" => {
+                join(&mut self.m, self.notes, called, how, [i, j]);
+                return;
+            }
+            "distance" if across + along.abs() > 0.0 => {
+                let rod = Joint::new(called.name, called.note(self.notes), how, [i.body, j.body], i.pose.r);
+                let mut rod = rod.between(i.pose.r, j.pose.r);
+                rod.length = Some(said.abs()).filter(|d| !is_drawn(&self.m, *d, gap.norm()));
+                self.m.joint(rod);
+                self.notes.taken(called.kind, called.name, called.at);
+                return;
+            }
+            "planar" => {
+                join(&mut self.m, self.notes, called, "planar", [shifted, j]);
+                "two planes"
+            }
+            "inplane" => {
+                join(&mut self.m, self.notes, called, "inplane", [shifted, j]);
+                "a point and a plane"
+            }
+            "line in plane" => {
+                join(&mut self.m, self.notes, called, "dot1", [i, j]);
+                join(&mut self.m, self.notes, called, "inplane", [shifted, j]);
+                "a line and a plane"
+            }
+            "point and axis" => {
+                linked(&mut self.m, self.notes, called, ["cylindrical", "spherical"], [i, j], None);
+                "a point and an axis"
+            }
+            "axes" => {
+                linked(&mut self.m, self.notes, called, ["revolute", "cylindrical"], [i, j], None);
+                "two axes"
+            }
+            _ => {
+                let why = "which surfaces it is between is not in the file, nor does it show: what it holds is held by a driver";
+                self.notes.refused(called.kind, called.name, called.at, why);
+                return;
+            }
+        };
+        self.notes.report.entries.truncate(told);
+        let why = format!(
+            "between {name}, of {said} mm, as it is drawn; which surfaces were meant is not in the file"
+        );
+        self.notes.approximated(called.kind, called.name, called.at, why);
+    }
+
+    /// Racks, gears, belts and screws: couplers of the joints that carry their parts.
     fn relation(&mut self, joint: &'a str, root: &'a str, outer: Pose) {
         let object = &self.objects[joint];
         let (label, at) = (object.label(), object.at());
         let kind = object.word("JointType").unwrap_or_default();
-        if !["RackPinion", "Gears", "Belt"].contains(&kind.as_str())
-            || object.text_of("Activated") == Some("false")
-        {
+        let is_off =
+            object.text_of("Activated") == Some("false") || object.text_of("Suppressed") == Some("true");
+        if is_off || !["RackPinion", "Gears", "Belt", "Screw"].contains(&kind.as_str()) {
             return;
         }
         let [first, second] =
             [object.number("Distance"), object.number("Distance2")].map(|d| d.filter(|d| *d != 0.0));
         let ends = [1, 2].map(|k| self.marker(joint, k, root, outer));
         let [Some(i), Some(j)] = ends else { return };
+        if kind == "Screw" {
+            return self.screw(joint, [i, j], first);
+        }
         let hinges = ["revolute", "cylindrical"];
         let hinge = |m: Marker, axis: Vec3| {
             carrying(self.joints.values(), m.body, &hinges, m.z()).map(|k| (k.number, way(k, m.body, axis)))
@@ -449,6 +588,24 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 at,
                 "no joints that carry its two parts along its axes, or no radii",
             ),
+        }
+    }
+
+    /// As the solver has it, one relation of the slide and the turn; a joint of its own where no others say how its parts move.
+    fn screw(&mut self, joint: &'a str, markers: [Marker; 2], lead: Option<f64>) {
+        let object = &self.objects[joint];
+        let called = Called { kind: "Screw", name: object.label(), at: object.at() };
+        let Some(lead) = lead else {
+            let message = format!("the screw `{}` has no pitch", called.name);
+            self.notes.problem_with("HP0804", called.at, message, "give it a distance other than zero");
+            return;
+        };
+        let joints: Vec<Joined> = self.joints.values().copied().collect();
+        if screw(&mut self.m, self.notes, called, &joints, markers, lead).is_none()
+            && let Some(number) = join(&mut self.m, self.notes, called, "screw", markers)
+        {
+            self.m.joints[number].lead = Some(lead);
+            self.joints.insert(joint, Joined { number, kind: "screw", markers });
         }
     }
 

@@ -5,7 +5,7 @@
 pub enum Language {
     /// Adams/Solver: `30D` is an angle, `**` a power, names in any case.
     Adams,
-    /// OndselSolver: `2.0d` is a number.
+    /// OndselSolver: `2.0d` is a number, `<n>` a new line, what stands in quotes a comment.
     Ondsel,
     /// FreeCAD's formulas of a simulation: as those of Ondsel.
     FreeCad,
@@ -66,6 +66,13 @@ fn tokens(text: &str, language: Language) -> Result<Vec<Token>, String> {
         let next = bytes.get(k + 1).copied().unwrap_or(' ');
         if c.is_whitespace() {
             k += 1;
+        } else if language == Language::Ondsel && c == '"' {
+            // A comment.
+            let end = bytes[k + 1..].iter().position(|c| *c == '"');
+            k += end.map_or(bytes.len() - k, |n| n + 2);
+        } else if language == Language::Ondsel && bytes[k..].starts_with(&['<', 'n', '>']) {
+            // A new line.
+            k += 3;
         } else if c.is_ascii_digit() || (c == '.' && next.is_ascii_digit()) {
             let start = k;
             while k < bytes.len() && (bytes[k].is_ascii_digit() || bytes[k] == '.') {
@@ -372,6 +379,7 @@ mod tests {
         assert_eq!(adams("POLY(TIME, 1, 2, 3, 4)", 3.0), 2.0 + 6.0 + 16.0);
         assert_eq!(adams("CHEBY(TIME, 0, 1, 0, 1)", 2.0), 8.0);
         assert!((at("2.0d*pi*time", Language::Ondsel, 1.0) - 2.0 * std::f64::consts::PI).abs() < 1e-15);
+        assert_eq!(at("\"2*T1\"<n>3*<n>time", Language::Ondsel, 2.0), 6.0);
         assert_eq!(constant(&translate("3*2", Language::Ondsel).unwrap()), Some(6.0));
         assert_eq!(constant("t"), None);
     }

@@ -18,8 +18,11 @@
 //! ```
 
 mod adams;
+mod adams_statement;
 mod asmt;
+mod chain;
 mod chrono;
+mod chrono_generic;
 mod corner;
 mod explorer;
 mod finish;
@@ -128,7 +131,7 @@ impl Format {
         if bytes.starts_with(b"PK") {
             return FORMATS.iter().find(|f| f.binary && !TABLES.contains(&ending.as_str()));
         }
-        let head = String::from_utf8_lossy(&bytes[..bytes.len().min(LOOKED_AT)]);
+        let head = decoded(&bytes[..bytes.len().min(LOOKED_AT)]);
         let alike: Vec<&Self> = FORMATS.iter().filter(|f| !f.binary && (f.looks)(&head)).collect();
         let by_look = alike.iter().copied().find(by_name).or(alike.first().copied());
         by_look.or_else(|| FORMATS.iter().find(by_name))
@@ -232,13 +235,24 @@ pub fn import_as(
     Ok(Imported { text: write::text(&m, &about), report: notes.report, files, series: input.series, fault })
 }
 
-/// The text of a file: UTF-8, or else Latin-1, as older programs write; without a byte order mark.
+/// The text of a file: UTF-8, UTF-16 with a byte order mark, or else Latin-1, as older programs write; without that mark.
 fn decoded(bytes: &[u8]) -> String {
+    let wide = |of: fn([u8; 2]) -> u16| {
+        let units: Vec<u16> = bytes[2..].chunks_exact(2).map(|b| of([b[0], b[1]])).collect();
+        String::from_utf16_lossy(&units)
+    };
+    match bytes {
+        [0xFF, 0xFE, ..] => return wide(u16::from_le_bytes),
+        [0xFE, 0xFF, ..] => return wide(u16::from_be_bytes),
+        _ => {}
+    }
     let text = match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
         Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),
     };
-    text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text)
+    let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
+    // Lines of old machines end with a carriage return alone.
+    if text.contains('\n') { text } else { text.replace('\r', "\n") }
 }
 
 impl Input<'_> {

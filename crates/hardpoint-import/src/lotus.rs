@@ -96,12 +96,17 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         return None;
     }
     let mut m = Mechanism::new(input.stem, "mm", "deg");
-    notes.approximated(
-        "axes",
-        "",
-        Some(lines[*block].at),
-        "turned half round about z, so that x points forward and y left",
-    );
+    // Lotus' x points back, y to the right; the arm's pivots tell where somebody has it forward.
+    let at = |role| names.iter().position(|name| role_of(name) == Some(role)).map(|k| places[k].0);
+    let pivots = [[Role::LowerFront, Role::LowerRear], [Role::UpperFront, Role::UpperRear]];
+    let forward =
+        pivots.iter().find_map(|[front, rear]| Some(at(*front)?[0] > at(*rear)?[0])).unwrap_or(false);
+    let why = if forward {
+        "taken as they are: x points forward, as the front pivots lie"
+    } else {
+        "turned half round about z, so that x points forward and y left"
+    };
+    notes.approximated("axes", "", Some(lines[*block].at), why);
     let radius = scalars.first().map(|(x, _)| *x).filter(|r| *r > 0.0);
     if let Some((radius, at)) = scalars.first() {
         notes.approximated(
@@ -117,7 +122,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
             notes.ignored("centre of gravity", Some(*at));
             continue;
         }
-        let place = half_round(*place);
+        let place = if forward { Vec3::from(*place) } else { half_round(*place) };
         m.hardpoints.push((name.to_string(), place));
         notes.taken("point", name, Some(*at));
         if let Some(role) = role_of(name) {

@@ -1,10 +1,13 @@
 //! Joints between two markers, each a frame on a body: as Adams, Ondsel and FreeCAD have them.
 
+use std::collections::BTreeSet;
+
+use hardpoint::joint::ALL;
 use hardpoint::space::{Pose, Vec3};
 
-use crate::mechanism::{Joint, Mechanism};
+use crate::mechanism::{Coordinate, Joint, Mechanism};
 use crate::report::{At, Notes};
-use crate::turn::angle_about;
+use crate::turn::{angle_about, from_z_and_x};
 
 /// Markers nearer than this part of the mechanism's size are at one place: files have about seven digits.
 const APART: f64 = 1e-7;
@@ -150,6 +153,119 @@ pub fn join(
     Some(m.joint(joint))
 }
 
+/// Numbers of a source that differ by less than this part of the mechanism's size from what is drawn say the same as that.
+const SAID: f64 = 1e-6;
+
+/// Whether a length that the source says is the drawn one.
+pub fn is_drawn(m: &Mechanism, said: f64, drawn: f64) -> bool {
+    (said - drawn).abs() <= SAID * m.size().max(said.abs())
+}
+
+/// Two joints with a link between them, which has a body of its own: the parts keep a distance from axis to axis, or from an axis to a
+/// point. The first joint, of body i, and the link's, are about z of the first marker; of the second the type is told.
+pub fn linked(
+    m: &mut Mechanism,
+    notes: &mut Notes,
+    called: Called<'_>,
+    kinds: [&'static str; 2],
+    [i, j]: [Marker; 2],
+    distance: Option<f64>,
+) {
+    let axis = i.z();
+    let foot = i.pose.r + axis * axis.dot(j.pose.r - i.pose.r);
+    let across = j.pose.r - foot;
+    let drawn = across.norm();
+    let distance = distance.map_or(drawn, f64::abs);
+    if distance == 0.0 {
+        let kind = match kinds {
+            ["revolute", "revolute"] => "revolute",
+            [.., "spherical"] => "inline",
+            _ => "cylindrical",
+        };
+        join(m, notes, called, kind, [i, j]);
+        return;
+    }
+    if i.body == j.body {
+        notes.refused(called.kind, called.name, called.at, "both its markers are on the same body");
+        return;
+    }
+    let along = across.unit().unwrap_or_else(|| axis.any_square());
+    let end = foot + along * distance;
+    let same = is_drawn(m, distance, drawn);
+    let rot = from_z_and_x(axis, along).unwrap_or_else(crate::turn::none);
+    let link = m.body(&format!("{}_link", called.name), called.note(notes), Some(Pose { rot, r: foot }));
+    let first = Joint::new(&format!("{}_i", called.name), called.note(notes), kinds[0], [i.body, link], foot);
+    let second =
+        Joint::new(&format!("{}_j", called.name), called.note(notes), kinds[1], [link, j.body], j.pose.r);
+    m.joint(first.along(axis));
+    let second = if kinds[1] == "spherical" { second } else { second.along(axis) };
+    m.joint(if same { second } else { second.between(end, j.pose.r) });
+    let skew = kinds[1] != "spherical" && axis.cross(j.z()).norm() > AWRY;
+    if skew || !same {
+        let how = if skew {
+            "its axes are turned against each other as drawn: the first is taken for both"
+        } else {
+            "it is drawn at another distance: the mechanism is assembled to the one that is said"
+        };
+        notes.approximated(called.kind, called.name, called.at, how);
+    } else {
+        notes.taken(called.kind, called.name, called.at);
+    }
+}
+
+/// How body j slides along an axis against body i, and how it turns about it: coordinates of joints with their factors. Either of one
+/// joint between both, or of those that carry them on a third.
+pub fn relative(joints: &[Joined], [i, j]: [usize; 2], axis: Vec3) -> Option<[Vec<(Coordinate, f64)>; 2]> {
+    let bases = joints.iter().flat_map(|k| k.markers.map(|m| m.body));
+    let bases: BTreeSet<usize> = bases.chain([i, j]).collect();
+    // The joint between both, if there is one, is met with body i as the base.
+    [i, j].into_iter().chain(bases).find_map(|base| {
+        let [mut slides, mut turns] = [Vec::new(), Vec::new()];
+        for (body, sign) in [(i, -1.0), (j, 1.0)].into_iter().filter(|(body, _)| *body != base) {
+            let mut is_carried = false;
+            for joint in joints {
+                let bodies = joint.markers.map(|m| m.body);
+                let is_along = joint.markers[0].z().cross(axis).norm() <= AWRY;
+                if !is_along || !bodies.contains(&body) || !bodies.contains(&base) {
+                    continue;
+                }
+                let factor = sign * way(joint, body, axis);
+                for (name, list) in [("displacement", &mut slides), ("angle", &mut turns)] {
+                    let has = ALL
+                        .iter()
+                        .any(|k| k.name == joint.kind && k.coordinates.iter().any(|c| c.name == name));
+                    if has && ["revolute", "translational", "cylindrical"].contains(&joint.kind) {
+                        is_carried = true;
+                        list.push((Coordinate { joint: joint.number, name }, factor));
+                    }
+                }
+            }
+            if !is_carried {
+                return None;
+            }
+        }
+        (!slides.is_empty() && !turns.is_empty()).then_some([slides, turns])
+    })
+}
+
+/// Couples what a screw couples, its parts held by other joints; none where no joints say how they slide and turn.
+pub fn screw(
+    m: &mut Mechanism,
+    notes: &mut Notes,
+    called: Called<'_>,
+    joints: &[Joined],
+    [i, j]: [Marker; 2],
+    pitch: f64,
+) -> Option<()> {
+    let [slides, turns] = relative(joints, [i.body, j.body], i.z())?;
+    // z - pitch/(2 pi) angle = 0
+    let per_rad = pitch / std::f64::consts::TAU;
+    let turns = turns.into_iter().map(|(c, factor)| (c, -per_rad * factor));
+    m.coupler(called.name, called.note(notes), slides.into_iter().chain(turns).collect());
+    notes.taken(called.kind, called.name, called.at);
+    Some(())
+}
+
 /// A joint that was made of two markers.
 #[derive(Clone, Copy, Debug)]
 pub struct Joined {
@@ -196,7 +312,7 @@ pub fn counted(text: &str, drawn: f64, turns: bool) -> String {
 impl Marker {
     /// A frame at a place, its z along an axis; none where that has no direction.
     pub fn along(body: usize, at: Vec3, axis: Vec3) -> Option<Self> {
-        let rot = crate::turn::from_z_and_x(axis, axis.any_square())?;
+        let rot = from_z_and_x(axis, axis.any_square())?;
         Some(Self { body, pose: Pose { rot, r: at } })
     }
 }

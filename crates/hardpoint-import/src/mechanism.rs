@@ -88,6 +88,8 @@ pub struct Joint {
     pub axis2: Option<Vec3>,
     /// Advance of a screw per turn.
     pub lead: Option<f64>,
+    /// Length of a rod, where the source says another than the drawn one.
+    pub length: Option<f64>,
     /// Between which values the source lets its coordinate go.
     pub limits: Option<[f64; 2]>,
     /// What it is drawn as.
@@ -284,6 +286,7 @@ impl Joint {
             through: None,
             axis2: None,
             lead: None,
+            length: None,
             limits: None,
             draw: None,
         }

@@ -200,9 +200,14 @@ impl Notes {
         source.diagnostic(Severity::Error, code, printable(message.as_ref()), span)
     }
 
-    /// Something is wrong.
+    /// Something is wrong, and what to do is what one does about such.
     pub fn problem(&mut self, code: &'static str, at: Option<At>, message: impl AsRef<str>) {
-        let diagnostic = self.diagnostic(code, at, message);
+        let help = match code {
+            "HP0803" => "correct the name, or export the file again",
+            "HP0804" => "correct the value, or export the file again",
+            _ => "export the file again",
+        };
+        let diagnostic = self.diagnostic(code, at, message).help(help);
         self.tell(at.map_or(0, |at| at.text), diagnostic);
     }
 

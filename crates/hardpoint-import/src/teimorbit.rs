@@ -2,7 +2,7 @@
 
 use hardpoint::space::Vec3;
 
-use crate::corner::{Corner, role_of};
+use crate::corner::{Corner, role_of, spin_axis};
 use crate::lotus::half_round;
 use crate::mechanism::Mechanism;
 use crate::report::{At, Notes};
@@ -18,6 +18,8 @@ pub const FORMAT: Format = Format {
     binary: false,
 };
 
+/// The columns of parameters.
+const PARAMETERS: [&str; 4] = ["parameter_name", "symmetry", "type", "value"];
 /// What a row's columns are, where the block does not say.
 const COLUMNS: [&str; 5] = ["hardpoint_name", "symmetry", "x_value", "y_value", "z_value"];
 
@@ -27,6 +29,8 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     let mut corners = [Corner::default(), Corner::default(), Corner::default()];
     let (mut section, mut columns) = (String::new(), COLUMNS.map(str::to_owned).to_vec());
     let (mut start, mut block, mut has_units) = (0, None, false);
+    // Camber and toe, of both sides.
+    let mut static_angles = [[0.0; 2]; 2];
     for whole in input.text.split_inclusive('\n') {
         let line = whole.split(['$', '!']).next().unwrap_or_default().trim();
         let from = start + whole.len() - whole.trim_start().len();
@@ -43,17 +47,27 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
                     block = block.or(Some(at));
                 }
                 "UNITS" | "MDI_HEADER" => {}
+                "PARAMETER" => columns = PARAMETERS.map(str::to_owned).to_vec(),
                 other => notes.ignored(other, Some(at)),
             }
             continue;
         }
+        // `(COMMENTS)`, or `(VARIANTS)`, whose rows are those of other designs.
+        if line.starts_with('(') {
+            if ["HARDPOINT", "PARAMETER"].contains(&section.as_str()) {
+                notes.ignored(line, Some(at));
+            }
+            section = line.to_owned();
+            continue;
+        }
         match section.as_str() {
             "UNITS" => has_units |= unit(&mut m, line, at, notes),
-            "HARDPOINT" => match line.strip_prefix('{') {
+            "PARAMETER" | "HARDPOINT" => match line.strip_prefix('{') {
                 Some(header) => {
                     let names = header.trim_end_matches('}').split_whitespace();
                     columns = names.map(|n| n.to_ascii_lowercase()).collect();
                 }
+                None if section == "PARAMETER" => parameter(&mut static_angles, &columns, line, at, notes),
                 None => row(&mut m, &mut corners, &columns, line, at, notes),
             },
             _ => {}
@@ -83,6 +97,11 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     for (corner, suffix) in [(left, "_left"), (right, "_right")] {
         if !corner.points.is_empty() {
             let mut corner = Corner { suffix: suffix.into(), at: Some(block), rack: true, ..corner };
+            let side = if suffix == "_left" { 0 } else { 1 };
+            let [camber, toe] = static_angles[side];
+            if [camber, toe] != [0.0; 2] {
+                corner.spin_axis = Some(spin_axis(1.0 - 2.0 * side as f64, camber, toe));
+            }
             for (role, place) in &single.points {
                 corner.points.entry(*role).or_insert(*place);
             }
@@ -94,6 +113,30 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         corner.build(&mut m, notes, &mut rack);
     }
     (!m.hardpoints.is_empty()).then_some(m)
+}
+
+/// A row of a parameter: of static camber and toe, which the wheel's axis follows. Others do not concern the motion.
+fn parameter(angles: &mut [[f64; 2]; 2], columns: &[String], line: &str, at: At, notes: &mut Notes) {
+    let words = words(line);
+    let column = |name: &str| columns.iter().position(|c| c == name).and_then(|k| words.get(k));
+    let name = column("parameter_name").map_or("", String::as_str);
+    let short = ["pvl_", "pvr_", "pvs_"].iter().find_map(|p| name.strip_prefix(p)).unwrap_or(name);
+    let Some(k) = ["camber_angle", "toe_angle"].iter().position(|angle| *angle == short) else {
+        notes.ignored("PARAMETER", Some(at));
+        return;
+    };
+    let Some(value) = column("value").and_then(|v| v.parse::<f64>().ok()).filter(|v| v.is_finite()) else {
+        let help = format!("its columns are {}", columns.join(", "));
+        notes.problem_with("HP0804", Some(at), format!("`{name}` is no number"), &help);
+        return;
+    };
+    let symmetry = column("symmetry").map_or("", String::as_str).to_ascii_lowercase();
+    for (side, own) in ["left", "right"].into_iter().enumerate() {
+        if symmetry == own || symmetry != ["right", "left"][side] {
+            angles[side][k] = value.to_radians();
+        }
+    }
+    notes.taken("PARAMETER", name, Some(at));
 }
 
 /// Whether the line says the unit of length.

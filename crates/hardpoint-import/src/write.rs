@@ -152,6 +152,9 @@ impl<'m> Writer<'m> {
             if let Some(lead) = joint.lead {
                 t["lead"] = value(lead);
             }
+            if let Some(length) = joint.length {
+                t["length"] = value(length);
+            }
             if let Some(draw) = joint.draw {
                 t["draw"] = value(draw);
             }

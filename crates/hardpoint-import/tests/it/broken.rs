@@ -60,6 +60,7 @@ broken! {
         ("two parts of one name", "\t\t\t\tPiston\n", "\t\t\t\tRod\n")
         ("a joint on one part", "/OndselAssembly/Rod/m1", "/OndselAssembly/Piston/m1")
         ("times that do not divide", "0.02", "0.03")
+        ("cut short", "\tSimulationParameters\n", "\tSimul\n")
     broken_adams "adams" "adams/four_bar.adm":
         ("empty", "", " \n")
         ("another file", "", "hello\n")
@@ -76,6 +77,10 @@ broken! {
         ("a bracket that is not closed", "360.0D*time", "SIN(time")
         ("a velocity", "ROTATIONAL, JOINT", "ROTATIONAL, VELOCITY, JOINT")
         ("both ends on a part", "I = 6, J = 4", "I = 6, J = 7")
+        ("a marker on an elastic part", "MARKER/6, PART = 3", "MARKER/6, FE_PART = 3")
+        ("a motion of a joint that is refused", "JOINT/1, REVOLUTE", "JOINT/1, MAGIC")
+        ("a velocity that is constant", "JOINT = 1, FUNCTION = 60D\n, + 360.0D*time", "JOINT = 1, VELOCITY, FUNCTION = 360.0D")
+        ("no end", "\nEND\n", "\n")
     broken_urdf "urdf" "urdf/four_bar.urdf":
         ("empty", "", " \n")
         ("another file", "", "<robo/>")
@@ -200,6 +205,37 @@ fn what_is_no_format_is_told() {
     let zip = crate::document(b"<Document/>");
     let problems = hardpoint_import::import(&zip[..40], "cut.FCStd", &|_| None).unwrap_err();
     insta::assert_snapshot!(problems.to_string());
+}
+
+#[test]
+fn encodings_and_line_ends_of_other_systems_are_read() {
+    for file in [
+        "adams/shaper.adm",
+        "asmt/contacts.asmt",
+        "chrono/three_link.json",
+        "lotus/strut.shk",
+        "teimorbit/strut.sub",
+    ] {
+        let text = std::fs::read_to_string(folder().join(file)).unwrap();
+        let model = |bytes: &[u8]| {
+            let imported = hardpoint_import::import(bytes, file, &|_| None);
+            imported.unwrap_or_else(|e| panic!("{file}: {e}")).text
+        };
+        let wide = |order: fn(u16) -> [u8; 2]| -> Vec<u8> {
+            std::iter::once(0xFEFF).chain(text.encode_utf16()).flat_map(order).collect()
+        };
+        let same = model(text.as_bytes());
+        let others = [
+            ("a byte order mark", format!("\u{feff}{text}").into_bytes()),
+            ("UTF-16, little end first", wide(u16::to_le_bytes)),
+            ("UTF-16, big end first", wide(u16::to_be_bytes)),
+            ("two characters at ends of lines", text.replace('\n', "\r\n").into_bytes()),
+            ("carriage returns alone", text.replace('\n', "\r").into_bytes()),
+        ];
+        for (what, bytes) in others {
+            assert_eq!(model(&bytes), same, "{file}: {what}");
+        }
+    }
 }
 
 #[test]

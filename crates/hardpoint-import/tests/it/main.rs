@@ -3,6 +3,7 @@
 mod broken;
 mod four_bars;
 mod fuzz;
+mod meanings;
 mod models;
 
 use std::io::Write;

@@ -1,0 +1,222 @@
+//! The statements of Adams/Solver datasets: names, numbers, keys with values, and flags, over as many lines as they take.
+
+use hardpoint::space::Vec3;
+
+use crate::markers::Called;
+use crate::report::{At, Notes};
+
+/// Words may be cut short to so many letters.
+pub const SHORTEST: usize = 3;
+/// The statements whose names may be cut short, first those that are often so.
+const NAMES: [&str; 10] =
+    ["PART", "MARKER", "JOINT", "JPRIM", "MOTION", "COUPLER", "GEAR", "UNITS", "SPLINE", "FLEX_BODY"];
+
+/// Where a statement was continued: a blank, or in the middle of a function perhaps a comma.
+pub const SEAM: char = '\u{1}';
+
+/// A statement: `NAME/id, KEY = values, FLAG, ...`.
+#[derive(Debug, Default)]
+pub struct Statement {
+    /// In capital letters, written out.
+    pub name: String,
+    /// The number behind the stroke.
+    pub id: String,
+    /// Where it stands.
+    pub at: At,
+    /// What the modeller calls it, from the comment before it.
+    pub label: String,
+    /// In capital letters, with what stands behind the equals sign; flags with nothing.
+    pub keys: Vec<(String, String)>,
+}
+
+impl Statement {
+    /// What stands behind a key, which may be cut short as far as it is clear.
+    pub fn text(&self, key: &str) -> Option<&str> {
+        let short = |k: &str| k.len() >= SHORTEST && key.starts_with(k);
+        let found = self.keys.iter().find(|(k, _)| k == key);
+        found.or_else(|| self.keys.iter().find(|(k, v)| !v.is_empty() && short(k))).map(|(_, v)| v.as_str())
+    }
+
+    /// Whether it has a key.
+    pub fn has(&self, key: &str) -> bool {
+        self.text(key).is_some()
+    }
+
+    /// Whether it has a flag, which may be cut short.
+    pub fn flag(&self, flag: &str) -> bool {
+        self.keys.iter().any(|(k, v)| v.is_empty() && k.len() >= SHORTEST && flag.starts_with(k.as_str()))
+    }
+
+    /// What it is called, and where it stands.
+    pub fn called(&self) -> Called<'_> {
+        Called { kind: &self.name, name: &self.label, at: Some(self.at) }
+    }
+
+    /// Numbers behind a key; angles in rad. What is wrong with them is told.
+    pub fn numbers(&self, key: &str, notes: &mut Notes) -> Option<Vec<f64>> {
+        let text = self.text(key)?;
+        let words =
+            text.split(|c: char| c == ',' || c == SEAM || c.is_whitespace()).filter(|w| !w.is_empty());
+        let list: Option<Vec<f64>> = words.map(number).collect();
+        if list.is_none() {
+            let text = text.replace(SEAM, " ");
+            notes.problem(
+                "HP0804",
+                Some(self.at),
+                format!("`{key}` of {}/{} is no list of numbers: `{}`", self.name, self.id, text.trim()),
+            );
+        }
+        list
+    }
+
+    /// Three numbers behind a key.
+    pub fn vector(&self, key: &str, notes: &mut Notes) -> Option<Vec3> {
+        let list = self.numbers(key, notes)?;
+        match <[f64; 3]>::try_from(list) {
+            Ok(v) => Some(v.into()),
+            Err(list) => {
+                notes.problem(
+                    "HP0804",
+                    Some(self.at),
+                    format!("`{key}` of {}/{} is three numbers, not {}", self.name, self.id, list.len()),
+                );
+                None
+            }
+        }
+    }
+
+    /// The number that a key refers to.
+    pub fn reference<'s>(&'s self, key: &str) -> Option<&'s str> {
+        self.text(key).map(str::trim)
+    }
+}
+
+/// `30D` is an angle in degrees; exponents are as in Fortran.
+pub fn number(word: &str) -> Option<f64> {
+    let lower = word.to_ascii_lowercase();
+    let degrees = lower.strip_suffix('d');
+    let value: f64 = degrees.unwrap_or(&lower).replace('d', "e").parse().ok()?;
+    let value = if degrees.is_some() { value.to_radians() } else { value };
+    value.is_finite().then_some(value)
+}
+
+/// The statements of a dataset: comments and continuations resolved.
+pub fn statements(text: &str) -> Vec<Statement> {
+    let mut lines: Vec<(At, String, String)> = Vec::new();
+    let mut label = String::new();
+    let mut start = 0;
+    for (k, whole) in text.split_inclusive('\n').enumerate() {
+        let line = whole.trim_end_matches(['\n', '\r']);
+        let from = start + line.len() - line.trim_start().len();
+        let at = At { text: 0, start: from, end: start + line.trim_end().len() };
+        start += whole.len();
+        let (code, remark) = line.split_once('!').unwrap_or((line, ""));
+        if let Some((_, name)) = remark.split_once("adams_view_name=") {
+            label = name.trim().trim_matches(['\'', '"']).to_owned();
+        }
+        let code = code.trim();
+        // The first line is a title, whatever it looks like.
+        let is_title = k == 0 && code.to_ascii_uppercase().starts_with("ADAMS");
+        if code.is_empty() || is_title {
+            continue;
+        }
+        // A line goes on where the next begins with a comma or `&`, or where it ends with one.
+        let goes_on = lines.last().is_some_and(|l| l.1.ends_with([',', '&']));
+        let rest = code.strip_prefix([',', '&']).or(goes_on.then_some(code));
+        match (rest, lines.last_mut()) {
+            (Some(rest), Some(last)) => {
+                let kept = last.1.trim_end_matches('&').len();
+                last.1.truncate(kept);
+                last.1.push(SEAM);
+                last.1.push_str(rest);
+            }
+            _ => lines.push((at, code.to_owned(), std::mem::take(&mut label))),
+        }
+    }
+    lines.iter().filter_map(|(at, code, label)| statement(*at, code, label)).collect()
+}
+
+fn statement(at: At, code: &str, label: &str) -> Option<Statement> {
+    let code = code.trim_end_matches([';', ' ']);
+    let end = code.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(code.len());
+    let (name, rest) = code.split_at(end);
+    let Some(rest) = rest.trim_start().strip_prefix('/') else {
+        // A title, `END`.
+        return None;
+    };
+    let name = name.to_ascii_uppercase();
+    let whole = NAMES.iter().find(|n| name.len() >= SHORTEST && n.starts_with(name.as_str()));
+    let name = whole.map_or(name.clone(), |n| (*n).to_owned());
+    let mut out = Statement { name, at, ..Statement::default() };
+    for part in parts_of(rest) {
+        let part = part.trim_matches(|c: char| c.is_whitespace() || c == SEAM);
+        let keyed = part.split_once('=').filter(|(key, _)| {
+            let key = key.trim_matches(|c: char| c.is_whitespace() || c == SEAM);
+            !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '\\')
+        });
+        if let Some((key, text)) = keyed {
+            let key = key.trim_matches(|c: char| c.is_whitespace() || c == SEAM);
+            out.keys.push((key.to_ascii_uppercase(), text.trim().to_owned()));
+        } else if out.keys.is_empty() && out.id.is_empty() && part.chars().all(|c| c.is_ascii_digit()) {
+            out.id = part.to_owned();
+        } else {
+            // A further value of the key before, or a flag.
+            let is_value = part.chars().next().is_some_and(|c| c.is_ascii_digit() || "+-.(".contains(c));
+            match out.keys.last_mut() {
+                Some((key, text))
+                    if !text.is_empty()
+                        && (is_value || "FUNCTION".starts_with(key.as_str()))
+                        && !FLAGS.contains(&part.to_ascii_uppercase().as_str()) =>
+                {
+                    text.push(',');
+                    text.push_str(part);
+                }
+                _ if part.is_empty() => {}
+                _ => out.keys.push((part.to_ascii_uppercase(), String::new())),
+            }
+        }
+    }
+    out.label = if label.is_empty() { format!("{}_{}", out.name, out.id) } else { label.to_owned() };
+    Some(out)
+}
+
+/// Flags that may stand behind a function.
+const FLAGS: [&str; 5] = ["ROTATIONAL", "TRANSLATIONAL", "DISPLACEMENT", "VELOCITY", "ACCELERATION"];
+
+/// The parts between commas outside of parentheses; a backslash parts too, and a seam before a key or a flag: the comma at the beginning
+/// of a line only continues it where it stands in the middle of a list or a function.
+fn parts_of(text: &str) -> Vec<String> {
+    let (mut out, mut depth) = (vec![String::new()], 0_i32);
+    let chars: Vec<char> = text.chars().collect();
+    for (k, c) in chars.iter().enumerate() {
+        depth += i32::from(*c == '(') - i32::from(*c == ')');
+        let is_function = || {
+            out.last().is_some_and(|part| {
+                let key = part
+                    .split('=')
+                    .next()
+                    .unwrap_or_default()
+                    .trim_matches([' ', '\t', SEAM])
+                    .to_ascii_uppercase();
+                part.contains('=') && key.len() >= SHORTEST && "FUNCTION".starts_with(&key)
+            })
+        };
+        let begins = || {
+            let rest: String = chars[k + 1..].iter().take(60).collect();
+            let rest = rest.trim_start();
+            let word =
+                rest.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).next().unwrap_or_default();
+            let behind = rest[word.len()..].trim_start_matches([' ', '\t']).chars().next();
+            let ends = behind.is_none_or(|c| [',', SEAM, '\\'].contains(&c));
+            let known = FLAGS.contains(&word.to_ascii_uppercase().as_str());
+            let is_word = word.starts_with(|c: char| c.is_ascii_alphabetic());
+            is_word && (behind == Some('=') || (ends && (known || !is_function())))
+        };
+        let parts = (*c == ',' && depth <= 0) || *c == '\\' || (*c == SEAM && depth <= 0 && begins());
+        match out.last_mut() {
+            Some(last) if !parts => last.push(*c),
+            _ => out.push(String::new()),
+        }
+    }
+    out
+}

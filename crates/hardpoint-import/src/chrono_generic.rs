@@ -1,0 +1,272 @@
+//! The template of Project Chrono whose file has its bodies and joints one by one (`GenericWheeledSuspension`): the left side, and the
+//! right one, its mirror image, where both hang on a body between them.
+
+use std::collections::BTreeMap;
+
+use hardpoint::space::{Mat3, Vec3};
+
+use crate::corner::{Corner, spin_axis};
+use crate::mechanism::{GROUND, Joint, Mechanism};
+use crate::report::{At, Notes};
+use crate::tree::{Tree, Value};
+
+/// Bodies of the vehicle that stand still here.
+const CHASSIS: [&str; 2] = ["Chassis", "Subchassis"];
+/// The body of the vehicle that the tie rods are on.
+const STEERING: &str = "Steering";
+
+/// See the module.
+pub fn read(root: &Tree, mut m: Mechanism, [camber, toe]: [f64; 2], notes: &mut Notes) -> Option<Mechanism> {
+    let bodies = list(root, "Bodies");
+    let between = bodies.iter().any(|b| !is_mirrored(b));
+    let mut rack = None;
+    for (side, suffix) in [(1.0, "_left"), (-1.0, "_right")].into_iter().take(1 + usize::from(between)) {
+        let suffix = if between { suffix } else { "" };
+        let mut reader =
+            Side { root, m: &mut m, notes, side, suffix, names: BTreeMap::new(), rack: &mut rack };
+        reader.bodies(bodies);
+        reader.joints();
+        reader.rods();
+        reader.springs();
+        reader.wheel(spin_axis(side, camber, toe));
+    }
+    let read = ["Name", "Type", "Template", "Bodies", "Joints", "Distance Constraints", "TSDAs", "Spindle"];
+    for (key, at, _) in root.entries().iter().filter(|(key, ..)| !read.contains(&key.as_str())) {
+        if key.ends_with("Angle (deg)") {
+            notes.taken(key, "", Some(*at));
+        } else {
+            notes.ignored(key, Some(*at));
+        }
+    }
+    Some(m)
+}
+
+struct Side<'r> {
+    root: &'r Tree,
+    m: &'r mut Mechanism,
+    notes: &'r mut Notes,
+    /// 1 on the left, -1 on the right.
+    side: f64,
+    suffix: &'static str,
+    /// The bodies by their names in the file.
+    names: BTreeMap<String, usize>,
+    rack: &'r mut Option<usize>,
+}
+
+impl Side<'_> {
+    /// What is made on this side: all that is mirrored, and on the left what is between both.
+    fn is_here(&self, tree: &Tree) -> bool {
+        self.side > 0.0 || is_mirrored(tree)
+    }
+
+    fn named(&self, tree: &Tree) -> String {
+        let own = tree.text_of("Name").unwrap_or_default();
+        format!("{own}{}", if is_mirrored(tree) { self.suffix } else { "" })
+    }
+
+    fn over(&self, v: Vec3) -> Vec3 {
+        Vec3::from([v.x, self.side * v.y, v.z])
+    }
+
+    /// Three numbers of an element, on this side.
+    fn place(&mut self, tree: &Tree, key: &str) -> Option<Vec3> {
+        let found = tree.get(key);
+        let v = found.and_then(Tree::vector);
+        if v.is_none() {
+            let at = found.map_or(tree.at, |t| t.at);
+            let message =
+                format!("`{key}` of `{}` is three numbers", tree.text_of("Name").unwrap_or_default());
+            self.notes.problem_with("HP0804", Some(at), message, "give it as a list like `[0, 0.7, 0.2]`");
+        }
+        v.map(|v| if is_mirrored(tree) { self.over(v.into()) } else { v.into() })
+    }
+
+    fn bodies(&mut self, bodies: &[Tree]) {
+        for tree in bodies {
+            let name = self.named(tree);
+            let own = tree.text_of("Name").unwrap_or_default().to_owned();
+            let known = self.m.bodies.iter().position(|b| b.name == name);
+            if let Some(body) = known.filter(|_| !self.is_here(tree)) {
+                self.names.insert(own, body);
+                continue;
+            }
+            let Some(r) = self.place(tree, "Position") else { continue };
+            let frame = hardpoint::space::Pose { rot: crate::turn::none(), r };
+            let body = self.m.body(&name, note("body", &own, tree.at, self.notes), Some(frame));
+            if self.names.insert(own.clone(), body).is_some() {
+                let message = format!("there are two bodies `{own}`");
+                self.notes.problem_with("HP0803", Some(tree.at), message, "rename one of them");
+            }
+            self.notes.taken("body", &name, Some(tree.at));
+        }
+    }
+
+    /// Both bodies that an element is between, and where it is on them if it is a rod's.
+    fn pair(&mut self, tree: &Tree, at: Vec3) -> Option<[usize; 2]> {
+        let found = ["Body1", "Body2"].map(|key| {
+            let name = tree.text_of(key).unwrap_or_default();
+            if CHASSIS.contains(&name) {
+                return Some(GROUND);
+            }
+            if name == STEERING {
+                let corner = Corner { at: Some(self.root.at), ..Corner::default() };
+                return Some(corner.rack_of(self.m, self.notes, self.rack, at));
+            }
+            let body = self.names.get(name).copied();
+            if body.is_none() {
+                let message = format!(
+                    "`{key}` of `{}` is `{name}`, which is no body here",
+                    tree.text_of("Name").unwrap_or_default()
+                );
+                let help = "name one of the `Bodies`, or `Chassis`, `Subchassis`, `Steering`";
+                self.notes.problem_with(
+                    "HP0803",
+                    Some(tree.get(key).map_or(tree.at, |t| t.at)),
+                    message,
+                    help,
+                );
+            }
+            body
+        });
+        let [Some(i), Some(j)] = found else { return None };
+        Some([i, j])
+    }
+
+    fn joints(&mut self) {
+        for tree in list(self.root, "Joints").iter().filter(|t| self.is_here(t)).collect::<Vec<_>>() {
+            let name = self.named(tree);
+            let written = tree.text_of("Type").unwrap_or_default();
+            let kind = match crate::corner::plain(written).replace('_', "").as_str() {
+                "lock" => "fixed",
+                "revolute" => "revolute",
+                "spherical" => "spherical",
+                "universal" => "universal",
+                "pointline" => "inline",
+                "pointplane" => "inplane",
+                _ => {
+                    let why =
+                        format!("its type `{written}` has no equivalent: what it holds is held by a driver");
+                    self.notes.refused("joint", &name, Some(tree.at), why);
+                    continue;
+                }
+            };
+            let Some(frame) = tree.get("Coordinate System") else {
+                let message = format!("`{name}` has no `Coordinate System`");
+                self.notes.problem_with(
+                    "HP0803",
+                    Some(tree.at),
+                    message,
+                    "give it a `Position` and a `Rotation`",
+                );
+                continue;
+            };
+            let rotation = frame.get("Rotation").map_or(Some(crate::turn::none()), quaternion);
+            let (Some(at), Some(rotation)) = (frame.get("Position").and_then(Tree::vector), rotation) else {
+                let message = format!("the `Coordinate System` of `{name}` is no place with a quaternion");
+                self.notes.problem_with(
+                    "HP0804",
+                    Some(frame.at),
+                    message,
+                    "give a `Position` of three numbers and a `Rotation` of four",
+                );
+                continue;
+            };
+            let here = |v: Vec3| if is_mirrored(tree) { self.over(v) } else { v };
+            let (at, [x, y, z]) = (here(at.into()), rotation.cols.map(here));
+            let Some(bodies) = self.pair(tree, at) else { continue };
+            let joint = Joint::new(&name, note("joint", &name, tree.at, self.notes), kind, bodies, at);
+            self.m.joint(match kind {
+                "revolute" => joint.along(z),
+                "universal" => joint.with_axes(x, y),
+                "inline" => joint.along(x),
+                "inplane" => joint.with_axes(z, x),
+                _ => joint,
+            });
+            self.notes.taken("joint", &name, Some(tree.at));
+        }
+    }
+
+    fn rods(&mut self) {
+        for tree in
+            list(self.root, "Distance Constraints").iter().filter(|t| self.is_here(t)).collect::<Vec<_>>()
+        {
+            self.between(tree, "rod", "distance", None);
+        }
+    }
+
+    /// Springs and dampers hold nothing; their lengths are worth knowing.
+    fn springs(&mut self) {
+        for tree in list(self.root, "TSDAs").iter().filter(|t| self.is_here(t)).collect::<Vec<_>>() {
+            let is_damper =
+                tree.entries().iter().all(|(key, ..)| !key.contains("Spring") && key != "Free Length");
+            self.between(tree, "spring", "leg", Some(if is_damper { "damper" } else { "spring" }));
+        }
+    }
+
+    fn between(&mut self, tree: &Tree, what: &str, kind: &'static str, draw: Option<&'static str>) {
+        let name = self.named(tree);
+        let ends = ["Point1", "Point2"].map(|key| self.place(tree, key));
+        let [Some(i), Some(j)] = ends else { return };
+        let Some(bodies) = self.pair(tree, i) else { return };
+        if i == j {
+            let message = format!("both ends of `{name}` are at one place");
+            self.notes.problem_with("HP0804", Some(tree.at), message, "correct one of them");
+            return;
+        }
+        let mut rod =
+            Joint::new(&name, note(what, &name, tree.at, self.notes), kind, bodies, i).between(i, j);
+        rod.draw = draw;
+        self.m.joint(rod);
+        self.notes.taken(what, &name, Some(tree.at));
+    }
+
+    fn wheel(&mut self, axis: Vec3) {
+        let Some(spindle) = self.root.get("Spindle") else {
+            let help = "give its `Attachment Body` and `COM`";
+            self.notes.problem_with("HP0803", Some(self.root.at), "there is no `Spindle`", help);
+            return;
+        };
+        let centre = spindle.get("COM").or_else(|| spindle.get("Location")).and_then(Tree::vector);
+        let carrier = spindle.text_of("Attachment Body").and_then(|name| self.names.get(name)).copied();
+        let (Some(centre), Some(carrier)) = (centre, carrier) else {
+            let help = "give its `COM` as three numbers and one of the `Bodies` as its `Attachment Body`";
+            self.notes.problem_with(
+                "HP0804",
+                Some(spindle.at),
+                "the `Spindle` is on no body, or has no place",
+                help,
+            );
+            return;
+        };
+        let corner = Corner {
+            suffix: self.suffix.into(),
+            spin_axis: Some(axis),
+            at: Some(spindle.at),
+            ..Corner::default()
+        };
+        let centre = self.over(centre.into());
+        self.m.hardpoints.push((format!("spindle{}", self.suffix), centre));
+        corner.wheel(self.m, self.notes, carrier, centre);
+    }
+}
+
+fn list<'t>(root: &'t Tree, key: &str) -> &'t [Tree] {
+    match root.get(key).map(|t| &t.value) {
+        Some(Value::List(list)) => list,
+        _ => &[],
+    }
+}
+
+fn is_mirrored(tree: &Tree) -> bool {
+    tree.text_of("Mirrored") != Some("false")
+}
+
+fn quaternion(tree: &Tree) -> Option<Mat3> {
+    let Value::List(list) = &tree.value else { return None };
+    let numbers: Option<Vec<f64>> = list.iter().map(Tree::number).collect();
+    crate::turn::quaternion(numbers?.try_into().ok()?)
+}
+
+fn note(kind: &str, name: &str, at: At, notes: &Notes) -> String {
+    crate::markers::Called { kind, name, at: Some(at) }.note(notes)
+}
