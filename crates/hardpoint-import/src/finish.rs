@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use hardpoint::joint::ALL;
+use hardpoint::model::JointId;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
 use hardpoint::topology::TopologyFault;
@@ -12,6 +13,8 @@ use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism};
 use hardpoint_file::Diagnostic;
 
 use crate::report::Notes;
+use crate::straighten::straighten;
+use crate::turn::{X, Y, Z};
 use crate::write;
 
 /// The one degree of freedom of a mechanism swings by this angle, in rad.
@@ -31,53 +34,53 @@ const MOST_HELD: usize = 400;
 /// the user to mend.
 pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
     ground(m, notes);
+    straightened(m, notes);
     let moves = m.drivers.iter().any(|d| d.law != Law::Held);
     let mut left = match freedom(m, notes) {
         Ok(left) => left,
         Err(fault) => return Some(*fault),
     };
-    let only_one = left.0 == 1 && !moves;
-    if left.0 > MOST_HELD {
+    let only_one = left.count == 1 && !moves;
+    if left.count > MOST_HELD {
         return Some(notes.diagnostic(
             "HP0808",
             None,
-            format!("{} motions of it are driven by nothing", left.0),
+            format!("{} motions of it are driven by nothing", left.count),
         ));
     }
     let mut tried = HashSet::new();
-    while left.0 > 0 {
-        let Some((name, drives)) = candidates(m, &left.1).find(|(name, _)| !tried.contains(name)) else {
-            let names: Vec<String> = left.1.iter().map(|j| format!("`{}`", m.joints[*j].name)).collect();
-            let message = format!("{} motions remain that no driver could be found for", left.0);
+    while left.count > 0 {
+        let Some(held) = candidates(m, &left).find(|held| !tried.contains(held)) else {
+            if let Some(fault) = left.singular {
+                return Some(*fault);
+            }
+            let names: Vec<String> = left.joints.iter().map(|j| format!("`{}`", m.joints[*j].name)).collect();
+            let message = format!("{} motions remain that no driver could be found for", left.count);
             return Some(
                 notes
                     .diagnostic("HP0808", None, message)
                     .note(format!("joints that still move: {}", names.join(", "))),
             );
         };
-        tried.insert(name.clone());
-        m.driver(
-            &format!("{name}_held"),
-            "nothing drives it in the source: held as drawn".into(),
-            drives,
-            Law::Held,
-        );
+        tried.insert(held.clone());
+        let before = m.drivers.len();
+        for (name, drives) in held.drivers(m) {
+            let why = "nothing drives it in the source: held as drawn".into();
+            m.driver(&format!("{name}_held"), why, drives, Law::Held);
+        }
         match freedom(m, notes) {
             // A body that would only spin idly is none of the freedoms, and one once its spin is held.
-            Ok(now) if now.0 < left.0 || (now.0 == left.0 && now.1.len() < left.1.len()) => {
+            Ok(now)
+                if now.count < left.count
+                    || (now.count == left.count && now.joints.len() < left.joints.len()) =>
+            {
                 left = now;
-                if !only_one {
-                    notes.approximated(
-                        "motion",
-                        &name,
-                        None,
-                        "nothing drives it in the source: a driver holds it as drawn",
-                    );
+                for driver in m.drivers[before..].iter().filter(|_| !only_one) {
+                    let why = "nothing drives it in the source: a driver holds it as drawn";
+                    notes.approximated("motion", driver.name.trim_end_matches("_held"), None, why);
                 }
             }
-            _ => {
-                m.drivers.pop();
-            }
+            _ => m.drivers.truncate(before),
         }
     }
     if only_one {
@@ -187,8 +190,39 @@ fn ground(m: &mut Mechanism, notes: &mut Notes) {
     }
 }
 
-/// How many motions nothing drives, and the joints that move in them.
-fn freedom(m: &Mechanism, notes: &Notes) -> Result<(usize, Vec<usize>), Box<Diagnostic>> {
+/// Loops whose axes are nearly parallel, as far as that lets them move.
+fn straightened(m: &mut Mechanism, notes: &mut Notes) {
+    let mut straight = m.clone();
+    let Some(done) = straighten(&mut straight) else { return };
+    let score = |m: &Mechanism| freedom(m, notes).ok().filter(|l| l.singular.is_none()).map(|l| l.count);
+    if score(&straight) <= score(m) {
+        return;
+    }
+    *m = straight;
+    let names: Vec<String> = done.joints.iter().map(|n| format!("`{n}`")).collect();
+    let why = format!(
+        "turned by up to {:.1e} rad, to be parallel to others or to a global axis, since their loops could not move as written: {}",
+        done.by,
+        names.join(", ")
+    );
+    notes.approximated("axes", "", None, why);
+}
+
+/// The motions that nothing drives.
+#[derive(Default)]
+struct Left {
+    /// How many.
+    count: usize,
+    /// The joints that move in them.
+    joints: Vec<usize>,
+    /// The bodies that move in them.
+    bodies: Vec<usize>,
+    /// Why that may be so as drawn only: a driver tells, since what moves by its special proportions looks alike.
+    singular: Option<Box<Diagnostic>>,
+}
+
+/// What nothing drives.
+fn freedom(m: &Mechanism, notes: &Notes) -> Result<Left, Box<Diagnostic>> {
     let refused = |message: String| {
         notes.diagnostic("HP0808", None, format!("the imported mechanism does not work: {message}"))
     };
@@ -197,15 +231,31 @@ fn freedom(m: &Mechanism, notes: &Notes) -> Result<(usize, Vec<usize>), Box<Diag
     }
     let file = parsed(m).map_err(|why| Box::new(refused(why)))?;
     match Analysis::new(&file.model) {
-        Ok(_) => Ok((0, Vec::new())),
-        Err(TopologyFault::UnderDriven { freedom, joints, .. }) => {
-            // Drivers that are no joint's coordinate are joints without a name, behind the others.
-            Ok((freedom, joints.iter().map(|j| j.0).filter(|j| *j < m.joints.len()).collect()))
-        }
+        Ok(_) => Ok(Left::default()),
         Err(fault) => {
             let message = refused(format!("{fault}"));
             let message = fault.notes().into_iter().fold(message, |m, n| m.note(n));
-            Err(Box::new(Diagnostic { code: fault.code(), ..message }.help(fault.help())))
+            let told = Box::new(Diagnostic { code: fault.code(), ..message }.help(fault.help()));
+            // Drivers that are no joint's coordinate are joints without a name, behind the others.
+            let own =
+                |joints: &[JointId]| joints.iter().map(|j| j.0).filter(|j| *j < m.joints.len()).collect();
+            // The fault quotes its names.
+            let named = |names: &[String]| {
+                let is = |b: &usize| names.iter().any(|n| n.trim_matches('`') == m.bodies[*b].name);
+                (1..m.bodies.len()).filter(is).collect()
+            };
+            match &fault {
+                TopologyFault::UnderDriven { freedom, joints, bodies, .. } => {
+                    Ok(Left { count: *freedom, joints: own(joints), bodies: named(bodies), singular: None })
+                }
+                TopologyFault::Singular { freedom, joints, bodies, .. } => Ok(Left {
+                    count: *freedom,
+                    joints: own(joints),
+                    bodies: named(bodies),
+                    singular: Some(told),
+                }),
+                _ => Err(told),
+            }
         }
     }
 }
@@ -221,36 +271,84 @@ fn parsed(m: &Mechanism) -> Result<hardpoint_file::ModelFile, String> {
     })
 }
 
-/// What could be held, best first: coordinates of the joints that move, then the turning of their bodies.
-fn candidates<'m>(m: &'m Mechanism, joints: &'m [usize]) -> impl Iterator<Item = (String, Drives)> + 'm {
-    let coordinates = joints.iter().flat_map(move |&joint| {
-        let j = &m.joints[joint];
-        let all = ALL.iter().find(|k| k.name == j.kind).map_or(&[][..], |k| k.coordinates);
-        let constant = ["distance", "revolute_spherical"].contains(&j.kind);
-        let free = all.iter().filter(move |_| !constant);
-        free.filter_map(move |c| {
-            let coordinate = Coordinate { joint, name: c.name };
-            let name = if all.len() == 1 { j.name.clone() } else { format!("{}_{}", j.name, c.name) };
-            (!m.is_driven(coordinate)).then_some((name, Drives::Coordinate(coordinate)))
-        })
-    });
-    let axes = [("x", [1.0, 0.0, 0.0]), ("y", [0.0, 1.0, 0.0]), ("z", [0.0, 0.0, 1.0])];
-    let turns = joints.iter().flat_map(move |&joint| {
-        let j = &m.joints[joint];
-        axes.map(|(letter, axis)| {
+/// What could be held, mostly by the joint's number.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+enum Held {
+    /// A coordinate of it.
+    Coordinate(usize, &'static str),
+    /// All three angles of a ball joint.
+    Turns(usize),
+    /// One of the angles between its bodies.
+    Turn(usize, usize),
+    /// The way of its place on its second body along an axis.
+    Way(usize, usize),
+    /// The way of a body's frame along an axis, by the body's number: where rods alone hold it.
+    BodyWay(usize, usize),
+    /// The turning of a body about an axis.
+    BodyTurn(usize, usize),
+}
+
+/// Global axes and their letters.
+const AXES: [(&str, [f64; 3]); 3] = [("x", X), ("y", Y), ("z", Z)];
+
+impl Held {
+    /// The drivers that hold it.
+    fn drivers(&self, m: &Mechanism) -> Vec<(String, Drives)> {
+        let turn = |joint: usize, (letter, axis): (&str, [f64; 3])| {
+            let j = &m.joints[joint];
             let drives = Drives::Heading { body: j.bodies[1], about: axis.into(), relative_to: j.bodies[0] };
             (format!("{}_about_{letter}", j.name), drives)
-        })
+        };
+        match *self {
+            Self::Coordinate(joint, name) => {
+                let j = &m.joints[joint];
+                let own =
+                    if coordinates(j).len() == 1 { j.name.clone() } else { format!("{}_{name}", j.name) };
+                vec![(own, Drives::Coordinate(Coordinate { joint, name }))]
+            }
+            Self::Turns(joint) => AXES.map(|axis| turn(joint, axis)).to_vec(),
+            Self::Turn(joint, axis) => vec![turn(joint, AXES[axis])],
+            Self::Way(joint, axis) => {
+                let j = &m.joints[joint];
+                let at = j.at.last().copied().unwrap_or_else(|| Vec3::from([0.0; 3]));
+                let drives = Drives::Way { body: j.bodies[1], at, along: AXES[axis].1.into() };
+                vec![(format!("{}_along_{}", m.bodies[j.bodies[1]].name, AXES[axis].0), drives)]
+            }
+            Self::BodyWay(body, axis) => {
+                let at = m.bodies[body].pose.map_or_else(Vec3::zero, |p| p.r);
+                let drives = Drives::Way { body, at, along: AXES[axis].1.into() };
+                vec![(format!("{}_along_{}", m.bodies[body].name, AXES[axis].0), drives)]
+            }
+            Self::BodyTurn(body, axis) => {
+                let drives = Drives::Heading { body, about: AXES[axis].1.into(), relative_to: GROUND };
+                vec![(format!("{}_about_{}", m.bodies[body].name, AXES[axis].0), drives)]
+            }
+        }
+    }
+}
+
+/// The coordinates of a joint's type.
+fn coordinates(joint: &Joint) -> &'static [hardpoint::joint::CoordinateType] {
+    ALL.iter().find(|k| k.name == joint.kind).map_or(&[], |k| k.coordinates)
+}
+
+/// What could be held, best first: coordinates of the joints that move, then the turning of their bodies. A ball joint is held as a
+/// whole where it can be: the spin of a body between two of them is none of the freedoms that are counted.
+fn candidates<'m>(m: &'m Mechanism, left: &'m Left) -> impl Iterator<Item = Held> + 'm {
+    let joints = &left.joints;
+    let free = joints.iter().flat_map(move |&joint| {
+        let constant = ["distance", "revolute_spherical"].contains(&m.joints[joint].kind);
+        let all = coordinates(&m.joints[joint]).iter().filter(move |_| !constant);
+        let open = all.filter(move |c| !m.is_driven(Coordinate { joint, name: c.name }));
+        open.map(move |c| Held::Coordinate(joint, c.name))
     });
-    let ways = joints.iter().flat_map(move |&joint| {
-        let j = &m.joints[joint];
-        let at = j.at.last().copied().unwrap_or_else(|| Vec3::from([0.0; 3]));
-        axes.map(|(letter, axis)| {
-            let drives = Drives::Way { body: j.bodies[1], at, along: axis.into() };
-            (format!("{}_along_{letter}", m.bodies[j.bodies[1]].name), drives)
-        })
-    });
-    coordinates.chain(turns).chain(ways)
+    let balls = joints.iter().filter(|j| left.count > 1 && m.joints[**j].kind == "spherical");
+    fn each(list: &[usize], held: fn(usize, usize) -> Held) -> impl Iterator<Item = Held> {
+        list.iter().flat_map(move |&k| (0..AXES.len()).map(move |axis| held(k, axis)))
+    }
+    let of_joints = each(joints, Held::Turn).chain(each(joints, Held::Way));
+    let of_bodies = each(&left.bodies, Held::BodyWay).chain(each(&left.bodies, Held::BodyTurn));
+    free.chain(balls.map(|j| Held::Turns(*j))).chain(of_joints).chain(of_bodies)
 }
 
 /// The one degree of freedom is plainly the input: it swings, as far as it can.

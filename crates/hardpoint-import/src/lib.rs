@@ -20,6 +20,7 @@
 mod adams;
 mod asmt;
 mod chrono;
+mod collada;
 mod corner;
 mod explorer;
 mod finish;
@@ -33,6 +34,7 @@ mod report;
 mod sdf;
 mod series;
 mod shapes;
+mod straighten;
 mod teimorbit;
 mod tree;
 mod turn;
@@ -128,7 +130,7 @@ impl Format {
         if bytes.starts_with(b"PK") {
             return FORMATS.iter().find(|f| f.binary && !TABLES.contains(&ending.as_str()));
         }
-        let head = String::from_utf8_lossy(&bytes[..bytes.len().min(LOOKED_AT)]);
+        let head = decoded(&bytes[..bytes.len().min(LOOKED_AT)]);
         let alike: Vec<&Self> = FORMATS.iter().filter(|f| !f.binary && (f.looks)(&head)).collect();
         let by_look = alike.iter().copied().find(by_name).or(alike.first().copied());
         by_look.or_else(|| FORMATS.iter().find(by_name))
@@ -232,11 +234,20 @@ pub fn import_as(
     Ok(Imported { text: write::text(&m, &about), report: notes.report, files, series: input.series, fault })
 }
 
-/// The text of a file: UTF-8, or else Latin-1, as older programs write; without a byte order mark.
+/// The text of a file: UTF-8 or UTF-16, or else Latin-1, as older programs write; without a byte order mark.
 fn decoded(bytes: &[u8]) -> String {
-    let text = match std::str::from_utf8(bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),
+    let wide = |unit: fn([u8; 2]) -> u16| {
+        let units = bytes.chunks_exact(2).map(|b| unit([b[0], b[1]]));
+        char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
+    };
+    // By its mark, or by a first letter that is ASCII.
+    let text = match bytes {
+        [0xff, 0xfe, ..] | [b' '..=b'~', 0, ..] => wide(u16::from_le_bytes),
+        [0xfe, 0xff, ..] | [0, b' '..=b'~', ..] => wide(u16::from_be_bytes),
+        _ => match std::str::from_utf8(bytes) {
+            Ok(text) => text.to_owned(),
+            Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),
+        },
     };
     text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text)
 }

@@ -4,6 +4,7 @@ mod broken;
 mod four_bars;
 mod fuzz;
 mod models;
+mod robots;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
