@@ -12,8 +12,11 @@ use crate::{Exported, Format, escaped, numbers};
 /// See the module.
 pub const FORMAT: Format = Format { name: "mjcf", about: "MuJoCo model", endings: &["xml", "mjcf"], write };
 
-/// Types of joints that can carry a body, and the joints of MJCF in a row that they are: what their axis is, and the end of their name.
-const TYPES: [(&str, &[(&str, Along, &str)]); 8] = [
+/// A joint of MJCF: its type, which axis it has, and the end of its name.
+type Part = (&'static str, Along, &'static str);
+
+/// Types of joints that can carry a body, and the joints of MJCF in a row that they are.
+const TYPES: [(&str, &[Part]); 8] = [
     ("revolute", &[("hinge", Along::Z, "")]),
     ("translational", &[("slide", Along::Z, "")]),
     ("spherical", &[("ball", Along::Z, "")]),
