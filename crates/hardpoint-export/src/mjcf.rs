@@ -1,62 +1,124 @@
-//! MJCF: bodies in bodies, loops and couplers as equalities.
+//! MJCF: bodies in bodies, loops, rods and couplers as equalities.
 
 use std::fmt::Write;
 
+use hardpoint::model::Joint;
+use hardpoint::space::Vec3;
 use hardpoint_file::ModelFile;
 
-use crate::skeleton::{Skeleton, axis, followers, places};
+use crate::skeleton::{Carrier, Skeleton, axis, followers, is_closed, places};
 use crate::{Exported, Format, escaped, numbers};
 
 /// See the module.
 pub const FORMAT: Format = Format { name: "mjcf", about: "MuJoCo model", endings: &["xml", "mjcf"], write };
 
-/// Types of joints, and what MJCF calls them; of one without a name its body has no joint.
-const TYPES: [(&str, &str); 4] =
-    [("revolute", "hinge"), ("translational", "slide"), ("spherical", "ball"), ("fixed", "")];
+/// A joint of MJCF: its type, which axis it has, and the end of its name.
+type Part = (&'static str, Along, &'static str);
+
+/// Types of joints that can carry a body, and the joints of MJCF in a row that they are.
+const TYPES: [(&str, &[Part]); 8] = [
+    ("revolute", &[("hinge", Along::Z, "")]),
+    ("translational", &[("slide", Along::Z, "")]),
+    ("spherical", &[("ball", Along::Z, "")]),
+    ("fixed", &[]),
+    ("universal", &[("hinge", Along::Z, "_1"), ("hinge", Along::X, "_2")]),
+    ("cylindrical", &[("slide", Along::Z, "_slide"), ("hinge", Along::Z, "_hinge")]),
+    ("pin_in_slot", &[("slide", Along::X, "_slide"), ("hinge", Along::Z, "_hinge")]),
+    ("planar", &[("slide", Along::X, "_x"), ("slide", Along::Y, "_y"), ("hinge", Along::Z, "_hinge")]),
+];
+/// Types that can close a loop.
+const CLOSE: [&str; 4] = ["spherical", "revolute", "fixed", "distance"];
+/// A hinge that closes a loop is held at two points of its axis, this part of the mechanism's size apart.
+const APART: f64 = 0.1;
+
+/// Which axis of a joint's frame.
+#[derive(Clone, Copy)]
+enum Along {
+    X,
+    Y,
+    Z,
+}
+
+/// A place on a body that an equality names.
+struct Site {
+    name: String,
+    body: usize,
+    at: Vec3,
+}
 
 fn write(file: &ModelFile, out: &mut Exported) {
     let model = &file.model;
-    let tree = Skeleton::new(model, &TYPES.map(|(own, _)| own), out);
+    let tree = Skeleton::new(model, &TYPES.map(|(own, _)| own), &CLOSE, out);
+    let mut sites = Vec::new();
+    let (equalities, tendons) = loops(&tree, &mut sites, out);
     out.text = format!(
         "<mujoco model=\"{}\">\n  <compiler angle=\"radian\"/>\n  <worldbody>\n",
         escaped(&model.name)
     );
-    inside(&tree, 0, 2, out);
+    inside(&tree, &sites, 0, 2, out);
     out.text += "  </worldbody>\n";
-    let mut equalities = String::new();
+    if !tendons.is_empty() {
+        let _ = write!(out.text, "  <tendon>\n{tendons}  </tendon>\n");
+    }
+    if !equalities.is_empty() {
+        let _ = write!(out.text, "  <equality>\n{equalities}  </equality>\n");
+    }
+    out.text += "</mujoco>\n";
+    out.without_motions(file, "MJCF");
+}
+
+/// What closes loops and couples joints, and the tendons that rods are.
+fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut Exported) -> (String, String) {
+    let model = tree.model;
+    let (mut equalities, mut tendons) = (String::new(), String::new());
     let body = |b: usize| if b == 0 { "world".to_owned() } else { escaped(&model.bodies[b].name) };
     for &k in &tree.loops {
         let joint = &model.joints[k];
+        let name = escaped(&joint.name);
         let [i, j] = joint.bodies.map(|b| b.0);
-        let (element, place, why) = match joint.kind.name {
-            "spherical" => ("connect", places(model, joint)[0] - tree.origin(i), None),
-            "revolute" => {
-                let why = "written as `connect`, which holds its place and not its axis: enough where the loop is plane";
-                ("connect", places(model, joint)[0] - tree.origin(i), Some(why))
-            }
-            "fixed" => ("weld", places(model, joint)[1] - tree.origin(j), None),
-            other => {
-                out.unsaid(
-                    "joint",
-                    &joint.name,
-                    format!("MJCF has nothing like a joint of type {other} that closes a loop"),
-                );
-                continue;
-            }
+        let mut meet = |element: &str, name: &str, at: [Vec3; 2]| {
+            let ends = if is_closed(model, joint) {
+                // The anchor of a weld is of the second body.
+                let anchor = if element == "weld" { at[1] - tree.origin(j) } else { at[0] - tree.origin(i) };
+                format!(
+                    "body1=\"{}\" body2=\"{}\" anchor=\"{}\"",
+                    body(i),
+                    body(j),
+                    numbers(anchor.to_array())
+                )
+            } else {
+                let [a, b] = site_at(sites, name, [i, j], at);
+                format!("site1=\"{a}\" site2=\"{b}\"")
+            };
+            let _ = writeln!(equalities, "    <{element} name=\"{name}\" {ends}/>");
         };
-        if let Some(why) = why {
-            out.unsaid("joint", &joint.name, why);
+        let at = places(model, joint);
+        match joint.kind.name {
+            "spherical" => meet("connect", &name, at),
+            "fixed" => meet("weld", &name, at),
+            "revolute" => {
+                let along = axis(joint) * (APART * model.size());
+                meet("connect", &name, at);
+                meet("connect", &format!("{name}_axis"), at.map(|p| p + along));
+            }
+            "distance" => {
+                let [a, b] = site_at(sites, &name, [i, j], at);
+                let _ = writeln!(
+                    tendons,
+                    "    <spatial name=\"{name}\"><site site=\"{a}\"/><site site=\"{b}\"/></spatial>"
+                );
+                let _ = writeln!(equalities, "    <tendon name=\"{name}\" tendon1=\"{name}\"/>");
+                if joint.length.is_some() {
+                    out.unsaid("joint", &joint.name, "its length is written as drawn");
+                }
+            }
+            other => {
+                let why = format!("MJCF has nothing like a joint of type {other} that closes a loop");
+                out.unsaid("joint", &joint.name, why);
+            }
         }
-        let _ = writeln!(
-            equalities,
-            "    <{element} name=\"{}\" body1=\"{}\" body2=\"{}\" anchor=\"{}\"/>",
-            escaped(&joint.name),
-            body(i),
-            body(j),
-            numbers(place.to_array())
-        );
     }
-    let (follow, others) = followers(model);
+    let (follow, others) = followers(tree);
     for f in follow {
         let [own, master] = [f.own, f.master].map(|k| escaped(&model.joints[k].name));
         let _ = writeln!(
@@ -67,43 +129,67 @@ fn write(file: &ModelFile, out: &mut Exported) {
         );
     }
     for name in others {
-        out.unsaid("coupler", &name, "an equality of MJCF is between two joints with one coordinate each");
+        out.unsaid(
+            "coupler",
+            &name,
+            "an equality of MJCF is between two joints of the tree with one coordinate each",
+        );
     }
-    if !equalities.is_empty() {
-        let _ = write!(out.text, "  <equality>\n{equalities}  </equality>\n");
-    }
-    out.text += "</mujoco>\n";
-    out.without_motions(file, "MJCF");
+    (equalities, tendons)
 }
 
-/// The bodies that a body carries.
-fn inside(tree: &Skeleton<'_>, outer: usize, depth: usize, out: &mut Exported) {
+/// Sites for the two places of a joint; their names.
+fn site_at(sites: &mut Vec<Site>, joint: &str, bodies: [usize; 2], at: [Vec3; 2]) -> [String; 2] {
+    [0, 1].map(|end| {
+        let name = format!("{joint}_{}", ["i", "j"][end]);
+        sites.push(Site { name: name.clone(), body: bodies[end], at: at[end] });
+        name
+    })
+}
+
+/// The sites of a body, and the bodies that it carries.
+fn inside(tree: &Skeleton<'_>, sites: &[Site], outer: usize, depth: usize, out: &mut Exported) {
     let indent = "  ".repeat(depth);
-    for &body in &tree.order {
-        let Some(k) = tree.carrier[body] else { continue };
-        let joint = &tree.model.joints[k];
-        if joint.bodies[0].0 != outer {
-            continue;
-        }
+    for site in sites.iter().filter(|s| s.body == outer) {
+        let at = numbers((site.at - tree.origin(outer)).to_array());
+        let _ = writeln!(out.text, "{indent}<site name=\"{}\" pos=\"{at}\"/>", site.name);
+    }
+    for &body in tree.order.iter().filter(|b| **b != 0 && tree.outer(**b) == outer) {
         let place = tree.origin(body) - tree.origin(outer);
         let name = escaped(&tree.model.bodies[body].name);
         let _ = writeln!(out.text, "{indent}<body name=\"{name}\" pos=\"{}\">", numbers(place.to_array()));
-        let kind = TYPES.iter().find(|(own, _)| *own == joint.kind.name).map_or("", |(_, theirs)| theirs);
-        let name = escaped(&joint.name);
-        match kind {
-            "" => {}
-            "ball" => {
-                let _ = writeln!(out.text, "{indent}  <joint name=\"{name}\" type=\"ball\"/>");
-            }
+        match tree.carrier[body] {
+            Some(Carrier::Joint(k, backward)) => joints(&tree.model.joints[k], backward, &indent, out),
             _ => {
-                let axis = numbers(axis(joint).to_array());
-                let _ =
-                    writeln!(out.text, "{indent}  <joint name=\"{name}\" type=\"{kind}\" axis=\"{axis}\"/>");
+                let _ = writeln!(out.text, "{indent}  <freejoint/>");
             }
         }
         // A moving body has to have a mass.
         let _ = writeln!(out.text, "{indent}  <inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/>");
-        inside(tree, body, depth + 1, out);
+        inside(tree, sites, body, depth + 1, out);
         let _ = writeln!(out.text, "{indent}</body>");
+    }
+}
+
+/// The joints of a body that one of the model's carries.
+fn joints(joint: &Joint, backward: bool, indent: &str, out: &mut Exported) {
+    let parts = TYPES.iter().find(|(own, _)| *own == joint.kind.name).map_or(&[][..], |(_, parts)| parts);
+    // Seen from the other body they come the other way round.
+    let order: Vec<_> = if backward { parts.iter().rev().collect() } else { parts.iter().collect() };
+    for (kind, along, ending) in order {
+        let name = escaped(&joint.name);
+        let axis = match along {
+            Along::X => joint.frames[1].cols[0],
+            Along::Y => joint.frames[1].cols[1],
+            Along::Z => axis(joint),
+        };
+        let axis = if backward { -axis } else { axis };
+        let axis =
+            if *kind == "ball" { String::new() } else { format!(" axis=\"{}\"", numbers(axis.to_array())) };
+        let _ = writeln!(out.text, "{indent}  <joint name=\"{name}{ending}\" type=\"{kind}\"{axis}/>");
+    }
+    if parts.len() > 1 {
+        let why = format!("written as {} joints in a row, which move alike", parts.len());
+        out.unsaid("joint", &joint.name, why);
     }
 }

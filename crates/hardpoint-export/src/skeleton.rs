@@ -1,7 +1,5 @@
 //! The tree that robot formats are made of: which joint carries which body, and which joints close loops.
 
-use std::collections::VecDeque;
-
 use hardpoint::model::{Joint, Model};
 use hardpoint::space::Vec3;
 
@@ -11,12 +9,22 @@ use crate::Exported;
 pub struct Skeleton<'m> {
     /// The model.
     pub model: &'m Model,
-    /// The joint that carries each body, if one does; ground has none.
-    pub carrier: Vec<Option<usize>>,
+    /// How each body is carried; ground, and what is not written, is not.
+    pub carrier: Vec<Option<Carrier>>,
     /// The bodies in an order in which what carries comes first; ground is the first.
     pub order: Vec<usize>,
     /// The joints that close loops.
     pub loops: Vec<usize>,
+}
+
+/// What carries a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carrier {
+    /// A joint: its number, and whether the body is its first one. Then the format's joint has the opposite axis, about or along which the
+    /// first body's coordinate is the same number.
+    Joint(usize, bool),
+    /// Nothing: it floats, and joints that close loops hold it.
+    Loops,
 }
 
 /// The place of a joint on each of its bodies, as drawn.
@@ -30,47 +38,91 @@ pub fn axis(joint: &Joint) -> Vec3 {
 }
 
 impl<'m> Skeleton<'m> {
-    /// Of a model; `carries` says which types of joints can carry a body. Those to which nothing leads are named.
-    pub fn new(model: &'m Model, carries: &[&str], out: &mut Exported) -> Self {
-        let (mut carrier, mut order) = (vec![None; model.bodies.len()], vec![0]);
-        let mut seen: Vec<bool> = (0..model.bodies.len()).map(|b| b == 0).collect();
-        let mut waiting = VecDeque::from([0]);
+    /// Of a model; `carries` says which types of joints can carry a body, `closes` which can close a loop. What has neither is named.
+    pub fn new(model: &'m Model, carries: &[&str], closes: &[&str], out: &mut Exported) -> Self {
+        let mut tree =
+            Self { model, carrier: vec![None; model.bodies.len()], order: vec![0], loops: Vec::new() };
         let named: Vec<usize> = model.named_joints().map(|(id, _)| id.0).collect();
-        while let Some(body) = waiting.pop_front() {
-            for &k in &named {
-                let joint = &model.joints[k];
-                let [i, j] = joint.bodies.map(|b| b.0);
-                // Only from i to j: the coordinate counts that way.
-                if i == body && !seen[j] && carries.contains(&joint.kind.name) && is_closed(model, joint) {
-                    seen[j] = true;
-                    carrier[j] = Some(k);
-                    order.push(j);
-                    waiting.push_back(j);
+        let bodies = |k: usize| model.joints[k].bodies.map(|b| b.0);
+        let is = |kinds: &[&str], k: usize| kinds.contains(&model.joints[k].kind.name);
+        let can_carry = |k: usize| is(carries, k) && is_closed(model, &model.joints[k]);
+        // What cannot close a loop comes first, whichever way round; then from the first body of a joint to its second, since the coordinate
+        // counts that way; then the other way round; and at last a body floats that joints which close loops hold.
+        let rank = |tree: &Self, k: usize| {
+            let [i, j] = bodies(k).map(|b| tree.has(b));
+            let backward = j;
+            match (i != j, can_carry(k), is(closes, k)) {
+                (true, true, can_close) => Some((can_close, backward)),
+                _ => None,
+            }
+        };
+        loop {
+            let ranked = named.iter().filter_map(|k| Some((rank(&tree, *k)?, *k)));
+            let floating = || {
+                let mut ends = named.iter().filter(|k| is(closes, **k)).map(|k| bodies(*k));
+                ends.find(|[i, j]| tree.has(*i) != tree.has(*j)).map(|[i, j]| if tree.has(i) { j } else { i })
+            };
+            match (ranked.min(), floating()) {
+                (Some(((_, backward), k)), _) => {
+                    tree.add(bodies(k)[usize::from(!backward)], Carrier::Joint(k, backward));
                 }
+                (None, Some(body)) => tree.add(body, Carrier::Loops),
+                (None, None) => break,
             }
         }
-        for (body, _) in seen.iter().enumerate().filter(|(_, s)| !**s) {
+        for (body, _) in model.bodies.iter().enumerate().filter(|(b, _)| !tree.has(*b)) {
             out.unsaid(
                 "body",
                 &model.bodies[body].name,
-                "no joint that the format has carries it from a body that stands",
+                "no joint that the format has leads to it from a body that stands",
             );
         }
-        let has = |b: usize| seen[b];
-        let loops = named.iter().copied().filter(|k| {
-            let joint = &model.joints[*k];
-            !carrier.contains(&Some(*k)) && joint.bodies.iter().all(|b| has(b.0))
-        });
-        let loops = loops.collect();
-        for &k in named.iter().filter(|k| model.joints[**k].bodies.iter().any(|b| !has(b.0))) {
-            out.unsaid("joint", &model.joints[k].name, "a body that it connects is not written");
+        for &k in &named {
+            let is_carrier =
+                tree.carrier.iter().any(|c| matches!(c, Some(Carrier::Joint(own, _)) if *own == k));
+            if !bodies(k).iter().all(|b| tree.has(*b)) {
+                out.unsaid("joint", &model.joints[k].name, "a body that it connects is not written");
+            } else if !is_carrier {
+                tree.loops.push(k);
+            }
         }
-        Self { model, carrier, order, loops }
+        tree
     }
 
-    /// Where the frame of a body's element is: at the joint that carries it.
+    fn has(&self, body: usize) -> bool {
+        body == 0 || self.carrier[body].is_some()
+    }
+
+    fn add(&mut self, body: usize, by: Carrier) {
+        self.carrier[body] = Some(by);
+        self.order.push(body);
+    }
+
+    /// The body that carries a body.
+    pub fn outer(&self, body: usize) -> usize {
+        match self.carrier[body] {
+            Some(Carrier::Joint(k, backward)) => self.model.joints[k].bodies[usize::from(backward)].0,
+            _ => 0,
+        }
+    }
+
+    /// Whether a joint carries a body.
+    pub fn is_carrier(&self, joint: usize) -> bool {
+        self.carrier.iter().any(|c| matches!(c, Some(Carrier::Joint(k, _)) if *k == joint))
+    }
+
+    /// Where the frame of a body's element is: at the joint that carries it, or else at one that holds it.
     pub fn origin(&self, body: usize) -> Vec3 {
-        self.carrier[body].map_or_else(Vec3::zero, |k| places(self.model, &self.model.joints[k])[1])
+        let on = |k: usize| {
+            let joint = &self.model.joints[k];
+            joint.bodies.iter().position(|b| b.0 == body).map(|end| places(self.model, joint)[end])
+        };
+        match self.carrier[body] {
+            Some(Carrier::Joint(k, _)) => on(k),
+            Some(Carrier::Loops) => self.loops.iter().find_map(|k| on(*k)),
+            None => None,
+        }
+        .unwrap_or_else(Vec3::zero)
     }
 }
 
@@ -92,11 +144,11 @@ pub struct Follower {
     pub factor: f64,
 }
 
-/// The couplers by which one joint follows another; the names of all others are handed back.
-pub fn followers(model: &Model) -> (Vec<Follower>, Vec<String>) {
+/// The couplers by which one joint of the tree follows another; the names of all others are handed back.
+pub fn followers(tree: &Skeleton<'_>) -> (Vec<Follower>, Vec<String>) {
     let (mut two, mut other) = (Vec::new(), Vec::new());
-    for coupler in &model.couplers {
-        let single = |k: usize| model.joints[k].kind.coordinates.len() == 1;
+    for coupler in &tree.model.couplers {
+        let single = |k: usize| tree.model.joints[k].kind.coordinates.len() == 1 && tree.is_carrier(k);
         match &coupler.terms[..] {
             [a, b] if single(a.joint.0) && single(b.joint.0) && a.coefficient != 0.0 => {
                 let factor = -b.coefficient / a.coefficient;

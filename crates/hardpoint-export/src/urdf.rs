@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use hardpoint_file::ModelFile;
 
-use crate::skeleton::{Skeleton, axis, followers, places};
+use crate::skeleton::{Carrier, Skeleton, axis, followers, places};
 use crate::{Exported, Format, escaped, numbers};
 
 /// See the module.
@@ -15,33 +15,55 @@ pub const FORMAT: Format =
 const TYPES: [(&str, &str); 4] =
     [("revolute", "continuous"), ("translational", "prismatic"), ("fixed", "fixed"), ("planar", "planar")];
 
+/// Types that can close a loop.
+const CLOSE: [&str; 5] = ["spherical", "revolute", "translational", "fixed", "planar"];
+
 fn write(file: &ModelFile, out: &mut Exported) {
     let model = &file.model;
-    let tree = Skeleton::new(model, &TYPES.map(|(own, _)| own), out);
+    let tree = Skeleton::new(model, &TYPES.map(|(own, _)| own), &CLOSE, out);
     let name = |body: usize| if body == 0 { "world".to_owned() } else { escaped(&model.bodies[body].name) };
     let mut text = format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escaped(&model.name));
     for &body in &tree.order {
         let _ = writeln!(text, "  <link name=\"{}\"/>", name(body));
     }
-    let (follow, others) = followers(model);
+    let (follow, mut others) = followers(&tree);
     for &body in &tree.order {
-        let Some(k) = tree.carrier[body] else { continue };
+        let (k, backward) = match tree.carrier[body] {
+            Some(Carrier::Joint(k, backward)) => (k, backward),
+            Some(Carrier::Loops) => {
+                let origin = numbers(tree.origin(body).to_array());
+                let _ = writeln!(
+                    text,
+                    "  <joint name=\"{0}_floating\" type=\"floating\">\n    <parent link=\"world\"/>\n    <child link=\"{0}\"/>\n    \
+                     <origin xyz=\"{origin}\"/>\n  </joint>",
+                    name(body)
+                );
+                continue;
+            }
+            None => continue,
+        };
         let joint = &model.joints[k];
-        let [i, j] = joint.bodies.map(|b| b.0);
+        let outer = tree.outer(body);
         let kind =
             TYPES.iter().find(|(own, _)| *own == joint.kind.name).map_or("fixed", |(_, theirs)| theirs);
         let _ = writeln!(text, "  <joint name=\"{}\" type=\"{kind}\">", escaped(&joint.name));
-        let _ = writeln!(text, "    <parent link=\"{}\"/>\n    <child link=\"{}\"/>", name(i), name(j));
-        let origin = places(model, joint)[0] - tree.origin(i);
+        let _ =
+            writeln!(text, "    <parent link=\"{}\"/>\n    <child link=\"{}\"/>", name(outer), name(body));
+        let origin = tree.origin(body) - tree.origin(outer);
         let _ = writeln!(text, "    <origin xyz=\"{}\"/>", numbers(origin.to_array()));
         if kind != "fixed" {
-            let _ = writeln!(text, "    <axis xyz=\"{}\"/>", numbers(axis(joint).to_array()));
+            let axis = if backward { -axis(joint) } else { axis(joint) };
+            let _ = writeln!(text, "    <axis xyz=\"{}\"/>", numbers(axis.to_array()));
         }
         if kind == "prismatic" {
             // Required there; without limits of the model's own it says nothing.
             text += "    <limit lower=\"-1e9\" upper=\"1e9\" effort=\"1e9\" velocity=\"1e9\"/>\n";
         }
-        for f in follow.iter().filter(|f| f.own == k) {
+        for (n, f) in follow.iter().filter(|f| f.own == k).enumerate() {
+            if n > 0 {
+                others.push(f.name.clone());
+                continue;
+            }
             let master = escaped(&model.joints[f.master].name);
             let _ = writeln!(text, "    <mimic joint=\"{master}\" multiplier=\"{}\"/>", f.factor);
         }
@@ -80,8 +102,7 @@ fn write(file: &ModelFile, out: &mut Exported) {
             "it closes a loop: written as `loop_joint`, which not every program reads",
         );
     }
-    let outside = follow.iter().filter(|f| !tree.carrier.contains(&Some(f.own))).map(|f| &f.name);
-    for coupler in others.iter().chain(outside) {
+    for coupler in &others {
         out.unsaid("coupler", coupler, "a mimic joint follows one other joint of the tree");
     }
     out.text = text + "</robot>\n";

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use hardpoint::joint::ALL;
+use hardpoint::model::JointId;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
 use hardpoint::topology::TopologyFault;
@@ -12,6 +13,8 @@ use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism};
 use hardpoint_file::Diagnostic;
 
 use crate::report::Notes;
+use crate::straighten::straighten;
+use crate::turn::{X, Y, Z};
 use crate::write;
 
 /// The one degree of freedom of a mechanism swings by this angle, in rad.
@@ -31,25 +34,26 @@ const MOST_HELD: usize = 400;
 /// the user to mend.
 pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
     ground(m, notes);
+    straightened(m, notes);
     let moves = m.drivers.iter().any(|d| d.law != Law::Held);
     let mut left = match freedom(m, notes) {
         Ok(left) => left,
         Err(fault) => return Some(*fault),
     };
-    let only_one = left.0 == 1 && !moves;
-    if left.0 > MOST_HELD {
-        let message = format!("{} motions of it are driven by nothing", left.0);
+    let only_one = left.count == 1 && !moves;
+    if left.count > MOST_HELD {
+        let message = format!("{} motions of it are driven by nothing", left.count);
         let help = "leave out of the source what need not move, or give the model drivers";
         return Some(notes.diagnostic("HP0808", None, message).help(help));
     }
     let mut tried = HashSet::new();
-    while left.0 > 0 {
-        let key = |group: &[(String, Drives)]| {
-            group.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(" ")
-        };
-        let Some(group) = candidates(m, &left.1).find(|group| !tried.contains(&key(group))) else {
-            let names: Vec<String> = left.1.iter().map(|j| format!("`{}`", m.joints[*j].name)).collect();
-            let message = format!("{} motions remain that no driver could be found for", left.0);
+    while left.count > 0 {
+        let Some(held) = candidates(m, &left).find(|held| !tried.contains(held)) else {
+            if let Some(fault) = left.singular {
+                return Some(*fault);
+            }
+            let names: Vec<String> = left.joints.iter().map(|j| format!("`{}`", m.joints[*j].name)).collect();
+            let message = format!("{} motions remain that no driver could be found for", left.count);
             return Some(
                 notes
                     .diagnostic("HP0808", None, message)
@@ -57,19 +61,22 @@ pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
                     .help("give the model drivers for these, or joints that hold them"),
             );
         };
-        tried.insert(key(&group));
+        tried.insert(held.clone());
         let before = m.drivers.len();
-        for (name, drives) in &group {
-            let note = "nothing drives it in the source: held as drawn".into();
-            m.driver(&format!("{name}_held"), note, *drives, Law::Held);
+        for (name, drives) in held.drivers(m) {
+            let why = "nothing drives it in the source: held as drawn".into();
+            m.driver(&format!("{name}_held"), why, drives, Law::Held);
         }
         match freedom(m, notes) {
             // A body that would only spin idly is none of the freedoms, and one once its spin is held.
-            Ok(now) if now.0 < left.0 || (now.0 == left.0 && now.1.len() < left.1.len()) => {
+            Ok(now)
+                if now.count < left.count
+                    || (now.count == left.count && now.joints.len() < left.joints.len()) =>
+            {
                 left = now;
-                for (name, _) in group.iter().filter(|_| !only_one) {
+                for driver in m.drivers[before..].iter().filter(|_| !only_one) {
                     let why = "nothing drives it in the source: a driver holds it as drawn";
-                    notes.approximated("motion", name, None, why);
+                    notes.approximated("motion", driver.name.trim_end_matches("_held"), None, why);
                 }
             }
             _ => m.drivers.truncate(before),
@@ -217,8 +224,39 @@ fn ground(m: &mut Mechanism, notes: &mut Notes) {
     }
 }
 
-/// How many motions nothing drives, and the joints that move in them.
-fn freedom(m: &Mechanism, notes: &Notes) -> Result<(usize, Vec<usize>), Box<Diagnostic>> {
+/// Loops whose axes are nearly parallel, as far as that lets them move.
+fn straightened(m: &mut Mechanism, notes: &mut Notes) {
+    let mut straight = m.clone();
+    let Some(done) = straighten(&mut straight) else { return };
+    let score = |m: &Mechanism| freedom(m, notes).ok().filter(|l| l.singular.is_none()).map(|l| l.count);
+    if score(&straight) <= score(m) {
+        return;
+    }
+    *m = straight;
+    let names: Vec<String> = done.joints.iter().map(|n| format!("`{n}`")).collect();
+    let why = format!(
+        "turned by up to {:.1e} rad, to be parallel to others or to a global axis, since their loops could not move as written: {}",
+        done.by,
+        names.join(", ")
+    );
+    notes.approximated("axes", "", None, why);
+}
+
+/// The motions that nothing drives.
+#[derive(Default)]
+struct Left {
+    /// How many.
+    count: usize,
+    /// The joints that move in them.
+    joints: Vec<usize>,
+    /// The bodies that move in them.
+    bodies: Vec<usize>,
+    /// Why that may be so as drawn only: a driver tells, since what moves by its special proportions looks alike.
+    singular: Option<Box<Diagnostic>>,
+}
+
+/// What nothing drives.
+fn freedom(m: &Mechanism, notes: &Notes) -> Result<Left, Box<Diagnostic>> {
     let refused = |message: String| {
         notes.diagnostic("HP0808", None, format!("the imported mechanism does not work: {message}"))
     };
@@ -227,15 +265,31 @@ fn freedom(m: &Mechanism, notes: &Notes) -> Result<(usize, Vec<usize>), Box<Diag
     }
     let file = parsed(m).map_err(|why| Box::new(refused(why)))?;
     match Analysis::new(&file.model) {
-        Ok(_) => Ok((0, Vec::new())),
-        Err(TopologyFault::UnderDriven { freedom, joints, .. }) => {
-            // Drivers that are no joint's coordinate are joints without a name, behind the others.
-            Ok((freedom, joints.iter().map(|j| j.0).filter(|j| *j < m.joints.len()).collect()))
-        }
+        Ok(_) => Ok(Left::default()),
         Err(fault) => {
             let message = refused(format!("{fault}"));
             let message = fault.notes().into_iter().fold(message, |m, n| m.note(n));
-            Err(Box::new(Diagnostic { code: fault.code(), ..message }.help(fault.help())))
+            let told = Box::new(Diagnostic { code: fault.code(), ..message }.help(fault.help()));
+            // Drivers that are no joint's coordinate are joints without a name, behind the others.
+            let own =
+                |joints: &[JointId]| joints.iter().map(|j| j.0).filter(|j| *j < m.joints.len()).collect();
+            // The fault quotes its names.
+            let named = |names: &[String]| {
+                let is = |b: &usize| names.iter().any(|n| n.trim_matches('`') == m.bodies[*b].name);
+                (1..m.bodies.len()).filter(is).collect()
+            };
+            match &fault {
+                TopologyFault::UnderDriven { freedom, joints, bodies, .. } => {
+                    Ok(Left { count: *freedom, joints: own(joints), bodies: named(bodies), singular: None })
+                }
+                TopologyFault::Singular { freedom, joints, bodies, .. } => Ok(Left {
+                    count: *freedom,
+                    joints: own(joints),
+                    bodies: named(bodies),
+                    singular: Some(told),
+                }),
+                _ => Err(told),
+            }
         }
     }
 }
@@ -251,54 +305,92 @@ fn parsed(m: &Mechanism) -> Result<hardpoint_file::ModelFile, String> {
     })
 }
 
-/// What could be held, best first: coordinates of the joints that move, then the turns and ways of their bodies, then of any body. Some
-/// come together: to hold one turn of a body that else spins idly leaves as much to hold as before.
-fn candidates<'m>(m: &'m Mechanism, joints: &'m [usize]) -> impl Iterator<Item = Vec<(String, Drives)>> + 'm {
-    let coordinates = joints.iter().flat_map(move |&joint| {
-        let j = &m.joints[joint];
-        let all = ALL.iter().find(|k| k.name == j.kind).map_or(&[][..], |k| k.coordinates);
-        let constant = ["distance", "revolute_spherical"].contains(&j.kind);
-        let free = all.iter().filter(move |_| !constant);
-        free.filter_map(move |c| {
-            let coordinate = Coordinate { joint, name: c.name };
-            let name = if all.len() == 1 { j.name.clone() } else { format!("{}_{}", j.name, c.name) };
-            (!m.is_driven(coordinate)).then_some(vec![(name, Drives::Coordinate(coordinate))])
-        })
-    });
-    let axes = [("x", [1.0, 0.0, 0.0]), ("y", [0.0, 1.0, 0.0]), ("z", [0.0, 0.0, 1.0])];
-    let turns_of = move |joint: usize, of: &[usize]| -> Vec<(String, Drives)> {
-        let j = &m.joints[joint];
-        let turn = |k: &usize| {
-            let (letter, axis) = axes[*k];
+/// What could be held, mostly by the joint's number.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+enum Held {
+    /// A coordinate of it.
+    Coordinate(usize, &'static str),
+    /// Some of the angles between its bodies, these axes, together: to hold one turn of a body that else spins idly leaves as much to
+    /// hold as before.
+    Turns(usize, &'static [usize]),
+    /// One of the angles between its bodies.
+    Turn(usize, usize),
+    /// The way of its place on its second body along an axis.
+    Way(usize, usize),
+    /// The way of a body's frame along an axis, by the body's number: where rods alone hold it.
+    BodyWay(usize, usize),
+    /// The turning of a body about an axis.
+    BodyTurn(usize, usize),
+}
+
+/// Global axes and their letters.
+const AXES: [(&str, [f64; 3]); 3] = [("x", X), ("y", Y), ("z", Z)];
+
+impl Held {
+    /// The drivers that hold it.
+    fn drivers(&self, m: &Mechanism) -> Vec<(String, Drives)> {
+        let turn = |joint: usize, (letter, axis): (&str, [f64; 3])| {
+            let j = &m.joints[joint];
             let drives = Drives::Heading { body: j.bodies[1], about: axis.into(), relative_to: j.bodies[0] };
             (format!("{}_about_{letter}", j.name), drives)
         };
-        of.iter().map(turn).collect()
-    };
-    const TOGETHER: [&[usize]; 7] = [&[0], &[1], &[2], &[0, 1, 2], &[0, 1], &[0, 2], &[1, 2]];
-    let [turns, more_turns] = [&TOGETHER[..3], &TOGETHER[3..]]
-        .map(|sets| joints.iter().flat_map(move |&joint| sets.iter().map(move |of| turns_of(joint, of))));
-    let ways = joints.iter().flat_map(move |&joint| {
-        let j = &m.joints[joint];
-        let at = j.at.last().copied().unwrap_or_else(|| Vec3::from([0.0; 3]));
-        axes.map(|(letter, axis)| {
-            let drives = Drives::Way { body: j.bodies[1], at, along: axis.into() };
-            vec![(format!("{}_along_{letter}", m.bodies[j.bodies[1]].name), drives)]
-        })
+        match *self {
+            Self::Coordinate(joint, name) => {
+                let j = &m.joints[joint];
+                let own =
+                    if coordinates(j).len() == 1 { j.name.clone() } else { format!("{}_{name}", j.name) };
+                vec![(own, Drives::Coordinate(Coordinate { joint, name }))]
+            }
+            Self::Turns(joint, axes) => axes.iter().map(|k| turn(joint, AXES[*k])).collect(),
+            Self::Turn(joint, axis) => vec![turn(joint, AXES[axis])],
+            Self::Way(joint, axis) => {
+                let j = &m.joints[joint];
+                let at = j.at.last().copied().unwrap_or_else(|| Vec3::from([0.0; 3]));
+                let drives = Drives::Way { body: j.bodies[1], at, along: AXES[axis].1.into() };
+                vec![(format!("{}_along_{}", m.bodies[j.bodies[1]].name, AXES[axis].0), drives)]
+            }
+            Self::BodyWay(body, axis) => {
+                let at = m.bodies[body].pose.map_or_else(Vec3::zero, |p| p.r);
+                let drives = Drives::Way { body, at, along: AXES[axis].1.into() };
+                vec![(format!("{}_along_{}", m.bodies[body].name, AXES[axis].0), drives)]
+            }
+            Self::BodyTurn(body, axis) => {
+                let drives = Drives::Heading { body, about: AXES[axis].1.into(), relative_to: GROUND };
+                vec![(format!("{}_about_{}", m.bodies[body].name, AXES[axis].0), drives)]
+            }
+        }
+    }
+}
+
+/// The coordinates of a joint's type.
+fn coordinates(joint: &Joint) -> &'static [hardpoint::joint::CoordinateType] {
+    ALL.iter().find(|k| k.name == joint.kind).map_or(&[], |k| k.coordinates)
+}
+
+/// All axes, and two of them.
+const ALL_AXES: &[usize] = &[0, 1, 2];
+const TOGETHER: [&[usize]; 4] = [ALL_AXES, &[0, 1], &[0, 2], &[1, 2]];
+
+/// What could be held, best first: coordinates of the joints that move, then turns and ways of their bodies, then of any body. A ball joint
+/// is held as a whole where it can be: the spin of a body between two of them is none of the freedoms that are counted.
+fn candidates<'m>(m: &'m Mechanism, left: &'m Left) -> impl Iterator<Item = Held> + 'm {
+    let joints = &left.joints;
+    let free = joints.iter().flat_map(move |&joint| {
+        let constant = ["distance", "revolute_spherical"].contains(&m.joints[joint].kind);
+        let all = coordinates(&m.joints[joint]).iter().filter(move |_| !constant);
+        let open = all.filter(move |c| !m.is_driven(Coordinate { joint, name: c.name }));
+        open.map(move |c| Held::Coordinate(joint, c.name))
     });
-    // What no joint lets move is a body that has none: held by itself.
-    let bodies = m.bodies.iter().enumerate().skip(1).flat_map(move |(b, body)| {
-        let at = body.pose.map_or_else(Vec3::zero, |p| p.r);
-        let way = axes.map(|(letter, axis)| {
-            vec![(format!("{}_along_{letter}", body.name), Drives::Way { body: b, at, along: axis.into() })]
-        });
-        let turn = axes.map(|(letter, axis)| {
-            let drives = Drives::Heading { body: b, about: axis.into(), relative_to: GROUND };
-            vec![(format!("{}_about_{letter}", body.name), drives)]
-        });
-        way.into_iter().chain(turn)
-    });
-    coordinates.chain(turns).chain(more_turns).chain(ways).chain(bodies)
+    let balls = joints.iter().filter(|j| left.count > 1 && m.joints[**j].kind == "spherical");
+    fn each(list: &[usize], held: fn(usize, usize) -> Held) -> impl Iterator<Item = Held> {
+        list.iter().flat_map(move |&k| (0..AXES.len()).map(move |axis| held(k, axis)))
+    }
+    let together = joints.iter().flat_map(|&j| TOGETHER.map(|axes| Held::Turns(j, axes)));
+    let of_joints = each(joints, Held::Turn).chain(together).chain(each(joints, Held::Way));
+    let of = |list: &[usize]| each(list, Held::BodyWay).chain(each(list, Held::BodyTurn)).collect::<Vec<_>>();
+    let others: Vec<usize> = (1..m.bodies.len()).filter(|b| !left.bodies.contains(b)).collect();
+    let of_bodies = of(&left.bodies).into_iter().chain(of(&others));
+    free.chain(balls.map(|j| Held::Turns(*j, ALL_AXES))).chain(of_joints).chain(of_bodies)
 }
 
 /// The one degree of freedom is plainly the input: it swings, as far as it can.

@@ -23,6 +23,7 @@ mod asmt;
 mod chain;
 mod chrono;
 mod chrono_generic;
+mod collada;
 mod corner;
 mod explorer;
 mod finish;
@@ -36,6 +37,7 @@ mod report;
 mod sdf;
 mod series;
 mod shapes;
+mod straighten;
 mod teimorbit;
 mod tree;
 mod turn;
@@ -235,20 +237,20 @@ pub fn import_as(
     Ok(Imported { text: write::text(&m, &about), report: notes.report, files, series: input.series, fault })
 }
 
-/// The text of a file: UTF-8, UTF-16 with a byte order mark, or else Latin-1, as older programs write; without that mark.
+/// The text of a file: UTF-8 or UTF-16, or else Latin-1, as older programs write; without a byte order mark.
 fn decoded(bytes: &[u8]) -> String {
-    let wide = |of: fn([u8; 2]) -> u16| {
-        let units: Vec<u16> = bytes[2..].chunks_exact(2).map(|b| of([b[0], b[1]])).collect();
-        String::from_utf16_lossy(&units)
+    let wide = |unit: fn([u8; 2]) -> u16| {
+        let units = bytes.chunks_exact(2).map(|b| unit([b[0], b[1]]));
+        char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
     };
-    match bytes {
-        [0xFF, 0xFE, ..] => return wide(u16::from_le_bytes),
-        [0xFE, 0xFF, ..] => return wide(u16::from_be_bytes),
-        _ => {}
-    }
-    let text = match std::str::from_utf8(bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),
+    // By its mark, or by a first letter that is ASCII.
+    let text = match bytes {
+        [0xff, 0xfe, ..] | [b' '..=b'~', 0, ..] => wide(u16::from_le_bytes),
+        [0xfe, 0xff, ..] | [0, b' '..=b'~', ..] => wide(u16::from_be_bytes),
+        _ => match std::str::from_utf8(bytes) {
+            Ok(text) => text.to_owned(),
+            Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),
+        },
     };
     let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
     // Lines of old machines end with a carriage return alone.

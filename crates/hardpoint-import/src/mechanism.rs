@@ -260,6 +260,19 @@ impl Mechanism {
         self.drivers.iter().any(|d| matches!(d.drives, Drives::Coordinate(c) if c == coordinate))
     }
 
+    /// Whether joints connect two bodies, by way of others or not.
+    pub fn are_connected(&self, [from, to]: [usize; 2]) -> bool {
+        let mut reached = vec![false; self.bodies.len()];
+        let mut waiting = vec![from];
+        while let Some(b) = waiting.pop() {
+            if !std::mem::replace(&mut reached[b], true) {
+                let beyond = self.joints.iter().filter(|j| j.bodies.contains(&b)).flat_map(|j| j.bodies);
+                waiting.extend(beyond.filter(|b| !reached[*b]));
+            }
+        }
+        reached[to]
+    }
+
     /// How large it is: the greatest distance of two of its places along an axis, above zero.
     pub fn size(&self) -> f64 {
         let places = self.joints.iter().flat_map(|j| j.at.iter().copied());

@@ -1,13 +1,15 @@
-//! Models and worlds in SDFormat (Gazebo): frames, nested models, joints with their axes, mimic and gearbox.
+//! Models and worlds in SDFormat (Gazebo): frames, nested and included models, joints with their axes, mimic and gearbox.
 
-use std::collections::BTreeMap;
+mod joints;
 
-use hardpoint::space::{Pose, Quat, Vec3};
+use std::collections::{BTreeMap, BTreeSet};
+
+use hardpoint::space::{Pose, Quat};
 use roxmltree::{Document, Node};
 
-use crate::markers::{Called, Joined, Marker, carrying, join, way};
-use crate::mechanism::{Coordinate, GROUND, Mechanism};
-use crate::report::{At, Notes};
+use crate::markers::{Called, Joined};
+use crate::mechanism::{GROUND, Joint, Mechanism};
+use crate::report::Notes;
 use crate::shapes::Solid;
 use crate::turn::{home, roll_pitch_yaw};
 use crate::xml::{child, children, exactly, named};
@@ -27,6 +29,8 @@ pub const FORMAT: Format = Format {
 const DEEPEST: usize = 40;
 /// So many files are included at most.
 const MOST_INCLUDED: usize = 100;
+/// What has a place in a model or world.
+const PLACED: [&str; 5] = ["link", "frame", "joint", "model", "include"];
 
 fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     // Texts first: what is read of them refers to all of them.
@@ -41,15 +45,17 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         notes.problem_with("HP0803", xml::at(0, root), message, "name the format, like `--format urdf`");
         return None;
     }
-    let version = root.attribute("version").and_then(|v| v.trim().parse().ok()).unwrap_or(1.7);
     let mut reader = Reader {
         m: Mechanism::new(input.stem, "m", "rad"),
         notes,
         paths: texts.iter().map(|(path, _)| path.clone()).collect(),
         documents: &documents,
+        models: Vec::new(),
+        bodies: BTreeMap::new(),
         frames: BTreeMap::new(),
+        scopes: BTreeSet::new(),
+        names: BTreeSet::new(),
         joints: BTreeMap::new(),
-        version,
         several: false,
         shapes: Vec::new(),
     };
@@ -59,54 +65,74 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         let name = other.attribute("name").unwrap_or_default();
         reader.notes.refused("world", name, xml::at(0, other), "only the first world of a file is read");
     }
-    let own = |n: &Node<'_, '_>| ["model", "include"].contains(&n.tag_name().name());
-    reader.several = world.into_iter().chain([root]).flat_map(children).filter(own).count() > 1;
-    for outer in world.into_iter().chain([root]) {
-        reader.models(outer, 0, "", home(), 0);
-        for node in children(outer) {
-            if !["model", "include", "world"].contains(&node.tag_name().name()) {
-                reader.notes.ignored(node.tag_name().name(), xml::at(0, node));
-            }
-        }
+    let outer: Vec<Node<'_, '_>> = world.into_iter().chain([root]).collect();
+    // What is in the world itself refers to its models by their names.
+    let own = |n: &Node<'_, '_>| PLACED.contains(&n.tag_name().name());
+    reader.several = outer.iter().copied().flat_map(children).filter(own).count() > 1;
+    for node in &outer {
+        let outermost = Model {
+            node: *node,
+            text: 0,
+            scope: String::new(),
+            include: None,
+            is_static: false,
+            is_merged: false,
+            inner: Vec::new(),
+            canonical: None,
+            place: home(),
+        };
+        let k = reader.declare(outermost, 0);
+        reader.place(k, home());
     }
-    if let Some(name) =
-        world.into_iter().chain([root]).flat_map(|w| named(w, "model")).find_map(|m| m.attribute("name"))
-    {
+    reader.connect();
+    if let Some(name) = outer.iter().flat_map(|w| named(*w, "model")).find_map(|m| m.attribute("name")) {
         reader.m.name = name.to_owned();
     }
     let (m, shapes) = (reader.m, std::mem::take(&mut reader.shapes));
-    for (text, visual, body, link) in shapes {
-        shown(input, notes, text, visual, body, &link);
+    for shape in shapes {
+        shown(input, notes, shape);
     }
     (m.bodies.len() > 1).then_some(m)
 }
 
 /// The text itself and those that it includes, by the paths that name them.
 fn included(input: &Input<'_>, notes: &mut Notes) -> Vec<(String, String)> {
-    let mut texts = vec![(String::new(), input.text.to_owned())];
+    let mut texts = vec![(String::new(), xml::lenient(input.text))];
     let mut k = 0;
     while k < texts.len() && texts.len() < MOST_INCLUDED {
-        let Some(document) = Document::parse(&texts[k].1.clone()).ok().map(|d| {
+        let uris: Vec<String> = Document::parse(&texts[k].1).map_or(Vec::new(), |d| {
             let uris =
                 d.descendants().filter(|n| n.has_tag_name("include")).filter_map(|n| child(n, "uri")?.text());
-            uris.map(|u| u.trim().to_owned()).collect::<Vec<String>>()
-        }) else {
-            k += 1;
-            continue;
-        };
-        for uri in document {
+            uris.map(|u| u.trim().to_owned()).collect()
+        });
+        for uri in uris {
             if texts.iter().any(|(path, _)| *path == uri) {
                 continue;
             }
-            let bytes = input.file(&uri).or_else(|| input.file(&format!("{uri}/model.sdf")));
-            if let Some(text) = bytes.and_then(|b| String::from_utf8(b).ok()) {
+            let named = || input.file(&format!("{uri}/{}", described(input, &uri)?));
+            let bytes = input.file(&uri).or_else(|| input.file(&format!("{uri}/model.sdf"))).or_else(named);
+            if let Some(text) = bytes.map(|b| crate::decoded(&b)) {
                 notes.text(&uri, &text);
-                texts.push((uri, text));
+                texts.push((uri, xml::lenient(&text)));
             }
         }
         k += 1;
     }
     texts
+}
+
+/// The file of a model that its description names last: mostly that of the newest version.
+fn described(input: &Input<'_>, uri: &str) -> Option<String> {
+    let text = xml::lenient(&crate::decoded(&input.file(&format!("{uri}/model.config"))?));
+    let document = Document::parse(&text).ok()?;
+    let name = named(document.root_element(), "sdf").last()?.text()?.trim().to_owned();
+    Some(name)
+}
+
+/// The version of SDFormat that a text is in: 1.10 comes after 1.9.
+fn version(root: Node<'_, '_>) -> Option<(u32, u32)> {
+    let (major, minor) = root.attribute("version")?.trim().split_once('.')?;
+    Some((major.parse().ok()?, minor.parse().ok()?))
 }
 
 /// A frame that has a name: on which body, and where.
@@ -116,52 +142,169 @@ struct Frame {
     pose: Pose,
 }
 
+/// A model, or the world as the one that holds them.
+#[derive(Clone)]
+struct Model<'d> {
+    node: Node<'d, 'd>,
+    /// The number of its text.
+    text: usize,
+    /// What comes before the names in it.
+    scope: String,
+    /// The element that includes it, and the number of that one's text.
+    include: Option<(usize, Node<'d, 'd>)>,
+    is_static: bool,
+    /// Whether what is in it belongs to the model that includes it.
+    is_merged: bool,
+    /// The models in it.
+    inner: Vec<usize>,
+    /// The body that its frame is on.
+    canonical: Option<usize>,
+    place: Pose,
+}
+
+/// Something in a model that has yet to be placed.
+#[derive(Clone, Copy)]
+enum Waiting<'d> {
+    Element(Node<'d, 'd>),
+    Model(usize),
+}
+
+/// A shape of a link.
+struct Shown<'d> {
+    text: usize,
+    visual: Node<'d, 'd>,
+    body: usize,
+    link: String,
+    place: Pose,
+}
+
 struct Reader<'d, 'n> {
     m: Mechanism,
     notes: &'n mut Notes,
     paths: Vec<String>,
     documents: &'d [Option<Document<'d>>],
-    /// By their names, with those of the models that they are in.
+    /// In an order in which what contains comes after what is in it.
+    models: Vec<Model<'d>>,
+    /// Of the links, by their names with those of the models that they are in.
+    bodies: BTreeMap<String, usize>,
+    /// Likewise.
     frames: BTreeMap<String, Frame>,
+    /// What comes before the names in each model.
+    scopes: BTreeSet<String>,
+    /// The names of all joints, likewise.
+    names: BTreeSet<String>,
     joints: BTreeMap<String, Joined>,
-    version: f64,
     /// Whether the file has more than one model: then names have their model's before them.
     several: bool,
-    shapes: Vec<(usize, Node<'d, 'd>, usize, String)>,
+    shapes: Vec<Shown<'d>>,
 }
 
 impl<'d> Reader<'d, '_> {
-    /// The models in an element, and those that it includes.
-    fn models(&mut self, parent: Node<'d, 'd>, text: usize, scope: &str, outer: Pose, depth: usize) {
+    /// Makes the bodies of a model and of those in it; its number.
+    fn declare(&mut self, mut model: Model<'d>, depth: usize) -> usize {
         if depth > DEEPEST {
-            self.notes.problem_with(
-                "HP0805",
-                xml::at(text, parent),
-                "models include each other too deep",
-                "look for a model that includes itself",
-            );
-            return;
+            let help = "look for a model that includes itself";
+            let at = xml::at(model.text, model.node);
+            self.notes.problem_with("HP0805", at, "models include each other too deep", help);
+            self.models.push(model);
+            return self.models.len() - 1;
         }
-        for model in named(parent, "model") {
-            self.model(model, text, scope, outer, depth, None);
-        }
-        for include in named(parent, "include") {
-            let uri = child(include, "uri").and_then(|u| u.text()).unwrap_or_default().trim();
-            let number = self.paths.iter().position(|p| p == uri).filter(|k| *k > 0);
-            let document = number.and_then(|k| self.documents[k].as_ref());
-            let model = document.and_then(|d| child(d.root_element(), "model"));
-            match (number, model) {
-                (Some(number), Some(model)) => {
-                    self.model(model, number, scope, outer, depth + 1, Some((text, include)))
+        for inner in children(model.node) {
+            let found = match inner.tag_name().name() {
+                "model" => Some((model.text, inner, None)),
+                "include" => {
+                    self.included(model.text, inner).map(|(k, node)| (k, node, Some((model.text, inner))))
                 }
-                _ => self.notes.refused(
-                    "include",
-                    uri,
-                    xml::at(text, include),
-                    "there is no such model beside the file",
-                ),
+                _ => None,
+            };
+            let Some((text, node, include)) = found else { continue };
+            let inner = self.inner(&model, text, node, include, depth);
+            let k = self.declare(inner, depth + 1);
+            model.inner.push(k);
+        }
+        for link in named(model.node, "link") {
+            let name = self.name_of(model.text, link);
+            let at = xml::at(model.text, link);
+            let note = Called { kind: "link", name: &name, at }.note(self.notes);
+            let full = format!("{}{name}", model.scope);
+            let body = self.m.body(&full, note, None);
+            self.notes.taken("link", &name, at);
+            if self.bodies.insert(full, body).is_some() {
+                let message = format!("there are two links `{name}`");
+                self.notes.problem_with("HP0803", at, message, "rename one of them");
+            }
+            for part in children(link).filter(|p| !["visual", "pose"].contains(&p.tag_name().name())) {
+                self.notes.ignored(part.tag_name().name(), xml::at(model.text, part));
             }
         }
+        let first = named(model.node, "link").next().and_then(|l| l.attribute("name"));
+        let wanted = model.node.attribute("canonical_link").filter(|l| !l.is_empty()).or(first);
+        let of = wanted.and_then(|link| self.bodies.get(&format!("{}{}", model.scope, link.trim())).copied());
+        model.canonical = of.or_else(|| model.inner.iter().find_map(|k| self.models[*k].canonical));
+        for node in children(model.node) {
+            let name = node.tag_name().name();
+            let known = ["pose", "static", "world", "ball_constraint", "linear_bushing_rpy"];
+            if !PLACED.contains(&name) && !known.contains(&name) {
+                self.notes.ignored(name, xml::at(model.text, node));
+            }
+        }
+        self.models.push(model);
+        self.models.len() - 1
+    }
+
+    /// A model in another.
+    fn inner(
+        &mut self,
+        outer: &Model<'d>,
+        text: usize,
+        node: Node<'d, 'd>,
+        include: Option<(usize, Node<'d, 'd>)>,
+        depth: usize,
+    ) -> Model<'d> {
+        let renamed = include.and_then(|(_, i)| child(i, "name")?.text());
+        let name = renamed.map_or_else(|| self.name_of(text, node), |n| n.trim().to_owned());
+        let flag = |node: Node<'_, '_>, key: &'static str| {
+            child(node, key).and_then(|n| n.text()).is_some_and(|t| ["1", "true"].contains(&t.trim()))
+        };
+        let is_merged = include
+            .is_some_and(|(_, i)| i.attribute("merge").is_some_and(|m| ["1", "true"].contains(&m.trim())));
+        let is_static =
+            outer.is_static || flag(node, "static") || include.is_some_and(|(_, i)| flag(i, "static"));
+        // Names within a model are seen from outside with the model's before them.
+        let alone = depth == 0 && !self.several;
+        let scope = if alone || is_merged {
+            outer.scope.clone()
+        } else {
+            let own = (1..).map(|k| if k == 1 { name.clone() } else { format!("{name}_{k}") });
+            let mut scopes = own.map(|name| format!("{}{name}::", outer.scope));
+            // Two models of one name are two models all the same.
+            scopes.find(|scope| self.scopes.insert(scope.clone())).unwrap_or_default()
+        };
+        Model {
+            node,
+            text,
+            scope,
+            include,
+            is_static,
+            is_merged,
+            inner: Vec::new(),
+            canonical: None,
+            place: home(),
+        }
+    }
+
+    /// The model that an element includes, and the number of its text.
+    fn included(&mut self, text: usize, include: Node<'d, 'd>) -> Option<(usize, Node<'d, 'd>)> {
+        let uri = child(include, "uri").and_then(|u| u.text()).unwrap_or_default().trim();
+        let number = self.paths.iter().position(|p| p == uri).filter(|k| *k > 0);
+        let document = number.and_then(|k| self.documents[k].as_ref());
+        let found = number.zip(document.and_then(|d| child(d.root_element(), "model")));
+        let at = xml::at(text, include);
+        match found {
+            Some(_) => self.notes.taken("include", uri, at),
+            None => self.notes.refused("include", uri, at, "there is no such model beside the file"),
+        }
+        found
     }
 
     fn name_of(&mut self, text: usize, node: Node<'d, 'd>) -> String {
@@ -173,70 +316,26 @@ impl<'d> Reader<'d, '_> {
         name.unwrap_or_default().to_owned()
     }
 
-    fn model(
-        &mut self,
-        model: Node<'d, 'd>,
-        text: usize,
-        scope: &str,
-        outer: Pose,
-        depth: usize,
-        include: Option<(usize, Node<'d, 'd>)>,
-    ) {
-        let renamed = include.and_then(|(_, i)| child(i, "name")?.text());
-        let name = renamed.map_or_else(|| self.name_of(text, model), |n| n.trim().to_owned());
-        // Names within a model are seen from outside with the model's before them.
-        let alone = depth == 0 && scope.is_empty() && !self.several;
-        let scope = if alone { String::new() } else { format!("{scope}{name}::") };
-        let own = match include.and_then(|(number, i)| Some((number, child(i, "pose")?))) {
-            Some((number, p)) => self.written_pose(number, p),
-            None => child(model, "pose").map_or_else(home, |p| self.written_pose(text, p)),
-        };
-        if let Some(at) = model.attribute_node("placement_frame") {
-            let at = At { text, start: at.range().start, end: at.range().end };
-            self.notes.refused(
-                "placement_frame",
-                &name,
-                Some(at),
-                "the model stands as if it were placed by its own frame",
-            );
+    /// Places what is in a model as its poses refer to each other. A model may be placed more than once: its own frame may depend on
+    /// another that is in it.
+    fn place(&mut self, k: usize, place: Pose) {
+        self.models[k].place = place;
+        let model = self.models[k].clone();
+        if !model.is_merged {
+            let body = model.canonical.unwrap_or(GROUND);
+            self.frames.insert(format!("{}__model__", model.scope), Frame { body, pose: place });
         }
-        let place = outer.compose(own);
-        let flag = |node: Node<'_, '_>, key: &'static str| {
-            child(node, key).and_then(|n| n.text()).is_some_and(|t| ["1", "true"].contains(&t.trim()))
-        };
-        let is_static = flag(model, "static") || include.is_some_and(|(_, i)| flag(i, "static"));
-        self.frames.insert(format!("{scope}__model__"), Frame { body: GROUND, pose: place });
-        self.frames.insert(format!("{scope}world"), Frame { body: GROUND, pose: home() });
-        self.models(model, text, &scope, place, depth + 1);
-        self.place_frames(model, text, &scope, place, is_static);
-        let joints: Vec<Node<'d, 'd>> = named(model, "joint").collect();
-        for joint in &joints {
-            self.joint(*joint, text, &scope, place);
-        }
-        for joint in &joints {
-            self.relation(*joint, text, &scope);
-        }
-        for node in children(model) {
-            let known = ["link", "joint", "frame", "model", "include", "pose", "static"];
-            if !known.contains(&node.tag_name().name()) {
-                self.notes.ignored(node.tag_name().name(), xml::at(text, node));
-            }
-        }
-    }
-
-    /// Links and frames, as their poses refer to each other.
-    fn place_frames(&mut self, model: Node<'d, 'd>, text: usize, scope: &str, place: Pose, is_static: bool) {
-        let mut waiting: Vec<Node<'d, 'd>> =
-            children(model).filter(|n| ["link", "frame", "joint"].contains(&n.tag_name().name())).collect();
+        let of_model = Frame { body: model.canonical.unwrap_or(GROUND), pose: place };
+        let elements =
+            children(model.node).filter(|n| ["link", "frame", "joint"].contains(&n.tag_name().name()));
+        let mut waiting: Vec<Waiting<'d>> = model.inner.iter().map(|k| Waiting::Model(*k)).collect();
+        waiting.extend(elements.map(Waiting::Element));
         loop {
             let before = waiting.len();
-            let mut rest = Vec::new();
-            for node in waiting {
-                if !self.place_frame(node, text, scope, place, is_static) {
-                    rest.push(node);
-                }
-            }
-            waiting = rest;
+            waiting.retain(|w| match *w {
+                Waiting::Model(inner) => !self.place_inner(inner, &model, of_model),
+                Waiting::Element(node) => !self.place_frame(node, &model, of_model),
+            });
             if waiting.is_empty() {
                 return;
             }
@@ -244,7 +343,16 @@ impl<'d> Reader<'d, '_> {
                 break;
             }
         }
-        for node in waiting {
+        for w in waiting {
+            let (text, node) = match w {
+                Waiting::Element(node) => (model.text, node),
+                Waiting::Model(inner) => (self.models[inner].text, self.models[inner].node),
+            };
+            let held = child(node, "child").and_then(|c| c.text()).unwrap_or_default().trim();
+            if node.has_tag_name("joint") && self.frame(&model.scope, held).is_none() {
+                // That is told where it is joined.
+                continue;
+            }
             let name = node.attribute("name").unwrap_or_default();
             let message = format!("the pose of `{name}` refers to a frame that is not there, or in a circle");
             let help = "name a link, joint, frame or model of the file";
@@ -252,83 +360,75 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// Whether the frame of a link, joint or `frame` could be placed.
-    fn place_frame(
-        &mut self,
-        node: Node<'d, 'd>,
-        text: usize,
-        scope: &str,
-        place: Pose,
-        is_static: bool,
-    ) -> bool {
-        let name = node.attribute("name").unwrap_or_default().trim().to_owned();
-        let written = child(node, "pose");
-        let relative = written
-            .and_then(|p| p.attribute("relative_to").or_else(|| p.attribute("frame")))
-            .filter(|r| !r.is_empty());
-        let kind = node.tag_name().name();
-        let base = match (relative, kind) {
-            (Some(relative), _) => self.frame(scope, relative),
-            (None, "joint") => {
-                let of = child(node, "child").and_then(|c| c.text()).unwrap_or_default().trim();
-                self.frame(scope, of)
-            }
-            (None, "frame") => match node.attribute("attached_to").filter(|a| !a.is_empty()) {
-                Some(to) => self.frame(scope, to),
-                None => Some(Frame { body: GROUND, pose: place }),
-            },
-            _ => Some(Frame { body: GROUND, pose: place }),
+    /// Whether a model in another could be placed.
+    fn place_inner(&mut self, k: usize, outer: &Model<'d>, of_outer: Frame) -> bool {
+        let inner = self.models[k].clone();
+        // What includes it says where it is, if it does.
+        let by_include = inner.include.and_then(|(text, i)| Some((text, child(i, "pose")?)));
+        let written = by_include.or_else(|| Some((inner.text, child(inner.node, "pose")?)));
+        let base = match written.and_then(|(_, p)| relative_to(p)) {
+            Some(relative) => self.frame(&outer.scope, relative),
+            None => Some(of_outer),
         };
         let Some(base) = base else { return false };
-        let body = match kind {
-            "frame" => match node.attribute("attached_to").filter(|a| !a.is_empty()) {
-                Some(to) => match self.frame(scope, to) {
-                    Some(frame) => frame.body,
-                    None => return false,
-                },
-                None => base.body,
-            },
-            _ => base.body,
+        let pose = base.pose.compose(written.map_or_else(home, |(text, p)| self.written_pose(text, p)));
+        let by_include = inner.include.and_then(|(_, i)| child(i, "placement_frame")?.text());
+        let stands_by = by_include.or_else(|| inner.node.attribute("placement_frame")).map(str::trim);
+        match stands_by.filter(|f| !f.is_empty()) {
+            None => self.place(k, pose),
+            Some(frame) => {
+                self.place(k, home());
+                let Some(own) = self.frame(&inner.scope, frame) else { return false };
+                self.place(k, pose.compose(own.pose.inverse()));
+            }
+        }
+        true
+    }
+
+    /// Whether the frame of a link, joint or `frame` could be placed.
+    fn place_frame(&mut self, node: Node<'d, 'd>, model: &Model<'d>, of_model: Frame) -> bool {
+        let (text, scope) = (model.text, &model.scope);
+        let name = node.attribute("name").unwrap_or_default().trim();
+        let written = child(node, "pose");
+        let kind = node.tag_name().name();
+        let on = match kind {
+            "joint" => Some(child(node, "child").and_then(|c| c.text()).unwrap_or_default().trim()),
+            "frame" => node.attribute("attached_to").map(str::trim).filter(|a| !a.is_empty()),
+            _ => None,
         };
+        let on = match on {
+            Some(other) => self.frame(scope, other),
+            None => Some(of_model),
+        };
+        let base = match written.and_then(relative_to) {
+            Some(relative) => self.frame(scope, relative),
+            None => on,
+        };
+        let (Some(on), Some(base)) = (on, base) else { return false };
         let pose = base.pose.compose(written.map_or_else(home, |p| self.written_pose(text, p)));
-        let at = xml::at(text, node);
-        let body = if kind == "link" {
-            let name = self.name_of(text, node);
-            if self.frames.contains_key(&format!("{scope}{name}")) {
-                self.notes.problem_with(
-                    "HP0803",
-                    at,
-                    format!("there are two links or frames `{name}`"),
-                    "rename one of them",
-                );
-            }
-            let note = Called { kind: "link", name: &name, at }.note(self.notes);
-            let body = self.m.body(&format!("{scope}{name}"), note, Some(pose));
-            self.notes.taken("link", &name, at);
-            if is_static {
-                self.m.joint(crate::mechanism::Joint::new(
-                    &format!("{name}_static"),
-                    "its model is static".into(),
-                    "fixed",
-                    [GROUND, body],
-                    pose.r,
-                ));
-            }
-            for part in children(node) {
-                match part.tag_name().name() {
-                    "visual" => self.shapes.push((text, part, body, name.clone())),
-                    "pose" => {}
-                    other => self.notes.ignored(other, xml::at(text, part)),
+        let full = format!("{scope}{name}");
+        match kind {
+            "link" => {
+                let body = self.bodies.get(&full).copied().unwrap_or(GROUND);
+                if body != GROUND {
+                    self.m.bodies[body].pose = Some(pose);
                 }
+                self.frames.insert(full, Frame { body, pose });
             }
-            body
-        } else {
-            body
-        };
-        // A joint may have the name of a link.
-        self.frames.entry(format!("{scope}{name}")).or_insert(Frame { body, pose });
-        if kind == "joint" {
-            self.frames.insert(format!("{scope}joint {name}"), Frame { body, pose });
+            "joint" => {
+                // A joint may have the name of a link.
+                if !self.bodies.contains_key(&full) {
+                    self.frames.insert(full, Frame { body: on.body, pose });
+                }
+                self.frames.insert(format!("{scope}joint {name}"), Frame { body: on.body, pose });
+            }
+            _ => {
+                if self.bodies.contains_key(&full) {
+                    let message = format!("there are a link and a frame `{name}`");
+                    self.notes.problem_with("HP0803", xml::at(text, node), message, "rename one of them");
+                }
+                self.frames.insert(full, Frame { body: on.body, pose });
+            }
         }
         true
     }
@@ -373,282 +473,92 @@ impl<'d> Reader<'d, '_> {
         Pose { rot: roll_pitch_yaw([a, b, c]), r: [x, y, z].into() }
     }
 
-    fn end(&mut self, joint: Node<'d, 'd>, text: usize, scope: &str, end: &'static str) -> Option<Frame> {
-        let element = child(joint, end);
-        let name = element.and_then(|e| e.text()).unwrap_or_default().trim();
-        let frame = self.frame(scope, name);
-        if frame.is_none() {
-            let at = element.map_or_else(|| xml::at(text, joint), |e| xml::at(text, e));
-            let message = match name {
-                "" => format!("the joint has no `{end}`"),
-                name => format!("there is no link or frame `{name}`"),
-            };
-            self.notes.problem_with("HP0803", at, message, "name a link, a frame, or `world`");
+    /// Joints, what ties them to each other, and shapes.
+    fn connect(&mut self) {
+        let models = self.models.clone();
+        for model in &models {
+            for link in named(model.node, "link") {
+                self.stands(link, model);
+            }
+            for joint in named(model.node, "joint") {
+                self.joint(joint, model);
+            }
+            for frame in named(model.node, "frame") {
+                let name = frame.attribute("name").unwrap_or_default();
+                self.notes.taken("frame", name, xml::at(model.text, frame));
+            }
         }
-        frame
+        for model in &models {
+            for joint in named(model.node, "joint") {
+                self.relation(joint, model);
+            }
+            self.constraints(model);
+        }
     }
 
-    /// The axis of a joint, global.
-    fn axis(
-        &mut self,
-        joint: Node<'d, 'd>,
-        text: usize,
-        scope: &str,
-        frame: Pose,
-        place: Pose,
-        key: &'static str,
-    ) -> Vec3 {
-        let axis = child(joint, key);
-        let xyz = axis.and_then(|a| child(a, "xyz"));
-        let given = xyz
-            .and_then(|x| exactly::<3>(x.text().unwrap_or_default(), "`xyz`", xml::at(text, x), self.notes));
-        let v = Vec3::from(given.unwrap_or([0.0, 0.0, 1.0]));
-        let of_model = axis.and_then(|a| child(a, "use_parent_model_frame")).and_then(|n| n.text());
-        let of_model = of_model.map_or(self.version < 1.5, |t| ["1", "true"].contains(&t.trim()));
-        let expressed = xyz.and_then(|x| x.attribute("expressed_in")).filter(|e| !e.is_empty());
-        let rot = match expressed {
-            Some(name) => match self.frame(scope, name) {
-                Some(frame) => frame.pose.rot,
-                None => {
-                    let at = xyz.and_then(|x| xml::at(text, x));
-                    self.notes.problem_with(
-                        "HP0803",
-                        at,
-                        format!("there is no frame `{name}`"),
-                        "name a link, joint, frame or model of the file",
-                    );
-                    frame.rot
-                }
-            },
-            None if of_model => place.rot,
-            None => frame.rot,
-        };
-        if v.unit().is_none() {
-            let at = xyz.and_then(|x| xml::at(text, x));
-            self.notes.problem_with(
-                "HP0804",
-                at,
-                "the axis has no direction",
-                "give a vector other than zero",
-            );
-            return [0.0, 0.0, 1.0].into();
+    /// A link of a static model does not move; and what it looks like.
+    fn stands(&mut self, link: Node<'d, 'd>, model: &Model<'d>) {
+        let name = link.attribute("name").unwrap_or_default().trim();
+        let Some(Frame { body, pose }) = self.frame(&model.scope, name) else { return };
+        if model.is_static {
+            let why = "its model is static".to_owned();
+            let joint = Joint::new(&format!("{name}_static"), why, "fixed", [GROUND, body], pose.r);
+            self.m.joint(joint);
         }
-        rot * v
-    }
-
-    fn joint(&mut self, joint: Node<'d, 'd>, text: usize, scope: &str, place: Pose) {
-        let name = self.name_of(text, joint);
-        let at = xml::at(text, joint);
-        let ends = ["parent", "child"].map(|end| self.end(joint, text, scope, end));
-        let [Some(i), Some(j)] = ends else { return };
-        let Some(frame) = self.frames.get(&format!("{scope}joint {name}")).map(|f| f.pose) else { return };
-        let full = format!("{scope}{name}");
-        let called = Called { kind: "joint", name: &full, at };
-        let kind = joint.attribute("type").unwrap_or_default().trim();
-        let type_name = match kind {
-            "revolute" | "continuous" => "revolute",
-            "prismatic" => "translational",
-            "ball" => "spherical",
-            "fixed" => "fixed",
-            "screw" => "screw",
-            "universal" | "revolute2" => "universal",
-            "gearbox" => return,
-            _ => {
-                let at = xml::attribute_at(text, joint, "type").or(at);
-                let help = "SDF knows revolute, continuous, prismatic, ball, universal, revolute2, screw, gearbox and fixed";
-                self.notes.problem_with(
-                    "HP0805",
-                    at,
-                    format!("`{name}` is of the unknown type `{kind}`"),
-                    help,
-                );
-                return;
-            }
-        };
-        let axis = if ["spherical", "fixed"].contains(&type_name) {
-            frame.rot.cols[2]
-        } else {
-            self.axis(joint, text, scope, frame, place, "axis")
-        };
-        let second = if type_name == "universal" {
-            self.axis(joint, text, scope, frame, place, "axis2")
-        } else {
-            axis
-        };
-        let ends = [(i.body, axis), (j.body, second)].map(|(body, axis)| Marker::along(body, frame.r, axis));
-        let [Some(i), Some(j)] = ends else { return };
-        let Some(number) = join(&mut self.m, self.notes, called, type_name, [i, j]) else { return };
-        let limit = child(joint, "axis").and_then(|a| child(a, "limit"));
-        let value = |key: &'static str| {
-            limit.and_then(|l| child(l, key)).and_then(|n| n.text()?.trim().parse::<f64>().ok())
-        };
-        if let (Some(low), Some(high)) = (value("lower"), value("upper"))
-            && low < high
-            && low > -1e15
-            && high < 1e15
-        {
-            self.m.joints[number].limits = Some([low, high]);
-        }
-        if type_name == "screw" {
-            let number_of = |reader: &mut Self, key: &'static str| {
-                let n = child(joint, key).or_else(|| child(joint, "axis").and_then(|a| child(a, key)))?;
-                exactly::<1>(n.text().unwrap_or_default(), key, xml::at(text, n), reader.notes).map(|[x]| x)
-            };
-            let own = number_of(self, "screw_thread_pitch");
-            // The older key is in rad per length, and counts the other way.
-            let older =
-                number_of(self, "thread_pitch").filter(|p| *p != 0.0).map(|p| -std::f64::consts::TAU / p);
-            match own.or(older).filter(|p| *p != 0.0) {
-                Some(lead) => self.m.joints[number].lead = Some(lead),
-                None => self.notes.problem_with(
-                    "HP0804",
-                    at,
-                    format!("the screw `{name}` has no pitch"),
-                    "give it a `screw_thread_pitch` other than zero",
-                ),
-            }
-        }
-        self.joints.insert(full, Joined { number, kind: type_name, markers: [i, j] });
-    }
-
-    /// What ties a joint to others: `mimic`, and gearboxes.
-    fn relation(&mut self, joint: Node<'d, 'd>, text: usize, scope: &str) {
-        let name = joint.attribute("name").unwrap_or_default().trim();
-        let full = format!("{scope}{name}");
-        let number = |reader: &mut Self, node: Node<'d, 'd>, key: &'static str| {
-            let n = child(node, key)?;
-            exactly::<1>(n.text().unwrap_or_default(), key, xml::at(text, n), reader.notes).map(|[x]| x)
-        };
-        for mimic in child(joint, "axis").into_iter().flat_map(|a| named(a, "mimic")) {
-            let other = mimic.attribute("joint").unwrap_or_default();
-            let factor = number(self, mimic, "multiplier").unwrap_or(1.0);
-            let drawn = number(self, mimic, "offset").unwrap_or(0.0)
-                - factor * number(self, mimic, "reference").unwrap_or(0.0);
-            let ends = [full.clone(), format!("{scope}{other}")]
-                .map(|n| self.joints.get(&n).and_then(only_coordinate));
-            let at = xml::at(text, mimic);
-            let [Some(own), Some(master)] = ends else {
-                let message = format!(
-                    "`{name}` follows the joint `{other}`, which is not there or has no single coordinate"
-                );
-                self.notes.problem_with("HP0803", at, message, "name a joint that turns or slides");
-                continue;
-            };
-            let note = Called { kind: "mimic of", name: other, at }.note(self.notes);
-            self.m.coupler(&format!("{name}_mimic"), note, vec![(own, 1.0), (master, -factor)]);
-            match drawn {
-                0.0 => self.notes.taken("mimic", name, at),
-                _ => self.notes.approximated(
-                    "mimic",
-                    name,
-                    at,
-                    "its offset is left out: both joints count from the drawing",
-                ),
-            }
-        }
-        if joint.attribute("type").map(str::trim) != Some("gearbox") {
-            return;
-        }
-        let at = xml::at(text, joint);
-        let ratio = number(self, joint, "gearbox_ratio").unwrap_or(1.0);
-        let reference = child(joint, "gearbox_reference_body")
-            .and_then(|n| n.text())
-            .unwrap_or_default()
-            .trim()
-            .to_owned();
-        let [parent, driven] = ["parent", "child"].map(|end| self.end(joint, text, scope, end));
-        let (Some(parent), Some(driven), Some(carrier)) = (parent, driven, self.frame(scope, &reference))
-        else {
-            self.notes.refused("joint", &full, at, "a gearbox whose reference body is not there");
-            return;
-        };
-        let Some(frame) = self.frames.get(&format!("{scope}joint {name}")).map(|f| f.pose) else { return };
-        let axes = ["axis", "axis2"].map(|key| self.axis(joint, text, scope, frame, frame, key));
-        let hinge = |body: usize, axis: Vec3| {
-            let on_carrier =
-                self.joints.values().filter(|k| k.markers.iter().any(|m| m.body == carrier.body));
-            let axis = axis.unit().unwrap_or(axis);
-            let k = carrying(on_carrier, body, &["revolute"], axis)?;
-            Some((k.number, way(k, body, axis)))
-        };
-        match (hinge(parent.body, axes[0]), hinge(driven.body, axes[1])) {
-            (Some((a, u)), Some((b, v))) => {
-                let terms = vec![
-                    (Coordinate { joint: b, name: "angle" }, v),
-                    (Coordinate { joint: a, name: "angle" }, ratio * u),
-                ];
-                let note = Called { kind: "joint", name, at }.note(self.notes);
-                self.m.coupler(name, note, terms);
-                self.notes.taken("gearbox", &full, at);
-            }
-            _ => self.notes.refused(
-                "joint",
-                &full,
-                at,
-                "a gearbox needs hinges of both bodies on the reference body, along its axes",
-            ),
+        for visual in named(link, "visual") {
+            let written = child(visual, "pose");
+            let base = written.and_then(relative_to).and_then(|frame| self.frame(&model.scope, frame));
+            let base = base.map_or_else(home, |frame| pose.inverse().compose(frame.pose));
+            let place = base.compose(written.map_or_else(home, |p| self.written_pose(model.text, p)));
+            self.shapes.push(Shown { text: model.text, visual, body, link: name.to_owned(), place });
         }
     }
 }
 
-fn only_coordinate(joint: &Joined) -> Option<Coordinate> {
-    let name = match joint.kind {
-        "revolute" | "screw" => "angle",
-        "translational" => "displacement",
-        _ => return None,
-    };
-    Some(Coordinate { joint: joint.number, name })
+/// The frame that a pose counts from, where it names one; before version 1.7 by another attribute.
+fn relative_to<'a>(pose: Node<'a, '_>) -> Option<&'a str> {
+    let named = pose.attribute("relative_to").or_else(|| pose.attribute("frame")).map(str::trim);
+    named.filter(|r| !r.is_empty())
 }
 
 /// The shape of a link, of one `visual`.
-fn shown(
-    input: &mut Input<'_>,
-    notes: &mut Notes,
-    text: usize,
-    visual: Node<'_, '_>,
-    body: usize,
-    link: &str,
-) {
+fn shown(input: &mut Input<'_>, notes: &mut Notes, shape: Shown<'_>) {
+    let Shown { text, visual, body, link, place } = shape;
     let at = xml::at(text, visual);
-    let place = match child(visual, "pose") {
-        Some(p) => {
-            let n = exactly::<6>(p.text().unwrap_or_default(), "`pose`", xml::at(text, p), notes)
-                .unwrap_or_default();
-            Pose { rot: roll_pitch_yaw([n[3], n[4], n[5]]), r: [n[0], n[1], n[2]].into() }
-        }
-        None => home(),
+    let Some(shape) = child(visual, "geometry").and_then(|g| children(g).next()) else {
+        notes.refused("visual", &link, at, "it has no shape");
+        return;
     };
-    let Some(shape) = child(visual, "geometry").and_then(|g| children(g).next()) else { return };
     let numbers = |key: &'static str| {
         child(shape, key).and_then(|n| xml::numbers(n.text().unwrap_or_default())).unwrap_or_default()
     };
-    let number = |key| numbers(key).first().copied().unwrap_or(0.0);
+    let one = |key| numbers(key).first().copied();
     let three = |key| <[f64; 3]>::try_from(numbers(key)).ok();
     let solid = match shape.tag_name().name() {
         "mesh" => {
             let path = child(shape, "uri").and_then(|u| u.text()).unwrap_or_default().trim();
-            input.mesh(
-                body,
-                place,
-                three("scale").unwrap_or([1.0; 3]),
-                path,
-                link,
-                xml::at(text, shape),
-                notes,
-            );
+            let scale = three("scale").unwrap_or([1.0; 3]);
+            input.mesh(body, place, scale, path, &link, xml::at(text, shape), notes);
             return;
         }
-        "box" => Solid::Box(three("size").unwrap_or_default()),
-        "cylinder" => Solid::Cylinder(number("radius"), number("length")),
-        "capsule" => Solid::Capsule(number("radius"), number("length")),
-        "sphere" => Solid::Ball([number("radius"); 3]),
-        "ellipsoid" => Solid::Ball(three("radii").unwrap_or_default()),
-        "empty" => return,
+        "box" => three("size").map(Solid::Box),
+        "cylinder" => one("radius").zip(one("length")).map(|(r, l)| Solid::Cylinder(r, l)),
+        "capsule" => one("radius").zip(one("length")).map(|(r, l)| Solid::Capsule(r, l)),
+        "sphere" => one("radius").map(|r| Solid::Ball([r; 3])),
+        "ellipsoid" => three("radii").map(Solid::Ball),
+        "empty" => {
+            notes.ignored("visual", at);
+            return;
+        }
         other => {
-            notes.refused("visual", link, at, format!("a shape `{other}` is not shown"));
+            notes.refused("visual", &link, at, format!("a shape `{other}` is not shown"));
             return;
         }
     };
+    let Some(solid) = solid else {
+        notes.refused("visual", &link, xml::at(text, shape), "its size is not written in numbers");
+        return;
+    };
     input.shapes.solid(body, place, solid);
-    notes.taken("visual", link, at);
+    notes.taken("visual", &link, at);
 }

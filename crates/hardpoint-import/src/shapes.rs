@@ -64,8 +64,12 @@ impl Shapes {
         name: &str,
         bytes: &[u8],
     ) -> Result<(), String> {
-        let triangles = hardpoint_file::triangles(name, bytes)?;
-        self.push(body, place, scale, triangles.into_iter().map(|t| t.map(Vec3::from)));
+        let triangles: Vec<Triangle> = if name.to_ascii_lowercase().ends_with(".dae") {
+            crate::collada::triangles(&crate::decoded(bytes))?
+        } else {
+            hardpoint_file::triangles(name, bytes)?.into_iter().map(|t| t.map(Vec3::from)).collect()
+        };
+        self.push(body, place, scale, triangles.into_iter());
         Ok(())
     }
 
@@ -79,8 +83,11 @@ impl Shapes {
     pub fn files(&self, m: &mut Mechanism, folder: &str) -> Vec<(String, Vec<u8>)> {
         let mut files: Vec<(String, Vec<u8>)> = Vec::new();
         for (&body, triangles) in &self.bodies {
-            let finite = |t: &&Triangle| t.iter().all(|p| p.is_finite());
-            let triangles: Vec<&Triangle> = triangles.iter().filter(finite).collect();
+            // A ball of radius 0 is there for contact alone.
+            let seen = |[a, b, c]: &&Triangle| {
+                [a, b, c].iter().all(|p| p.is_finite()) && (*b - *a).cross(*c - *a).norm() > 0.0
+            };
+            let triangles: Vec<&Triangle> = triangles.iter().filter(seen).collect();
             if body == GROUND || triangles.is_empty() || m.bodies[body].pose.is_none() {
                 continue;
             }

@@ -1,7 +1,9 @@
 //! Robots in URDF: the tree, mimic joints, loops by the usual extensions. Read with `roxmltree`: `urdf-rs` gives no places in the text
 //! and leaves out what it does not know.
 
-use std::collections::BTreeMap;
+mod loops;
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use hardpoint::space::{Pose, Vec3};
 use roxmltree::Node;
@@ -10,7 +12,7 @@ use crate::markers::{Called, Marker, join};
 use crate::mechanism::{Coordinate, GROUND, Mechanism};
 use crate::report::{At, Notes};
 use crate::shapes::Solid;
-use crate::turn::{home, roll_pitch_yaw};
+use crate::turn::{X, Y, home, roll_pitch_yaw};
 use crate::xml::{attribute, attribute_at, child, children, named};
 use crate::{Format, Input, xml};
 
@@ -24,6 +26,10 @@ pub const FORMAT: Format = Format {
     binary: false,
 };
 
+/// Types of joints without an axis.
+const WITHOUT_AXIS: [&str; 5] = ["fixed", "floating", "ball", "spherical", "universal"];
+/// What a joint consists of that says how it moves.
+const OF_JOINTS: [&str; 7] = ["parent", "child", "origin", "axis", "limit", "mimic", "screw_thread_pitch"];
 /// Mimic joints follow each other so deep at most.
 const DEEPEST: usize = 100;
 
@@ -37,12 +43,22 @@ struct Written<'a, 'i> {
     origin: Pose,
     axis: Vec3,
     limits: Option<[f64; 2]>,
-    /// The joint that it follows, by what factor and offset.
-    mimic: Option<(String, f64, f64)>,
+    /// The advance of a screw per turn.
+    pitch: Option<f64>,
+    mimic: Option<Mimic<'a, 'i>>,
+}
+
+/// The joint that a joint follows, by what factor and offset.
+struct Mimic<'a, 'i> {
+    node: Node<'a, 'i>,
+    joint: String,
+    factor: f64,
+    offset: f64,
 }
 
 fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
-    let document = xml::parse(input.text, 0, notes)?;
+    let text = xml::lenient(input.text);
+    let document = xml::parse(&text, 0, notes)?;
     let robot = document.root_element();
     if robot.tag_name().name() != "robot" {
         let message = format!("the first element is `{}`, not `robot`", robot.tag_name().name());
@@ -59,6 +75,8 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         links: BTreeMap::new(),
         poses: BTreeMap::new(),
         joints: BTreeMap::new(),
+        floating: Vec::new(),
+        names: BTreeSet::new(),
     };
     for link in named(robot, "link") {
         let Some(name) = reader.name(link) else { continue };
@@ -67,14 +85,20 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
             reader.notes.problem_with("HP0803", xml::at(0, link), message, "rename one of them");
         }
     }
-    let joints: Vec<Written<'_, '_>> = named(robot, "joint").filter_map(|j| reader.written(j)).collect();
+    let mut joints: Vec<Written<'_, '_>> = named(robot, "joint").filter_map(|j| reader.written(j)).collect();
+    reader.followers(robot, &mut joints);
     reader.tree(&joints);
     reader.mimics(&joints);
     reader.loops(robot);
+    reader.floating();
     for node in children(robot) {
         match node.tag_name().name() {
-            "link" | "joint" | "loop_joint" => {}
+            "link" | "joint" | "loop_joint" | "ball_constraint" => {}
             "gazebo" if named(node, "joint").next().is_some() => {}
+            "linear_bushing_rpy" => {
+                let why = "a bushing is a force: where it closes a loop, write a `loop_joint` instead";
+                reader.notes.refused("linear_bushing_rpy", "", xml::at(0, node), why);
+            }
             other => reader.notes.ignored(other, xml::at(0, node)),
         }
     }
@@ -89,7 +113,11 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
 
 /// Whether the file has yet to be expanded by xacro.
 fn xml_macros(robot: Node<'_, '_>, notes: &mut Notes) -> bool {
-    let is_macro = |n: &Node<'_, '_>| n.tag_name().namespace().is_some_and(|s| s.contains("xacro"));
+    let is_macro = |n: &Node<'_, '_>| {
+        let declared = n.tag_name().namespace().is_some_and(|s| s.contains("xacro"));
+        // Without a declaration the prefix is part of the name.
+        declared || n.tag_name().name().starts_with("xacro_")
+    };
     let Some(first) = robot.descendants().find(is_macro) else { return false };
     let message = "the file is a xacro, whose macros have yet to be expanded";
     notes.problem_with("HP0805", xml::at(0, first), message, "run `xacro FILE > robot.urdf` and import that");
@@ -104,6 +132,10 @@ struct Reader<'a, 'i, 'n> {
     poses: BTreeMap<String, (usize, Pose)>,
     /// The numbers of joints with one coordinate, and which.
     joints: BTreeMap<String, Coordinate>,
+    /// Joints that hold nothing: name, element, bodies, place.
+    floating: Vec<(String, Node<'a, 'i>, [usize; 2], Vec3)>,
+    /// The names of all joints.
+    names: BTreeSet<String>,
 }
 
 impl<'a, 'i> Reader<'a, 'i, '_> {
@@ -120,7 +152,11 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         child(node, "origin").map_or_else(home, |origin| pose(origin, self.notes))
     }
 
-    fn axis(&mut self, node: Node<'a, 'i>) -> Vec3 {
+    /// The axis of a joint of that type; exporters write one of zero for those that have none.
+    fn axis(&mut self, node: Node<'a, 'i>, kind: &str) -> Vec3 {
+        if WITHOUT_AXIS.contains(&kind) {
+            return [0.0, 0.0, 1.0].into();
+        }
         let axis = child(node, "axis");
         let given = axis.and_then(|axis| attribute::<3>(0, axis, "xyz", self.notes));
         let v: Vec3 = given.unwrap_or([1.0, 0.0, 0.0]).into();
@@ -164,20 +200,53 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let name = self.name(node)?;
         let (parent, child_link) = (self.linked(node, "parent"), self.linked(node, "child"));
         let origin = self.origin(node);
-        let axis = self.axis(node);
+        let kind = node.attribute("type").unwrap_or_default().trim().to_ascii_lowercase();
+        let axis = self.axis(node, &kind);
         let number =
             |reader: &mut Self, e: Node<'a, 'i>, key| attribute::<1>(0, e, key, reader.notes).map(|[x]| x);
         let limits = child(node, "limit").and_then(|l| {
-            let ends = ["lower", "upper"].map(|k| number(self, l, k));
-            (ends != [None, None]).then(|| ends.map(|x| x.unwrap_or(0.0)))
+            let bound = |key| {
+                let text = l.attribute(key)?;
+                xml::bound(text, &format!("`{key}` of `limit`"), attribute_at(0, l, key), self.notes)
+            };
+            let ends = ["lower", "upper"].map(bound);
+            // One that is not written is 0.
+            if ends == [None, None] {
+                None
+            } else {
+                xml::range(ends[0].unwrap_or(0.0), ends[1].unwrap_or(0.0))
+            }
         });
-        let mimic = child(node, "mimic").and_then(|m| {
+        let mimic = child(node, "mimic").map(|m| {
             let factor = number(self, m, "multiplier").unwrap_or(1.0);
             let offset = number(self, m, "offset").unwrap_or(0.0);
-            Some((m.attribute("joint")?.trim().to_owned(), factor, offset))
+            Mimic {
+                node: m,
+                joint: m.attribute("joint").unwrap_or_default().trim().to_owned(),
+                factor,
+                offset,
+            }
         });
-        let kind = node.attribute("type").unwrap_or_default().trim().to_ascii_lowercase();
-        Some(Written { node, name, kind, parent: parent?, child: child_link?, origin, axis, limits, mimic })
+        let pitch = child(node, "screw_thread_pitch").and_then(|p| number(self, p, "value"));
+        for part in children(node).filter(|p| !OF_JOINTS.contains(&p.tag_name().name())) {
+            self.notes.ignored(part.tag_name().name(), xml::at(0, part));
+        }
+        if !self.names.insert(name.clone()) {
+            let message = format!("there are two joints `{name}`");
+            self.notes.problem_with("HP0803", xml::at(0, node), message, "rename one of them");
+        }
+        Some(Written {
+            node,
+            name,
+            kind,
+            parent: parent?,
+            child: child_link?,
+            origin,
+            axis,
+            limits,
+            pitch,
+            mimic,
+        })
     }
 
     /// Bodies and joints, from the roots outward.
@@ -185,6 +254,9 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let is_child = |name: &str| joints.iter().any(|j| j.child == name);
         let names: Vec<String> = self.links.keys().cloned().collect();
         self.poses.insert("world".into(), (GROUND, home()));
+        if let Some(world) = self.links.get("world") {
+            self.notes.taken("link", "world", xml::at(0, *world));
+        }
         for name in names.iter().filter(|n| !is_child(n) && *n != "world") {
             let body = self.body(name, home());
             self.poses.insert(name.clone(), (body, home()));
@@ -220,8 +292,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             self.notes.problem_with("HP0803", xml::at(0, j.node), message, help);
             return;
         }
-        for j in joints {
-            self.joint(j);
+        for (k, j) in joints.iter().enumerate() {
+            self.joint(j, value_as_drawn(joints, k, 0));
         }
     }
 
@@ -232,150 +304,77 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         self.m.body(name, note, Some(pose))
     }
 
-    fn joint(&mut self, j: &Written<'a, 'i>) {
+    /// A joint of the tree, which is drawn where its coordinate has the value `drawn`.
+    fn joint(&mut self, j: &Written<'a, 'i>, drawn: f64) {
         let (Some(&(parent, outer)), Some(&(body, inner))) =
             (self.poses.get(&j.parent), self.poses.get(&j.child))
         else {
             return;
         };
         let frame = outer.compose(j.origin);
-        self.connect(j.node, &j.name, &j.kind, j.limits, [(parent, frame), (body, inner)], j.axis);
+        let Some(number) = self.connect(j.node, &j.name, &j.kind, [(parent, frame), (body, inner)], j.axis)
+        else {
+            return;
+        };
+        self.m.joints[number].limits = j.limits.map(|ends| ends.map(|x| x - drawn));
+        if j.kind == "screw" {
+            self.m.joints[number].lead = j.pitch.filter(|p| *p != 0.0);
+            if self.m.joints[number].lead.is_none() {
+                let help = "give it a `screw_thread_pitch` other than zero";
+                let message = format!("the screw `{}` has no pitch", j.name);
+                self.notes.problem_with("HP0804", xml::at(0, j.node), message, help);
+            }
+        }
     }
 
-    /// A joint of a type of URDF between two frames, whose axis is the same in both.
+    /// A joint of a type of URDF between two frames, whose axis is the same in both; its number, if it is more than a hold.
     fn connect(
         &mut self,
         node: Node<'a, 'i>,
         name: &str,
         kind: &str,
-        limits: Option<[f64; 2]>,
         [(i, at_i), (j, at_j)]: [(usize, Pose); 2],
         axis: Vec3,
-    ) {
+    ) -> Option<usize> {
         let at = xml::at(0, node);
         let (type_name, coordinate) = match kind {
             "revolute" | "continuous" | "hinge" => ("revolute", Some("angle")),
             "prismatic" => ("translational", Some("displacement")),
             "fixed" => ("fixed", None),
             "planar" => ("planar", None),
+            // These are Drake's.
             "ball" | "spherical" => ("spherical", None),
+            "universal" => ("universal", None),
+            "screw" => ("screw", Some("angle")),
             "floating" => {
-                let why = "nothing holds its six freedoms in the source: it is fixed as drawn";
-                self.notes.approximated("joint", name, at, why);
-                let note = Called { kind: "joint", name, at }.note(self.notes);
-                self.m.joint(crate::mechanism::Joint::new(name, note, "fixed", [i, j], at_j.r));
-                return;
+                self.floating.push((name.to_owned(), node, [i, j], at_j.r));
+                return None;
             }
             _ => {
                 let at = attribute_at(0, node, "type").or(at);
                 let help = "URDF knows revolute, continuous, prismatic, fixed, planar and floating";
-                self.notes.problem_with(
-                    "HP0805",
-                    at,
-                    format!("`{name}` is of the unknown type `{kind}`"),
-                    help,
-                );
-                return;
+                let message = format!("`{name}` is of the unknown type `{kind}`");
+                self.notes.problem_with("HP0805", at, message, help);
+                return None;
             }
         };
-        let axis = if ["fixed", "spherical"].contains(&type_name) { [0.0, 0.0, 1.0].into() } else { axis };
-        let ends = [(i, at_i), (j, at_j)].map(|(body, pose)| Marker::along(body, pose.r, pose.rot * axis));
-        let [Some(i), Some(j)] = ends else { return };
-        let called = Called { kind: "joint", name, at };
-        let Some(number) = join(&mut self.m, self.notes, called, type_name, [i, j]) else { return };
-        self.m.joints[number].limits = limits.filter(|[low, high]| low < high);
+        // A universal joint turns about x of the first frame and y of the second.
+        let axes = if kind == "universal" { [X, Y].map(Vec3::from) } else { [axis; 2] };
+        let end = |body, pose: Pose, axis| Marker::along(body, pose.r, pose.rot * axis);
+        let ends = [end(i, at_i, axes[0])?, end(j, at_j, axes[1])?];
+        let number = join(&mut self.m, self.notes, Called { kind: "joint", name, at }, type_name, ends)?;
         if let Some(coordinate) = coordinate {
             self.joints.insert(name.to_owned(), Coordinate { joint: number, name: coordinate });
         }
-    }
-
-    fn mimics(&mut self, joints: &[Written<'a, 'i>]) {
-        for j in joints {
-            let Some((other, factor, _)) = &j.mimic else { continue };
-            let node = child(j.node, "mimic").unwrap_or(j.node);
-            let at = attribute_at(0, node, "joint").or_else(|| xml::at(0, node));
-            match (self.joints.get(&j.name).copied(), self.joints.get(other).copied()) {
-                (Some(own), Some(master)) if own != master => {
-                    let note = Called { kind: "mimic of", name: other, at }.note(self.notes);
-                    self.m.coupler(&format!("{}_mimic", j.name), note, vec![(own, 1.0), (master, -factor)]);
-                    self.notes.taken("mimic", &j.name, at);
-                }
-                _ => {
-                    let message = format!(
-                        "`{}` follows the joint `{other}`, which is not there or has no coordinate",
-                        j.name
-                    );
-                    self.notes.problem_with("HP0803", at, message, "name a joint that turns or slides");
-                }
-            }
-        }
-    }
-
-    /// Joints that close loops: `loop_joint`, as Drake has it or like a joint, and joints of SDF in a `gazebo` element.
-    fn loops(&mut self, robot: Node<'a, 'i>) {
-        for node in named(robot, "loop_joint") {
-            let Some(name) = self.name(node) else { continue };
-            let kind = node.attribute("type").unwrap_or("continuous").to_ascii_lowercase();
-            let axis = self.axis(node);
-            let ends = match (child(node, "link1"), child(node, "link2")) {
-                (Some(a), Some(b)) => [a, b].map(|end| {
-                    let link = end.attribute("link").unwrap_or_default().trim();
-                    let found = self.poses.get(link).copied();
-                    if found.is_none() {
-                        let at = attribute_at(0, end, "link").or_else(|| xml::at(0, end));
-                        self.notes.problem_with(
-                            "HP0803",
-                            at,
-                            format!("there is no link `{link}`"),
-                            "name a link of the robot",
-                        );
-                    }
-                    found.map(|(body, outer)| (body, outer.compose(pose(end, self.notes))))
-                }),
-                _ => self.ends(node),
-            };
-            if let [Some(i), Some(j)] = ends {
-                // Directions are those of the first link.
-                let j = (j.0, Pose { rot: i.1.rot, r: j.1.r });
-                self.connect(node, &name, &kind, None, [i, j], axis);
-            }
-        }
-        for node in named(robot, "gazebo").flat_map(|g| named(g, "joint")) {
-            let Some(name) = self.name(node) else { continue };
-            let kind = node.attribute("type").unwrap_or_default().to_ascii_lowercase();
-            let [Some(i), Some(j)] = self.ends(node) else { continue };
-            let axis = child(node, "axis").and_then(|a| child(a, "xyz"));
-            let given = axis.and_then(|a| {
-                xml::exactly::<3>(a.text().unwrap_or_default(), "`xyz`", xml::at(0, a), self.notes)
-            });
-            let frame = (i.0, j.1);
-            self.connect(node, &name, &kind, None, [frame, j], given.unwrap_or([0.0, 0.0, 1.0]).into());
-        }
-    }
-
-    /// The two ends of a joint that is written like others: on the child, or on the parent where `origin` is given.
-    fn ends(&mut self, node: Node<'a, 'i>) -> [Option<(usize, Pose)>; 2] {
-        let [parent, body] = ["parent", "child"]
-            .map(|end| self.linked(node, end).and_then(|link| self.poses.get(&link).copied()));
-        let (Some((i, outer)), Some((j, inner))) = (parent, body) else { return [None, None] };
-        let frame = match (child(node, "origin"), child(node, "pose")) {
-            (Some(_), _) => outer.compose(self.origin(node)),
-            (None, Some(p)) => {
-                let text = p.text().unwrap_or_default();
-                let n = xml::exactly::<6>(text, "`pose`", xml::at(0, p), self.notes).unwrap_or_default();
-                inner.compose(Pose { rot: roll_pitch_yaw([n[3], n[4], n[5]]), r: [n[0], n[1], n[2]].into() })
-            }
-            _ => inner,
-        };
-        [Some((i, frame)), Some((j, frame))]
+        Some(number)
     }
 }
 
 /// Where a joint stands as drawn: at zero, or where the joint that it follows puts it.
 fn value_as_drawn(joints: &[Written<'_, '_>], k: usize, depth: usize) -> f64 {
-    let Some((other, factor, offset)) = &joints[k].mimic else { return 0.0 };
-    let master = joints.iter().position(|j| j.name == *other).filter(|_| depth < DEEPEST);
-    offset + factor * master.map_or(0.0, |m| value_as_drawn(joints, m, depth + 1))
+    let Some(mimic) = &joints[k].mimic else { return 0.0 };
+    let master = joints.iter().position(|j| j.name == mimic.joint).filter(|_| depth < DEEPEST);
+    mimic.offset + mimic.factor * master.map_or(0.0, |m| value_as_drawn(joints, m, depth + 1))
 }
 
 /// A frame moved by a joint's coordinate.
@@ -404,23 +403,42 @@ fn shapes(input: &mut Input<'_>, notes: &mut Notes, link: Node<'_, '_>, body: us
             continue;
         }
         let place = child(part, "origin").map_or_else(home, |o| pose(o, notes));
-        let Some(shape) = child(part, "geometry").and_then(|g| children(g).next()) else { continue };
-        let number = |notes: &mut Notes, key| attribute::<1>(0, shape, key, notes).map_or(0.0, |[x]| x);
+        let Some(shape) = child(part, "geometry").and_then(|g| children(g).next()) else {
+            notes.refused("visual", name, at, "it has no shape");
+            continue;
+        };
+        // What is only looked at does not keep a robot from being imported.
+        let numbers = |key: &str| shape.attribute(key).and_then(xml::numbers).unwrap_or_default();
+        let three = |key: &str| <[f64; 3]>::try_from(numbers(key)).ok();
+        let one = |key: &str| numbers(key).first().copied();
         let solid = match shape.tag_name().name() {
             "mesh" => {
-                let scale = attribute::<3>(0, shape, "scale", notes).unwrap_or([1.0; 3]);
+                let scale = if shape.has_attribute("scale") { three("scale") } else { Some([1.0; 3]) };
+                let Some(scale) = scale else {
+                    notes.refused(
+                        "mesh",
+                        name,
+                        attribute_at(0, shape, "scale"),
+                        "its scale is not three numbers",
+                    );
+                    continue;
+                };
                 let path = shape.attribute("filename").unwrap_or_default();
                 input.mesh(body, place, scale, path, name, xml::at(0, shape), notes);
                 continue;
             }
-            "box" => Solid::Box(attribute::<3>(0, shape, "size", notes).unwrap_or_default()),
-            "cylinder" => Solid::Cylinder(number(notes, "radius"), number(notes, "length")),
-            "capsule" => Solid::Capsule(number(notes, "radius"), number(notes, "length")),
-            "sphere" => Solid::Ball([number(notes, "radius"); 3]),
+            "box" => three("size").map(Solid::Box),
+            "cylinder" => one("radius").zip(one("length")).map(|(r, l)| Solid::Cylinder(r, l)),
+            "capsule" => one("radius").zip(one("length")).map(|(r, l)| Solid::Capsule(r, l)),
+            "sphere" => one("radius").map(|r| Solid::Ball([r; 3])),
             other => {
                 notes.refused("visual", name, xml::at(0, shape), format!("a shape `{other}` is not shown"));
                 continue;
             }
+        };
+        let Some(solid) = solid else {
+            notes.refused("visual", name, xml::at(0, shape), "its size is not written in numbers");
+            continue;
         };
         input.shapes.solid(body, place, solid);
         notes.taken("visual", name, at);

@@ -1,5 +1,7 @@
 //! What the formats in XML share: places of elements, numbers in attributes.
 
+use std::collections::BTreeMap;
+
 use roxmltree::{Document, Node, ParsingOptions};
 
 use crate::report::{At, Notes};
@@ -8,6 +10,8 @@ use crate::report::{At, Notes};
 const MOST_NODES: u32 = 2_000_000;
 /// Elements are nested so deep at most.
 pub const DEEPEST: usize = 200;
+/// Limits as far off as this say that there are none: SDFormat's own default is 1e16.
+const UNLIMITED: f64 = 1e15;
 
 /// The document of a text; what is wrong with it is told.
 pub fn parse<'t>(text: &'t str, number: usize, notes: &mut Notes) -> Option<Document<'t>> {
@@ -32,8 +36,65 @@ pub fn parse<'t>(text: &'t str, number: usize, notes: &mut Notes) -> Option<Docu
     }
 }
 
+/// The text as the readers of robot formats take it, every byte where it was: comments, which may hold `--`, and the declaration, which
+/// need not come first, are blank; what has a prefix that nothing declares is written with `_`, as `controller_joint`.
+pub fn lenient(text: &str) -> String {
+    let mut out = text.as_bytes().to_vec();
+    let blank = |out: &mut Vec<u8>, range: std::ops::Range<usize>| {
+        out[range].iter_mut().filter(|b| !b"\r\n".contains(b)).for_each(|b| *b = b' ');
+    };
+    let mut k = 0;
+    while let Some(start) = text[k..].find("<!").map(|n| k + n) {
+        let behind = |close: &str| text[start..].find(close).map(|n| start + n + close.len());
+        k = if text[start..].starts_with("<!--") {
+            let Some(end) = behind("-->") else { break };
+            blank(&mut out, start..end);
+            end
+        } else if text[start..].starts_with("<![CDATA[") {
+            behind("]]>").unwrap_or(text.len())
+        } else {
+            start + 2
+        };
+    }
+    let first = out.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(0);
+    if out[first..].starts_with(b"<?xml")
+        && let Some(end) = text[first..].find("?>")
+    {
+        blank(&mut out, first..first + end + 2);
+    }
+    let mut declared: BTreeMap<&str, bool> = BTreeMap::from([("xml", true), ("xmlns", true)]);
+    for colon in colons(&out) {
+        let start = out[..colon].iter().rposition(|b| !is_of_name(*b)).map_or(0, |k| k + 1);
+        let prefix = &text[start..colon];
+        if !*declared.entry(prefix).or_insert_with(|| text.contains(&format!("xmlns:{prefix}"))) {
+            out[colon] = b'_';
+        }
+    }
+    String::from_utf8(out).unwrap_or_else(|_| text.to_owned())
+}
+
+fn is_of_name(b: u8) -> bool {
+    b.is_ascii_alphanumeric() || b"_-.".contains(&b) || !b.is_ascii()
+}
+
+/// Where the names of elements and attributes have a colon.
+fn colons(text: &[u8]) -> Vec<usize> {
+    let (mut out, mut inside, mut quote) = (Vec::new(), false, None);
+    for (k, &b) in text.iter().enumerate() {
+        match (inside, quote, b) {
+            (false, _, b'<') => inside = text.get(k + 1).is_some_and(|c| is_of_name(*c) || *c == b'/'),
+            (true, None, b'"' | b'\'') => quote = Some(b),
+            (true, Some(q), _) if q == b => quote = None,
+            (true, None, b'>') => inside = false,
+            (true, None, b':') => out.push(k),
+            _ => {}
+        }
+    }
+    out
+}
+
 /// How deep elements are nested, at most, as far as that can be told without reading them.
-fn nesting(text: &str) -> usize {
+pub fn nesting(text: &str) -> usize {
     let bytes = text.as_bytes();
     let (mut depth, mut deepest) = (0_usize, 0);
     for (k, b) in bytes.iter().enumerate() {
@@ -98,6 +159,21 @@ pub fn exactly<const N: usize>(
         notes.problem_with("HP0804", at, format!("{what} is {N} {s}, not `{}`", text.trim()), help);
     }
     list
+}
+
+/// A bound of a range, which may be infinite; what is wrong with it is told.
+pub fn bound(text: &str, what: &str, at: Option<At>, notes: &mut Notes) -> Option<f64> {
+    let value = text.trim().parse().ok().filter(|x: &f64| !x.is_nan());
+    if value.is_none() {
+        let help = "write it with a point in fractions, or `inf` where there is no bound";
+        notes.problem_with("HP0804", at, format!("{what} is a number, not `{}`", text.trim()), help);
+    }
+    value
+}
+
+/// The range between two bounds; none where it is empty or has no end: such ends stand for no limit at all, as do numbers beyond these.
+pub fn range(low: f64, high: f64) -> Option<[f64; 2]> {
+    (low < high && low.abs() < UNLIMITED && high.abs() < UNLIMITED).then_some([low, high])
 }
 
 /// Where an attribute's value stands.

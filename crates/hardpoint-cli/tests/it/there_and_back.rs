@@ -79,6 +79,49 @@ fn robots_come_back_the_same() {
     there_and_back("mjcf/four_bar.xml", "mjcf", "again.xml");
 }
 
+/// A model of the gallery, and what comes back of it by way of a format.
+fn by_way_of(name: &str, format: &str) -> (ModelFile, ModelFile) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../models/{name}.toml"));
+    let first = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}"));
+    let format = Format::named(format).unwrap();
+    let exported = format.export(&first);
+    let file = format!("again.{}", format.endings[0]);
+    let again = hardpoint_import::import(exported.text.as_bytes(), &file, &|_| None)
+        .unwrap_or_else(|e| panic!("{name}: {e}\n{}", exported.text));
+    assert!(again.fault.is_none(), "{name}: {}\n{}", again.fault.unwrap(), exported.text);
+    (first, model(&again.text))
+}
+
+#[test]
+fn hinges_rods_and_bodies_that_these_alone_hold_come_back_from_mjcf() {
+    // Loops of hinges in the plane and in space, parallelograms of rods, a platform that nothing but rods holds.
+    for name in
+        ["bennett", "bricard", "jansen", "watt_six_bar", "sarrus", "delta", "rssr", "double_wishbone_4x4"]
+    {
+        let (first, second) = by_way_of(name, "mjcf");
+        same(&first, &second);
+    }
+    for name in ["bennett", "jansen", "sarrus"] {
+        let (first, second) = by_way_of(name, "urdf");
+        same(&first, &second);
+    }
+}
+
+#[test]
+fn what_moves_like_several_joints_in_a_row_is_written_so() {
+    let (first, second) = by_way_of("hooke", "mjcf");
+    let kinds = |f: &ModelFile| {
+        f.model
+            .named_joints()
+            .map(|(_, j)| format!("{} {}", j.name, j.kind.name))
+            .collect::<std::collections::BTreeSet<_>>()
+    };
+    assert!(kinds(&first).contains("cross universal"));
+    let (there, back) = (kinds(&first), kinds(&second));
+    let new: Vec<&String> = back.difference(&there).collect();
+    assert_eq!(new, ["cross_1 revolute", "cross_2 revolute"]);
+}
+
 #[test]
 fn hardpoints_come_back_to_the_last_digit() {
     for name in ["teimorbit/wishbone.sub", "teimorbit/push_rod.sub"] {

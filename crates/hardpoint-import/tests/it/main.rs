@@ -5,6 +5,7 @@ mod four_bars;
 mod fuzz;
 mod meanings;
 mod models;
+mod robots;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

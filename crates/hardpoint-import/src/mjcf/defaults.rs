@@ -1,0 +1,210 @@
+//! What MJCF says for many elements at once: the compiler's settings, classes of defaults, meshes; and what an element has of it.
+
+use hardpoint::space::{Mat3, Pose, Quat, Vec3};
+
+use super::{DEEPEST, Element, Reader};
+use crate::report::At;
+use crate::turn::{from_z_and_x, none, sequence};
+use crate::xml;
+use crate::xml::exactly;
+
+impl<'d> Reader<'d, '_> {
+    pub(super) fn settings(&mut self, top: &[Element<'d>]) {
+        for (text, node) in top.iter().filter(|(_, n)| n.has_tag_name("compiler")) {
+            if let Some(angle) = node.attribute("angle") {
+                self.compiler.degrees = angle != "radian";
+            }
+            if let Some(sequence) = node.attribute("eulerseq") {
+                let fits = sequence.len() == 3 && sequence.chars().all(|c| "xyzXYZ".contains(c));
+                if fits {
+                    self.compiler.euler = sequence.to_owned();
+                } else {
+                    let at = xml::attribute_at(*text, *node, "eulerseq");
+                    self.notes.problem_with(
+                        "HP0804",
+                        at,
+                        format!("`{sequence}` is no sequence of axes"),
+                        "three of x, y, z, X, Y, Z",
+                    );
+                }
+            }
+            if let Some(folder) = node.attribute("meshdir").or_else(|| node.attribute("assetdir")) {
+                self.compiler.mesh_folder = format!("{}/", folder.trim_end_matches('/'));
+            }
+            if let Some(auto) = node.attribute("autolimits") {
+                self.compiler.auto_limits = auto == "true";
+            }
+            if node.attribute("coordinate") == Some("global") {
+                let at = xml::attribute_at(*text, *node, "coordinate");
+                self.notes.problem_with(
+                    "HP0805",
+                    at,
+                    "global coordinates are no part of MJCF any more",
+                    "save the model with MuJoCo 2.3.2 in local ones",
+                );
+            }
+            self.notes.taken("compiler", "", xml::at(*text, *node));
+        }
+        for element in top.iter().filter(|(_, n)| n.has_tag_name("default")) {
+            self.class(*element, None, 0);
+        }
+        for (text, asset) in top.iter().filter(|(_, n)| n.has_tag_name("asset")) {
+            for (text, node) in self.contents((*text, *asset), 0) {
+                if !node.has_tag_name("mesh") {
+                    self.notes.ignored(node.tag_name().name(), xml::at(text, node));
+                    continue;
+                }
+                let class = node.attribute("class").map(str::to_owned);
+                let scale = self.numbers::<3>((text, node), "scale", class.as_deref()).unwrap_or([1.0; 3]);
+                let file = node.attribute("file").unwrap_or_default();
+                let stem =
+                    file.rsplit('/').next().and_then(|f| f.rsplit_once('.')).map_or(file, |(stem, _)| stem);
+                let name = node.attribute("name").unwrap_or(stem).to_owned();
+                let path = format!("{}{file}", self.compiler.mesh_folder);
+                self.meshes.insert(name, (path, scale));
+            }
+        }
+    }
+
+    /// A class of defaults and those in it.
+    fn class(&mut self, (text, node): Element<'d>, outer: Option<&str>, depth: usize) {
+        if depth > DEEPEST {
+            return;
+        }
+        let name = node.attribute("class").unwrap_or(if outer.is_none() { "main" } else { "" });
+        let mut class = match outer {
+            Some(outer) => self.classes.get(outer).cloned().unwrap_or_default(),
+            None => self.classes.get("main").cloned().unwrap_or_default(),
+        };
+        let inner = self.contents((text, node), 0);
+        for (_, element) in inner.iter().filter(|(_, n)| !n.has_tag_name("default")) {
+            for a in element.attributes() {
+                class.insert(
+                    (element.tag_name().name().to_owned(), a.name().to_owned()),
+                    a.value().to_owned(),
+                );
+            }
+        }
+        if outer.is_none() && name != "main" {
+            // Older files name the class of all.
+            self.classes.insert("main".to_owned(), class.clone());
+        }
+        self.classes.insert(name.to_owned(), class);
+        self.notes.taken("default", name, xml::at(text, node));
+        for element in inner.iter().filter(|(_, n)| n.has_tag_name("default")) {
+            self.class(*element, Some(name), depth + 1);
+        }
+    }
+
+    /// An attribute of an element, or what its class gives it, and where that is written.
+    pub(super) fn attribute(
+        &self,
+        (text, node): Element<'d>,
+        key: &str,
+        class: Option<&str>,
+    ) -> Option<(String, Option<At>)> {
+        if let Some(value) = node.attribute(key) {
+            return Some((value.to_owned(), xml::attribute_at(text, node, key)));
+        }
+        let class = node.attribute("class").or(class).unwrap_or("main");
+        let defaults = self.classes.get(class)?;
+        let element = match node.tag_name().name() {
+            "connect" | "weld" => "equality",
+            name => name,
+        };
+        let value = defaults.get(&(element.to_owned(), key.to_owned()))?;
+        Some((value.clone(), xml::at(text, node)))
+    }
+
+    pub(super) fn numbers<const N: usize>(
+        &mut self,
+        element: Element<'d>,
+        key: &str,
+        class: Option<&str>,
+    ) -> Option<[f64; N]> {
+        let (value, at) = self.attribute(element, key, class)?;
+        exactly::<N>(&value, &format!("`{key}`"), at, self.notes)
+    }
+
+    pub(super) fn angle(&self, x: f64) -> f64 {
+        if self.compiler.degrees { x.to_radians() } else { x }
+    }
+
+    /// The orientation of an element by any of the ways to write it.
+    pub(super) fn orientation(&mut self, element: Element<'d>, class: Option<&str>) -> Mat3 {
+        let (text, node) = element;
+        let fault = |reader: &mut Self, key| {
+            let at = xml::attribute_at(text, node, key);
+            reader.notes.problem_with(
+                "HP0804",
+                at,
+                format!("`{key}` gives no orientation"),
+                "give vectors that are neither null nor parallel",
+            );
+            none()
+        };
+        // The element's own way of writing it counts, whichever way its class has.
+        const WAYS: [&str; 5] = ["axisangle", "xyaxes", "zaxis", "euler", "quat"];
+        let own = WAYS.into_iter().find(|key| node.has_attribute(*key));
+        let way = own.or_else(|| WAYS.into_iter().find(|key| self.attribute(element, key, class).is_some()));
+        match way {
+            Some("axisangle") => {
+                let Some([x, y, z, angle]) = self.numbers::<4>(element, "axisangle", class) else {
+                    return none();
+                };
+                let turn = Vec3::from([x, y, z]).unit().map(|axis| Mat3::about(axis, self.angle(angle)));
+                turn.unwrap_or_else(|| fault(self, "axisangle"))
+            }
+            Some("xyaxes") => {
+                let Some([a, b, c, d, e, f]) = self.numbers::<6>(element, "xyaxes", class) else {
+                    return none();
+                };
+                let (x, y) = (Vec3::from([a, b, c]), Vec3::from([d, e, f]));
+                from_z_and_x(x.cross(y), x).unwrap_or_else(|| fault(self, "xyaxes"))
+            }
+            Some("zaxis") => {
+                let Some(z) = self.numbers::<3>(element, "zaxis", class) else { return none() };
+                // The least turn that brings z there.
+                let up = Vec3::from([0.0, 0.0, 1.0]);
+                match Vec3::from(z).unit() {
+                    Some(z) if (z + up).norm() < 1e-12 => {
+                        Mat3::about([1.0, 0.0, 0.0].into(), std::f64::consts::PI)
+                    }
+                    Some(z) => Mat3::between(up, z),
+                    None => fault(self, "zaxis"),
+                }
+            }
+            Some("euler") => {
+                let angles = self.numbers::<3>(element, "euler", class).unwrap_or_default();
+                sequence(&self.compiler.euler.clone(), angles.map(|a| self.angle(a)))
+            }
+            Some(_) => {
+                let Some(q) = self.numbers::<4>(element, "quat", class) else { return none() };
+                Quat::from_array(q).map_or_else(|| fault(self, "quat"), |q| q.rotation())
+            }
+            None => none(),
+        }
+    }
+
+    pub(super) fn pose(&mut self, element: Element<'d>, class: Option<&str>) -> Pose {
+        let r = self.numbers::<3>(element, "pos", class).unwrap_or_default();
+        Pose { rot: self.orientation(element, class), r: r.into() }
+    }
+
+    /// Whether the classes that an element names are there.
+    pub(super) fn classes_of(&mut self, (text, node): Element<'d>) {
+        for key in ["class", "childclass"] {
+            let Some(class) = node.attribute(key).filter(|c| !self.classes.contains_key(*c)) else {
+                continue;
+            };
+            // Without any defaults the one of all is there too.
+            if class == "main" {
+                continue;
+            }
+            let near = hardpoint::draft::did_you_mean(class, self.classes.keys().map(String::as_str));
+            let help = near.map_or("declare it in `default`".into(), |n| format!("did you mean `{n}`?"));
+            let message = format!("there is no class of defaults `{class}`");
+            self.notes.problem_with("HP0803", xml::attribute_at(text, node, key), message, &help);
+        }
+    }
+}

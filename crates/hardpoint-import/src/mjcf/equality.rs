@@ -1,0 +1,299 @@
+//! Equality constraints of MJCF: what closes loops, couples joints, holds free bodies.
+
+use hardpoint::space::{Pose, Quat, Vec3};
+
+use super::{CLOSED, Element, Meet, Reader};
+use crate::markers::{Called, Marker, join};
+use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law};
+use crate::turn::{home, none};
+use crate::xml;
+
+impl<'d> Reader<'d, '_> {
+    fn end(&mut self, element: Element<'d>, key: &str) -> Option<(usize, Pose)> {
+        let (text, node) = element;
+        let name = node.attribute(key);
+        let found = match name {
+            None | Some("world") => Some((GROUND, home())),
+            Some(name) => self.bodies.get(name).copied(),
+        };
+        if found.is_none() {
+            let name = name.unwrap_or_default();
+            let known = self.bodies.keys().map(String::as_str);
+            let near = hardpoint::draft::did_you_mean(name, known);
+            let help = near.map_or("name a body of the model".into(), |n| format!("did you mean `{n}`?"));
+            let at = xml::attribute_at(text, node, key);
+            self.notes.problem_with("HP0803", at, format!("there is no body `{name}`"), &help);
+        }
+        found
+    }
+
+    fn coordinate(&mut self, element: Element<'d>, key: &str) -> Option<Coordinate> {
+        let (text, node) = element;
+        let name = node.attribute(key)?;
+        let found = self.joints.get(name).copied();
+        if found.is_none() {
+            let known = self.joints.keys().map(String::as_str);
+            let near = hardpoint::draft::did_you_mean(name, known);
+            let help =
+                near.map_or("name a hinge or slide of the model".into(), |n| format!("did you mean `{n}`?"));
+            let at = xml::attribute_at(text, node, key);
+            self.notes.problem_with(
+                "HP0803",
+                at,
+                format!("there is no joint `{name}` with one coordinate"),
+                &help,
+            );
+        }
+        found
+    }
+
+    pub(super) fn equalities(&mut self, list: Element<'d>) {
+        for (k, element) in self.contents(list, 0).into_iter().enumerate() {
+            let (text, node) = element;
+            let kind = node.tag_name().name();
+            let at = xml::at(text, node);
+            let name = node.attribute("name").map_or_else(|| format!("{kind}_{}", k + 1), str::to_owned);
+            if self.attribute(element, "active", None).is_some_and(|(a, _)| a == "false") {
+                self.notes.refused(kind, &name, at, "it is not active");
+                continue;
+            }
+            match kind {
+                "connect" | "weld" => self.closure(element, kind, &name),
+                "joint" | "tendon" => self.relation(element, kind, &name),
+                other => self.notes.refused(other, &name, at, "a constraint of this kind has no equivalent"),
+            }
+        }
+    }
+
+    /// Two bodies that meet: at a point, or altogether.
+    fn closure(&mut self, element: Element<'d>, kind: &str, name: &str) {
+        let (text, node) = element;
+        let at = xml::at(text, node);
+        let called = Called { kind, name, at };
+        let sites = ["site1", "site2"].map(|key| node.attribute(key));
+        let ends = if let [Some(a), Some(b)] = sites {
+            let found = [a, b].map(|s| self.sites.get(s).copied());
+            for (site, end) in [a, b].iter().zip(&found) {
+                if end.is_none() {
+                    self.notes.problem_with(
+                        "HP0803",
+                        at,
+                        format!("there is no site `{site}`"),
+                        "name a site of the model",
+                    );
+                }
+            }
+            found
+        } else {
+            let [first, second] = ["body1", "body2"].map(|key| self.end(element, key));
+            let anchor = self.numbers::<3>(element, "anchor", None).unwrap_or_default();
+            let place = |(_, pose): (usize, Pose)| pose.point(anchor.into());
+            // The anchor of a weld is of the second body.
+            let place = if kind == "weld" { second.map(place) } else { first.map(place) };
+            let put = |end: Option<(usize, Pose)>| Some((end?.0, Pose { rot: none(), r: place? }));
+            [put(first), put(second)]
+        };
+        let [Some(i), Some(j)] = ends else { return };
+        let [i, j] = [i, j].map(|(body, pose)| Marker { body, pose });
+        if kind == "weld" && !self.is_as_drawn(element) {
+            let why = "its `relpose` is left out: the bodies are welded as they are drawn";
+            self.notes.approximated(kind, name, at, why);
+        }
+        if kind == "connect" {
+            self.meets.push(Meet { name: name.to_owned(), at, ends: [i, j] });
+            return;
+        }
+        join(&mut self.m, self.notes, called, "fixed", [i, j]);
+    }
+
+    /// Points in which two bodies meet. Where two bodies meet in two points, they turn about the line through both.
+    pub(super) fn meet(&mut self) {
+        let meets = std::mem::take(&mut self.meets);
+        let apart = |a: Vec3, b: Vec3| (a - b).norm() > CLOSED * self.m.size();
+        let place = |k: usize| meets[k].ends[0].pose.r;
+        let pair = |k: usize| {
+            let [i, j] = meets[k].ends.map(|end| end.body);
+            (i.min(j), i.max(j))
+        };
+        let closed = |k: usize| !apart(place(k), meets[k].ends[1].pose.r);
+        let mut partner = vec![None; meets.len()];
+        for k in 0..meets.len() {
+            let same: Vec<usize> = (0..meets.len()).filter(|l| pair(*l) == pair(k)).collect();
+            if let [a, b] = same[..]
+                && closed(a)
+                && closed(b)
+                && apart(place(a), place(b))
+            {
+                partner[k] = Some(if k == a { b } else { a });
+            }
+        }
+        for (k, meet) in meets.iter().enumerate() {
+            let called = Called { kind: "connect", name: &meet.name, at: meet.at };
+            match partner[k] {
+                None => {
+                    join(&mut self.m, self.notes, called, "spherical", meet.ends);
+                }
+                Some(other) if other > k => {
+                    let axis = meets[other].ends[0].pose.r - meet.ends[0].pose.r;
+                    let ends = meet.ends.map(|end| Marker::along(end.body, meet.ends[0].pose.r, axis));
+                    if let [Some(i), Some(j)] = ends {
+                        join(&mut self.m, self.notes, called, "revolute", [i, j]);
+                        self.notes.taken("connect", &meets[other].name, meets[other].at);
+                    }
+                }
+                Some(_) => {}
+            }
+        }
+    }
+
+    /// Free bodies: those that equalities hold are left to them, the others stand where they are drawn.
+    pub(super) fn free_bodies(&mut self) {
+        for free in std::mem::take(&mut self.free) {
+            let [i, j] = free.bodies;
+            if self.m.are_connected([i, j]) {
+                let why = "no joint: the equalities of the body hold it, and drivers what these leave free";
+                self.notes.approximated("joint", &free.name, free.at, why);
+                continue;
+            }
+            let why = "nothing holds its six freedoms in the source: it is fixed as drawn";
+            self.notes.approximated("joint", &free.name, free.at, why);
+            let note = Called { kind: "joint", name: &free.name, at: free.at }.note(self.notes);
+            self.m.joint(Joint::new(&free.name, note, "fixed", [i, j], free.place));
+        }
+    }
+
+    /// Whether the pose that a weld asks for is the one in which its bodies are drawn.
+    fn is_as_drawn(&mut self, element: Element<'d>) -> bool {
+        /// Exporters write six digits.
+        const SAME: f64 = 1e-5;
+        let Some([x, y, z, q @ ..]) = self.numbers::<7>(element, "relpose", None) else { return true };
+        // Without an orientation it stands for the pose as drawn.
+        let Some(turn) = Quat::from_array(q) else { return true };
+        let (Some((_, first)), Some((_, second))) = (self.end(element, "body1"), self.end(element, "body2"))
+        else {
+            return false;
+        };
+        let drawn = first.inverse().compose(second);
+        let turned = turn.rotation();
+        let off = (0..3).map(|k| (drawn.rot.cols[k] - turned.cols[k]).norm()).fold(0.0, f64::max);
+        off < SAME && (drawn.r - Vec3::from([x, y, z])).norm() < SAME * self.m.size()
+    }
+
+    /// A polynomial between two joints, or two tendons that are sums of joints.
+    fn relation(&mut self, element: Element<'d>, kind: &str, name: &str) {
+        let (text, node) = element;
+        let at = xml::at(text, node);
+        let [first, second] = if kind == "joint" {
+            ["joint1", "joint2"].map(|key| self.coordinate(element, key).map(|c| vec![(c, 1.0)]))
+        } else {
+            ["tendon1", "tendon2"].map(|key| node.attribute(key).and_then(|t| self.tendons.get(t).cloned()))
+        };
+        let has_second = node.attribute(if kind == "joint" { "joint2" } else { "tendon2" }).is_some();
+        if kind == "tendon"
+            && !has_second
+            && let Some(rod) = node.attribute("tendon1").and_then(|t| self.rods.get(t).cloned())
+        {
+            self.rod(element, name, &rod);
+            return;
+        }
+        let Some(first) = first else {
+            if kind == "tendon" {
+                self.notes.refused(kind, name, at, "only fixed tendons, sums of joints, have an equivalent");
+            }
+            return;
+        };
+        if has_second && second.is_none() {
+            return;
+        }
+        let coefficients = self.attribute(element, "polycoef", None).and_then(|(p, _)| xml::numbers(&p));
+        let mut a = coefficients.unwrap_or_else(|| vec![0.0, 1.0]);
+        a.resize(5, 0.0);
+        if has_second && a[2..].iter().any(|x| *x != 0.0) {
+            self.notes.refused(kind, name, at, "a relation that is not linear has no equivalent");
+            return;
+        }
+        let called = Called { kind, name, at };
+        let note = called.note(self.notes);
+        let mut terms = first;
+        if let Some(second) = second {
+            terms.extend(second.iter().map(|(c, k)| (*c, -a[1] * k)));
+        }
+        match terms[..] {
+            [(only, _)] => {
+                self.m.driver(name, note, Drives::Coordinate(only), Law::Held);
+            }
+            _ => self.m.coupler(name, note, terms),
+        }
+        match a[0] {
+            0.0 => self.notes.taken(kind, name, at),
+            _ => self.notes.approximated(
+                kind,
+                name,
+                at,
+                "its constant is left out: the relation counts from the drawing",
+            ),
+        }
+    }
+
+    /// A tendon of constant length between two sites: a rod.
+    fn rod(&mut self, element: Element<'d>, name: &str, [from, to]: &[String; 2]) {
+        let at = xml::at(element.0, element.1);
+        let mut end = |site: &String| {
+            let found = self.sites.get(site).copied();
+            if found.is_none() {
+                let message = format!("there is no site `{site}`");
+                self.notes.problem_with("HP0803", at, message, "name a site of the model");
+            }
+            found
+        };
+        let (Some((i, from)), Some((j, to))) = (end(from), end(to)) else { return };
+        if i == j {
+            self.notes.refused("tendon", name, at, "both its sites are on the same body");
+            return;
+        }
+        let constant = self.attribute(element, "polycoef", None).and_then(|(p, _)| xml::numbers(&p));
+        match constant.and_then(|c| c.first().copied()).unwrap_or(0.0) {
+            0.0 => self.notes.taken("tendon", name, at),
+            _ => self.notes.approximated(
+                "tendon",
+                name,
+                at,
+                "its constant is left out: the rod is as long as it is drawn",
+            ),
+        }
+        let note = Called { kind: "tendon", name, at }.note(self.notes);
+        self.m.joint(Joint::new(name, note, "distance", [i, j], to.r).between(from.r, to.r));
+    }
+
+    /// Tendons: fixed ones are sums of joints, those between two sites can be rods.
+    pub(super) fn tendons(&mut self, top: &[Element<'d>]) {
+        for list in top.iter().filter(|(_, n)| n.has_tag_name("tendon")) {
+            for element in self.contents(*list, 0) {
+                let (text, node) = element;
+                let name = node.attribute("name").unwrap_or_default();
+                let inner = self.contents(element, 0);
+                if node.has_tag_name("fixed") {
+                    let mut terms = Vec::new();
+                    for part in inner {
+                        let factor = self.numbers::<1>(part, "coef", None).map_or(1.0, |[c]| c);
+                        if let Some(c) = self.coordinate(part, "joint") {
+                            terms.push((c, factor));
+                        }
+                    }
+                    self.tendons.insert(name.to_owned(), terms);
+                    self.notes.taken("tendon", name, xml::at(text, node));
+                    continue;
+                }
+                let sites: Vec<String> =
+                    inner.iter().filter_map(|(_, n)| n.attribute("site")).map(str::to_owned).collect();
+                if let [from, to] = &sites[..]
+                    && inner.len() == 2
+                {
+                    self.rods.insert(name.to_owned(), [from.clone(), to.clone()]);
+                }
+                // It holds nothing of its own; an equality may.
+                self.notes.ignored(node.tag_name().name(), xml::at(text, node));
+            }
+        }
+    }
+}

@@ -1,0 +1,297 @@
+//! Joints of SDFormat: their axes, what ties them to each other, and what Drake adds.
+
+use hardpoint::space::{Pose, Vec3};
+use roxmltree::Node;
+
+use super::{Frame, Model, Reader, version};
+use crate::markers::{Called, Joined, Marker, carrying, join, way};
+use crate::mechanism::Coordinate;
+use crate::turn::home;
+use crate::xml;
+use crate::xml::{child, children, exactly, named};
+
+/// What a joint consists of that says how it moves.
+const OF_JOINTS: [&str; 10] = [
+    "parent",
+    "child",
+    "pose",
+    "axis",
+    "axis2",
+    "thread_pitch",
+    "screw_thread_pitch",
+    "gearbox_ratio",
+    "gearbox_reference_body",
+    "mimic",
+];
+
+impl<'d> Reader<'d, '_> {
+    fn end(&mut self, joint: Node<'d, 'd>, model: &Model<'d>, end: &'static str) -> Option<Frame> {
+        let text = model.text;
+        let element = child(joint, end);
+        let name = element.and_then(|e| e.text()).unwrap_or_default().trim();
+        let frame = self.frame(&model.scope, name);
+        if frame.is_none() {
+            let at = element.map_or_else(|| xml::at(text, joint), |e| xml::at(text, e));
+            let message = match name {
+                "" => format!("the joint has no `{end}`"),
+                name => format!("there is no link or frame `{name}`"),
+            };
+            self.notes.problem_with("HP0803", at, message, "name a link, a frame, or `world`");
+        }
+        frame
+    }
+
+    /// The axis of a joint, global.
+    fn axis(&mut self, joint: Node<'d, 'd>, model: &Model<'d>, frame: Pose, key: &'static str) -> Vec3 {
+        let text = model.text;
+        let axis = child(joint, key);
+        let xyz = axis.and_then(|a| child(a, "xyz"));
+        let given = xyz
+            .and_then(|x| exactly::<3>(x.text().unwrap_or_default(), "`xyz`", xml::at(text, x), self.notes));
+        let v = Vec3::from(given.unwrap_or([0.0, 0.0, 1.0]));
+        let of_model = axis.and_then(|a| child(a, "use_parent_model_frame")).and_then(|n| n.text());
+        // Up to version 1.4 axes are those of the model.
+        let older = version(joint.document().root_element()).is_some_and(|v| v < (1, 5));
+        let of_model = of_model.map_or(older, |t| ["1", "true"].contains(&t.trim()));
+        let expressed = xyz.and_then(|x| x.attribute("expressed_in")).filter(|e| !e.is_empty());
+        let rot = match expressed {
+            Some(name) => match self.frame(&model.scope, name) {
+                Some(frame) => frame.pose.rot,
+                None => {
+                    let at = xyz.and_then(|x| xml::at(text, x));
+                    self.notes.problem_with(
+                        "HP0803",
+                        at,
+                        format!("there is no frame `{name}`"),
+                        "name a link, joint, frame or model of the file",
+                    );
+                    frame.rot
+                }
+            },
+            None if of_model => model.place.rot,
+            None => frame.rot,
+        };
+        if v.unit().is_none() {
+            let at = xyz.and_then(|x| xml::at(text, x));
+            self.notes.problem_with(
+                "HP0804",
+                at,
+                "the axis has no direction",
+                "give a vector other than zero",
+            );
+            return [0.0, 0.0, 1.0].into();
+        }
+        rot * v
+    }
+
+    pub(super) fn joint(&mut self, joint: Node<'d, 'd>, model: &Model<'d>) {
+        let (text, scope) = (model.text, &model.scope);
+        let name = self.name_of(text, joint);
+        let at = xml::at(text, joint);
+        let full = format!("{scope}{name}");
+        if !self.names.insert(full.clone()) {
+            let message = format!("there are two joints `{name}`");
+            self.notes.problem_with("HP0803", at, message, "rename one of them");
+        }
+        for part in children(joint).filter(|p| !OF_JOINTS.contains(&p.tag_name().name())) {
+            self.notes.ignored(part.tag_name().name(), xml::at(text, part));
+        }
+        let ends = ["parent", "child"].map(|end| self.end(joint, model, end));
+        let [Some(i), Some(j)] = ends else { return };
+        let Some(frame) = self.frames.get(&format!("{scope}joint {name}")).map(|f| f.pose) else { return };
+        let called = Called { kind: "joint", name: &full, at };
+        let kind = joint.attribute("type").unwrap_or_default().trim();
+        let type_name = match kind {
+            "revolute" | "continuous" => "revolute",
+            "prismatic" => "translational",
+            "ball" => "spherical",
+            "fixed" => "fixed",
+            "screw" => "screw",
+            "universal" | "revolute2" => "universal",
+            // Drake's.
+            "planar" => "planar",
+            "gearbox" => return,
+            _ => {
+                let at = xml::attribute_at(text, joint, "type").or(at);
+                let help = "SDF knows revolute, continuous, prismatic, ball, universal, revolute2, screw, gearbox and fixed";
+                self.notes.problem_with(
+                    "HP0805",
+                    at,
+                    format!("`{name}` is of the unknown type `{kind}`"),
+                    help,
+                );
+                return;
+            }
+        };
+        let axis = if ["spherical", "fixed"].contains(&type_name) {
+            frame.rot.cols[2]
+        } else {
+            self.axis(joint, model, frame, "axis")
+        };
+        let second = if type_name == "universal" { self.axis(joint, model, frame, "axis2") } else { axis };
+        let ends = [(i.body, axis), (j.body, second)].map(|(body, axis)| Marker::along(body, frame.r, axis));
+        let [Some(i), Some(j)] = ends else { return };
+        let Some(number) = join(&mut self.m, self.notes, called, type_name, [i, j]) else { return };
+        let limit = child(joint, "axis").and_then(|a| child(a, "limit"));
+        let ends = ["lower", "upper"].map(|key| {
+            let n = limit.and_then(|l| child(l, key))?;
+            xml::bound(n.text().unwrap_or_default(), &format!("`{key}`"), xml::at(text, n), self.notes)
+        });
+        if let [Some(low), Some(high)] = ends {
+            self.m.joints[number].limits = xml::range(low, high);
+        }
+        if type_name == "screw" {
+            let number_of = |reader: &mut Self, key: &'static str| {
+                let n = child(joint, key).or_else(|| child(joint, "axis").and_then(|a| child(a, key)))?;
+                exactly::<1>(n.text().unwrap_or_default(), key, xml::at(text, n), reader.notes).map(|[x]| x)
+            };
+            let own = number_of(self, "screw_thread_pitch");
+            // The older key is in rad per length, and counts the other way.
+            let older =
+                number_of(self, "thread_pitch").filter(|p| *p != 0.0).map(|p| -std::f64::consts::TAU / p);
+            match own.or(older).filter(|p| *p != 0.0) {
+                Some(lead) => self.m.joints[number].lead = Some(lead),
+                None => self.notes.problem_with(
+                    "HP0804",
+                    at,
+                    format!("the screw `{name}` has no pitch"),
+                    "give it a `screw_thread_pitch` other than zero",
+                ),
+            }
+        }
+        self.joints.insert(full, Joined { number, kind: type_name, markers: [i, j] });
+    }
+
+    /// What ties a joint to others: `mimic`, and gearboxes.
+    pub(super) fn relation(&mut self, joint: Node<'d, 'd>, model: &Model<'d>) {
+        let (text, scope) = (model.text, &model.scope);
+        let name = joint.attribute("name").unwrap_or_default().trim();
+        let full = format!("{scope}{name}");
+        let number = |reader: &mut Self, node: Node<'d, 'd>, key: &'static str| {
+            if node.has_attribute(key) {
+                // As Drake has it.
+                return xml::attribute::<1>(text, node, key, reader.notes).map(|[x]| x);
+            }
+            let n = child(node, key)?;
+            exactly::<1>(n.text().unwrap_or_default(), key, xml::at(text, n), reader.notes).map(|[x]| x)
+        };
+        for mimic in children(joint)
+            .filter(|c| ["axis", "axis2"].contains(&c.tag_name().name()))
+            .flat_map(|a| named(a, "mimic"))
+        {
+            let other = mimic.attribute("joint").unwrap_or_default();
+            let factor = number(self, mimic, "multiplier").unwrap_or(1.0);
+            let drawn = number(self, mimic, "offset").unwrap_or(0.0)
+                - factor * number(self, mimic, "reference").unwrap_or(0.0);
+            let ends = [full.clone(), format!("{scope}{other}")]
+                .map(|n| self.joints.get(&n).and_then(only_coordinate));
+            let at = xml::at(text, mimic);
+            let [Some(own), Some(master)] = ends else {
+                if self.names.contains(&format!("{scope}{other}")) {
+                    let why = format!("`{name}` or `{other}`, which it follows, has no single coordinate");
+                    self.notes.refused("mimic", name, at, why);
+                    continue;
+                }
+                let message = format!(
+                    "`{name}` follows the joint `{other}`, which is not there or has no single coordinate"
+                );
+                self.notes.problem_with("HP0803", at, message, "name a joint that turns or slides");
+                continue;
+            };
+            let note = Called { kind: "mimic of", name: other, at }.note(self.notes);
+            self.m.coupler(&format!("{name}_mimic"), note, vec![(own, 1.0), (master, -factor)]);
+            match drawn {
+                0.0 => self.notes.taken("mimic", name, at),
+                _ => self.notes.approximated(
+                    "mimic",
+                    name,
+                    at,
+                    "its offset is left out: both joints count from the drawing",
+                ),
+            }
+        }
+        if joint.attribute("type").map(str::trim) != Some("gearbox") {
+            return;
+        }
+        let at = xml::at(text, joint);
+        let ratio = number(self, joint, "gearbox_ratio").unwrap_or(1.0);
+        let reference = child(joint, "gearbox_reference_body")
+            .and_then(|n| n.text())
+            .unwrap_or_default()
+            .trim()
+            .to_owned();
+        let [parent, driven] = ["parent", "child"].map(|end| self.end(joint, model, end));
+        let (Some(parent), Some(driven), Some(carrier)) = (parent, driven, self.frame(scope, &reference))
+        else {
+            self.notes.refused("joint", &full, at, "a gearbox whose reference body is not there");
+            return;
+        };
+        let Some(frame) = self.frames.get(&format!("{scope}joint {name}")).map(|f| f.pose) else { return };
+        let axes = ["axis", "axis2"].map(|key| self.axis(joint, model, frame, key));
+        let hinge = |body: usize, axis: Vec3| {
+            let on_carrier =
+                self.joints.values().filter(|k| k.markers.iter().any(|m| m.body == carrier.body));
+            let axis = axis.unit().unwrap_or(axis);
+            let k = carrying(on_carrier, body, &["revolute"], axis)?;
+            Some((k.number, way(k, body, axis)))
+        };
+        match (hinge(parent.body, axes[0]), hinge(driven.body, axes[1])) {
+            (Some((a, u)), Some((b, v))) => {
+                let terms = vec![
+                    (Coordinate { joint: b, name: "angle" }, v),
+                    (Coordinate { joint: a, name: "angle" }, ratio * u),
+                ];
+                let note = Called { kind: "joint", name, at }.note(self.notes);
+                self.m.coupler(name, note, terms);
+                self.notes.taken("gearbox", &full, at);
+            }
+            _ => self.notes.refused(
+                "joint",
+                &full,
+                at,
+                "a gearbox needs hinges of both bodies on the reference body, along its axes",
+            ),
+        }
+    }
+
+    /// What Drake adds to models.
+    pub(super) fn constraints(&mut self, model: &Model<'d>) {
+        for (k, node) in named(model.node, "ball_constraint").enumerate() {
+            let at = xml::at(model.text, node);
+            let ends = [
+                ("ball_constraint_body_A", "ball_constraint_p_AP"),
+                ("ball_constraint_body_B", "ball_constraint_p_BQ"),
+            ];
+            let ends = ends.map(|(body, place)| {
+                let frame = self.end(node, model, body)?;
+                let place = child(node, place).and_then(|p| {
+                    exactly::<3>(
+                        p.text().unwrap_or_default(),
+                        "the place",
+                        xml::at(model.text, p),
+                        self.notes,
+                    )
+                });
+                let r = frame.pose.point(place.unwrap_or_default().into());
+                Some(Marker { body: frame.body, pose: Pose { rot: home().rot, r } })
+            });
+            let [Some(i), Some(j)] = ends else { continue };
+            let name = format!("{}ball_constraint_{}", model.scope, k + 1);
+            let called = Called { kind: "ball_constraint", name: &name, at };
+            join(&mut self.m, self.notes, called, "spherical", [i, j]);
+        }
+        for node in named(model.node, "linear_bushing_rpy") {
+            let why = "a bushing is a force: where it closes a loop, write a joint instead";
+            self.notes.refused("linear_bushing_rpy", "", xml::at(model.text, node), why);
+        }
+    }
+}
+
+fn only_coordinate(joint: &Joined) -> Option<Coordinate> {
+    let name = match joint.kind {
+        "revolute" | "screw" => "angle",
+        "translational" => "displacement",
+        _ => return None,
+    };
+    Some(Coordinate { joint: joint.number, name })
+}

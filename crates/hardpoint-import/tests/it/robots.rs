@@ -1,0 +1,371 @@
+//! What real exporters of URDF, SDFormat and MJCF write, beyond what their documents show.
+
+use hardpoint::model::{BodyId, Joint};
+use hardpoint::space::Vec3;
+use hardpoint::{Analysis, Run};
+use hardpoint_file::ModelFile;
+use hardpoint_import::{Fate, Imported};
+
+use crate::model;
+
+/// What sums of sixteen digits leave.
+const SAME: f64 = 1e-12;
+
+fn read_with(name: &str, bytes: &[u8], beside: &[(&str, &str)]) -> (Imported, ModelFile) {
+    let resolve =
+        |path: &str| beside.iter().find(|(p, _)| *p == path).map(|(_, text)| text.as_bytes().to_vec());
+    let imported = hardpoint_import::import(bytes, name, &resolve).unwrap_or_else(|e| panic!("{name}:\n{e}"));
+    assert!(imported.fault.is_none(), "{name}: {}\n{}", imported.fault.unwrap(), imported.text);
+    let file = model(&imported);
+    (imported, file)
+}
+
+fn read(name: &str, text: &str) -> (Imported, ModelFile) {
+    read_with(name, text.as_bytes(), &[])
+}
+
+fn refused(name: &str, text: &str) -> String {
+    hardpoint_import::import(text.as_bytes(), name, &|_| None).unwrap_err().to_string()
+}
+
+fn joint<'m>(file: &'m ModelFile, name: &str) -> &'m Joint {
+    let named = file.model.named_joints().find(|(_, j)| j.name == name);
+    named.unwrap_or_else(|| panic!("there is no joint `{name}`")).1
+}
+
+fn place(file: &ModelFile, name: &str) -> Vec3 {
+    file.model.hardpoints[joint(file, name).at[0].0].position
+}
+
+fn is_at(at: Vec3, wanted: [f64; 3]) {
+    assert!((at - Vec3::from(wanted)).norm() < SAME, "{at:?} instead of {wanted:?}");
+}
+
+fn kinds(file: &ModelFile) -> Vec<(&str, &str)> {
+    file.model.named_joints().map(|(_, j)| (j.name.as_str(), j.kind.name)).collect()
+}
+
+fn told(imported: &Imported, fate: Fate, kind: &str) -> Vec<String> {
+    imported.report.of(fate).filter(|e| e.kind == kind).map(|e| format!("{}: {}", e.name, e.why)).collect()
+}
+
+/// How far a body turns, at most, while the mechanism moves; it has to move to the end.
+fn turns(file: &ModelFile, body: &str) -> f64 {
+    let body = BodyId(file.model.bodies.iter().position(|b| b.name == body).unwrap());
+    let solution = Analysis::new(&file.model).unwrap().solve(Run::new().without_sensitivities());
+    assert!(solution.stop.is_none(), "{:?}", solution.stop);
+    let x = |k: usize| solution.body(k, body).rotation.cols;
+    let off = |k: usize| (0..3).map(|c| x(k)[c].cross(x(0)[c]).norm()).fold(0.0, f64::max);
+    (0..solution.motion.len()).map(off).fold(0.0, f64::max)
+}
+
+const ARM: &str = r#"<robot name="arm">
+  <link name="base"/><link name="upper"/><link name="tool"/>
+  <joint name="shoulder" type="revolute">
+    <parent link="base"/><child link="upper"/><origin xyz="0 0 1"/><axis xyz="0 1 0"/>
+    <limit lower="-inf" upper="inf" effort="1" velocity="1"/><dynamics damping="1"/>
+  </joint>
+  <joint name="flange" type="fixed">
+    <parent link="upper"/><child link="tool"/><origin xyz="0 0 0.5" rpy="0 0 0"/><axis xyz="0 0 0"/>
+  </joint>
+</robot>"#;
+
+#[test]
+fn texts_are_read_however_exporters_write_them() {
+    let (plain, file) = read("arm.urdf", ARM);
+    is_at(place(&file, "flange"), [0.0, 0.0, 1.5]);
+    assert_eq!(told(&plain, Fate::Ignored, "dynamics").len(), 1);
+    let remark = "<!-- ==== -- an arm -- ==== -->";
+    let utf16: Vec<u8> = format!("\u{feff}{ARM}").encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let ways: [(&str, Vec<u8>); 7] = [
+        ("a blank line before the declaration", format!("\n<?xml version=\"1.0\"?>\n{ARM}").into_bytes()),
+        (
+            "a remark before it",
+            format!("{remark}<?xml version=\"1.0\" encoding=\"utf-8\"?>{ARM}").into_bytes(),
+        ),
+        (
+            "a remark with dashes",
+            ARM.replace("<link name=\"upper\"/>", &format!("<link name=\"upper\"/>{remark}")).into(),
+        ),
+        (
+            "a prefix that nothing declares",
+            ARM.replace("</robot>", "<gazebo><controller:motor rate:hz=\"3\"/></gazebo></robot>").into(),
+        ),
+        ("lines that end as on Windows", ARM.replace('\n', "\r\n").into()),
+        ("a byte order mark", format!("\u{feff}{ARM}").into()),
+        ("two bytes for each letter", utf16),
+    ];
+    for (what, bytes) in ways {
+        let (_, other) = read_with("arm.urdf", &bytes, &[]);
+        assert_eq!(kinds(&file), kinds(&other), "{what}");
+        is_at(place(&other, "flange"), [0.0, 0.0, 1.5]);
+    }
+    // Without a declaration macros are seen all the same, and a place is that of the text as it is written.
+    let macros = ARM.replace("<link name=\"tool\"/>", "<xacro:leg side=\"left\"/>");
+    assert!(refused("arm.urdf", &macros).contains("HP0805"));
+    let wrong = ARM.replace("xyz=\"0 0 1\"", "xyz=\"0 0 one\"");
+    assert!(refused("arm.urdf", &format!("{remark}\n{wrong}")).contains("arm.urdf:5:"), "{wrong}");
+    // Numbers that are none stay a fault.
+    assert!(refused("arm.urdf", &ARM.replace("xyz=\"0 0 1\"", "xyz=\"0 0 nan\"")).contains("HP0804"));
+    assert!(refused("arm.urdf", &ARM.replace("name=\"flange\"", "name=\"shoulder\"")).contains("two joints"));
+}
+
+/// A plate of 2 by 1 mm as two triangles, and another turned upright and shifted by 3 mm, as a square; the file is in mm.
+const PLATES: &str = r##"<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset><unit name="millimeter" meter="0.001"/><up_axis>Y_UP</up_axis></asset>
+  <library_geometries><geometry id="plate"><mesh>
+    <source id="at"><float_array id="a" count="12">0 0 0 2 0 0 2 1 0 0 1 0</float_array>
+      <technique_common><accessor source="#a" count="4" stride="3"/></technique_common></source>
+    <vertices id="corners"><input semantic="POSITION" source="#at"/></vertices>
+    <triangles count="2"><input semantic="VERTEX" source="#corners" offset="0"/><input semantic="NORMAL" source="#n" offset="1"/><p>0 0 1 0 2 0 0 0 2 0 3 0</p></triangles>
+  </mesh></geometry>
+  <geometry id="square"><mesh>
+    <source id="at2"><float_array id="a2" count="12">0 0 0 2 0 0 2 1 0 0 1 0</float_array></source>
+    <vertices id="corners2"><input semantic="POSITION" source="#at2"/></vertices>
+    <polylist count="1"><input semantic="VERTEX" source="#corners2" offset="0"/><vcount>4</vcount><p>0 1 2 3</p></polylist>
+  </mesh></geometry></library_geometries>
+  <library_visual_scenes><visual_scene id="s">
+    <node><instance_geometry url="#plate"/></node>
+    <node><matrix>1 0 0 0  0 0 -1 0  0 1 0 3  0 0 0 1</matrix><instance_geometry url="#square"/></node>
+  </visual_scene></library_visual_scenes>
+  <scene><instance_visual_scene url="#s"/></scene></COLLADA>"##;
+
+#[test]
+fn meshes_in_collada_are_shown_in_metres_in_the_frame_of_the_link() {
+    let shape = r#"<link name="upper"><visual><geometry><mesh filename="package://arm/meshes/plates.dae" scale="2 2 2"/></geometry></visual></link>"#;
+    let text = ARM.replace("<link name=\"upper\"/>", shape);
+    let (imported, file) = read_with("arm.urdf", text.as_bytes(), &[("meshes/plates.dae", PLATES)]);
+    assert_eq!(told(&imported, Fate::Taken, "mesh").len(), 1);
+    let upper = file.model.bodies.iter().position(|b| b.name == "upper").unwrap();
+    let drawing = &file.drawing.bodies[&upper];
+    assert_eq!(drawing.triangles.len(), 4);
+    let most = |k: usize| drawing.vertices.iter().map(|v| v[k]).fold(f64::NEG_INFINITY, f64::max);
+    // Files of triangles have single precision.
+    for (k, wanted) in [0.004, 0.002, 0.008].into_iter().enumerate() {
+        assert!((most(k) - wanted).abs() < 1e-8, "{k}: {}", most(k));
+    }
+    let (imported, _) = read_with("arm.urdf", text.as_bytes(), &[("meshes/plates.dae", "<COLLADA/>")]);
+    let why = told(&imported, Fate::Refused, "mesh");
+    assert!(why.len() == 1 && why[0].contains("it shows no triangles"), "{why:?}");
+}
+
+/// A four-bar whose last joint is yet to be closed: a crank of 0.1, a coupler of 0.3, a rocker of 0.2 upright at x = 0.3.
+const OPEN: &str = r#"<robot name="loop">
+  <link name="base"/><link name="crank"/><link name="coupler"/><link name="rocker"/>
+  <joint name="A" type="continuous"><parent link="base"/><child link="crank"/><axis xyz="0 1 0"/></joint>
+  <joint name="B" type="continuous"><parent link="crank"/><child link="coupler"/><origin xyz="0 0 0.1"/><axis xyz="0 1 0"/></joint>
+  <joint name="D" type="continuous"><parent link="base"/><child link="rocker"/><origin xyz="0.3 0 0"/><axis xyz="0 1 0"/></joint>
+  LOOP
+</robot>"#;
+
+#[test]
+fn loops_of_every_program_close() {
+    let loops = [
+        r#"<loop_joint name="C" type="continuous"><link1 link="coupler" xyz="0.3 0 0.1"/><link2 link="rocker" xyz="0 0 0.2"/><axis xyz="0 1 0"/></loop_joint>"#,
+        // As Isaac Sim documents it.
+        r#"<loop_joint name="C" type="spherical"><link1 link="coupler" rpy="0 0 0" xyz="0.3 0 0.1"/><link1 link="rocker" rpy="0 0 0" xyz="0 0 0.2"/></loop_joint>"#,
+        r#"<loop_joint name="C" type="revolute"><parent link="coupler"/><child link="rocker"/><parent_origin xyz="0.3 0 0.1"/><child_origin xyz="0 0 0.2"/><axis xyz="0 1 0" frame="parent"/></loop_joint>"#,
+        r#"<drake:ball_constraint xmlns:drake="http://drake.mit.edu"><drake:ball_constraint_body_A name="coupler"/><drake:ball_constraint_body_B name="rocker"/><drake:ball_constraint_p_AP value="0.3 0 0.1"/><drake:ball_constraint_p_BQ value="0 0 0.2"/></drake:ball_constraint>"#,
+        r#"<gazebo><joint name="C" type="revolute"><pose>0 0 0.2 0 0 0</pose><parent>coupler</parent><child>rocker</child><axis><xyz>0 1 0</xyz></axis></joint></gazebo>"#,
+        // As onshape-to-robot cuts it.
+        r#"<link name="closing_C_1"/><link name="closing_C_2"/>
+           <joint name="C_1" type="fixed"><parent link="coupler"/><child link="closing_C_1"/><origin xyz="0.3 0 0.1"/></joint>
+           <joint name="C_2" type="fixed"><parent link="rocker"/><child link="closing_C_2"/><origin xyz="0 0 0.2"/></joint>"#,
+    ];
+    for text in loops {
+        let (imported, file) = read("loop.urdf", &OPEN.replace("LOOP", text));
+        assert_eq!(file.model.drivers.len(), 1, "{text}\n{}", imported.report);
+        assert!(turns(&file, "rocker") > 0.01, "{text}");
+    }
+    let none = OPEN.replace("LOOP", &loops[4].replace("0 1 0", "0 0 0"));
+    assert!(refused("loop.urdf", &none).contains("the axis has no direction"));
+    let bushing = "<drake:linear_bushing_rpy xmlns:drake=\"http://drake.mit.edu\"/>";
+    let (imported, _) = read("loop.urdf", &OPEN.replace("LOOP", bushing));
+    assert_eq!(told(&imported, Fate::Refused, "linear_bushing_rpy").len(), 1);
+}
+
+#[test]
+fn floating_links_are_left_to_their_loops_or_stand() {
+    let floats = r#"<link name="lid"/><joint name="free" type="floating"><parent link="base"/><child link="lid"/><origin xyz="0 0 0.1"/></joint>"#;
+    let (imported, file) = read("loop.urdf", &OPEN.replace("LOOP", floats));
+    assert_eq!(joint(&file, "free").kind.name, "fixed", "{}", imported.report);
+    let held = format!(
+        "{floats}<loop_joint name=\"E\" type=\"revolute\"><link1 link=\"crank\" xyz=\"0 0 0.1\"/><link2 link=\"lid\"/><axis xyz=\"0 1 0\"/></loop_joint>"
+    );
+    let (_, file) = read("loop.urdf", &OPEN.replace("LOOP", &held));
+    assert!(file.model.named_joints().all(|(_, j)| j.name != "free"));
+    assert_eq!(joint(&file, "E").kind.name, "revolute");
+}
+
+#[test]
+fn plugins_say_which_joint_follows_and_limits_count_from_the_drawing() {
+    let plugin = r#"<gazebo><plugin filename="libgazebo_mimic_joint_plugin.so" name="m">
+        <joint>A</joint><mimicJoint>D</mimicJoint><multiplier>-2</multiplier><offset>0.25</offset></plugin></gazebo>"#;
+    let (imported, file) = read("loop.urdf", &OPEN.replace("LOOP", plugin));
+    assert_eq!(file.model.couplers.len(), 1);
+    assert_eq!(told(&imported, Fate::Taken, "mimic").len(), 1);
+    // The offset is in the drawing.
+    let rocker = file.model.bodies.iter().find(|b| b.name == "rocker").unwrap();
+    assert!((rocker.frame.rot.cols[0] - Vec3::new(0.25_f64.cos(), 0.0, -(0.25_f64.sin()))).norm() < SAME);
+    // A fixed joint follows nothing.
+    let fixed = r#"<link name="lid"/><joint name="F" type="fixed"><parent link="base"/><child link="lid"/><mimic joint="A"/></joint>"#;
+    let (imported, _) = read("loop.urdf", &OPEN.replace("LOOP", fixed));
+    assert_eq!(told(&imported, Fate::Refused, "mimic").len(), 1);
+}
+
+/// A right angle with five digits, as many write it.
+const ROUNDED: &str = r#"<?xml version="1.0"?>
+<sdf version="1.6"><model name="four_bar">
+  <link name="base"/>
+  <link name="crank"><pose>0 0 0 1.5708 0.3 0</pose></link>
+  <link name="coupler"><pose>0.1 0 0.2 1.5708 0 0.00001</pose></link>
+  <link name="rocker"><pose>0.5 0 0 -1.5708 0 0</pose></link>
+  <joint name="foot" type="fixed"><parent>world</parent><child>base</child></joint>
+  <joint name="A" type="revolute"><parent>base</parent><child>crank</child><axis><xyz>0 0 1</xyz></axis></joint>
+  <joint name="B" type="revolute"><parent>crank</parent><child>coupler</child><axis><xyz>0 0 1</xyz></axis></joint>
+  <joint name="C" type="revolute"><pose>0.3 0.1 0 0 0 0</pose><parent>coupler</parent><child>rocker</child>
+    <axis><xyz>0 1 0</xyz><use_parent_model_frame>1</use_parent_model_frame></axis></joint>
+  <joint name="D" type="revolute"><parent>base</parent><child>rocker</child><axis><xyz>0 0 1</xyz></axis></joint>
+</model></sdf>"#;
+
+#[test]
+fn a_loop_whose_axes_are_rounded_moves_all_the_same() {
+    let (imported, file) = read("four_bar.sdf", ROUNDED);
+    assert_eq!(file.model.drivers.len(), 1);
+    assert!(turns(&file, "rocker") > 0.01);
+    let axes = told(&imported, Fate::Approximated, "axes");
+    assert!(
+        axes.len() == 1 && axes[0].contains("1.1e-5 rad") && axes[0].contains("`A`, `B`, `D`"),
+        "{axes:?}"
+    );
+    // A chain moves as it is written.
+    let chain = ROUNDED
+        .replace("<joint name=\"D\"", "<joint name=\"E\"")
+        .replace("<parent>base</parent><child>rocker", "<parent>world</parent><child>base");
+    let (imported, _) = read("chain.sdf", &chain);
+    assert!(told(&imported, Fate::Approximated, "axes").is_empty());
+}
+
+#[test]
+fn axes_of_sdf_count_from_the_joint_since_version_1_5_whatever_the_digits() {
+    let text = |version: &str| {
+        format!(
+            r#"<sdf version="{version}"><model name="m"><link name="a"><pose>0 0 0 0 0 0</pose></link>
+            <link name="b"><pose>0 0 1 0 1.5707963267948966 0</pose></link>
+            <joint name="j" type="prismatic"><parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz></axis></joint></model></sdf>"#
+        )
+    };
+    for (version, axis) in [("1.4", [1.0, 0.0, 0.0]), ("1.5", [0.0, 0.0, -1.0]), ("1.10", [0.0, 0.0, -1.0])] {
+        let (_, file) = read("m.sdf", &text(version));
+        is_at(joint(&file, "j").frames[0].cols[2], axis);
+    }
+}
+
+const NESTED: &str = r#"<sdf version="1.10" xmlns:drake="http://drake.mit.edu"><world name="w">
+  <frame name="bench"><pose>0 0 1 0 0 0</pose></frame>
+  <model name="stand"><static>true</static><pose relative_to="bench">1 0 0 0 0 0</pose>
+    <link name="post"/>
+    <model name="arm"><pose relative_to="top">0 0 0.5 0 0 0</pose><link name="rod"/></model>
+    <frame name="top" attached_to="post"><pose>0 0 2 0 0 0</pose></frame>
+  </model>
+  <model name="cart" placement_frame="hitch"><pose relative_to="bench">5 0 0 0 0 0</pose>
+    <link name="frame"/><link name="wheel"><pose>0 1 0 0 0 0</pose>
+      <visual name="v"><pose rotation_format="quat_xyzw">0 0 0.25 0 0 0 1</pose><geometry><box><size>0.5 0.5 0.5</size></box></geometry></visual></link>
+    <frame name="hitch"><pose>2 0 0 0 0 0</pose></frame>
+    <joint name="axle" type="revolute"><parent>frame</parent><child>wheel</child><axis><xyz>0 1 0</xyz></axis></joint>
+    <joint name="slide" type="prismatic"><parent>world</parent><child>frame</child><axis><xyz>1 0 0</xyz>
+      <drake:mimic joint="axle" multiplier="0.3" offset="0"/></axis></joint>
+  </model>
+  <model name="cart"><link name="frame"/></model>
+  <include merge="true"><uri>model://lamp</uri><pose>7 0 0 0 0 0</pose></include>
+  <joint name="bolt" type="fixed"><parent>stand::arm</parent><child>bulb</child></joint>
+</world></sdf>"#;
+const LAMP: &str = r#"<sdf version="1.9"><model name="lamp"><link name="bulb"><pose>0 0 0.5 0 0 0</pose></link></model></sdf>"#;
+
+#[test]
+fn frames_of_sdf_stand_where_gazebo_puts_them() {
+    let config = "<model><sdf version=\"1.4\">old.sdf</sdf><sdf version=\"1.9\">lamp.sdf</sdf></model>";
+    let beside = [("lamp/model.config", config), ("lamp/lamp.sdf", LAMP)];
+    let (imported, file) = read_with("w.sdf", NESTED.as_bytes(), &beside);
+    let stands = |name: &str, at: [f64; 3]| {
+        is_at(
+            file.model.bodies.iter().find(|b| b.name == name).unwrap_or_else(|| panic!("no {name}")).frame.r,
+            at,
+        );
+    };
+    stands("stand::post", [1.0, 0.0, 1.0]);
+    stands("stand::arm::rod", [1.0, 0.0, 3.5]);
+    stands("cart::frame", [3.0, 0.0, 1.0]);
+    stands("cart::wheel", [3.0, 1.0, 1.0]);
+    // Names are made unique where need be.
+    stands("cart_2::frame", [0.0, 0.0, 0.0]);
+    stands("bulb", [7.0, 0.0, 0.5]);
+    // A joint of the world, on the body that a model's frame is on.
+    let bolted = joint(&file, "bolt").bodies.map(|b| file.model.bodies[b.0].name.as_str());
+    assert_eq!(bolted, ["stand::arm::rod", "bulb"]);
+    let mimic = &file.model.couplers[0].terms;
+    assert_eq!([mimic[0].coefficient, mimic[1].coefficient], [1.0, -0.3]);
+    let wheel = file.model.bodies.iter().position(|b| b.name == "cart::wheel").unwrap();
+    let low = file.drawing.bodies[&wheel].vertices.iter().map(|v| v.z).fold(f64::INFINITY, f64::min);
+    assert!(low.abs() < 1e-8, "{low}");
+    assert_eq!(told(&imported, Fate::Taken, "frame").len(), 3);
+    assert!(imported.report.of(Fate::Refused).next().is_none(), "{}", imported.report);
+}
+
+#[test]
+fn joints_of_mjcf_in_frames_and_classes_and_includes_are_found() {
+    let text = r#"<mujoco><compiler angle="radian"/><include file="parts/all.xml"/>
+      <default><default class="slider"><joint type="slide" axis="1 0 0" range="-inf inf"/></default></default>
+      <worldbody><body name="b"><frame pos="0 0 2" euler="0 0 1.5707963267948966" childclass="slider"><joint name="j"/></frame>
+        <body name="c" childclass="slider"><joint type="ball"/><body name="d" pos="0 0 1"><joint type="ball" name="k"/><geom size="1"/></body></body>
+      </body></worldbody></mujoco>"#;
+    let beside = [
+        ("parts/all.xml", "<mujocoinclude><include file=\"more.xml\"/></mujocoinclude>"),
+        ("parts/more.xml", "<mujocoinclude><worldbody><body name=\"e\"/></worldbody></mujocoinclude>"),
+    ];
+    let (imported, file) = read_with("m.xml", text.as_bytes(), &beside);
+    is_at(joint(&file, "j").frames[0].cols[2], [0.0, 1.0, 0.0]);
+    assert_eq!(joint(&file, "j").kind.name, "translational");
+    assert_eq!(told(&imported, Fate::Taken, "include").len(), 2);
+    assert!(file.model.bodies.iter().any(|b| b.name == "e"));
+    // Each of the two ball joints is held in all its angles, also the spin of the body between them.
+    assert_eq!(told(&imported, Fate::Approximated, "motion").len(), 7, "{}", imported.report);
+    assert!(
+        refused(
+            "m.xml",
+            &text
+                .replace("childclass=\"slider\"><joint type", "childclass=\"slide\"><joint type")
+                .replace("<include file=\"parts/all.xml\"/>", "")
+        )
+        .contains("did you mean `slider`?")
+    );
+    let twice = text.replace("name=\"k\"", "name=\"j\"").replace("<include file=\"parts/all.xml\"/>", "");
+    assert!(refused("m.xml", &twice).contains("two joints `j`"));
+}
+
+#[test]
+fn equalities_of_mjcf_hold_free_bodies_make_hinges_and_rods() {
+    let text = r#"<mujoco><worldbody>
+        <site name="p" pos="0 0 1"/>
+        <body name="plate"><freejoint/><geom type="box" size="1 1 1"/><site name="q" pos="0.5 0 0"/></body>
+        <body name="box" pos="9 0 0"><freejoint name="loose"/><geom type="sphere" size="1"/></body>
+      </worldbody>
+      <tendon><spatial name="rope"><site site="p"/><site site="q"/></spatial></tendon>
+      <equality><connect name="a" body1="plate" anchor="0 0 0"/><connect name="b" body1="plate" anchor="0 0.5 0"/>
+        <tendon name="rod" tendon1="rope"/></equality></mujoco>"#;
+    let (imported, file) = read("m.xml", text);
+    assert_eq!(
+        kinds(&file),
+        [("rod", "distance"), ("a", "revolute"), ("loose", "fixed")],
+        "{}",
+        imported.report
+    );
+    is_at(joint(&file, "a").frames[0].cols[2], [0.0, 1.0, 0.0]);
+    // Without the rod the plate swings.
+    let (_, file) = read("m.xml", &text.replace("<tendon name=\"rod\" tendon1=\"rope\"/>", ""));
+    assert!(turns(&file, "plate") > 0.1);
+    // With one connect it is a ball joint.
+    let (_, file) =
+        read("m.xml", &text.replace("<connect name=\"b\" body1=\"plate\" anchor=\"0 0.5 0\"/>", ""));
+    assert_eq!(joint(&file, "a").kind.name, "spherical");
+}
