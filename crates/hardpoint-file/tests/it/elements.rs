@@ -77,7 +77,7 @@ fn ball(radius: f64, parted: usize) -> Vec<[Vec3; 3]> {
     let mut triangles: Vec<[Vec3; 3]> = Vec::new();
     for k in 0..8 {
         let [x, y, z] = [0, 1, 2].map(|axis| Vec3::AXES[axis] * if k >> axis & 1 == 0 { 1.0 } else { -1.0 });
-        triangles.push(if (k as u32).count_ones() % 2 == 0 { [x, y, z] } else { [x, z, y] });
+        triangles.push(if (k as u32).count_ones().is_multiple_of(2) { [x, y, z] } else { [x, z, y] });
     }
     for _ in 0..parted {
         triangles = triangles

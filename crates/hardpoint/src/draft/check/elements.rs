@@ -260,7 +260,7 @@ impl Checker<'_> {
         for (number, key) in numbers {
             if !(self.value(number) > 0.0) {
                 let message = format!("the {key} of `{name}` is not above zero");
-                self.fault("HP0252", here.key(key), message).help("correct it, or leave it out");
+                self.fault("HP0252", here.key(key), message).help("correct it, or remove the friction");
             }
         }
     }
