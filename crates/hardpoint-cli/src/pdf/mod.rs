@@ -21,7 +21,7 @@ const MOST_RANKED: usize = 12;
 const FACTS: [f32; 2] = [0.0, 90.0];
 const FIGURES: [f32; 3] = [0.0, 130.0, 220.0];
 const VARIABLES: [f32; 4] = [0.0, 130.0, 220.0, 400.0];
-const RANKED: [f32; 4] = [0.0, 130.0, 260.0, 380.0];
+const RANKED: [f32; 4] = [0.0, 170.0, 290.0, 410.0];
 /// The longest bar of a ranking.
 const BAR: f32 = 110.0;
 
