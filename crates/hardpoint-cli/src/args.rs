@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use hardpoint::space::Angles;
 use hardpoint::study::Scheme;
 use hardpoint::topology::Formulation;
 
@@ -181,6 +182,7 @@ Writes into the folder, each file whole or not at all:
   summary.json     the model, how the run went, the largest sensitivities
 and if asked for
   motion.xlsx      an Excel workbook with charts (--workbook)
+  report.pdf       facts, key figures, curves and rankings on paper (--pdf)
   motion.glb       the motion as animated glTF (--gltf)
   jerk.csv         third time derivatives (--jerk)
 Of a model with cases, each case gets a folder of its own there, and summary.json says how
@@ -218,6 +220,29 @@ impl Format {
     }
 }
 
+/// Three angles that say how a body is turned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub enum Orientation {
+    /// The 3-1-3 Euler angles
+    Euler,
+    /// Cardan angles: about x, the new y, the new z
+    Cardan,
+    /// Roll, pitch and yaw
+    RollPitchYaw,
+}
+
+impl Orientation {
+    /// The same for the core.
+    pub fn angles(self) -> Angles {
+        match self {
+            Self::Euler => Angles::Euler,
+            Self::Cardan => Angles::Cardan,
+            Self::RollPitchYaw => Angles::RollPitchYaw,
+        }
+    }
+}
+
 /// `hardpoint run`.
 #[derive(Args, Debug)]
 #[command(after_help = AFTER_RUN)]
@@ -238,9 +263,15 @@ pub struct Run {
     /// Write an Excel workbook too, motion.xlsx: variables, measures over time with charts, sensitivities
     #[arg(long)]
     pub workbook: bool,
+    /// Write the run as pages to print too, report.pdf: facts, key figures, curves, what moves them
+    #[arg(long)]
+    pub pdf: bool,
     /// Write an animated glTF too, motion.glb, for Blender and other viewers
     #[arg(long)]
     pub gltf: bool,
+    /// Write three angles of every body into the motion too, beside its quaternion: euler (3-1-3), cardan or roll_pitch_yaw
+    #[arg(long, value_enum, hide_possible_values = true)]
+    pub angles: Option<Orientation>,
     /// Write motion and sensitivities of all bodies, however many there are
     #[arg(long)]
     pub bodies: bool,

@@ -15,6 +15,7 @@ mod new;
 mod optimize;
 mod outcome;
 mod pages;
+mod pdf;
 mod run;
 mod session;
 mod site;

@@ -61,6 +61,7 @@ const FILES: [&str; 17] = [
     "loads.csv",
     "drivers.csv",
     "motion.xlsx",
+    "report.pdf",
     "motion.glb",
     "maps.csv",
     "map_sensitivity.csv",
@@ -266,6 +267,13 @@ fn run_in(
             summary.left_out.extend(told.map_err(|e| session.not_written(&e))?);
             summary.files.push(folder.path_of("motion.xlsx").display().to_string());
         }
+        if options.pdf {
+            let contents =
+                Contents { file, course: &course, summary: &summary, suffix: options.format.suffix() };
+            let told = folder.write("report.pdf", |out| contents.write_pdf(out));
+            summary.left_out.extend(told.map_err(|e| session.not_written(&e))?);
+            summary.files.push(folder.path_of("report.pdf").display().to_string());
+        }
         if options.gltf {
             let glb = hardpoint_export::animation(file, &solution.motion);
             let written = folder.write("motion.glb", |out| glb.and_then(|glb| out.write_all(&glb)));
@@ -393,7 +401,7 @@ fn write_jerk(
     folder: &mut Folder,
 ) -> Result<(), NotWritten> {
     let _working = session.working("third derivatives");
-    let columns = Columns { model: &file.model, units: file.units, bodies: true };
+    let columns = Columns { model: &file.model, units: file.units, bodies: true, angles: None };
     folder.write("jerk.csv", |out| {
         // Nothing can end this part of the work but the end of the program; nothing is in its place yet.
         session.patient(false);

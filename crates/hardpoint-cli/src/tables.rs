@@ -13,7 +13,7 @@ use hardpoint_report::facts::variable_unit;
 use hardpoint_report::figures::bytes;
 use hardpoint_report::npy::{Npy, Sidecar, add_motion, add_sensitivities};
 
-use crate::args::{Format, Run};
+use crate::args::{Format, Orientation, Run};
 use crate::folder::{Folder, NotWritten, Writing};
 use crate::long_table::{TableFormat, TableWriter};
 use crate::session::json_text;
@@ -45,7 +45,8 @@ impl<'m> Plan<'m> {
         let (model, units): (&Model, Units) = (&file.model, file.units);
         let bodies = model.bodies.len() - 1;
         let has_outputs = !hardpoint::measure::outputs(model).is_empty();
-        let columns = |bodies: bool| Columns { model, units, bodies };
+        let angles = options.angles.map(Orientation::angles);
+        let columns = |bodies: bool| Columns { model, units, bodies, angles };
         let some = |c: Columns<'m>| (c.bodies || has_outputs).then_some(c);
         let motion = columns(options.bodies || bodies <= MOST_BODIES);
         let few = !has_outputs && bodies * model.variables.len() <= MOST_MOVED;

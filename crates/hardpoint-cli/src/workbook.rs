@@ -99,14 +99,9 @@ impl Contents<'_> {
         Ok(told)
     }
 
-    fn about(&self, sheets: &[Sheet]) -> Result<Worksheet, XlsxError> {
-        let (model, summary) = (&self.file.model, self.summary);
-        let mut page = Page::new("About")?;
-        page.heading(&summary.model.name)?;
-        for line in summary.model.description.iter().flat_map(|d| d.lines()) {
-            page.row(&[line.into()])?;
-        }
-        page.row(&[])?;
+    /// What was run, and how it went.
+    pub fn facts(&self) -> Vec<(&'static str, String)> {
+        let summary = self.summary;
         let steps = &summary.steps;
         let span = steps
             .last_solved
@@ -125,7 +120,18 @@ impl Contents<'_> {
             ("the motion ended", ended),
             ("written by", GENERATOR.into()),
         ]);
-        for (what, said) in facts {
+        facts
+    }
+
+    fn about(&self, sheets: &[Sheet]) -> Result<Worksheet, XlsxError> {
+        let (model, summary) = (&self.file.model, self.summary);
+        let mut page = Page::new("About")?;
+        page.heading(&summary.model.name)?;
+        for line in summary.model.description.iter().flat_map(|d| d.lines()) {
+            page.row(&[line.into()])?;
+        }
+        page.row(&[])?;
+        for (what, said) in self.facts() {
             page.row(&[what.into(), said.into()])?;
         }
         page.table(
@@ -190,7 +196,7 @@ impl Contents<'_> {
     /// The columns of the motion: bodies only where there is nothing else.
     fn columns(&self) -> Columns<'_> {
         let bodies = self.solution().measured.outputs.is_empty();
-        Columns { model: &self.file.model, units: self.file.units, bodies }
+        Columns { model: &self.file.model, units: self.file.units, bodies, angles: None }
     }
 
     fn motion(&self) -> Result<Sheet, XlsxError> {
@@ -301,7 +307,7 @@ impl Contents<'_> {
     }
 
     /// The outputs with charts and sensitivities here: measures, or points where there are none.
-    fn shown(&self) -> Vec<(usize, &Output)> {
+    pub fn shown(&self) -> Vec<(usize, &Output)> {
         let outputs = || self.solution().measured.outputs.iter().enumerate();
         let measures: Vec<_> =
             outputs().filter(|(_, o)| matches!(o.source, OutputSource::Measure(_))).collect();

@@ -7,7 +7,7 @@ use hardpoint::space::{Mat3, Vec3};
 use toml_edit::{DocumentMut, Item, Value};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
-use crate::read::planar;
+use crate::read::planar::Plane;
 use crate::units::Units;
 use crate::{Folder, ModelFile, parsed};
 
@@ -109,7 +109,7 @@ pub fn hardpoints_in(text: &str) -> Vec<String> {
 /// ```
 pub fn placed(text: &str, name: &str, places: &[(String, [f64; 3])]) -> String {
     let mut document: DocumentMut = text.parse().unwrap_or_default();
-    let normal = document.get("planar").and_then(Item::as_str).and_then(planar::normal_of);
+    let plane = document.get("planar").and_then(Item::as_str).and_then(Plane::named);
     if let Some(value) = value_at(&mut document, &[Key("name")]) {
         let decor = value.decor().clone();
         *value = name.into();
@@ -118,8 +118,8 @@ pub fn placed(text: &str, name: &str, places: &[(String, [f64; 3])]) -> String {
     for (hardpoint, place) in places {
         for (axis, x) in place.iter().enumerate() {
             let list = document.get("hardpoints").and_then(|t| t.get(hardpoint)?.as_array());
-            let k = match (list.map(toml_edit::Array::len), normal) {
-                (Some(2), Some(normal)) => planar::coordinate(normal, axis),
+            let k = match (list.map(toml_edit::Array::len), plane) {
+                (Some(2), Some(plane)) => plane.coordinate(axis),
                 _ => Some(axis),
             };
             let Some(k) = k else { continue };
@@ -501,10 +501,10 @@ impl Edit<'_> {
     /// The way to a number of a hardpoint that has two coordinates only.
     fn written_way<'w>(&self, way: &[Step<'w>]) -> Vec<Step<'w>> {
         let mut way = way.to_vec();
-        if let ([Key("hardpoints"), Key(name), At(axis)], Some(normal)) = (&mut way[..], self.file.plane) {
+        if let ([Key("hardpoints"), Key(name), At(axis)], Some(plane)) = (&mut way[..], self.file.plane) {
             let list = self.document.get("hardpoints").and_then(|t| t.get(*name)?.as_array());
             if list.is_some_and(|list| list.len() == 2) {
-                *axis = planar::coordinate(normal, *axis).unwrap_or(usize::MAX);
+                *axis = plane.coordinate(*axis).unwrap_or(usize::MAX);
             }
         }
         way

@@ -58,6 +58,7 @@ pub use diagnostic::{Diagnostic, Diagnostics, Severity, Source};
 pub use drawing::{Drawing, Form, Mesh, MeshFrame};
 pub use edit::{hardpoints_in, placed};
 pub use measured::Measured;
+pub use read::planar::Plane;
 pub use read::triangles;
 pub use schema::schema;
 pub use units::{AngleUnit, LengthUnit, Units};
@@ -66,7 +67,6 @@ use diagnostic::{closest, shown};
 use places::Places;
 use read::include::{self, Files, Hindrance, shifted};
 use read::mirror::{Origins, opposites, told_once, with_origin};
-use read::planar;
 pub use tree::Texts;
 use tree::{Folder, Reader};
 
@@ -92,8 +92,8 @@ pub struct ModelFile {
     pub remarks: Vec<Diagnostic>,
     /// The texts that the model names files of: tables of laws, curves that are wanted, lists of designs.
     pub texts: Texts,
-    /// The axis square to the plane of a planar model: 0, 1 or 2 for x, y or z.
-    pub plane: Option<usize>,
+    /// The plane of a planar model.
+    pub plane: Option<Plane>,
     /// What a mirror made from something else, by name.
     origins: Origins,
     /// The case that the model was made of, where the file has cases and only one of them is meant.
@@ -412,7 +412,7 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
         let list = found.into_iter().map(|d| d.note(note)).collect();
         return Err(Diagnostics::new(source.clone(), list));
     }
-    let plane = planar::normal(&whole.table);
+    let plane = Plane::of(&whole.table);
     let raw = reader.model(&whole.table, &whole.twins);
     let (units, texts, origins) = (reader.units, reader.texts, reader.origins);
     let remarks = told_once(reader.remarks, &origins);

@@ -7,8 +7,8 @@
 use hardpoint::Solution;
 use hardpoint::joint::Quantity::{self, Angle, Length};
 use hardpoint::measure::Output;
-use hardpoint::model::{Model, VariableId};
-use hardpoint::space::Vec3;
+use hardpoint::model::{Model, OrientationAngle, VariableId};
+use hardpoint::space::{Angles, Vec3};
 use hardpoint::study::Jerks;
 use hardpoint_file::Units;
 use serde::Serialize;
@@ -44,6 +44,8 @@ pub struct Columns<'m> {
     pub units: Units,
     /// Whether bodies are among them.
     pub bodies: bool,
+    /// The angles that the motion of bodies has beside their quaternions, if it has any.
+    pub angles: Option<Angles>,
 }
 
 /// What stands before a component of a position's derivative by time.
@@ -56,6 +58,12 @@ impl Columns<'_> {
         for body in self.bodies() {
             columns.extend(self.components(body, LETTERS[0], Length, 0));
             columns.extend(["qw", "qx", "qy", "qz"].map(|q| Column::new(format!("{body}.{q}"), "1")));
+            if let Some(angles) = self.angles {
+                let unit = order_unit(self.units, Angle, 0);
+                let name = |place| OrientationAngle { angles, place }.name();
+                columns
+                    .extend((0..3).map(|place| Column::new(format!("{body}.{}", name(place)), unit.clone())));
+            }
             columns.extend(self.components(body, LETTERS[1], Length, 1));
             columns.extend(self.components(body, "omega_", Angle, 1));
             columns.extend(self.components(body, LETTERS[2], Length, 2));
@@ -96,6 +104,9 @@ impl Columns<'_> {
             for s in solution.motion.at(k).iter().skip(1) {
                 push(row, |x| units.from_si(Length, x), s.r);
                 row.extend(s.quaternion());
+                if let Some(angles) = self.angles {
+                    row.extend(angles.of(s.rotation).map(|x| units.from_si(Angle, x)));
+                }
                 push(row, |x| units.from_si(Length, x), s.v);
                 push(row, |x| units.from_si(Angle, x), s.omega);
                 push(row, |x| units.from_si(Length, x), s.a);

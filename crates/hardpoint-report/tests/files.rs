@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
-use hardpoint::model::VariableId;
+use hardpoint::model::{BodyId, VariableId};
 use hardpoint::sensitivity::BodySensitivity;
+use hardpoint::space::Angles;
 use hardpoint::study::{Scheme, finite_differences};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
@@ -24,7 +25,7 @@ fn file() -> ModelFile {
 }
 
 fn all(file: &ModelFile) -> Columns<'_> {
-    Columns { model: &file.model, units: file.units, bodies: true }
+    Columns { model: &file.model, units: file.units, bodies: true, angles: None }
 }
 
 struct Csv {
@@ -86,6 +87,43 @@ fn motion_file_holds_every_number_in_the_units_of_its_header() {
         assert_same(csv.number(k, "angle [deg]"), solution.measured.value(k, angle)[0] * DEGREES);
         let law = 40.0 * (2.0 * PI * solution.motion.times[k]).sin();
         assert!((csv.number(k, "angle [deg]") - law).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn angles_beside_the_quaternions_turn_every_body_to_where_it_is() {
+    let file = hardpoint_file::parse(include_str!("../../../models/hooke.toml"), "hooke.toml").unwrap();
+    let solution = Analysis::new(&file.model).unwrap().run();
+    for (kind, names) in [
+        (Angles::Euler, ["euler_1", "euler_2", "euler_3"]),
+        (Angles::Cardan, ["cardan_1", "cardan_2", "cardan_3"]),
+        (Angles::RollPitchYaw, ["roll", "pitch", "yaw"]),
+    ] {
+        let mut table = MotionCsv::new(Columns { angles: Some(kind), ..all(&file) }, Vec::new()).unwrap();
+        table.add(&solution).unwrap();
+        let csv = Csv::read(&table.end().unwrap());
+        let mut known = 0;
+        for (b, body) in file.model.bodies.iter().enumerate().skip(1) {
+            for k in 0..csv.rows.len() {
+                let columns = names.map(|name| format!("{}.{name} [deg]", body.name));
+                let rotation = solution.body(k, BodyId(b)).rotation;
+                // Where two turns are about one line there is no number.
+                if kind.of(rotation)[0].is_nan() {
+                    assert!(columns.iter().all(|c| csv.text(k, c).is_empty()), "{kind:?} {}", body.name);
+                    continue;
+                }
+                known += 1;
+                let found = kind.rotation(columns.map(|c| csv.number(k, &c) / DEGREES));
+                for axis in 0..3 {
+                    assert!(
+                        (found.cols[axis] - rotation.cols[axis]).norm() < 1e-12,
+                        "{kind:?} {}",
+                        body.name
+                    );
+                }
+            }
+        }
+        assert!(known > csv.rows.len(), "{kind:?}: {known}");
     }
 }
 

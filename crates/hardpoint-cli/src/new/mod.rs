@@ -26,6 +26,13 @@ struct Template {
     is_vehicle: bool,
 }
 
+impl Template {
+    /// Whether all that it has lies in the plane of x and y.
+    fn is_planar(&self) -> bool {
+        self.text.contains("\nplanar = \"xy\"")
+    }
+}
+
 macro_rules! templates {
     ($($name:literal: $what:literal, $is_vehicle:literal;)*) => {
         &[$(Template {
@@ -173,12 +180,14 @@ fn places(
             "leave `--hardpoints` out, and change these",
         ));
     }
-    let unit = options.units.clone().or_else(|| asked("unit of the table (mm, cm, m, in): "));
-    let unit =
-        unit.ok_or_else(|| session.misunderstood("of the table no unit is said; give one with `--units`"))?;
-    let unit = LengthUnit::ALL.into_iter().find(|u| u.symbol() == unit).ok_or_else(|| {
-        session.misunderstood(&format!("`--units {}`: a unit is mm, cm, m or in", text::shown(&unit)))
+    let table = table::read(file, template.is_planar()).map_err(|problem| {
+        refused(
+            &format!("`{shown}` is no table of hardpoints"),
+            &problem,
+            "give a name, x, y and z on each line",
+        )
     })?;
+    let unit = unit(session, options, table.unit.as_deref(), &shown)?;
     let axes = match (&options.axes, template.is_vehicle) {
         (Some(axes), _) => Some(axes.clone()),
         (None, true) => {
@@ -193,16 +202,9 @@ fn places(
     })?;
     let axes: Axes =
         axes.parse().map_err(|why: String| session.misunderstood(&format!("`--axes`: {why}")))?;
-    let rows = table::read(file).map_err(|problem| {
-        refused(
-            &format!("`{shown}` is no table of hardpoints"),
-            &problem,
-            "give a name, x, y and z on each line",
-        )
-    })?;
     let mut places: Vec<(String, [f64; 3])> = Vec::new();
     let mut unknown = Vec::new();
-    for row in rows {
+    for row in table.rows {
         let Some(name) = wanted.iter().find(|w| plain(w) == plain(&row.name)) else {
             unknown.push(row.name);
             continue;
@@ -237,5 +239,52 @@ fn places(
             help,
         ));
     }
+    if template.is_planar() {
+        in_one_plane(session, &places, &shown)?;
+    }
     Ok(places)
+}
+
+/// The unit of a table: the one that is said with it, or in it, or that somebody answers.
+fn unit(session: &Session, options: &New, said: Option<&str>, shown: &str) -> Result<LengthUnit, Outcome> {
+    let named = |text: &str| LengthUnit::ALL.into_iter().find(|u| u.symbol() == text);
+    let known = "a unit is mm, cm, m or in";
+    let wrong = |text: &str| session.misunderstood(&format!("`--units {}`: {known}", text::shown(text)));
+    let given = options.units.as_deref().map(|text| named(text).ok_or_else(|| wrong(text))).transpose()?;
+    let Some(said) = said else {
+        return match given {
+            Some(unit) => Ok(unit),
+            None => {
+                let text = asked("unit of the table (mm, cm, m, in): ").ok_or_else(|| {
+                    session.misunderstood("of the table no unit is said; give one with `--units`")
+                })?;
+                named(&text).ok_or_else(|| wrong(&text))
+            }
+        };
+    };
+    let what = format!("the columns of `{shown}` are in `{}`", text::shown(said));
+    match (named(said), given) {
+        (None, _) => Err(session.not_begun(&what, known, "write the table in one of them")),
+        (Some(unit), Some(given)) if unit != given => {
+            let why = format!("`--units` says `{}`", given.symbol());
+            Err(session.not_begun(&what, &why, "leave `--units` out, or correct the names of the columns"))
+        }
+        (Some(unit), _) => Ok(unit),
+    }
+}
+
+/// The hardpoints of a planar template lie in its plane, z = 0; one that is parallel to it will do.
+fn in_one_plane(session: &Session, places: &[(String, [f64; 3])], shown: &str) -> Result<(), Outcome> {
+    let Some((first, [_, _, z])) = places.first() else { return Ok(()) };
+    if let Some((other, [_, _, there])) = places.iter().find(|(_, p)| p[2] != *z) {
+        let what = format!("the hardpoints of `{shown}` do not lie in the plane of x and y");
+        let why = format!("`{first}` is at z = {z} mm, `{other}` at z = {there} mm");
+        let help = "leave their z out, or say with `--axes` which of the coordinates lie in the plane, \
+                    like \"x forward, z left, y up\" for those in x and z";
+        return Err(session.not_begun(&what, &why, help));
+    }
+    if *z != 0.0 {
+        session.remark(&format!("all hardpoints are at z = {z} mm: the model has them at z = 0"));
+    }
+    Ok(())
 }

@@ -7,8 +7,16 @@ use calamine::{Data, Reader};
 /// A larger file is no table of hardpoints.
 const LARGEST: u64 = 16 << 20;
 
-/// A hardpoint of a table.
+/// What a table says.
 #[derive(Debug, PartialEq)]
+pub struct Hardpoints {
+    pub rows: Vec<Row>,
+    /// The unit of its coordinates, where the names of its columns say it, as in `x [mm]`.
+    pub unit: Option<String>,
+}
+
+/// A hardpoint of a table.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// Its line, from 1.
     pub line: usize,
@@ -16,8 +24,8 @@ pub struct Row {
     pub place: [f64; 3],
 }
 
-/// All rows of a table; what is wrong with it in words.
-pub fn read(path: &Path) -> Result<Vec<Row>, String> {
+/// All rows of a table; what is wrong with it in words. One of points in a plane may have no z, which is 0 then.
+pub fn read(path: &Path, in_plane: bool) -> Result<Hardpoints, String> {
     let size = std::fs::metadata(path).map_err(|e| e.to_string())?.len();
     if size > LARGEST {
         return Err(format!("it is larger than {} MiB", LARGEST >> 20));
@@ -27,7 +35,7 @@ pub fn read(path: &Path) -> Result<Vec<Row>, String> {
         true => sheet(path)?,
         false => text(path)?,
     };
-    rows(&cells)
+    hardpoints(&cells, in_plane)
 }
 
 /// The cells of the first sheet that has any.
@@ -49,7 +57,7 @@ fn sheet(path: &Path) -> Result<Vec<Vec<String>>, String> {
     Err("none of its sheets has a cell".into())
 }
 
-/// The cells of a text, which semicolons, tabs or commas keep apart.
+/// The cells of a text, which semicolons, tabs or commas keep apart. Where it is not commas, numbers may have a decimal comma.
 fn text(path: &Path) -> Result<Vec<Vec<String>>, String> {
     let text = std::fs::read_to_string(path).map_err(|e| match e.kind() {
         std::io::ErrorKind::InvalidData => "it is not a text in UTF-8".to_owned(),
@@ -74,60 +82,99 @@ fn text(path: &Path) -> Result<Vec<Vec<String>>, String> {
             p.line() as usize + before.count()
         });
         cells.resize(line.saturating_sub(1).max(cells.len()), Vec::new());
-        cells.push(record.iter().map(str::to_owned).collect());
+        cells.push(
+            record
+                .iter()
+                .map(|cell| if delimiter == b',' { cell.to_owned() } else { pointed(cell) })
+                .collect(),
+        );
     }
     Ok(cells)
 }
 
+/// A number with a decimal comma, with a point; all else as it is.
+fn pointed(cell: &str) -> String {
+    let with_point = cell.replacen(',', ".", 1);
+    if number(&with_point).is_some() { with_point } else { cell.to_owned() }
+}
+
 /// Names and places; the first line that is not empty may name the columns.
-fn rows(cells: &[Vec<String>]) -> Result<Vec<Row>, String> {
+fn hardpoints(cells: &[Vec<String>], in_plane: bool) -> Result<Hardpoints, String> {
     let filled = |row: &&Vec<String>| row.iter().any(|cell| !cell.trim().is_empty());
     let lines = || (1..).zip(cells).filter(|(_, row)| filled(row));
-    let mut columns = [0, 1, 2, 3];
+    let mut columns = [0, 1, 2, 3].map(Some);
     let mut begin = 0;
+    let mut unit = None;
     if let Some((line, head)) = lines().next() {
-        let number = |k: usize| head.get(k).and_then(|cell| cell.trim().parse::<f64>().ok());
-        if (0..head.len()).all(|k| number(k).is_none()) {
+        if in_plane && lines().all(|(_, row)| row.len() <= 3) {
+            columns[3] = None;
+        }
+        if head.iter().all(|cell| number(cell).is_none()) {
             begin = line;
-            // `X [mm]` is x.
-            let title =
-                |cell: &String| cell.split(['[', '(']).next().unwrap_or_default().trim().to_lowercase();
-            let titles: Vec<String> = head.iter().map(title).collect();
-            for (column, title) in columns.iter_mut().skip(1).zip(["x", "y", "z"]) {
-                let found = titles.iter().position(|t| t == title);
-                *column = found
-                    .ok_or_else(|| format!("line {line} names its columns, and none of them `{title}`"))?;
+            let titles: Vec<(String, Option<String>)> = head.iter().map(|cell| title(cell)).collect();
+            for (k, axis) in (1..).zip(["x", "y", "z"]) {
+                columns[k] = titles.iter().position(|(t, _)| t == axis);
+                if columns[k].is_none() && !(in_plane && axis == "z") {
+                    return Err(format!("line {line} names its columns, and none of them `{axis}`"));
+                }
             }
-            let name = titles.iter().position(|t| ["name", "hardpoint", "point"].contains(&t.as_str()));
-            columns[0] = name.unwrap_or_else(|| (0..4).find(|k| !columns[1..].contains(k)).unwrap_or(0));
+            let called = |t: &str| ["name", "hardpoint", "point"].contains(&t);
+            let name = titles.iter().position(|(t, _)| called(t));
+            columns[0] = name.or_else(|| (0..4).find(|k| !columns[1..].contains(&Some(*k))));
+            unit = unit_of(columns[1..].iter().flatten().map(|k| &titles[*k].1), line)?;
         }
     }
-    let mut all = Vec::new();
+    let mut rows = Vec::new();
     for (line, row) in lines().filter(|(line, _)| *line > begin) {
-        let cell = |k: usize| row.get(columns[k]).map_or("", |cell| cell.trim());
-        if cell(0).is_empty() {
+        let cell = |k: usize| row.get(k).map_or("", |cell| cell.trim());
+        let name = columns[0].map_or("", cell);
+        if name.is_empty() {
             return Err(format!("line {line} has no name"));
         }
         let mut place = [0.0; 3];
         for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
-            let found = cell(k + 1).parse::<f64>().ok().filter(|x| x.is_finite());
+            let Some(text) = columns[k + 1].map(cell) else { continue };
             place[k] =
-                found.ok_or_else(|| format!("line {line}: `{}` is no number for {axis}", cell(k + 1)))?;
+                number(text).ok_or_else(|| format!("line {line}: `{text}` is no number for {axis}"))?;
         }
-        all.push(Row { line, name: cell(0).to_owned(), place });
+        rows.push(Row { line, name: name.to_owned(), place });
     }
-    if all.is_empty() { Err("it has no rows".into()) } else { Ok(all) }
+    if rows.is_empty() { Err("it has no rows".into()) } else { Ok(Hardpoints { rows, unit }) }
+}
+
+fn number(cell: &str) -> Option<f64> {
+    cell.trim().parse::<f64>().ok().filter(|x| x.is_finite())
+}
+
+/// What a column is called, and the unit behind it: `X [mm]` is x in mm.
+fn title(cell: &str) -> (String, Option<String>) {
+    let (name, rest) = cell.split_once(['[', '(']).unwrap_or((cell, ""));
+    let unit = rest.trim().trim_end_matches([']', ')']).trim().to_lowercase();
+    (name.trim().to_lowercase(), Some(unit).filter(|unit| !unit.is_empty()))
+}
+
+/// The unit that columns have in common; none where none of them has one.
+fn unit_of<'t>(
+    mut units: impl Iterator<Item = &'t Option<String>>,
+    line: usize,
+) -> Result<Option<String>, String> {
+    let Some(first) = units.next() else { return Ok(None) };
+    let said = |unit: &Option<String>| unit.clone().unwrap_or_else(|| "no unit".into());
+    match units.find(|unit| *unit != first) {
+        Some(other) => Err(format!("line {line} has columns in {} and in {}", said(first), said(other))),
+        None => Ok(first.clone()),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn of(text: &str) -> Result<Vec<Row>, String> {
+    fn of(text: &str, in_plane: bool) -> Result<Hardpoints, String> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("points.csv");
         std::fs::write(&path, text).unwrap();
-        read(&path)
+        read(&path, in_plane)
     }
 
     #[test]
@@ -136,14 +183,32 @@ mod tests {
             Row { line: 2, name: "A".into(), place: [1.0, 2.0, 3.5] },
             Row { line: 4, name: "B".into(), place: [-1.0, 0.0, 1e3] },
         ];
-        for text in [
-            "name,x,y,z\nA,1,2,3.5\n\nB,-1,0,1e3\n",
-            "name,x,y,z\r\nA,1,2,3.5\r\n\r\nB,-1,0,1e3\r\n",
-            "# from the drawing\nA; 1; 2; 3.5\n\nB; -1; 0; 1e3\n",
-            "\u{feff}z [mm]\tPoint\tY (mm)\tX\n3.5\tA\t2\t1\n\n1e3\tB\t0\t-1\n",
+        for (text, unit) in [
+            ("name,x,y,z\nA,1,2,3.5\n\nB,-1,0,1e3\n", None),
+            ("name,x,y,z\r\nA,1,2,3.5\r\n\r\nB,-1,0,1e3\r\n", None),
+            ("# from the drawing\nA; 1; 2; 3.5\n\nB; -1; 0; 1e3\n", None),
+            ("name;x;y;z\nA;1,0;2;3,5\n\nB;-1;0,000;1e3\n", None),
+            (
+                "\u{feff}z [mm]\tPoint\tY (mm)\tX [ MM ]\n3.5\tA\t2\t1\n\n1e3\tB\t0\t-1\n",
+                Some("mm".to_owned()),
+            ),
         ] {
-            assert_eq!(of(text).unwrap(), expected, "{text}");
+            assert_eq!(of(text, false), Ok(Hardpoints { rows: expected.clone(), unit }), "{text}");
         }
+    }
+
+    #[test]
+    fn points_in_a_plane_need_no_third_coordinate() {
+        for text in ["A,1,2\nB,-1,0.5\n", "x,y,name\n1,2,A\n-1,0.5,B\n", "name,x,y,z\nA,1,2,0\nB,-1,0.5,0\n"]
+        {
+            let found: Vec<_> = of(text, true).unwrap().rows.into_iter().map(|r| (r.name, r.place)).collect();
+            assert_eq!(
+                found,
+                [("A".to_owned(), [1.0, 2.0, 0.0]), ("B".to_owned(), [-1.0, 0.5, 0.0])],
+                "{text}"
+            );
+        }
+        assert!(of("A,1,2\nB,1,2\n", false).unwrap_err().contains("no number for z"));
     }
 
     #[test]
@@ -153,12 +218,15 @@ mod tests {
             ("name,x,y\nA,1,2\n", "none of them `z`"),
             ("A,1,2,3\nB,1,2\n", "line 2: `` is no number for z"),
             ("A,1,2,3\nB,1,\"2,5\",3\n", "line 2: `2,5` is no number for y"),
+            ("A;1;2;3\nB;1;2.000,5;3\n", "line 2: `2.000,5` is no number for y"),
             ("A,1,2,3\n,1,2,3\n", "line 2 has no name"),
             ("A,1,2,inf\n", "line 1: `inf`"),
+            ("name,x [mm],y [mm],z [m]\nA,1,2,3\n", "line 1 has columns in mm and in m"),
+            ("name,x [mm],y,z\nA,1,2,3\n", "line 1 has columns in mm and in no unit"),
         ] {
-            let error = of(text).unwrap_err();
+            let error = of(text, false).unwrap_err();
             assert!(error.contains(part), "{text:?}: {error}");
         }
-        assert!(read(Path::new("no such file.csv")).is_err());
+        assert!(read(Path::new("no such file.csv"), false).is_err());
     }
 }

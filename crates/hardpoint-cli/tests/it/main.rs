@@ -9,6 +9,7 @@ mod golden;
 mod import;
 mod new;
 mod optimize;
+mod pdf;
 mod results;
 mod studio;
 mod sweep;

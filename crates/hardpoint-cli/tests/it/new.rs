@@ -101,6 +101,16 @@ fn a_table_places_the_hardpoints_in_its_units_and_axes() {
     let told = said(&bench, &["new", "bar", "-t", "four-bar", "--hardpoints", "bar.csv", "--units", "mm"]);
     assert_eq!(told, (Some(0), String::new()));
     assert!(bench.text("bar.toml").contains("B = [35, 61] "));
+    // The same without the third coordinate, its unit in the names of the columns, decimal commas as a spreadsheet writes them.
+    bench.put("flat.csv", "Name;x [cm];y [cm]\nA;0;0\nB;3,5;6,1\nC;25;19\nD;30;0\nP;13;20\n");
+    let told = said(&bench, &["new", "flat", "-t", "four-bar", "--hardpoints", "flat.csv"]);
+    assert_eq!(told, (Some(0), String::new()));
+    assert_eq!(bench.text("flat.toml"), bench.text("bar.toml").replace("\"bar\"", "\"flat\""));
+    // A plane that is parallel to that of the template is told.
+    bench.put("above.csv", "A,0,0,7\nB,35,61,7\nC,250,190,7\nD,300,0,7\nP,130,200,7\n");
+    let (code, told) =
+        said(&bench, &["new", "above", "-t", "four-bar", "--hardpoints", "above.csv", "--units", "mm"]);
+    assert!(code == Some(0) && told.contains("at z = 7 mm: the model has them at z = 0"), "{told}");
 }
 
 #[test]
@@ -151,6 +161,9 @@ fn what_cannot_be_begun_is_told_and_leaves_nothing() {
     bench.put("slip.csv", "A,0,0,0\nB,30,40,0\nC,200,10,0\nrial,300,10,0\n");
     bench.put("twice.csv", "A,0,0,0\na,30,40,0\n");
     bench.put("words.csv", "A,0,0,0\nB,35,sixty,0\n");
+    bench.put("bent.csv", "A,0,0,0\nB,35,60,0\nC,250,190,4\nD,300,0,0\nP,130,200,0\n");
+    bench.put("feet.csv", "name,x [ft],y [ft]\nA,0,0\n");
+    bench.put("inches.csv", "name,x [in],y [in]\nA,0,0\n");
     let table = ["-t", "four-bar", "--hardpoints"];
     for (arguments, code, parts) in [
         (vec!["new", "mine", "-t", "four-bar"], 2, vec!["there is a file `mine.toml` already"]),
@@ -190,6 +203,17 @@ fn what_cannot_be_begun_is_told_and_leaves_nothing() {
         ),
         ([&["new", "other"], &table[..], &["none.csv", "--units", "mm"]].concat(), 2, vec!["`none.csv`"]),
         (
+            [&["new", "other"], &table[..], &["bent.csv", "--units", "mm"]].concat(),
+            2,
+            vec!["do not lie in the plane", "`A` is at z = 0 mm, `C` at z = 4 mm", "--axes"],
+        ),
+        ([&["new", "other"], &table[..], &["feet.csv"]].concat(), 2, vec!["are in `ft`", "mm, cm, m or in"]),
+        (
+            [&["new", "other"], &table[..], &["inches.csv", "--units", "mm"]].concat(),
+            2,
+            vec!["are in `in`", "`--units` says `mm`"],
+        ),
+        (
             vec![
                 "new",
                 "other",
@@ -218,7 +242,16 @@ fn what_cannot_be_begun_is_told_and_leaves_nothing() {
         }
         assert_eq!(
             bench.list("."),
-            ["mine.toml", "points.csv", "slip.csv", "twice.csv", "words.csv"],
+            [
+                "bent.csv",
+                "feet.csv",
+                "inches.csv",
+                "mine.toml",
+                "points.csv",
+                "slip.csv",
+                "twice.csv",
+                "words.csv"
+            ],
             "{arguments:?}"
         );
     }

@@ -376,7 +376,8 @@ fn renamed(part: &mut Both<'_>, prefix: &str, own: &HashSet<String>) {
     };
     let rename = |shape: Shape, value: &mut Value<'_>| {
         walk("", shape, value, &mut |_, leaf| match leaf {
-            Leaf::Name("a column" | "a parameter of the law", _) => {}
+            // Cases are those of the whole, whatever else of the file has such a name.
+            Leaf::Name("a column" | "a parameter of the law" | "a case", _) => {}
             Leaf::Name(_, name) => *name = say(name).map_or(Cow::Owned(name.to_string()), Cow::Owned),
             Leaf::Expression(text) => in_expression(text, say),
             _ => {}
@@ -462,8 +463,15 @@ pub(super) fn lay_under<'a>(
         entries.insert(name, made);
         return true;
     };
-    let Some(hand) = table_of(hand).filter(|hand| !stands_alone(of, hand)) else { return false };
-    fill(hand, made)
+    if table_of(hand).is_none_or(|hand| stands_alone(of, hand)) {
+        return false;
+    }
+    if matches!(of, Shape::Kinds(_) | Shape::Table(_)) && !made.get_ref().is_table() {
+        // What can only be a table and is none leaves nothing to lay under: that it is none is all that there is to tell.
+        *hand = made;
+        return true;
+    }
+    table_of(hand).is_some_and(|hand| fill(hand, made))
 }
 
 /// Adds the keys that are not there.

@@ -56,6 +56,8 @@ pub(crate) const SECTIONS: [&str; 14] = [
     "measures",
     "metrics",
 ];
+/// The words of the two sides where nothing else is said.
+const WORDS: [&str; 2] = ["left", "right"];
 /// More words than these say no sides.
 const MOST_WORDS: usize = 20;
 
@@ -167,6 +169,27 @@ fn exchanged<'w>(
     changed.then_some(out)
 }
 
+/// What the mirror of a model calls the images of names, for those who say more of the one side before there is another. Mistakes are
+/// told when the mirror is made.
+pub(super) fn images(model: &DeTable<'_>) -> impl Fn(&str) -> Option<String> + use<> {
+    let said = model.get("mirror").and_then(|v| v.get_ref().as_table());
+    let text = |value: &Value<'_>| value.get_ref().as_str().map(str::to_owned);
+    let words: Vec<(String, String)> = match (said, said.and_then(|t| t.get("names"))) {
+        (None, _) => Vec::new(),
+        (Some(_), None) => vec![WORDS.map(str::to_owned).into()],
+        (Some(_), Some(names)) => {
+            let names = names.get_ref().as_table().into_iter().flatten();
+            names.filter_map(|(from, to)| Some((from.get_ref().to_string(), text(to)?))).collect()
+        }
+    };
+    let except = said.and_then(|t| t.get("except")?.get_ref().as_array()).into_iter().flatten();
+    let except: HashSet<String> = except.filter_map(text).collect();
+    move |name| match except.contains(name) {
+        true => None,
+        false => exchanged(name, words.iter().map(|(one, other)| (one, other))),
+    }
+}
+
 /// Changes the signs of some numbers in a list.
 fn each<'a>(list: &mut DeArray<'a>, numbers: &'a Opposites, turned: impl Fn(usize) -> bool) {
     list.iter_mut().enumerate().filter(|(k, _)| turned(*k)).for_each(|(_, value)| turn_sign(value, numbers));
@@ -233,7 +256,7 @@ impl Reader<'_> {
         let across = self.word_of(&fields, "across");
         let each_its_own = self.word_of(&fields, "variables") == Some(1);
         let words = match fields.get("names") {
-            None => vec![("left".to_owned(), "right".to_owned())],
+            None => vec![WORDS.map(str::to_owned).into()],
             Some(f) => self.words_of(f.value),
         };
         let mut listed = |key: &str| -> Vec<(String, std::ops::Range<usize>)> {
@@ -292,7 +315,7 @@ impl Reader<'_> {
             let words: Vec<String> = rule.words.iter().map(|w| format!("`{}`", w.0)).collect();
             let message = format!("the mirror makes nothing: no name has the word {}", words.join(" or "));
             self.report("HP0116", value.span(), message).help = Some(
-                "say under `names` which word of the names says the side, like `names = { l = \"r\" }`"
+                "say under `names` which word of the names says the side, like `names = { l = \"r\" }`; words stand between `_`, `-` or blanks, as in `l_ball`"
                     .into(),
             );
         }

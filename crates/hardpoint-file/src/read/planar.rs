@@ -3,7 +3,7 @@
 //! All of it is made of the text's values before they are read; what is made stands where the text is that says it.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use hardpoint::joint;
@@ -17,31 +17,52 @@ use crate::walk::{Leaf, table_of, walk};
 
 use super::MODEL;
 use super::include::{fill, lay_under};
+use super::mirror;
 
 pub(crate) const PLANAR: Shape = Shape::Words(&[
     ("xy", "In the plane of x and y; angles count about z."),
     ("yz", "In the plane of y and z; angles count about x."),
     ("zx", "In the plane of z and x; angles count about y."),
+    (
+        "xz",
+        "In the plane of x and z; angles count about -y: counter-clockwise where x goes to the right and z up.",
+    ),
 ]);
-/// Planes by the axes that are square to them, x, y and z.
-const PLANES: [&str; 3] = ["yz", "zx", "xy"];
+
+/// The plane of a planar model. Its normal is the first axis of its name times the second.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plane {
+    /// The axes of its name, in that order: 0, 1 or 2 for x, y or z.
+    pub axes: [usize; 2],
+    word: &'static str,
+    normal: &'static str,
+}
+
+const PLANES: [Plane; 4] = [
+    Plane { axes: [0, 1], word: "xy", normal: "z" },
+    Plane { axes: [1, 2], word: "yz", normal: "x" },
+    Plane { axes: [2, 0], word: "zx", normal: "y" },
+    Plane { axes: [0, 2], word: "xz", normal: "-y" },
+];
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// Joint types whose axis is square to the plane where none is given.
 const PINS: [&str; 5] = ["revolute", "planar", "pin_in_slot", "point_on_curve", "revolute_spherical"];
 
-/// The axis square to the plane of a planar model.
-pub(crate) fn normal(model: &DeTable<'_>) -> Option<usize> {
-    normal_of(model.get("planar")?.get_ref().as_str()?)
-}
+impl Plane {
+    /// That of a model.
+    pub(crate) fn of(model: &DeTable<'_>) -> Option<Self> {
+        Self::named(model.get("planar")?.get_ref().as_str()?)
+    }
 
-/// The axis square to a plane.
-pub(crate) fn normal_of(plane: &str) -> Option<usize> {
-    PLANES.iter().position(|p| *p == plane)
-}
+    /// That of a name, like `xy`.
+    pub(crate) fn named(word: &str) -> Option<Self> {
+        PLANES.into_iter().find(|plane| plane.word == word)
+    }
 
-/// Which of a point's two coordinates in the text is the one along this axis; none for the one out of the plane.
-pub(crate) fn coordinate(normal: usize, axis: usize) -> Option<usize> {
-    Some((axis + 2 - normal) % 3).filter(|k| *k < 2)
+    /// Which of a point's two coordinates in the text is the one along this axis; none for the one out of the plane.
+    pub(crate) fn coordinate(self, axis: usize) -> Option<usize> {
+        self.axes.iter().position(|a| *a == axis)
+    }
 }
 
 fn text<'a>(text: impl Into<Cow<'a, str>>, at: Range<usize>) -> Value<'a> {
@@ -56,8 +77,8 @@ impl Reader<'_> {
     /// Says all that a planar model leaves out because it lies in a plane.
     pub(super) fn planar(&mut self, model: &mut DeTable<'_>) {
         let Some(value) = model.get("planar") else { return };
-        let Some(normal) = normal(model) else {
-            let message = "`planar` must be `\"xy\"`, `\"yz\"` or `\"zx\"`";
+        let Some(plane) = Plane::of(model) else {
+            let message = "`planar` must be `\"xy\"`, `\"yz\"`, `\"zx\"` or `\"xz\"`";
             self.report("HP0106", value.span(), message).help = Some("for example `planar = \"xy\"`".into());
             return;
         };
@@ -67,7 +88,7 @@ impl Reader<'_> {
             let Some(shape) = shape else { continue };
             walk("", shape, value, &mut |_, leaf| {
                 if let Leaf::Pair(list) = leaf {
-                    three(list, normal);
+                    three(list, plane);
                 }
             });
         }
@@ -81,7 +102,7 @@ impl Reader<'_> {
         };
         let square = |table: &mut DeTable<'_>, name: &'static str| {
             if !table.contains_key(name) {
-                table.insert(key(name, at.clone()), text(AXES[normal], at.clone()));
+                table.insert(key(name, at.clone()), text(plane.normal, at.clone()));
             }
         };
         sections(model, "joints", &mut |joint| {
@@ -117,7 +138,7 @@ impl Reader<'_> {
                 square(driver, "about");
             }
         });
-        variables(model, normal);
+        variables(model, plane);
         if !["time", "cases"].iter().any(|key| model.contains_key(*key)) {
             let mut time = DeTable::new();
             for (name, number) in [("end", "1.0"), ("steps", "100")] {
@@ -133,8 +154,8 @@ impl Reader<'_> {
     fn bodies_by_points<'a>(&mut self, model: &mut DeTable<'a>) {
         let Some(bodies) = model.get_mut("bodies").and_then(table_of) else { return };
         /// A hardpoint, where it is listed, and the bodies on it.
-        type Pin<'a> = (Cow<'a, str>, Range<usize>, Vec<Value<'a>>);
-        let mut pins: Vec<Pin<'a>> = Vec::new();
+        type Pin = (String, Range<usize>, Vec<Listed>);
+        let mut pins: Vec<Pin> = Vec::new();
         let mut numbers: HashMap<String, usize> = HashMap::new();
         let mut ground = None;
         for (name, value) in bodies.iter_mut() {
@@ -147,10 +168,17 @@ impl Reader<'_> {
                         Some("for example `crank = [\"A\", \"B\"]`".into());
                     continue;
                 };
-                let body = text(name.get_ref().clone(), name.span());
+                let body = Listed { name: name.get_ref().to_string(), at: name.span() };
                 let pin = *numbers.entry(at.to_owned()).or_insert(pins.len());
                 if pin == pins.len() {
-                    pins.push((Cow::Owned(at.to_owned()), point.span(), Vec::new()));
+                    pins.push((at.to_owned(), point.span(), Vec::new()));
+                }
+                if pins[pin].2.last().is_some_and(|last| last.name == body.name) {
+                    let message =
+                        format!("body `{}` has the hardpoint `{}` twice", shown(&body.name), shown(at));
+                    self.report("HP0201", point.span(), message).help =
+                        Some("list each of its hardpoints once".into());
+                    continue;
                 }
                 pins[pin].2.push(body);
             }
@@ -165,18 +193,29 @@ impl Reader<'_> {
                 std::mem::take(bodies).into_iter().filter(|(name, _)| **name.get_ref() != *"ground");
             *bodies = without.collect();
         }
+        let names: HashSet<String> = bodies.keys().map(|name| name.get_ref().to_string()).collect();
+        let image = mirror::images(model);
         let shape = |section: &str| MODEL.keys().find(|k| k.key == section).map_or(Shape::Text, |k| k.shape);
         for (point, at, on) in pins {
-            for (k, other) in on.iter().enumerate().skip(1) {
+            // What is written on both sides is as it is written.
+            let image = |name: &str| image(name).filter(|there| !names.contains(there));
+            let hinges = hinges(&point, &on, image);
+            if let ([body], []) = (on.as_slice(), hinges.as_slice())
+                && body.name != "ground"
+            {
+                let mut follow = DeTable::new();
+                follow.insert(key("body", at.clone()), text(body.name.clone(), body.at.clone()));
+                follow.insert(key("at", at.clone()), text(point.clone(), at.clone()));
+                let follow = Spanned::new(at.clone(), DeValue::Table(follow));
+                let points = section(model, "points", &at);
+                lay_under(shape("points"), points, key(point.clone(), at.clone()), follow);
+            }
+            for (name, pair) in hinges {
                 let mut joint = DeTable::new();
                 joint.insert(key("type", at.clone()), text("revolute", at.clone()));
-                let pair: DeArray<'a> = [on[0].clone(), other.clone()].into_iter().collect();
+                let pair: DeArray<'a> = pair.into_iter().map(|body| text(body.name, body.at)).collect();
                 joint.insert(key("bodies", at.clone()), Spanned::new(at.clone(), DeValue::Array(pair)));
                 joint.insert(key("at", at.clone()), text(point.clone(), at.clone()));
-                let name = match (k, other.get_ref().as_str()) {
-                    (2.., Some(body)) => Cow::Owned(format!("{point}_{body}")),
-                    _ => point.clone(),
-                };
                 let joint = Spanned::new(at.clone(), DeValue::Table(joint));
                 let joints = section(model, "joints", &at);
                 // Whatever type it is, between these bodies it is.
@@ -185,17 +224,36 @@ impl Reader<'_> {
                     None => lay_under(shape("joints"), joints, key(name, at.clone()), joint),
                 };
             }
-            if let [body] = on.as_slice()
-                && body.get_ref().as_str() != Some("ground")
-            {
-                let mut follow = DeTable::new();
-                follow.insert(key("body", at.clone()), body.clone());
-                follow.insert(key("at", at.clone()), text(point.clone(), at.clone()));
-                let follow = Spanned::new(at.clone(), DeValue::Table(follow));
-                lay_under(shape("points"), section(model, "points", &at), key(point, at.clone()), follow);
-            }
         }
     }
+}
+
+/// A body that is said by its points, and where.
+#[derive(Clone)]
+struct Listed {
+    name: String,
+    at: Range<usize>,
+}
+
+/// The hinges at a point, with their names, between the bodies that have it: one has the point's name, all others that of a body besides.
+///
+/// `image` is what a mirror calls the image of something, if it makes one. Where the point is its own image, a body of one side has its
+/// hinge under its own name, so that its image has one as well; where bodies of one side alone meet, one of them meets its own image.
+fn hinges(point: &str, on: &[Listed], image: impl Fn(&str) -> Option<String>) -> Vec<(String, [Listed; 2])> {
+    let is_shared = image(point).is_none();
+    let other_side = |body: &Listed| image(&body.name).filter(|_| is_shared);
+    let base = on.iter().position(|body| other_side(body).is_none()).unwrap_or(0);
+    let mut all = Vec::new();
+    if let Some(name) = other_side(&on[base]) {
+        all.push((point.to_owned(), [on[base].clone(), Listed { name, ..on[base].clone() }]));
+    }
+    let mut is_free = all.is_empty();
+    for (_, other) in on.iter().enumerate().filter(|(k, _)| *k != base) {
+        let takes = other_side(other).is_none() && std::mem::replace(&mut is_free, false);
+        let name = if takes { point.to_owned() } else { format!("{point}_{}", other.name) };
+        all.push((name, [on[base].clone(), other.clone()]));
+    }
+    all
 }
 
 /// A table of the model, which is there from now on.
@@ -212,31 +270,25 @@ fn section<'m, 'a>(model: &'m mut DeTable<'a>, name: &'static str, at: &Range<us
 }
 
 /// Two coordinates in the plane, with the third.
-fn three(list: &mut DeArray<'_>, normal: usize) {
+fn three(list: &mut DeArray<'_>, plane: Plane) {
     let Some(last) = list.iter().last().map(Value::span) else { return };
-    let mut two = std::mem::replace(list, DeArray::new()).into_iter();
-    let (Some(first), Some(second), Ok(zero)) = (two.next(), two.next(), DeValue::parse("0")) else { return };
-    let zero = Spanned::new(last, zero.into_inner());
-    *list = match normal {
-        0 => [zero, first, second],
-        1 => [second, zero, first],
-        _ => [first, second, zero],
-    }
-    .into_iter()
-    .collect();
+    let mut two: Vec<_> = std::mem::replace(list, DeArray::new()).into_iter().collect();
+    let Ok(zero) = DeValue::parse("0") else { return };
+    two.push(Spanned::new(last, zero.into_inner()));
+    *list = (0..3).filter_map(|axis| two.get(plane.coordinate(axis).unwrap_or(2)).cloned()).collect();
 }
 
 /// Design variables along both axes of the plane, `along = "xy"`, become one along each.
-fn variables(model: &mut DeTable<'_>, normal: usize) {
+fn variables(model: &mut DeTable<'_>, plane: Plane) {
     let Some(design) = model.get_mut("design").and_then(table_of) else { return };
     for (name, value) in std::mem::take(design) {
         let along = value.get_ref().as_table().and_then(|t| t.get("along"));
         let along = along.and_then(|v| Some((v.get_ref().as_str()?.to_owned(), v.span())));
-        let Some((_, at)) = along.filter(|(word, _)| word == PLANES[normal] || word == "xyz") else {
+        let Some((_, at)) = along.filter(|(word, _)| word == plane.word || word == "xyz") else {
             design.insert(name, value);
             continue;
         };
-        for axis in (0..3).filter(|axis| *axis != normal) {
+        for axis in (0..3).filter(|axis| plane.coordinate(*axis).is_some()) {
             let mut one = value.clone();
             if let Some(table) = table_of(&mut one) {
                 table.insert(key("along", at.clone()), text(AXES[axis], at.clone()));

@@ -164,6 +164,23 @@ fn a_number_of_another_file_is_not_saved_in_this_one() {
 }
 
 #[test]
+fn a_case_that_a_metric_of_another_file_names_keeps_its_name() {
+    // The corner has a driver of that name, which gets the prefix.
+    let corner = format!("{CORNER}\n[metrics.most]\nof = \"height\"\ntake = \"max\"\ncase = \"lift\"\n");
+    let axle = r#"
+name = "an axle"
+include = [{ file = "corner.toml", prefix = "left_" }]
+[cases.lift]
+laws = { left_lift = "10*t" }
+time = { end = 1, steps = 4 }
+"#;
+    let folder = folder(&[("axle.toml", axle), ("corner.toml", &corner), ("lift.csv", "0, 0\n1, 10\n")]);
+    let model = opened(folder.path(), "axle.toml").model;
+    let metric = model.metrics.iter().find(|m| m.name == "left_most").unwrap();
+    assert_eq!(metric.case.map(|case| model.cases[case.0].name.as_str()), Some("lift"));
+}
+
+#[test]
 fn mistakes_in_included_files() {
     let corner = |from: &str, to: &str| {
         assert!(CORNER.contains(from), "{from}");

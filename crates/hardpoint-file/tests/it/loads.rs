@@ -359,7 +359,7 @@ fn make_heavy(path: &Path) -> ModelFile {
     }
     let bare = hardpoint_file::read(path).unwrap_or_else(|e| panic!("{e}"));
     let vector = |mut v: Vec<f64>| {
-        bare.plane.map(|k| v.remove(k));
+        bare.plane.map(|p| v.remove(3 - p.axes[0] - p.axes[1]));
         Array::from_iter(v)
     };
     let mut masses = Table::new();

@@ -57,11 +57,11 @@ fn a_four_bar_in_six_lines_moves_as_the_published_one() {
 fn every_plane_has_the_same_motion() {
     let text = six_lines();
     let xy = path(&file(&text).model, "P");
-    for (plane, normal) in [("yz", 0), ("zx", 1)] {
+    for (plane, axes) in [("yz", [1, 2, 0]), ("zx", [2, 0, 1]), ("xz", [0, 2, 1])] {
         let other = file(&text.replace("\"xy\"", &format!("\"{plane}\"")));
-        assert_eq!(other.plane, Some(normal));
+        assert_eq!(other.plane.map(|p| p.axes), Some([axes[0], axes[1]]));
         for (a, b) in path(&other.model, "P").iter().zip(&xy) {
-            let turned = [0, 1, 2].map(|k| a[(k + normal + 1) % 3]);
+            let turned = axes.map(|k| a[k]);
             assert!((0..3).all(|k| (turned[k] - b[k]).abs() < SAME), "{plane}: {a:?} {b:?}");
         }
     }
@@ -69,7 +69,7 @@ fn every_plane_has_the_same_motion() {
 
 #[test]
 fn variables_along_the_plane_are_saved_where_two_coordinates_stand() {
-    for (plane, first, second) in [("xy", "x", "y"), ("yz", "y", "z"), ("zx", "z", "x")] {
+    for (plane, first, second) in [("xy", "x", "y"), ("yz", "y", "z"), ("zx", "z", "x"), ("xz", "x", "z")] {
         let text = six_lines().replace("\"xy\"", &format!("\"{plane}\""));
         let text = format!("{text}design.B = {{ move = \"B\", along = \"{plane}\" }}\n");
         let file = file(&text);
@@ -116,6 +116,56 @@ points.B = { body = "rod", at = "B" }
     assert!((solution.measured.value(0, m)[0] - expected).abs() < SAME);
 }
 
+/// A toggle whose sides meet on a slider, and a pair of scissors whose sides meet each other: where a hardpoint lies in the mirror, the
+/// hinges on it are made for both sides.
+#[test]
+fn bodies_by_points_are_mirrored_with_the_hinges_where_both_sides_meet() {
+    let toggle = r#"
+name = "toggle"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+mirror = { across = "x" }
+hardpoints = { left_A = [-40, 0], left_B = [-60, 50], S = [0, 130] }
+bodies = { ground = ["left_A"], left_crank = ["left_A", "left_B"], left_link = ["left_B", "S"], slider = ["S"] }
+joints.guide = { type = "translational", bodies = ["ground", "slider"], at = "S", axis = [0, 1] }
+drivers.up = { joint = "guide", law = "15*sin(2*pi*t)" }
+measures.left_angle = { type = "coordinate", joint = "left_A" }
+"#;
+    let model = file(toggle).model;
+    let bodies_of = |model: &Model, name: &str| {
+        let joint = model.joints.iter().find(|j| j.name == name).unwrap_or_else(|| panic!("{name}"));
+        joint.bodies.map(|b| model.bodies[b.0].name.clone())
+    };
+    assert_eq!(bodies_of(&model, "S_left_link"), ["slider", "left_link"]);
+    assert_eq!(bodies_of(&model, "S_right_link"), ["slider", "right_link"]);
+    let solution = Analysis::new(&model).unwrap().run();
+    assert!(solution.stop.is_none());
+    let angle = |side: &str| solution.measured.index(&format!("{side}_angle")).unwrap();
+    for k in 0..=100 {
+        let [left, right] = ["left", "right"].map(|side| solution.measured.value(k, angle(side))[0]);
+        assert!((left - right).abs() < SAME && (k != 25 || left.abs() > 0.1), "{k}: {left} {right}");
+    }
+
+    let scissors = r#"
+name = "scissors"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+mirror = { across = "x" }
+hardpoints = { left_foot = [-50, 0], P = [0, 80] }
+bodies = { left_slide = ["left_foot"], left_arm = ["left_foot", "P"] }
+joints.left_rail = { type = "translational", bodies = ["ground", "left_slide"], at = "left_foot", axis = [1, 0] }
+drivers.left_rail = { joint = "left_rail", law = "20*t" }
+points.top = { body = "left_arm", at = "P" }
+"#;
+    let model = file(scissors).model;
+    assert_eq!(bodies_of(&model, "P"), ["left_arm", "right_arm"]);
+    for (k, [x, y, _]) in path(&model, "top").into_iter().enumerate() {
+        let foot = 0.05 - 0.02 * k as f64 / 100.0;
+        let expected = (0.05_f64.powi(2) + 0.08_f64.powi(2) - foot * foot).sqrt();
+        assert!(x.abs() < SAME && (y - expected).abs() < SAME, "{k}: {x} {y} {expected}");
+    }
+}
+
 #[test]
 fn broken_planar_models() {
     let with = |from: &str, to: &str| {
@@ -124,10 +174,15 @@ fn broken_planar_models() {
         text.replace(from, to)
     };
     for (name, text) in [
-        ("planar_in_no_plane", with("\"xy\"", "\"xz\"")),
+        ("planar_in_no_plane", with("\"xy\"", "\"zy\"")),
         ("planar_point_of_one_coordinate", with("[40, 200]", "[40]")),
         ("planar_body_of_numbers", with("[\"A\", \"B\"]", "[\"A\", 5]")),
         ("planar_body_at_no_hardpoint", with("[\"C\", \"D\"]", "[\"C\", \"E\"]")),
+        ("planar_body_with_a_point_twice", with("[\"A\", \"B\"]", "[\"A\", \"B\", \"A\"]")),
+        (
+            "planar_measure_of_a_hardpoint",
+            six_lines() + "measures.height = { type = \"position\", point = \"C\", along = \"y\" }\n",
+        ),
         ("body_of_points_in_space", with("planar = \"xy\"\n", "")),
     ] {
         snapshot(name, &text);

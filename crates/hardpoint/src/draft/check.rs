@@ -388,17 +388,33 @@ impl<'a> Checker<'a> {
         self.comparisons -= if guess { count } else { 0 };
         let valid: Vec<String> = candidates.take(LISTED_NAMES).map(|c| format!("`{c}`")).collect();
         let more = count.saturating_sub(valid.len());
+        let on_a_body = (what == "point").then(|| self.point_at(name)).flatten();
         let fault = self.fault("HP0204", at, format!("there is no {what} named `{name}`"));
         if !valid.is_empty() {
             let more = if more > 0 { format!(" and {more} more") } else { String::new() };
             fault.note(format!("valid names: {}{more}", valid.join(", ")));
         }
-        match close {
-            Some(close) => drop(fault.help(format!("did you mean `{close}`?"))),
+        match on_a_body.or_else(|| close.map(|close| format!("did you mean `{close}`?"))) {
+            Some(help) => drop(fault.help(help)),
             None if valid.is_empty() => drop(fault.help(format!("the model declares no {what}"))),
             None => {}
         }
         None
+    }
+
+    /// What to write where a hardpoint is named in place of a point.
+    fn point_at(&self, hardpoint: &str) -> Option<String> {
+        self.draft.hardpoints.iter().find(|h| h.name == hardpoint)?;
+        let is_there = |place: &PlaceDraft| matches!(place, PlaceDraft::Hardpoint(name) if name == hardpoint);
+        // A joint with one place has it on both of its bodies.
+        let bodies = self.draft.joints.iter().filter_map(|joint| {
+            let k = joint.at.iter().position(is_there)?;
+            Some(joint.bodies[if joint.at.len() == 1 { 1 } else { k.min(1) }].as_str())
+        });
+        let body = bodies.into_iter().next().unwrap_or("...");
+        Some(format!(
+            "`{hardpoint}` is a hardpoint; a point is on a body: `{{ body = \"{body}\", at = \"{hardpoint}\" }}`"
+        ))
     }
 
     fn body(&mut self, name: &str, at: Locus) -> Option<BodyId> {

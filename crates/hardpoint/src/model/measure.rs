@@ -634,6 +634,11 @@ impl OrientationAngle {
         Self { angles, place: word % 3 }
     }
 
+    /// As model files write it.
+    pub fn name(self) -> &'static str {
+        Self::WORDS[3 * self.angles as usize + self.place].0
+    }
+
     /// Whether it is counted through whole turns; the middle one of three never makes one.
     pub(crate) fn is_counted(self) -> bool {
         self.place != 1

@@ -1,0 +1,145 @@
+//! `report.pdf`: a run on paper. What it comes to, its curves, and what moves them, without a browser.
+
+mod paper;
+mod plot;
+
+use std::io::{self, Write};
+
+use hardpoint_report::GENERATOR;
+use hardpoint_report::figures::{count, number, order_unit, with_unit};
+use hardpoint_report::summary::Ranking;
+
+use crate::workbook::Contents;
+use paper::{BLACK, BLUE, GREY, MARGIN, PAGE, Paper, RED, SMALL, STRONG, TEXT, TITLE};
+use plot::Plot;
+
+/// So many curves are drawn.
+const MOST_CURVES: usize = 200;
+/// So many variables are ranked at each measure.
+const MOST_RANKED: usize = 12;
+/// Where the columns of tables begin.
+const FACTS: [f32; 2] = [0.0, 90.0];
+const FIGURES: [f32; 3] = [0.0, 130.0, 220.0];
+const VARIABLES: [f32; 4] = [0.0, 130.0, 220.0, 400.0];
+const RANKED: [f32; 4] = [0.0, 170.0, 290.0, 410.0];
+/// The longest bar of a ranking.
+const BAR: f32 = 110.0;
+
+impl Contents<'_> {
+    /// Writes the document, and tells what is not in it.
+    ///
+    /// # Errors
+    /// Where `out` cannot be written.
+    pub fn write_pdf(&self, out: &mut impl Write) -> io::Result<Vec<String>> {
+        let mut paper = Paper::new();
+        self.head(&mut paper);
+        let mut told: Vec<String> = self.drawn(&mut paper).into_iter().collect();
+        let rankings =
+            self.summary.sensitivities.iter().filter(|r| r.order == "value" && !r.largest.is_empty());
+        let rankings: Vec<&Ranking> = rankings.collect();
+        if !rankings.is_empty() {
+            paper.heading("What moves them", 3.0 * TEXT.line());
+            let most = "The largest sensitivity to each variable over the motion, with its sign and when it is; bars compare variables of one unit.";
+            paper.paragraph(TEXT, GREY, most);
+        }
+        rankings.iter().for_each(|ranking| ranked(&mut paper, ranking));
+        if rankings.iter().any(|ranking| ranking.largest.len() > MOST_RANKED) {
+            told.push(format!(
+                "of each measure only the {MOST_RANKED} variables that move it most; `summary.json` has all"
+            ));
+        }
+        paper.end(&self.summary.model.name, GENERATOR, out)?;
+        Ok(told.into_iter().map(|told| format!("not in `report.pdf`: {told}")).collect())
+    }
+
+    /// What was run, and what it comes to.
+    fn head(&self, paper: &mut Paper) {
+        let summary = self.summary;
+        paper.paragraph(TITLE, BLACK, &summary.model.name);
+        paper.y -= 4.0;
+        summary.model.description.iter().for_each(|said| paper.paragraph(TEXT, GREY, said));
+        paper.y -= 6.0;
+        let counts = &summary.model.counts;
+        let parts = format!(
+            "{}, {}, {}, {}, {}",
+            if counts.bodies == 1 { "1 body".into() } else { format!("{} bodies", counts.bodies) },
+            count(counts.joints, "joint"),
+            count(counts.loops, "loop"),
+            count(counts.drivers, "driver"),
+            count(summary.model.variables.len(), "design variable"),
+        );
+        let facts = self.facts().into_iter().chain([("mechanism", parts)]);
+        facts.for_each(|(what, said)| paper.row(TEXT, &FACTS, &[what, &said]));
+        if let Some(margin) = summary.margin.as_ref() {
+            let least = format!("{} at t = {} s", number(margin.least), number(margin.time));
+            paper.row(TEXT, &FACTS, &["least margin", &least]);
+        }
+        let worth = |d: &&hardpoint_file::Diagnostic| d.severity != hardpoint_file::Severity::Note;
+        for d in summary.diagnostics.iter().filter(worth) {
+            paper.row(TEXT, &FACTS, &[d.code, &d.message]);
+        }
+        if !summary.metrics.is_empty() {
+            paper.heading("Key figures", 2.0 * TEXT.line());
+            paper.row(STRONG, &FIGURES, &["metric", "value", "what"]);
+            for metric in &summary.metrics {
+                let value = metric.value.map_or("-".into(), |value| with_unit(value, &metric.unit));
+                paper.row(TEXT, &FIGURES, &[&metric.name, &value, &metric.what]);
+            }
+        }
+        if !summary.model.variables.is_empty() {
+            paper.heading("Design variables", 2.0 * TEXT.line());
+            paper.row(STRONG, &VARIABLES, &["variable", "unit", "what changes", "over the motion"]);
+            for variable in &summary.model.variables {
+                let unit = if variable.unit == "1" { "-" } else { &variable.unit };
+                let cells = [&variable.name, unit, &variable.change, variable.answer_text()];
+                paper.row(TEXT, &VARIABLES, &cells);
+            }
+        }
+    }
+
+    /// The curves of the measures, or of the points where there are none, two beside each other; says which are not here.
+    fn drawn(&self, paper: &mut Paper) -> Option<String> {
+        let (solution, units) = (&self.course.kept, self.file.units);
+        let outputs = self.shown();
+        if outputs.is_empty() {
+            return None;
+        }
+        paper.heading("Curves", plot::SIZE.1);
+        let aside = PAGE.0 - 2.0 * MARGIN - plot::SIZE.0;
+        for (n, (m, output)) in outputs.iter().take(MOST_CURVES).enumerate() {
+            let values: Vec<f64> = (0..solution.motion.len())
+                .map(|k| units.from_si(output.dimension, solution.measured.value(k, *m)[0]))
+                .collect();
+            if n % 2 == 0 {
+                paper.need(plot::SIZE.1);
+                paper.y -= plot::SIZE.1;
+            }
+            let unit = order_unit(units, output.dimension, 0);
+            let left = MARGIN + if n % 2 == 0 { 0.0 } else { aside };
+            Plot { name: &output.name, unit: &unit, times: &solution.motion.times, values: &values }
+                .draw(paper, [left, paper.y]);
+        }
+        let more = outputs.len().saturating_sub(MOST_CURVES);
+        (more > 0).then(|| format!("{}; `motion.{}` has all", count(more, "more curve"), self.suffix))
+    }
+}
+
+/// The variables that move a measure, those first that move it most.
+fn ranked(paper: &mut Paper, ranking: &Ranking) {
+    paper.need(4.0 * TEXT.line());
+    paper.y -= 0.6 * TEXT.line();
+    paper.row(STRONG, &RANKED, &[&ranking.measure, "sensitivity", "", "at t [s]"]);
+    for of in ranking.largest.iter().take(MOST_RANKED) {
+        let value = with_unit(of.value, &of.unit);
+        paper.row(TEXT, &RANKED, &[&of.variable, &value, "", &number(of.time)]);
+        let alike = ranking.largest.iter().filter(|other| other.unit == of.unit);
+        let greatest = alike.fold(0f64, |all, other| all.max(other.value.abs()));
+        let length = (of.value.abs() / greatest) as f32 * BAR;
+        let colour = if of.value < 0.0 { RED } else { BLUE };
+        paper.bar(colour, [MARGIN + RANKED[2], paper.y], length.max(0.5), 0.6 * TEXT.size);
+    }
+    let more = ranking.largest.len().saturating_sub(MOST_RANKED);
+    if more > 0 {
+        paper.row(SMALL, &RANKED, &[&format!("and {}", count(more, "more variable"))]);
+    }
+}

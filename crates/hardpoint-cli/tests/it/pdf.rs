@@ -1,0 +1,113 @@
+//! `report.pdf` as a reader of it finds it: what its pages say, and where its curves go.
+
+use serde_json::Value;
+
+use crate::bench::Bench;
+
+/// Blue, in which curves are drawn.
+const CURVE: &str = "0.02 0.37 0.73 RG";
+/// Places on paper are written in single precision, as parts of some 100 points.
+const ON_PAPER: f64 = 1e-5;
+
+fn document(bench: &Bench, name: &str) -> String {
+    let bytes = std::fs::read(bench.path(name)).unwrap();
+    assert!(bytes.starts_with(b"%PDF-1.") && bytes.trim_ascii_end().ends_with(b"%%EOF"));
+    bytes.into_iter().map(char::from).collect()
+}
+
+/// All that stands on the pages, text by text.
+fn said(document: &str) -> Vec<String> {
+    let texts = document.lines().filter_map(|line| line.trim().strip_suffix(" Tj"));
+    let text = |shown: &str| {
+        shown.trim_start_matches('(').trim_end_matches(')').replace("\\(", "(").replace("\\)", ")")
+    };
+    texts.map(text).collect()
+}
+
+/// The points of each curve.
+fn curves(document: &str) -> Vec<Vec<[f64; 2]>> {
+    let drawn = document.split(CURVE).skip(1);
+    let point = |line: &str| {
+        let numbers = line.trim().strip_suffix(" l")?;
+        let mut numbers = numbers.split(' ').map(|x| x.parse().unwrap());
+        Some([numbers.next()?, numbers.next()?])
+    };
+    drawn.map(|path| path.lines().take_while(|line| line.trim() != "S").filter_map(point).collect()).collect()
+}
+
+/// Between 0 and 1 as between their lowest and their highest.
+fn normalised(values: impl Iterator<Item = f64> + Clone) -> Vec<f64> {
+    let (low, high) = (values.clone().fold(f64::MAX, f64::min), values.clone().fold(f64::MIN, f64::max));
+    values.map(|v| (v - low) / (high - low)).collect()
+}
+
+#[test]
+fn the_pages_say_what_was_run_and_draw_every_measure_as_it_is() {
+    let bench = Bench::with(&["slider.toml"]);
+    let output = bench.run(&["run", "slider.toml", "-o", "out", "--pdf"]);
+    assert!(output.status.success());
+    let document = document(&bench, "out/report.pdf");
+    let said = said(&document);
+    let has = |text: &str| assert!(said.iter().any(|s| s == text), "{text} is not among {said:?}");
+    let summary: Value = serde_json::from_str(&bench.text("out/summary.json")).unwrap();
+    has(summary["model"]["name"].as_str().unwrap());
+    has("mm, deg, s");
+    for metric in summary["metrics"].as_array().unwrap() {
+        has(metric["name"].as_str().unwrap());
+    }
+    for variable in summary["model"]["variables"].as_array().unwrap() {
+        has(variable["name"].as_str().unwrap());
+    }
+    // The strongest variable of the first measure that is ranked, with its sensitivity.
+    let mut rankings = summary["sensitivities"].as_array().unwrap().iter();
+    let first = rankings
+        .find(|r| r["order"] == "value" && r["largest"].as_array().is_some_and(|list| !list.is_empty()));
+    let ranking = &first.unwrap()["largest"][0];
+    let shown = hardpoint_report::figures::with_unit(
+        ranking["value"].as_f64().unwrap(),
+        ranking["unit"].as_str().unwrap(),
+    );
+    has(&shown);
+
+    let mut table = csv::Reader::from_reader(bench.text("out/motion.csv").into_bytes().leak() as &[u8]);
+    let headers = table.headers().unwrap().clone();
+    let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
+    let measures = summary["model"]["measures"].as_array().unwrap();
+    let curves = curves(&document);
+    assert_eq!(curves.len(), measures.len());
+    for (measure, curve) in measures.iter().zip(&curves) {
+        let name = measure["name"].as_str().unwrap();
+        has(name);
+        let column = headers.iter().position(|h| h == name || h.starts_with(&format!("{name} ["))).unwrap();
+        // The unit stands beside the axis.
+        has(headers[column].strip_prefix(name).unwrap().trim());
+        let number = |column: usize| rows.iter().map(move |row| row[column].parse::<f64>().unwrap());
+        for (drawn, solved) in [
+            (normalised(curve.iter().map(|p| p[0])), normalised(number(0))),
+            (normalised(curve.iter().map(|p| p[1])), normalised(number(column))),
+        ] {
+            assert_eq!(drawn.len(), solved.len(), "{name}");
+            assert!(
+                drawn.iter().zip(&solved).all(|(a, b)| (a - b).abs() < ON_PAPER),
+                "{name}: {drawn:?} {solved:?}"
+            );
+        }
+    }
+    // A run that does not write it leaves none of an earlier one.
+    assert!(bench.run(&["run", "slider.toml", "-o", "out"]).status.success());
+    assert!(!bench.list("out").contains(&"report.pdf".to_owned()));
+}
+
+#[test]
+fn a_name_in_letters_that_the_pages_lack_is_told() {
+    let bench = Bench::with(&["slider.toml"]);
+    let text = bench.text("slider.toml");
+    let name = text.lines().find(|line| line.starts_with("name = ")).unwrap();
+    bench.put("slider.toml", &text.replace(name, "name = \"\u{447}\""));
+    assert!(bench.run(&["run", "slider.toml", "-o", "out", "--pdf"]).status.success());
+    let said = said(&document(&bench, "out/report.pdf"));
+    assert!(
+        said.iter().any(|s| s.contains("? is a letter that the font of this document lacks")),
+        "{said:?}"
+    );
+}
