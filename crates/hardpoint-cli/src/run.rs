@@ -49,7 +49,7 @@ const TOO_MANY: &str = "the sensitivities were not compared with re-solved desig
 const JERK_ROWS: usize = 256;
 
 /// All files that a run may write; the last one vouches for the others.
-const FILES: [&str; 17] = [
+const FILES: [&str; 18] = [
     "motion.csv",
     "sensitivity.csv",
     "motion.npy",

@@ -8,6 +8,7 @@ use hardpoint_tape::Number;
 use crate::design::DesignMap;
 use crate::model::{ElementId, ElementKind, MeasureKind, Model};
 use crate::motion::kinematics::State;
+use crate::motion::step_program::RecordedStep;
 use crate::number::{Dual, record as recording};
 use crate::sensitivity::{Differentiated, Turning};
 use crate::space::{Twist, Wrench};
@@ -67,22 +68,16 @@ struct RecordedLoad<'a> {
 }
 
 impl<'a> RecordedLoads<'a> {
-    /// Where a state stands in the design with these values: with drivers of these speeds, and these values of the laws of those elements
-    /// that have any. With derivatives by all variables, if they are wanted.
-    pub fn new(
-        design_map: &'a DesignMap<'_>,
-        topology: &Topology,
-        state: &mut State<Number>,
-        (values, (drivers, laws)): (&[Number], (&[[Number; 3]], &[Number])),
-        sensitivities: bool,
-    ) -> Self {
+    /// Where a step has come to; with derivatives by all variables, if they are wanted.
+    pub fn new(design_map: &'a DesignMap<'_>, step: &mut RecordedStep<'_>, sensitivities: bool) -> Self {
+        let RecordedStep { topology, state, values, drivers, laws } = step;
         let model = design_map.model();
         let geometry = recording::strictly(|| design_map.geometry(values));
         let along = |v| recording::strictly(|| geometry_along(design_map, values, v));
         let mut bodies = Equilibrium::new(model, topology);
         bodies.stand(state, |d| drivers[d][1]);
         let with_law = (0..model.elements.len()).filter(|e| model.elements[*e].kind.law().is_some());
-        with_law.zip(laws).for_each(|(e, law)| bodies.now.laws[e] = *law);
+        with_law.zip(*laws).for_each(|(e, law)| bodies.now.laws[e] = *law);
         for e in 0..model.elements.len() {
             if let Turns::Coordinate(c) = Turns::of(model, topology, ElementId(e)) {
                 bodies.now.near[e] = state.q[c.0];

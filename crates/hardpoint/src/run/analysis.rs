@@ -276,19 +276,11 @@ impl<'m> Analysis<'m> {
         }
         self.programs.step(purpose, |execution| {
             let one = self.started()?;
-            let besides = |step: RecordedStep<'_>| {
-                let RecordedStep { topology, state, values, drivers, laws } = step;
-                let given = (drivers, laws);
-                let new = |state: &mut _| {
-                    RecordedLoads::new(
-                        &self.design_map,
-                        topology,
-                        state,
-                        (values, given),
-                        purpose.sensitivities,
-                    )
-                };
-                let mut loads = purpose.loads.then(|| new(state));
+            let besides = |mut step: RecordedStep<'_>| {
+                let wanted = purpose.sensitivities;
+                let mut loads =
+                    purpose.loads.then(|| RecordedLoads::new(&self.design_map, &mut step, wanted));
+                let RecordedStep { topology, state, values, .. } = step;
                 let extras = if purpose.sensitivities {
                     let fields = recording::strictly(|| self.design_map.fields(values));
                     record_derivatives(self.model(), &fields, topology, state, |by| {
