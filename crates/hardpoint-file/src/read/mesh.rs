@@ -272,8 +272,13 @@ impl Reader<'_> {
         let (name, _) = &said.file;
         // Meshes do not go with a model's text, what they weigh does.
         let known = format!("{name} as a solid");
-        if let Folder::Given(texts) = self.folder {
-            let found = texts.get(&known).and_then(|text| {
+        let texts = match self.folder {
+            Folder::Given(texts) => Some(texts),
+            _ => None,
+        };
+        // The engine of a page does without the readers of meshes.
+        if texts.is_some() || cfg!(target_family = "wasm") {
+            let found = texts.and_then(|texts| texts.get(&known)).and_then(|text| {
                 self.texts.insert(known.clone(), text.clone());
                 let numbers: Option<Vec<f64>> = text.split_whitespace().map(|x| x.parse().ok()).collect();
                 <[f64; 10]>::try_from(numbers?).ok()

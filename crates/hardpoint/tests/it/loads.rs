@@ -286,16 +286,13 @@ fn forces_that_go_by_laws_and_speeds_are_the_same_by_program() {
     assert_eq!([right.motion.effort.by_program, again.motion.effort.by_program], [0, 159]);
     for name in LOADS {
         let m = right.measured.index(name).unwrap();
-        let column = |s: &Solution, of: &dyn Fn(&Solution, usize) -> f64| -> Vec<f64> {
-            (0..s.motion.len()).map(|k| of(s, k)).collect()
-        };
-        let mut all: Vec<Box<dyn Fn(&Solution, usize) -> f64>> =
-            vec![Box::new(move |s, k| s.measured.value(k, m)[0])];
-        for v in 0..model.variables.len() {
-            all.push(Box::new(move |s, k| s.measured.d(k, VariableId(v), m)[0]));
-        }
-        for of in &all {
-            let [x, y] = [&right, &again].map(|s| column(s, of));
+        for v in [None].into_iter().chain((0..model.variables.len()).map(|v| Some(VariableId(v)))) {
+            let of = |s: &Solution, k: usize| match v {
+                None => s.measured.value(k, m)[0],
+                Some(v) => s.measured.d(k, v, m)[0],
+            };
+            let [x, y] =
+                [&right, &again].map(|s| (0..s.motion.len()).map(|k| of(s, k)).collect::<Vec<f64>>());
             let size = x.iter().fold(1e-3_f64, |most, x| most.max(x.abs()));
             let apart = x.iter().zip(&y).fold(0.0_f64, |most, (x, y)| most.max((x - y).abs()));
             assert!(apart < SAME * size, "{name}: {apart:e} of {size}");
