@@ -31,5 +31,5 @@ mod virtual_motion;
 
 pub(crate) use compliance::Compliances;
 pub(crate) use gradient::LoadGradients;
-pub(crate) use program::{RECORDED, RecordedLoads, hindrance};
+pub(crate) use program::{RecordedLoads, hindrance};
 pub(crate) use solver::LoadSolver;

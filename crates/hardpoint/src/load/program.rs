@@ -22,17 +22,11 @@ use super::solver::{asked, asks_for_reactions, geometry_along};
 use super::turns::Turns;
 use super::virtual_motion::{VirtualMotion, Weights};
 
-/// Whether loads are recorded at all: every page carries its engine, which would be a twentieth larger.
-pub(crate) const RECORDED: bool = !cfg!(target_family = "wasm");
-
 /// Of more bodies and elements, times variables, no loads are recorded: each takes some hundred operations.
 const MOST_PAIRS: usize = 10_000;
 
 /// Why the loads of a model are not recorded, if they are not.
 pub(crate) fn hindrance(model: &Model, topology: &Topology) -> Option<&'static str> {
-    if !RECORDED {
-        return Some("the engine of a page has no room for recording loads");
-    }
     if (model.bodies.len() + model.elements.len()) * (1 + model.variables.len()) > MOST_PAIRS {
         return Some("the program of its loads would be too long");
     }

@@ -278,8 +278,8 @@ impl<'m> Analysis<'m> {
             let one = self.started()?;
             let besides = |mut step: RecordedStep<'_>| {
                 let wanted = purpose.sensitivities;
-                let mut loads = (load::RECORDED && purpose.loads)
-                    .then(|| RecordedLoads::new(&self.design_map, &mut step, wanted));
+                let mut loads =
+                    purpose.loads.then(|| RecordedLoads::new(&self.design_map, &mut step, wanted));
                 let RecordedStep { topology, state, values, .. } = step;
                 let extras = if purpose.sensitivities {
                     let fields = recording::strictly(|| self.design_map.fields(values));
