@@ -506,11 +506,13 @@ impl<T: Real> Acting<'_, T> {
             let slip = self.bodies[j].velocity(q) - self.bodies[i].velocity(q);
             force -= slip * self.number(damping.0);
         }
-        let turned = rotation_vector(axes.transpose() * self.turned(j));
-        let [x, y, z] = [about_x, about_y, about_z].map(|n| self.or_zero(n.map(|n| n.0)));
-        let moment = -(axes * Vec3::new(x * turned.x, y * turned.y, z * turned.z));
         let mut push = Wrench::force(force, q);
-        push += Wrench::moment(moment);
+        let about = [about_x, about_y, about_z];
+        if about.iter().any(|n| n.is_some()) {
+            let turned = rotation_vector(axes.transpose() * self.turned(j));
+            let [x, y, z] = about.map(|n| self.or_zero(n.map(|n| n.0)));
+            push += Wrench::moment(-(axes * Vec3::new(x * turned.x, y * turned.y, z * turned.z)));
+        }
         push
     }
 
@@ -565,15 +567,11 @@ fn rotation_vector<T: Real>(rot: Mat3<T>) -> Vec3<T> {
     // sin(theta) n and cos(theta)
     let sine = Vec3::new(y.z - z.y, z.x - x.z, x.y - y.x) * half;
     let square = sine.dot(sine);
-    let small = T::constant(SMALL);
-    // A recording is told which of the two must hold where it is run.
     if square.decisive() < SMALL {
-        small.exceeds(square);
         // theta / sin(theta) = 1 + s^2/6 + 3 s^4/40
         let more = square * T::constant(3.0 / 40.0) + T::constant(1.0 / 6.0);
         sine * (square * more + T::one())
     } else {
-        square.exceeds(small);
         let cosine = (x.x + y.y + z.z - T::one()) * half;
         let size = sine.norm();
         sine * (size.atan2(cosine) / size)

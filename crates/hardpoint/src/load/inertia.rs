@@ -1,7 +1,7 @@
 //! What a body's masses need of its motion, as one matrix; and how that changes where the body goes another way.
 //!
 //! `f = M (A - [0; g0]) + ad*(V) M V` of `docs/theory.md` (43) in twists, M the spatial inertia in the world. Masses that stay where they are
-//! in their body turn with it, `M' = ad*(W) M - M ad(W)`, so that their part of F' is a few products of each body's, whatever they are made of.
+//! in their body turn with it, `M' = ad*(W) M - M ad(W)`, so that their part of F' is a few products of each body's (49), whatever they are made of.
 
 use crate::design::Geometry;
 use crate::model::{ElementId, Model};

@@ -1,6 +1,6 @@
 //! Loads as part of a step's program: what joints and drivers carry is recorded where the position is, with its factors.
 //!
-//! Not recorded are joints that rub, with forces that are iterated, springs by tables, and elements on angles that are counted along the path:
+//! Not recorded are joints that rub, with forces that are iterated, springs by tables, bushings that resist turning, and elements on angles that are counted along the path:
 //! these go by the kernel. Which reactions are known is a result like others: in some positions redundant constraints share what they do not in others.
 
 use hardpoint_tape::Number;
@@ -35,7 +35,7 @@ pub(crate) fn hindrance(model: &Model, topology: &Topology) -> Option<&'static s
         return Some("joints rub, with forces that are iterated");
     }
     if !kinds().all(ElementKind::is_arithmetic) {
-        return Some("the force of a spring is looked up in a table");
+        return Some("a spring has a table, or a bushing a stiffness against turning");
     }
     let counted =
         (0..model.elements.len()).any(|e| matches!(Turns::of(model, topology, ElementId(e)), Turns::Path(_)));

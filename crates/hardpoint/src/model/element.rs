@@ -379,9 +379,15 @@ impl ElementKind {
     }
 
     /// Whether its formulas are arithmetic on where bodies are, which can be recorded. A table is looked up: which of its pieces counts is
-    /// another one as the spring moves.
+    /// another one as the spring moves. The turn of a bushing is a series as long as it is small.
     pub fn is_arithmetic(&self) -> bool {
-        !matches!(self, Self::Spring { compression: Some(_), .. } | Self::Spring { extension: Some(_), .. })
+        match self {
+            Self::Spring { .. } => self.table().is_none(),
+            Self::Bushing { about_x, about_y, about_z, .. } => {
+                [about_x, about_y, about_z].iter().all(|n| n.is_none())
+            }
+            _ => true,
+        }
     }
 
     /// Its table, if it is a spring that has one: of tension over deflection.
