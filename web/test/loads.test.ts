@@ -55,19 +55,22 @@ function boxes(mechanism: Mechanism, step: number): (Box3 | undefined)[] {
   })
 }
 
+/** Digits that agree: boxes are of corners in `f32`, and some hundred units large. */
+const DRAWN = 3
+
 test('arrows begin where forces act, point along them, and are in proportion', () => {
   const mechanism = new Mechanism(crank({ loads: LOADS }))
   const lengths = [0, 2].map((step) => boxes(mechanism, step))
   const [hinge] = lengths[0]
   const long = hinge!.max.x
   expect(long).toBeGreaterThan(10 * mechanism.unit)
-  expect(hinge!.min.x).toBeCloseTo(0, 6)
+  expect(hinge!.min.x).toBeCloseTo(0, DRAWN)
   // No push yet: no arrow; later one from the pin, which then is at -200, a third as long, downwards.
   expect(lengths[0][1]).toBeUndefined()
   const push = lengths[1][1]!
-  expect((push.min.x + push.max.x) / 2).toBeCloseTo(-200, 3)
-  expect(push.max.y).toBeCloseTo(0, 3)
-  expect(-push.min.y).toBeCloseTo(long / 3, 6)
+  expect((push.min.x + push.max.x) / 2).toBeCloseTo(-200, DRAWN)
+  expect(push.max.y).toBeCloseTo(0, DRAWN)
+  expect(-push.min.y).toBeCloseTo(long / 3, DRAWN)
   // Where nothing is known there is nothing.
   expect(boxes(mechanism, 4)[1]).toBeUndefined()
   expect(loads(mechanism, new Kit(mechanism, PALETTE), { ...CHOICE, forces: false })).toEqual([])
