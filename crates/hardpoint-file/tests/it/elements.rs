@@ -4,22 +4,12 @@ use std::fmt::Write;
 use std::path::Path;
 
 use hardpoint::space::Vec3;
-use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, Severity, parse, parse_with, read};
+
+use crate::loads::{solved, values};
 
 /// The same said in two ways: round-off only.
 const SAME: f64 = 1e-11;
-
-fn solved(file: &ModelFile) -> Solution {
-    let solution = Analysis::new(&file.model).unwrap().run();
-    assert!(solution.stop.is_none(), "{:?}", solution.stop);
-    solution
-}
-
-fn values(solution: &Solution, name: &str) -> Vec<f64> {
-    let m = solution.measured.index(name).unwrap_or_else(|| panic!("{name}"));
-    (0..solution.motion.len()).map(|k| solution.measured.value(k, m)[0]).collect()
-}
 
 fn same(a: &[f64], b: &[f64], what: &str) {
     let scale = a.iter().fold(0.0_f64, |most, x| most.max(x.abs()));

@@ -19,13 +19,13 @@ fn file(text: &str) -> ModelFile {
     parse(text, "loads.toml").unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn solved(file: &ModelFile) -> Solution {
+pub fn solved(file: &ModelFile) -> Solution {
     let solution = Analysis::new(&file.model).unwrap().run();
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
     solution
 }
 
-fn values(solution: &Solution, name: &str) -> Vec<f64> {
+pub fn values(solution: &Solution, name: &str) -> Vec<f64> {
     let m = solution.measured.index(name).unwrap_or_else(|| panic!("{name}"));
     (0..solution.motion.len()).map(|k| solution.measured.value(k, m)[0]).collect()
 }

@@ -10,8 +10,9 @@
 use crate::design::Geometry;
 use crate::model::{DriverId, ElementId, JointId, MeasureKind, Model};
 use crate::motion::kinematics::State;
+use crate::motion::level::Flow;
 use crate::number::{Dual, Real};
-use crate::sensitivity::{Differentiated, Transmission, Transposed, Way};
+use crate::sensitivity::{Differentiated, PlanVelocity, Transmission, Transposed, Way};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::{ClosureId, CoordinateId, LinkId, RowId, Term, Topology};
 
@@ -55,6 +56,13 @@ pub(crate) struct Carried<T> {
     pub speeds: Vec<T>,
     /// What the mechanism puts on ground, about the world origin.
     pub shaking: Wrench<T>,
+}
+
+/// What a redundant constraint that pulls by itself puts on the joints.
+pub(super) struct Stress<T> {
+    pub carried: Carried<T>,
+    /// The largest force of a joint, moments by the size of the mechanism.
+    pub most: T,
 }
 
 /// A position with all that acts there, over plain numbers or with the derivative by a variable.
@@ -158,17 +166,13 @@ impl<T: Real> Equilibrium<T> {
         now.needed = needed;
     }
 
-    /// Gets ready for what variables change.
+    /// Gets ready for what variables change; nothing does, as yet.
     pub fn begin_changes(&mut self, (model, geometry): (&Model, &Geometry<T>)) {
-        SpatialInertia::all(&self.now.acting(model, geometry), &mut self.inertia);
-        for (still, body) in self.still.iter_mut().zip(&self.now.bodies) {
+        let Self { now, along, inertia, still, .. } = self;
+        SpatialInertia::all(&now.acting(model, geometry), inertia);
+        for (still, body) in still.iter_mut().zip(&now.bodies) {
             *still = changed(body, [Twist::zero(); 3]);
         }
-    }
-
-    /// Takes that nothing changes, as yet.
-    pub fn stand_still(&mut self) {
-        let Self { now, along, .. } = self;
         let lists = [
             (&mut along.laws, &now.laws),
             (&mut along.near, &now.near),
@@ -180,18 +184,28 @@ impl<T: Real> Equilibrium<T> {
         along.found.keep(&now.found);
     }
 
-    /// Takes how a variable changes the motion; friction stands, as yet.
-    pub fn change(&mut self, model: &Model, by: Differentiated<'_, T>) {
-        let Differentiated { topology, state, field, flow, .. } = by;
-        self.stand_still();
-        let Self { now, along, x, l, .. } = self;
+    /// Takes how a variable changes the motion.
+    pub fn go_along(&mut self, field: &PlanVelocity<T>, flow: &Flow<T>) {
+        let Self { now, along, .. } = self;
         for b in 1..now.bodies.len() {
-            let twists = flow.twists.each_ref().map(|w| w[b]);
-            along.bodies[b] = changed(&now.bodies[b], twists);
-            self.inertial[b] = self.inertia[b].changed(model.gravity.spread(), &now.bodies[b], twists);
+            along.bodies[b] = changed(&now.bodies[b], flow.twists.each_ref().map(|w| w[b]));
         }
         for (d, speed) in along.found.speeds.iter_mut().enumerate() {
             *speed = Dual { v: now.found.speeds[d], d: field.law_rate(DriverId(d), 1) };
+        }
+    }
+
+    /// The same with all that reactions go by; friction stands, as yet.
+    pub fn change(&mut self, model: &Model, by: Differentiated<'_, T>) {
+        let Differentiated { topology, state, field, flow, .. } = by;
+        self.go_along(field, flow);
+        let Self { now, along, x, l, inertia, inertial, .. } = self;
+        for (to, from) in along.friction.iter_mut().zip(&now.friction) {
+            *to = Dual::constant(*from);
+        }
+        for b in 1..now.bodies.len() {
+            let twists = flow.twists.each_ref().map(|w| w[b]);
+            inertial[b] = inertia[b].changed(model.gravity.spread(), &now.bodies[b], twists);
         }
         field.turn_axes(topology, state, flow, (x, l));
     }
@@ -260,19 +274,22 @@ impl<T: Real> Equilibrium<T> {
     }
 
     /// What joints carry where redundant constraints pull by themselves: per redundant row.
-    pub fn stresses(&mut self, model: &Model, topology: &Topology, state: &mut State<T>) -> Vec<Carried<T>> {
+    pub fn stresses(
+        &mut self,
+        topology: &Topology,
+        state: &mut State<T>,
+        (model, geometry): (&Model, &Geometry<T>),
+    ) -> Vec<Stress<T>> {
         let mut stresses = Vec::new();
         for r in topology.redundant() {
             if stresses.is_empty() {
                 state.finish_wrenches(topology);
             }
-            let terms = || {
-                topology.parts_of_row(r).map(|Term { row, factor }| {
-                    // With mu_r = 1 row r puts l on body j, which needs so much less.
-                    (topology[row].closure, state.l[0][row.0].times_plus(T::constant(factor), Wrench::zero()))
-                })
+            // With mu_r = 1 row r puts l on body j, which needs so much less.
+            let pull = |Term { row, factor }| {
+                (topology[row].closure, state.l[0][row.0].times_plus(T::constant(factor), Wrench::zero()))
             };
-            let pulls: Vec<_> = terms().collect();
+            let pulls: Vec<_> = topology.parts_of_row(r).map(pull).collect();
             let on_bodies = pulls.iter().flat_map(|(c, l)| {
                 let [i, j] = topology[*c].bodies;
                 [(j.0, *l), (i.0, Wrench::zero() - *l)]
@@ -281,7 +298,9 @@ impl<T: Real> Equilibrium<T> {
             for (at, to) in self.places.joints.iter().zip(&mut joints) {
                 pulls.iter().filter(|(c, _)| at.closures.contains(c)).for_each(|(_, l)| *to += *l);
             }
-            stresses.push(Carried { joints, ..Carried::new(model) });
+            let carried = Carried { joints, ..Carried::new(model) };
+            let most = Instant { acting: &self.now.acting(model, geometry), carried: &carried }.most();
+            stresses.push(Stress { carried, most });
         }
         stresses
     }
@@ -289,16 +308,17 @@ impl<T: Real> Equilibrium<T> {
 
 /// How much redundant constraints that pull by themselves make of a measure, at most: above zero it is not known. Only reactions can be
 /// theirs.
-pub(super) fn excess<T: Real>(kind: &MeasureKind, acting: &Acting<'_, T>, stresses: &[Carried<T>]) -> T {
+pub(super) fn excess<T: Real>(kind: &MeasureKind, acting: &Acting<'_, T>, stresses: &[Stress<T>]) -> T {
     let none = T::constant(-1.0);
     if !matches!(kind, MeasureKind::Reaction { .. }) {
         return none;
     }
-    stresses.iter().fold(none, |most, carried| most.larger(Instant { acting, carried }.excess(kind)))
+    let of = |stress: &Stress<T>| Instant { acting, carried: &stress.carried }.excess(kind, stress.most);
+    stresses.iter().fold(none, |most, stress| most.larger(of(stress)))
 }
 
 /// Whether they leave it alone.
-pub(super) fn is_known(kind: &MeasureKind, acting: &Acting<'_, f64>, stresses: &[Carried<f64>]) -> bool {
+pub(super) fn is_known(kind: &MeasureKind, acting: &Acting<'_, f64>, stresses: &[Stress<f64>]) -> bool {
     // Written so that NaN is not known.
     excess(kind, acting, stresses) <= 0.0
 }

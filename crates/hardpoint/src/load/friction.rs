@@ -10,7 +10,7 @@ use crate::number::Dual;
 use crate::space::{Real, Vec3, Wrench};
 
 use super::acting::{Acting, pressing};
-use super::carry::Carried;
+use super::carry::{Carried, Stress};
 use super::measures::Instant;
 use super::solver::LoadSolver;
 
@@ -78,10 +78,12 @@ impl Friction {
     }
 
     /// Finds the moments; they are no numbers where joints jam, or where redundant constraints, each pulling by itself, change what presses.
-    pub fn solve(&mut self, acting: &Acting<'_, f64>, stresses: &[Carried<f64>]) {
+    pub fn solve(&mut self, acting: &Acting<'_, f64>, stresses: &[Stress<f64>]) {
         self.moments.fill(0.0);
         for rub in &mut self.rubs {
-            let leaves = |carried| Instant { acting, carried }.presses_nothing(rub.element, rub.joint);
+            let leaves = |Stress { carried, most }: &Stress<f64>| {
+                Instant { acting, carried }.presses_nothing(rub.element, rub.joint, *most)
+            };
             rub.is_shared = !stresses.iter().all(leaves);
         }
         let known = self.shared().next().is_none();

@@ -20,7 +20,7 @@ use crate::space::{Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
 
 use super::acting::{Acting, Moving};
-use super::carry::{Carried, Scene, changed};
+use super::carry::{Carried, Equilibrium, Scene, changed};
 use super::measures::Instant;
 use super::solver::LoadSolver;
 use super::virtual_motion::{VirtualMotion, Weights, set, unit_twist};
@@ -36,7 +36,7 @@ pub(crate) struct LoadGradients {
     friction: Vec<Dual>,
     carried: Carried<Dual>,
     needed: Vec<Wrench<Dual>>,
-    /// Per body: the elements that know of it.
+    /// Per body: the forces that know of it.
     felt: Vec<Vec<ElementId>>,
     /// Per variable: whether it changes a load with all bodies where they are.
     touches: Vec<bool>,
@@ -53,7 +53,7 @@ impl LoadGradients {
         let model = solver.model;
         let bodies = model.bodies.len();
         let mut felt = vec![Vec::new(); bodies];
-        for (e, element) in model.elements.iter().enumerate() {
+        for (e, element) in model.elements.iter().enumerate().filter(|(_, e)| !e.kind.has_mass()) {
             let mut on: Vec<BodyId> = element.kind.bodies(model);
             on.sort_unstable();
             on.dedup();
@@ -117,6 +117,14 @@ impl LoadGradients {
                 set(&mut self.loads[n].1[2 - order], unit, by * factor);
             }
             self.bodies[body] = still;
+            // Masses are felt by a matrix of each body.
+            let Equilibrium { inertia, now, .. } = &solver.bodies;
+            let y = self.virtual_motion.twists()[body] - ground;
+            let [p0, p1, p2] = inertia[body].weights(solver.model.gravity, &now.bodies[body], y);
+            let loads = &mut self.loads[n].1;
+            loads[0] += p2;
+            loads[1] = p1.times_plus(0.5, loads[1]);
+            loads[2] += p0;
         }
         let Self { virtual_motion, loads, .. } = self;
         let of = (&solver.bodies.places, &solver.bodies.transmission);
@@ -172,7 +180,7 @@ impl LoadGradients {
         Acting { model: solver.model, geometry, bodies, laws, near, friction }
     }
 
-    /// How the load goes with what has been set, by itself and by what the bodies need, on Y: of elements that feel a body, or of all.
+    /// How the load goes with what has been set, by itself and by what the bodies need, on Y: of forces that feel a body, or of all elements.
     fn goes(
         &mut self,
         solver: &LoadSolver<'_>,

@@ -78,10 +78,10 @@ impl<T: Real> Instant<'_, T> {
 const KNOWN: f64 = 1e-8;
 
 impl<T: Real> Instant<'_, T> {
-    /// How much of that reaction there is in loads that a redundant constraint exerts by itself; not above zero where it is nothing but
-    /// round-off.
-    pub fn excess(&self, kind: &MeasureKind) -> T {
-        let (size, most) = (self.acting.model.size(), self.most());
+    /// How much of that reaction there is in loads that a redundant constraint exerts by itself, the largest of which is `most`; not above
+    /// zero where it is nothing but round-off.
+    pub fn excess(&self, kind: &MeasureKind, most: T) -> T {
+        let size = self.acting.model.size();
         let scale = match kind {
             MeasureKind::Reaction { part, .. } if part.is_moment() => most * size,
             _ => most,
@@ -90,7 +90,7 @@ impl<T: Real> Instant<'_, T> {
     }
 
     /// The largest force that a joint carries, moments by the size of the mechanism.
-    fn most(&self) -> T {
+    pub fn most(&self) -> T {
         let size = self.acting.model.size();
         let joints = (0..self.acting.model.joints.len()).map(JointId);
         joints.fold(T::zero(), |most, joint| {
@@ -102,9 +102,9 @@ impl<T: Real> Instant<'_, T> {
 
 impl Instant<'_, f64> {
     /// Whether there is nothing of what presses where an element rubs.
-    pub fn presses_nothing(&self, e: ElementId, joint: JointId) -> bool {
+    pub fn presses_nothing(&self, e: ElementId, joint: JointId, most: f64) -> bool {
         let (presses, count) = self.acting.presses(e, self.carried.joints[joint.0]);
-        presses.iter().take(count).all(|force| force.norm() <= KNOWN * self.most())
+        presses.iter().take(count).all(|force| force.norm() <= KNOWN * most)
     }
 }
 

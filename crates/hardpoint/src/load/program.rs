@@ -85,7 +85,7 @@ impl<'a> RecordedLoads<'a> {
         }
         bodies.carry(topology, state, (model, &geometry));
         let stresses = match asks_for_reactions(model) {
-            true => bodies.stresses(model, topology, state),
+            true => bodies.stresses(topology, state, (model, &geometry)),
             false => Vec::new(),
         };
         let kinds: Vec<&MeasureKind> = asked(model).into_iter().map(|m| &model.measures[m].kind).collect();
@@ -98,8 +98,7 @@ impl<'a> RecordedLoads<'a> {
             let variables = (0..model.variables.len()).map(Some).chain([None]);
             recorded.changed = variables.map(|v| Changed::new(model, along(v))).collect();
             recorded.bodies.begin_changes((model, &geometry));
-            recorded.loads =
-                kinds.iter().map(|kind| recorded.load(kind, topology, state)).collect::<Vec<_>>();
+            recorded.loads = kinds.iter().map(|kind| recorded.load(kind, topology, state)).collect();
         }
         recorded
     }
@@ -113,7 +112,6 @@ impl<'a> RecordedLoads<'a> {
     ) -> RecordedLoad<'a> {
         let Self { model, bodies, changed, .. } = self;
         let (constant, count) = (&changed[changed.len() - 1].geometry, model.bodies.len());
-        bodies.stand_still();
         let mut carried = bodies.along.found.clone();
         let acting = Acting { bodies: &bodies.still, ..bodies.along.acting(model, constant) };
         let objective =
@@ -135,8 +133,8 @@ impl<'a> RecordedLoads<'a> {
     pub fn differentiate(&mut self, by: Differentiated<'_, Number>) {
         let Self { model, bodies, changed, loads, found, .. } = self;
         let Changed { geometry, masses } = &changed[by.variable.0];
-        let Differentiated { variable, topology, state, field, flow } = by;
-        bodies.change(model, Differentiated { variable, topology, state: &mut *state, field, flow });
+        let Differentiated { topology, state, field, flow, .. } = by;
+        bodies.go_along(field, flow);
         bodies.act(model, geometry, masses);
         let acting = bodies.along.acting(model, geometry);
         let instant = Instant { acting: &acting, carried: &bodies.along.found };

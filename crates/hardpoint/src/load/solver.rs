@@ -14,7 +14,7 @@ use crate::space::{Vec3, Wrench};
 use crate::topology::Topology;
 
 use super::acting::Acting;
-use super::carry::{Carried, Equilibrium, Scene, is_known};
+use super::carry::{Carried, Equilibrium, Scene, Stress, is_known};
 use super::friction::Friction;
 use super::inertia::Changed;
 use super::measures::Instant;
@@ -35,7 +35,7 @@ pub(crate) struct LoadSolver<'a> {
     /// Whether reactions are to be judged: with redundant constraints not all are known.
     judges: bool,
     /// Per redundant row: what joints carry where that row pulls by itself.
-    stresses: Vec<Carried<f64>>,
+    stresses: Vec<Stress<f64>>,
     /// Per measure: its value, and by variable and measure its derivative; NaN for those of no load.
     pub(super) values: Vec<f64>,
     derivatives: Vec<f64>,
@@ -97,7 +97,7 @@ impl<'a> LoadSolver<'a> {
         self.bodies.now.friction.fill(0.0);
         self.bodies.carry(topology, state, (model, &self.geometry));
         if self.judges || !self.friction.is_empty() {
-            self.stresses = self.bodies.stresses(model, topology, state);
+            self.stresses = self.bodies.stresses(topology, state, (model, &self.geometry));
         }
         if !self.friction.is_empty() {
             self.rub(topology, state);
@@ -165,9 +165,9 @@ impl<'a> LoadSolver<'a> {
         let force_of = |carried| Instant { acting: &acting, carried }.wrench(joint)[1];
         // A basis of what they change: each less what is in those before it.
         let mut open: Vec<Vec3> = Vec::new();
-        for carried in &self.stresses {
+        for Stress { carried, most } in &self.stresses {
             let kind = MeasureKind::Reaction { joint, part: ReactionPart::Force, on: None, axes: None };
-            if (Instant { acting: &acting, carried }).excess(&kind) <= 0.0 {
+            if (Instant { acting: &acting, carried }).excess(&kind, *most) <= 0.0 {
                 continue;
             }
             let force = force_of(carried);

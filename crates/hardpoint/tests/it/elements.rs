@@ -9,8 +9,8 @@ use hardpoint::{Analysis, Solution};
 use hardpoint::{draft::*, model::*};
 
 use crate::loads::{
-    asking_for_all, compare_both_ways, compare_with_solved, driver_force, friction, heavy, on, point_mass,
-    press, rotor, run, values,
+    asking_for_all, compare_both_ways, compare_with_solved, door, driver_force, friction, heavy, on,
+    point_mass, press, rotor, run, values,
 };
 use crate::workbench::*;
 
@@ -526,16 +526,8 @@ fn friction_of_all_kinds_follows_the_design() {
 #[test]
 fn what_presses_is_known_or_friction_is_named() {
     // A door in two hinges: the force across either is shared with the moment of the other.
-    let z = [0.0, 0.0, 1.0];
-    let mut draft = Draft::new("door")
-        .body("door")
-        .revolute("lower", ["ground", "door"], [0.0, 0.0, 0.0], z)
-        .revolute("upper", ["ground", "door"], [0.0, 0.0, 2.0], z)
-        .driver("hand", "lower", Law::parse("t").unwrap())
-        .measure("hand", driver_force("hand"))
-        .times([0.0, 0.5]);
-    draft.masses.push(point_mass("leaf", "door", [0.5, 0.0, 1.0], 20.0));
-    draft.gravity = Vec3::new(0.0, 0.0, -10.0);
+    let leaf = point_mass("leaf", "door", [0.5, 0.0, 1.0], 20.0);
+    let mut draft = door(leaf).measure("hand", driver_force("hand"));
     draft.forces.push(friction("squeaks", "upper", 0.1, 0.01));
     let model = Model::from_draft(&draft).unwrap();
     let analysis = Analysis::new(&model).unwrap();

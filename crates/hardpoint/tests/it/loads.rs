@@ -656,9 +656,8 @@ fn hinges_that_jam_have_no_moment() {
     assert!(torque.iter().any(|x| x.is_nan()), "{torque:?}");
 }
 
-#[test]
-fn what_redundant_constraints_share_has_no_number_and_all_else_has() {
-    // Two hinges on one line hold a door: the weight along the line is shared, the rest is not.
+/// A door of this mass in two hinges on one line.
+pub fn door(leaf: ElementDraft) -> Draft {
     let z = [0.0, 0.0, 1.0];
     let mut draft = Draft::new("door")
         .body("door")
@@ -666,9 +665,15 @@ fn what_redundant_constraints_share_has_no_number_and_all_else_has() {
         .revolute("upper", ["ground", "door"], [0.0, 0.0, 2.0], z)
         .driver("hand", "lower", Law::parse("t").unwrap())
         .times([0.0, 0.5]);
-    draft.masses.push(rigid("leaf", "door", [0.5, 0.0, 1.0], 20.0, [1.0, 1.2, 0.3, 0.0, 0.0, 0.0]));
+    draft.masses.push(leaf);
     draft.gravity = Vec3::new(0.0, 0.0, -10.0);
-    let draft = draft
+    draft
+}
+
+#[test]
+fn what_redundant_constraints_share_has_no_number_and_all_else_has() {
+    // Two hinges on one line hold a door: the weight along the line is shared, the rest is not.
+    let draft = door(rigid("leaf", "door", [0.5, 0.0, 1.0], 20.0, [1.0, 1.2, 0.3, 0.0, 0.0, 0.0]))
         .measure("axial", reaction("upper", ReactionPart::Axial))
         .measure("radial", reaction("upper", ReactionPart::Radial))
         .measure("hand", driver_force("hand"));
