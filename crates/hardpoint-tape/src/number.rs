@@ -199,13 +199,13 @@ impl Number {
     /// # Panics
     ///
     /// Outside of a recording, as all that makes numbers.
-    #[inline]
+    #[inline(never)]
     pub fn constant(x: f64) -> Self {
         leaf(|_| Step::Constant(x), x)
     }
 
     /// The next input: a number that is given lane by lane, and is `x` in the recorded run.
-    #[inline]
+    #[inline(never)]
     pub fn input(x: f64) -> Self {
         leaf(
             |r| {
@@ -217,7 +217,7 @@ impl Number {
     }
 
     /// The next uniform: a number that is the same in all lanes of a run, and is `x` in the recorded one.
-    #[inline]
+    #[inline(never)]
     pub fn uniform(x: f64) -> Self {
         leaf(
             |r| {
@@ -243,7 +243,7 @@ impl Number {
     }
 
     /// `self * factor + addend`, which may be rounded once.
-    #[inline]
+    #[inline(never)]
     pub fn times_plus(self, factor: Self, addend: Self) -> Self {
         SESSION.with_borrow_mut(|s| {
             let step = Step::MulAdd(s.place(self), s.place(factor), s.place(addend));
@@ -252,25 +252,25 @@ impl Number {
     }
 
     /// Square root.
-    #[inline]
+    #[inline(never)]
     pub fn sqrt(self) -> Self {
         self.unary(Step::Sqrt, self.value.sqrt())
     }
 
     /// Magnitude.
-    #[inline]
+    #[inline(never)]
     pub fn abs(self) -> Self {
         self.unary(Step::Abs, self.value.abs())
     }
 
     /// Nearest integer, ties to even.
-    #[inline]
+    #[inline(never)]
     pub fn round(self) -> Self {
         self.unary(Step::Round, self.value.round_ties_even())
     }
 
     /// The larger of two; NaN where either is NaN.
-    #[inline]
+    #[inline(never)]
     pub fn larger(self, o: Self) -> Self {
         self.binary(o, Step::Larger, larger(self.value, o.value))
     }
@@ -320,7 +320,7 @@ pub(crate) fn larger(a: f64, b: f64) -> f64 {
 
 impl Add for Number {
     type Output = Self;
-    #[inline]
+    #[inline(never)]
     fn add(self, o: Self) -> Self {
         self.binary(o, Step::Add, self.value + o.value)
     }
@@ -328,7 +328,7 @@ impl Add for Number {
 
 impl Sub for Number {
     type Output = Self;
-    #[inline]
+    #[inline(never)]
     fn sub(self, o: Self) -> Self {
         self.binary(o, Step::Sub, self.value - o.value)
     }
@@ -336,7 +336,7 @@ impl Sub for Number {
 
 impl Mul for Number {
     type Output = Self;
-    #[inline]
+    #[inline(never)]
     fn mul(self, o: Self) -> Self {
         self.binary(o, Step::Mul, self.value * o.value)
     }
@@ -344,7 +344,7 @@ impl Mul for Number {
 
 impl Div for Number {
     type Output = Self;
-    #[inline]
+    #[inline(never)]
     fn div(self, o: Self) -> Self {
         self.binary(o, Step::Div, self.value / o.value)
     }
@@ -352,7 +352,7 @@ impl Div for Number {
 
 impl Neg for Number {
     type Output = Self;
-    #[inline]
+    #[inline(never)]
     fn neg(self) -> Self {
         self.unary(Step::Neg, -self.value)
     }
@@ -373,14 +373,14 @@ impl Mul<f64> for Number {
 }
 
 impl AddAssign for Number {
-    #[inline]
+    #[inline(never)]
     fn add_assign(&mut self, o: Self) {
         *self = *self + o;
     }
 }
 
 impl SubAssign for Number {
-    #[inline]
+    #[inline(never)]
     fn sub_assign(&mut self, o: Self) {
         *self = *self - o;
     }
