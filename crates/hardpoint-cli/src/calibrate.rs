@@ -72,7 +72,7 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
     } else {
         let mut out = format!("\n{}", text::pairs(&facts.rows()));
         for table in facts.tables() {
-            out += &format!("\n{}", text::table(&table));
+            out += &text::section(&table);
         }
         text::print(&out);
         text::print(&written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display())));

@@ -66,7 +66,7 @@ pub fn outcome(summary: &Summary) -> Outcome {
 fn outline_text(file: &ModelFile) -> String {
     let mut out = heading(&file.model.name, file.description.as_deref());
     for table in outline(file) {
-        out += &format!("\n{}", text::table(&table));
+        out += &text::section(&table);
     }
     out
 }
@@ -90,7 +90,7 @@ fn facts_text(summary: &Summary) -> String {
     out += &text::pairs(&rows);
     out += &text::notes(summary);
     for table in summary.assembly.iter().flat_map(|a| a.tables()).chain(facts.tables()) {
-        out += &format!("\n{}", text::table(&table));
+        out += &text::section(&table);
     }
     out
 }

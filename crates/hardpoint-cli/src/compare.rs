@@ -135,7 +135,7 @@ fn compare_in(
             text::print("  the hardpoints and parameters of both are the same\n");
         }
         for table in facts.tables(&wanted) {
-            text::print(&format!("\n{}", text::table(&table)));
+            text::print(&text::section(&table));
         }
         for path in &written {
             text::print(&format!("\nwritten: {}\n", path.display()));

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::sync::Arc;
 
+use hardpoint_file::csv_table::CsvWriter;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
 use parquet::column::reader::ColumnReader;
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
@@ -48,7 +49,7 @@ pub struct TableWriter<W: Write + Send> {
 }
 
 enum Sink<W: Write + Send> {
-    Csv(Box<csv::Writer<W>>),
+    Csv(Box<CsvWriter<W>>),
     Parquet { writer: Box<SerializedFileWriter<W>>, pending: Vec<Cells>, group: usize },
 }
 
@@ -61,8 +62,8 @@ impl<W: Write + Send> TableWriter<W> {
     pub fn new(out: W, format: TableFormat, columns: Kinds, facts: &[(&str, String)]) -> io::Result<Self> {
         let sink = match format {
             TableFormat::Csv => {
-                let mut csv = csv::Writer::from_writer(out);
-                csv.write_record(columns.iter().map(|(name, _)| name))?;
+                let mut csv = CsvWriter::new(out);
+                csv.row(columns.iter().map(|(name, _)| name))?;
                 Sink::Csv(Box::new(csv))
             }
             TableFormat::Parquet => {
@@ -89,7 +90,7 @@ impl<W: Write + Send> TableWriter<W> {
         match &mut self.sink {
             Sink::Csv(csv) => {
                 for row in 0..rows.first().map_or(0, Cells::len) {
-                    csv.write_record(rows.iter().map(|cells| cells.text(row)))?;
+                    csv.row(rows.iter().map(|cells| cells.text(row)))?;
                 }
                 Ok(())
             }
@@ -116,7 +117,7 @@ impl<W: Write + Send> TableWriter<W> {
     /// Where it cannot be written.
     pub fn end(self) -> io::Result<W> {
         match self.sink {
-            Sink::Csv(csv) => csv.into_inner().map_err(|e| e.into_error()),
+            Sink::Csv(csv) => csv.end(),
             Sink::Parquet { mut writer, mut pending, .. } => {
                 if pending.first().is_some_and(|cells| !cells.is_empty()) {
                     write_group(&mut writer, &mut pending)?;

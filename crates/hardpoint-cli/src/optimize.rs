@@ -184,7 +184,7 @@ fn facts_text(facts: &OptimizeFacts) -> String {
     rows.push(("time taken", facts.time_line()));
     let mut out = format!("\n{}", text::pairs(&rows));
     for table in facts.tables() {
-        out += &format!("\n{}", text::table(&table));
+        out += &text::section(&table);
     }
     out
 }

@@ -110,7 +110,7 @@ pub fn run(options: &Run) -> Outcome {
         return outcome;
     }
     if !options.common.json {
-        MapFact::table(&maps).iter().for_each(|table| text::print(&format!("\n{}", text::table(table))));
+        MapFact::table(&maps).iter().for_each(|table| text::print(&text::section(table)));
     }
     let written = Folder::open(&whole).and_then(|mut folder| {
         maps::write(&maps, &mut folder)?;
@@ -305,7 +305,7 @@ fn run_in(
     } else {
         text::print(&summary_text(&summary));
         for table in &tables_of_maps {
-            text::print(&format!("\n{}", text::table(table)));
+            text::print(&text::section(table));
         }
         if !solution.motion.is_empty() {
             let partial = if summary.status == RunStatus::Complete { "" } else { " (partial)" };
@@ -500,7 +500,7 @@ fn summary_text(summary: &Summary) -> String {
     let metrics = MetricFact::table(&summary.metrics).into_iter();
     let trusted = ValidityFact::table(summary).into_iter();
     for table in assembly.chain(metrics).chain(trusted).chain(largest(summary).filter(|_| steps.solved > 0)) {
-        out += &format!("\n{}", text::table(&table));
+        out += &text::section(&table);
     }
     out
 }

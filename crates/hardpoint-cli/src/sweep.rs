@@ -391,7 +391,7 @@ fn facts_text(facts: &SweepFacts) -> String {
     rows.push(("time taken", facts.time_line()));
     let mut out = format!("\n{}", text::pairs(&rows));
     for table in facts.tables() {
-        out += &format!("\n{}", text::table(&table));
+        out += &text::section(&table);
     }
     out
 }

@@ -131,6 +131,11 @@ pub fn table(table: &Table) -> String {
     laid_out(grid, table)
 }
 
+/// A table after an empty line; nothing where it has no rows.
+pub fn section(of: &Table) -> String {
+    if of.rows.is_empty() { String::new() } else { format!("\n{}", table(of)) }
+}
+
 fn empty_grid() -> comfy_table::Table {
     let mut grid = comfy_table::Table::new();
     grid.load_style(TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─')));

@@ -169,15 +169,19 @@ fn facts_text(facts: &WhatIfFacts, wanted: &dyn Fn(&str) -> bool) -> String {
     let mut out = format!("{}\n", text::bold(&facts.name));
     if !facts.change.is_empty() {
         let table = facts.table(wanted);
-        out += &format!("{}\n{}  {}\n", text::pairs(&facts.change_rows()), text::table(&table), table.note);
-        let metrics = MetricChange::table(&facts.metrics);
-        out += &metrics.map_or(String::new(), |table| format!("\n{}", text::table(&table)));
+        out += &text::pairs(&facts.change_rows());
+        if table.rows.is_empty() {
+            out += "\nThe model has no measures: add `[measures]` or `[points]` to see how the change affects the motion.\n";
+        } else {
+            out += &format!("{}  {}\n", text::section(&table), table.note);
+        }
+        out += &MetricChange::table(&facts.metrics).map_or(String::new(), |table| text::section(&table));
     }
     for measure in facts.ranked().into_iter().filter(|m| wanted(m)) {
         let ranking = facts.ranking(measure, SHOWN);
         out += &match ranking.rows.is_empty() {
             true => format!("\n{}\n  {}\n", ranking.title, ranking.note),
-            false => format!("\n{}", text::table(&ranking)),
+            false => text::section(&ranking),
         };
     }
     out

@@ -1,7 +1,9 @@
 //! Tables of hardpoints.
 
 use std::fmt::Write;
+use std::io;
 
+use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{LengthUnit, ModelFile};
 
 use crate::{Exported, Format, number};
@@ -33,14 +35,15 @@ fn shortest(unit: LengthUnit, metres: f64) -> f64 {
 
 fn csv(file: &ModelFile, out: &mut Exported) {
     let unit = file.units.length.symbol();
-    let _ = writeln!(out.text, "name,x ({unit}),y ({unit}),z ({unit})");
+    let mut table = CsvWriter::new(Vec::new());
+    let header = ["x", "y", "z"].map(|axis| format!("{axis} ({unit})"));
+    let mut written = table.row(["name".to_owned()].into_iter().chain(header));
     for (name, at) in hardpoints(file) {
-        let name = if name.contains([',', '"']) {
-            format!("\"{}\"", name.replace('"', "\"\""))
-        } else {
-            name.to_owned()
-        };
-        let _ = writeln!(out.text, "{name},{}", at.map(number).join(","));
+        written = written.and_then(|()| table.row([name.to_owned()].into_iter().chain(at.map(number))));
+    }
+    match written.map_err(io::Error::from).and_then(|()| table.end()) {
+        Ok(bytes) => out.text = String::from_utf8_lossy(&bytes).into_owned(),
+        Err(error) => out.unsaid("table", &file.model.name, error.to_string()),
     }
 }
 

@@ -33,6 +33,7 @@
 //!
 //! What is not here: coordinates of hardpoints in expressions that no change of the design moves.
 
+pub mod csv_table;
 mod diagnostic;
 mod drawing;
 mod edit;

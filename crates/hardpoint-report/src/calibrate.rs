@@ -2,15 +2,14 @@
 
 use std::io::Write;
 
-use csv::WriterBuilder;
 use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
 use hardpoint::model::{DriverId, Model};
 use hardpoint::study::{Calibration, FitStatus, Fitted, Loss, Next, Reading, Untold};
+use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{Measured, ModelFile, Units};
 use serde::Serialize;
 
-use crate::csv::no_formula;
 use crate::facts::variable_unit;
 use crate::figures::{count, number, rounded, seconds, some_of, symbol, unit, with_unit};
 use crate::optimize::{Evaluations, MovedHardpoint, moved};
@@ -277,8 +276,8 @@ impl Calibrated<'_> {
             ]
             .map(String::from),
         );
-        let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
-        writer.write_record(header.iter().map(|h| no_formula(h).into_owned()))?;
+        let mut writer = CsvWriter::new(out);
+        writer.row(&header)?;
         let readings = &self.measured.measurements.readings;
         for (reading, fitted) in readings.iter().zip(&self.found.fitted) {
             let m = reading.output;
@@ -294,9 +293,9 @@ impl Calibrated<'_> {
             row.push(text(reading.sigma.map(|s| self.shown(m, s))));
             row.push(text(fitted.map(|f| f.residual)));
             row.push(text(fitted.map(|f| f.weight)));
-            writer.write_record(&row)?;
+            writer.row(&row)?;
         }
-        writer.flush()?;
+        writer.end()?;
         Ok(())
     }
 
@@ -311,9 +310,9 @@ impl Calibrated<'_> {
             format!("{} [{}]", variable.name, variable_unit(model, units, variable))
         };
         let names: Vec<String> = self.found.variables.iter().map(name).collect();
-        let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
+        let mut writer = CsvWriter::new(out);
         let header = std::iter::once("covariance").chain(names.iter().map(String::as_str));
-        writer.write_record(header.map(no_formula).map(|h| h.into_owned()))?;
+        writer.row(header)?;
         let scale = |k: usize| {
             let v = self.found.variables[k];
             units.from_si(model.variables[v.0].quantity, 1.0)
@@ -321,9 +320,9 @@ impl Calibrated<'_> {
         for (i, row) in self.found.certainty.covariance.iter().enumerate() {
             let row: Vec<f64> = row.iter().enumerate().map(|(j, c)| c * scale(i) * scale(j)).collect();
             let cells = row.iter().map(|x| format!("{x:?}"));
-            writer.write_record(std::iter::once(no_formula(&names[i]).into_owned()).chain(cells))?;
+            writer.row(std::iter::once(names[i].clone()).chain(cells))?;
         }
-        writer.flush()?;
+        writer.end()?;
         Ok(())
     }
 }

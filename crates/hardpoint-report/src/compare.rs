@@ -3,17 +3,17 @@
 use std::collections::BTreeSet;
 use std::io::Write;
 
-use csv::WriterBuilder;
 use hardpoint::Solution;
 use hardpoint::model::{Dimension, Model};
 use hardpoint::study::{Magnitude, metrics};
+use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
 
 use crate::GENERATOR;
 use crate::columns::Column;
 use crate::course::{RoundOff, settled};
-use crate::csv::{no_formula, numbers};
+use crate::csv::numbers;
 use crate::figures::{number, rounded, unit, with_unit};
 use crate::page::{Payload, Table};
 
@@ -176,17 +176,17 @@ impl CompareFacts {
         for c in &self.measures {
             for file in ["first", "second"] {
                 let column = Column { name: format!("{} {file}", c.measure), unit: c.unit.clone() };
-                header.push(no_formula(&column.header()).into_owned());
+                header.push(column.header());
             }
         }
-        let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
-        writer.write_record(&header)?;
+        let mut writer = CsvWriter::new(out);
+        writer.row(&header)?;
         for (k, t) in self.times.iter().enumerate() {
             let curves = self.measures.iter().flat_map(|c| c.curves.iter().map(|curve| curve[k]));
             let row: Vec<f64> = std::iter::once(*t).chain(curves).collect();
             writer.serialize(numbers(&row))?;
         }
-        writer.flush()?;
+        writer.end()?;
         Ok(())
     }
 }

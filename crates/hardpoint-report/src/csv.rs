@@ -7,9 +7,10 @@
 use std::borrow::Cow;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
-use csv::{ByteRecord, Reader, Writer, WriterBuilder};
+use csv::{ByteRecord, Reader};
 use hardpoint::Solution;
 use hardpoint::study::Jerks;
+use hardpoint_file::csv_table::{CsvWriter, neutral};
 use serde::{Serialize, Serializer};
 
 use crate::columns::{Column, Columns};
@@ -18,7 +19,7 @@ use crate::facts::variable_unit;
 /// `motion.csv`, window by window.
 pub struct MotionCsv<'m, W: Write> {
     columns: Columns<'m>,
-    writer: Writer<W>,
+    writer: CsvWriter<W>,
     row: Vec<f64>,
 }
 
@@ -51,7 +52,7 @@ impl<'m, W: Write> MotionCsv<'m, W> {
     /// # Errors
     /// Where it cannot be written.
     pub fn end(self) -> io::Result<W> {
-        self.writer.into_inner().map_err(|e| e.into_error())
+        self.writer.end()
     }
 }
 
@@ -60,7 +61,7 @@ pub struct SensitivityCsv<'m, W: Write> {
     columns: Columns<'m>,
     /// Per variable, its unit.
     units: Vec<String>,
-    writer: Writer<W>,
+    writer: CsvWriter<W>,
     row: Vec<f64>,
 }
 
@@ -86,7 +87,7 @@ impl<'m, W: Write> SensitivityCsv<'m, W> {
             for (b, variable) in self.columns.model.variables.iter().enumerate() {
                 self.row.clear();
                 if self.columns.sensitivities(window, k, b, &mut self.row).is_some() {
-                    let name = no_formula(&variable.name);
+                    let name = neutral(&variable.name);
                     self.writer.serialize((t, name, &self.units[b], numbers(&self.row)))?;
                 }
             }
@@ -99,7 +100,7 @@ impl<'m, W: Write> SensitivityCsv<'m, W> {
     /// # Errors
     /// Where it cannot be written.
     pub fn end(self) -> io::Result<W> {
-        self.writer.into_inner().map_err(|e| e.into_error())
+        self.writer.end()
     }
 }
 
@@ -119,9 +120,9 @@ pub fn without_variables(
     const ROWS: u64 = 1 << 16;
     const BYTES: u64 = 1 << 24;
     let mut reader = Reader::from_reader(&mut file);
-    let mut writer = WriterBuilder::new().has_headers(false).from_writer(&mut *out);
-    writer.write_byte_record(reader.byte_headers()?)?;
-    let names: Vec<_> = names.iter().map(|name| no_formula(name)).collect();
+    let mut writer = CsvWriter::new(&mut *out);
+    writer.copy(reader.byte_headers()?)?;
+    let names: Vec<_> = names.iter().map(|name| neutral(name)).collect();
     let mut record = ByteRecord::new();
     for row in 0..rows {
         if row % ROWS == 0 && !go_on() {
@@ -129,11 +130,10 @@ pub fn without_variables(
         }
         reader.read_byte_record(&mut record)?;
         if !names.iter().any(|name| record.get(1) == Some(name.as_bytes())) {
-            writer.write_byte_record(&record)?;
+            writer.copy(&record)?;
         }
     }
-    writer.flush()?;
-    drop(writer);
+    writer.end()?;
     let rest = reader.position().byte();
     file.seek(SeekFrom::Start(rest))?;
     while go_on() {
@@ -147,7 +147,7 @@ pub fn without_variables(
 /// `jerk.csv`, part by part.
 pub struct JerkCsv<'m, W: Write> {
     columns: Columns<'m>,
-    writer: Writer<W>,
+    writer: CsvWriter<W>,
     row: Vec<f64>,
 }
 
@@ -180,22 +180,15 @@ impl<'m, W: Write> JerkCsv<'m, W> {
     /// # Errors
     /// Where it cannot be written.
     pub fn end(self) -> io::Result<W> {
-        self.writer.into_inner().map_err(|e| e.into_error())
+        self.writer.end()
     }
 }
 
-fn with_header<W: Write>(first: &[&str], columns: &[Column], out: W) -> csv::Result<Writer<W>> {
-    let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
-    let columns: Vec<String> = columns.iter().map(Column::header).collect();
-    let header = first.iter().copied().map(Cow::Borrowed).chain(columns.iter().map(|c| no_formula(c)));
-    writer.write_record(header.map(|cell| cell.into_owned().into_bytes()))?;
+fn with_header<W: Write>(first: &[&str], columns: &[Column], out: W) -> csv::Result<CsvWriter<W>> {
+    let mut writer = CsvWriter::new(out);
+    let columns = columns.iter().map(|c| Cow::Owned(c.header()));
+    writer.row(first.iter().copied().map(Cow::Borrowed).chain(columns))?;
     Ok(writer)
-}
-
-/// A text that spreadsheets do not take for a formula: one that begins like a formula gets an apostrophe before it, which
-/// they do not show.
-pub(crate) fn no_formula(text: &str) -> Cow<'_, str> {
-    if text.starts_with(['=', '+', '-', '@', '\t', '\r']) { format!("'{text}").into() } else { text.into() }
 }
 
 /// The fields of a row.
@@ -217,20 +210,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_begins_like_a_formula_is_text() {
-        for text in ["=1+1", "+x", "-x", "@x", "\tx", "\rx"] {
-            assert_eq!(no_formula(text), format!("'{text}"));
-        }
-        for text in ["x", "'x", "", "a=b", " =1"] {
-            assert_eq!(no_formula(text), text);
-        }
-    }
-
-    #[test]
     fn no_number_is_an_empty_field() {
-        let mut writer = WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+        let mut writer = CsvWriter::new(Vec::new());
         writer.serialize(numbers(&[1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.5])).unwrap();
-        assert_eq!(writer.into_inner().unwrap(), b"1.0,,,,-0.5\n");
+        assert_eq!(writer.end().unwrap(), b"1.0,,,,-0.5\n");
     }
 
     #[test]

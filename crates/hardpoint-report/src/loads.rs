@@ -2,13 +2,12 @@
 
 use std::io::Write;
 
-use csv::Writer;
 use hardpoint::model::{Dimension, Model};
 use hardpoint::space::Vec3;
 use hardpoint::study::Loads;
 use hardpoint_file::Units;
+use hardpoint_file::csv_table::CsvWriter;
 
-use crate::csv::no_formula;
 use crate::figures::{order_unit, unit};
 
 /// A number, or nothing where there is none.
@@ -22,17 +21,17 @@ fn shown(x: f64) -> String {
 /// # Errors
 /// Where `out` cannot be written.
 pub fn write_drivers(model: &Model, units: Units, loads: &Loads, out: impl Write) -> csv::Result<()> {
-    let mut writer = Writer::from_writer(out);
+    let mut writer = CsvWriter::new(out);
     let mut header = vec!["t [s]".to_owned()];
     for driver in &model.drivers {
-        let (quantity, name) = (model.driven(driver).quantity, no_formula(&driver.name));
+        let (quantity, name) = (model.driven(driver).quantity, &driver.name);
         let force = model.force_on(driver);
         let what = if force == Dimension::MOMENT { "moment" } else { "force" };
         header.push(format!("{name} {what} [{}]", unit(units, force)));
         header.push(format!("{name} speed [{}]", order_unit(units, quantity, 1)));
         header.extend([format!("{name} power [W]"), format!("{name} work [J]")]);
     }
-    writer.write_record(&header)?;
+    writer.row(&header)?;
     let mut work = vec![0.0; model.drivers.len()];
     for (k, t) in loads.times.iter().enumerate() {
         let mut row = vec![shown(*t)];
@@ -45,9 +44,9 @@ pub fn write_drivers(model: &Model, units: Units, loads: &Loads, out: impl Write
             let (_, per_si) = units.of(model.driven(&model.drivers[d]).quantity);
             row.extend([load.force, load.speed * per_si, power(k), work[d]].map(shown));
         }
-        writer.write_record(&row)?;
+        writer.row(&row)?;
     }
-    writer.flush()?;
+    writer.end()?;
     Ok(())
 }
 
@@ -57,7 +56,7 @@ pub fn write_drivers(model: &Model, units: Units, loads: &Loads, out: impl Write
 /// # Errors
 /// Where `out` cannot be written.
 pub fn write(model: &Model, units: Units, loads: &Loads, out: impl Write) -> csv::Result<()> {
-    let mut writer = Writer::from_writer(out);
+    let mut writer = CsvWriter::new(out);
     let length = units.length.symbol();
     let mut header = vec!["t [s]".to_owned(), "joint".into(), "body".into()];
     let axes = |what: &str, unit: &str| ["x", "y", "z"].map(|k| format!("{what}.{k} [{unit}]"));
@@ -66,23 +65,23 @@ pub fn write(model: &Model, units: Units, loads: &Loads, out: impl Write) -> csv
     header.extend(axes("moment", "N*m"));
     header.extend(axes("force in body", "N"));
     header.extend(axes("moment in body", "N*m"));
-    writer.write_record(&header)?;
+    writer.row(&header)?;
     let known = |v: Vec3, known: [bool; 3]| {
         let all = v.to_array().into_iter().zip(known);
         all.map(|(x, known)| if known { shown(x) } else { String::new() }).collect::<Vec<_>>()
     };
     for (k, t) in loads.times.iter().enumerate() {
         for (joint, load) in model.joints.iter().zip(loads.joints_at(k)).filter(|(j, _)| !j.unnamed) {
-            let mut row = vec![shown(*t), no_formula(&joint.name).into_owned()];
-            row.push(no_formula(&model.bodies[joint.bodies[1].0].name).into_owned());
+            let mut row = vec![shown(*t), joint.name.clone()];
+            row.push(model.bodies[joint.bodies[1].0].name.clone());
             row.extend(load.place.to_array().map(|x| shown(x * units.length.per_metre())));
             row.extend(known(load.force, load.known[0]));
             row.extend(known(load.moment, load.known[1]));
             row.extend(known(load.in_body[0], load.known_in_body[0]));
             row.extend(known(load.in_body[1], load.known_in_body[1]));
-            writer.write_record(&row)?;
+            writer.row(&row)?;
         }
     }
-    writer.flush()?;
+    writer.end()?;
     Ok(())
 }

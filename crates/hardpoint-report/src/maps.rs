@@ -3,14 +3,14 @@
 use std::borrow::Cow;
 use std::io::Write;
 
-use csv::WriterBuilder;
 use hardpoint::measure::Output;
 use hardpoint::model::{Dimension, Model, OutputSource, VariableId};
 use hardpoint::study::{GridMap, GridStop};
 use hardpoint_file::Units;
+use hardpoint_file::csv_table::{CsvWriter, neutral};
 use serde::Serialize;
 
-use crate::csv::{no_formula, numbers};
+use crate::csv::numbers;
 use crate::facts::variable_unit;
 use crate::figures::{number, per, unit, with_unit};
 use crate::page::{Curve, GridDriver, GridMap as GridPage, GridQuantity, GridSensitivity, Payload, Table};
@@ -273,26 +273,25 @@ fn measure(model: &Model, units: Units, map: &GridMap, m: usize, output: &Output
 /// # Errors
 /// Where `out` cannot be written.
 pub fn write_csv(facts: &[MapFact], out: impl Write) -> csv::Result<()> {
-    let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
+    let mut writer = CsvWriter::new(out);
     let Some(one) = facts.first() else { return Ok(()) };
     let mut header: Vec<String> = PLACES.map(String::from).to_vec();
     header.extend(one.measures.iter().map(|m| column(&m.name, &m.unit)));
     header.push("gap".into());
-    writer.write_record(&header)?;
+    writer.row(&header)?;
     for map in facts {
         for (j, i) in map.rows() {
             let row: Vec<f64> = map.measures.iter().map(|m| m.values[j][i].unwrap_or(f64::NAN)).collect();
             writer.serialize((map.place(j, i), numbers(&row), map.why(j, i)))?;
         }
     }
-    writer.flush()?;
+    writer.end()?;
     Ok(())
 }
 
 /// The header of a measure's column.
 fn column(name: &str, unit: &str) -> String {
-    let header = if unit == "1" { name.into() } else { format!("{name} [{unit}]") };
-    no_formula(&header).into_owned()
+    if unit == "1" { name.into() } else { format!("{name} [{unit}]") }
 }
 
 /// `map_sensitivity.csv`: one row per position and design variable, with the derivatives of the measures by that.
@@ -300,12 +299,12 @@ fn column(name: &str, unit: &str) -> String {
 /// # Errors
 /// Where `out` cannot be written.
 pub fn write_sensitivity_csv(facts: &[MapFact], out: impl Write) -> csv::Result<()> {
-    let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
+    let mut writer = CsvWriter::new(out);
     let Some(one) = facts.first() else { return Ok(()) };
     let mut header: Vec<String> = PLACES.map(String::from).to_vec();
     header.extend(["variable", "per"].map(String::from));
     header.extend(one.measures.iter().map(|m| column(&format!("d {}", m.name), &m.unit)));
-    writer.write_record(&header)?;
+    writer.row(&header)?;
     for map in facts {
         let Some(of) = map.measures.first() else { continue };
         for (j, i) in map.rows() {
@@ -316,13 +315,13 @@ pub fn write_sensitivity_csv(facts: &[MapFact], out: impl Write) -> csv::Result<
                     .map(|m| m.sensitivities[b].values[j][i].unwrap_or(f64::NAN))
                     .collect();
                 if row.iter().any(|x| x.is_finite()) {
-                    let name = no_formula(&by.variable);
+                    let name = neutral(&by.variable);
                     writer.serialize((map.place(j, i), name, &by.per, numbers(&row)))?;
                 }
             }
         }
     }
-    writer.flush()?;
+    writer.end()?;
     Ok(())
 }
 
@@ -341,7 +340,7 @@ impl MapFact {
 
     fn place(&self, j: usize, i: usize) -> Place<'_> {
         let [first, second] = &self.drivers;
-        let names = [&self.name, &first.name, &second.name].map(|n| no_formula(n));
+        let names = [&self.name, &first.name, &second.name].map(|n| neutral(n));
         let [name, a, b] = names;
         (name, a, first.values[i], &first.unit, b, second.values[j], &second.unit)
     }

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::course::MarginCourse;
 use crate::diagnose::named;
-use crate::figures::{number, rounded, some_in_words, some_of, symbol, with_unit};
+use crate::figures::{number, rounded, some_in_words, some_of, symbol};
 
 /// Above this, no more than three digits of the velocities are lost and there is nothing to say.
 const COMFORTABLE: f64 = 1e-3;
@@ -138,15 +138,17 @@ impl MarginFact {
     pub fn ahead(&self) -> Option<String> {
         let after = self.singular_after.filter(|after| *after <= SOON * self.span)?;
         let drivers = self.drivers_until.iter();
-        let drivers: Vec<String> =
-            drivers.map(|d| format!("{} of `{}`", with_unit(d.travel, &d.unit), d.driver)).collect();
+        // An estimate from the end of the motion: two digits are all that it has.
+        let travel = |d: &DriverTravel| format!("{} {}", rounded(d.travel, 2), d.unit).trim_end().to_owned();
+        let drivers: Vec<String> = drivers.map(|d| format!("{} of `{}`", travel(d), d.driver)).collect();
         let what = match self.singular_kind {
             Some("limit") => "its loop cannot be closed beyond",
             _ => "two motions meet there",
         };
         let until =
-            if drivers.is_empty() { String::new() } else { format!(", {},", some_of(&drivers, ", ")) };
-        Some(format!("A singular position lies {} s{until} beyond the end; {what}", rounded(after, 2)))
+            if drivers.is_empty() { String::new() } else { format!(" ({})", some_of(&drivers, ", ")) };
+        let after = rounded(after, 2);
+        Some(format!("A singular position is estimated to lie about {after} s{until} beyond the end; {what}"))
     }
 }
 

@@ -11,7 +11,6 @@ use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
 use crate::cells::Cells;
-use crate::csv::no_formula;
 use crate::facts::variable_unit;
 use crate::figures::{count, number, seconds, unit, with_unit};
 use crate::optimize::{BeforeAfter, Evaluations, case_name};
@@ -506,7 +505,6 @@ fn plot(facts: &SweepFacts, drawn: Drawn) -> SweepPlot {
 
 /// A column's name with its unit; a plain number has none.
 fn with_brackets(name: &str, unit: &str) -> String {
-    let name = no_formula(name);
     if unit.is_empty() || unit == "1" { name.into() } else { format!("{name} [{unit}]") }
 }
 

@@ -7,6 +7,7 @@ use hardpoint::model::{AllocationRule, Dimension, Limited, Model, OutputSource, 
 use hardpoint::study::{
     Allocation, Examination, Extreme, Impossible, MetricSpread, MonteCarlo, NONLINEAR, SampledMetric, Yield,
 };
+use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
@@ -269,8 +270,8 @@ impl Studied<'_> {
     /// `metrics.csv`: a row for each metric and motion.
     pub fn write_metrics(&self, out: impl Write) -> csv::Result<()> {
         let facts = ToleranceFacts::of(self);
-        let mut csv = csv::Writer::from_writer(out);
-        csv.write_record([
+        let mut csv = CsvWriter::new(out);
+        csv.row([
             "metric",
             "case",
             "unit",
@@ -288,7 +289,7 @@ impl Studied<'_> {
         ])?;
         for m in &facts.metrics {
             let optional = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
-            csv.write_record([
+            csv.row([
                 m.name.clone(),
                 m.case.clone().unwrap_or_default(),
                 m.unit.clone(),
@@ -305,29 +306,29 @@ impl Studied<'_> {
                 optional(m.sampled.as_ref().map(|s| s.sigma)),
             ])?;
         }
-        csv.flush()?;
+        csv.end()?;
         Ok(())
     }
 
     /// `contributions.csv`: a row for each metric, motion and variable.
     pub fn write_contributions(&self, out: impl Write) -> csv::Result<()> {
         let facts = ToleranceFacts::of(self);
-        let mut csv = csv::Writer::from_writer(out);
-        csv.write_record(["metric", "case", "variable", "share", "derivative"])?;
+        let mut csv = CsvWriter::new(out);
+        csv.row(["metric", "case", "variable", "share", "derivative"])?;
         for m in &facts.metrics {
             for c in &m.contributions {
                 let case = m.case.clone().unwrap_or_default();
-                csv.write_record([&m.name, &case, &c.variable, &c.share.to_string(), &c.d.to_string()])?;
+                csv.row([&m.name, &case, &c.variable, &c.share.to_string(), &c.d.to_string()])?;
             }
         }
-        csv.flush()?;
+        csv.end()?;
         Ok(())
     }
 
     /// `bands.csv`: a row for each measure, motion and output time.
     pub fn write_bands(&self, out: impl Write) -> csv::Result<()> {
-        let mut csv = csv::Writer::from_writer(out);
-        csv.write_record([
+        let mut csv = CsvWriter::new(out);
+        csv.row([
             "measure",
             "case",
             "unit",
@@ -365,17 +366,17 @@ impl Studied<'_> {
                     of(drawn.map(|d| &d.least)),
                     of(drawn.map(|d| &d.greatest)),
                 ]);
-                csv.write_record(row)?;
+                csv.row(row)?;
             }
         }
-        csv.flush()?;
+        csv.end()?;
         Ok(())
     }
 
     /// `samples.csv`: a row for each design drawn, with its deviations and its metrics; empty where there is none.
     pub fn write_samples(&self, deviations: impl Fn(usize) -> Vec<f64>, out: impl Write) -> csv::Result<()> {
         let Some(sampled) = &self.found.sampled else { return Ok(()) };
-        let mut csv = csv::Writer::from_writer(out);
+        let mut csv = CsvWriter::new(out);
         let variables = self.found.variables.iter().map(|v| &self.model().variables[v.variable.0]);
         let mut header = vec!["number".to_owned()];
         header.extend(
@@ -384,7 +385,7 @@ impl Studied<'_> {
                 .map(|v| format!("{} [{}]", v.name, variable_unit(self.model(), self.units(), v))),
         );
         header.extend(self.found.metrics.iter().map(|m| self.column(m)));
-        csv.write_record(&header)?;
+        csv.row(&header)?;
         for k in 0..sampled.samples {
             let mut row = vec![k.to_string()];
             let of = variables.clone().zip(deviations(k));
@@ -394,9 +395,9 @@ impl Studied<'_> {
                 let shown = |x: f64| self.units().from_si(self.dimension(m), x).to_string();
                 row.push(value.map_or(String::new(), shown));
             }
-            csv.write_record(&row)?;
+            csv.row(&row)?;
         }
-        csv.flush()?;
+        csv.end()?;
         Ok(())
     }
 

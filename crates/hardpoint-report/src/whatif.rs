@@ -3,18 +3,18 @@
 
 use std::io::Write;
 
-use csv::WriterBuilder;
 use hardpoint::Solution;
 use hardpoint::model::{Model, OutputSource, VariableId};
 use hardpoint::study::{Magnitude, WhatIf, repeats_coordinate};
 use hardpoint::topology::Topology;
+use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
 
 use crate::GENERATOR;
 use crate::columns::Column;
 use crate::course::{MarginCourse, RoundOff};
-use crate::csv::{no_formula, numbers};
+use crate::csv::numbers;
 use crate::diagnose::out_of_bounds;
 use crate::facts::variable_unit;
 use crate::figures::{names, number, per, rounded, unit, with_unit};
@@ -309,10 +309,10 @@ impl WhatIfFacts {
         let mut header = vec!["t [s]".to_owned()];
         for m in &self.measures {
             let column = |name: &str| Column { name: format!("{} {name}", m.measure), unit: m.unit.clone() };
-            header.extend(m.curves().map(|(name, _)| no_formula(&column(name).header()).into_owned()));
+            header.extend(m.curves().map(|(name, _)| column(name).header()));
         }
-        let mut writer = WriterBuilder::new().has_headers(false).from_writer(out);
-        writer.write_record(&header)?;
+        let mut writer = CsvWriter::new(out);
+        writer.row(&header)?;
         for (k, t) in self.times.iter().enumerate() {
             let mut row = vec![*t];
             for m in &self.measures {
@@ -320,7 +320,7 @@ impl WhatIfFacts {
             }
             writer.serialize(numbers(&row))?;
         }
-        writer.flush()?;
+        writer.end()?;
         Ok(())
     }
 

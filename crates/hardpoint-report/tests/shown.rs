@@ -287,7 +287,7 @@ fn a_singular_position_just_beyond_the_end_is_told() {
     assert!((margin.singular_after.unwrap() - 1e-5).abs() < 1e-8, "{margin:?}");
     assert_eq!(margin.singular_kind, Some("limit"));
     let ahead = margin.ahead().unwrap();
-    assert!(ahead.starts_with("A singular position lies 1e-5 s, "), "{ahead}");
+    assert!(ahead.starts_with("A singular position is estimated to lie about 1e-5 s ("), "{ahead}");
     assert!(ahead.ends_with("beyond the end; its loop cannot be closed beyond"), "{ahead}");
 }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use calamine::{Data, Reader};
+use hardpoint_file::csv_table::original;
 
 /// A larger file is no table of hardpoints.
 const LARGEST: u64 = 16 << 20;
@@ -85,6 +86,7 @@ fn text(path: &Path) -> Result<Vec<Vec<String>>, String> {
         cells.push(
             record
                 .iter()
+                .map(original)
                 .map(|cell| if delimiter == b',' { cell.to_owned() } else { pointed(cell) })
                 .collect(),
         );

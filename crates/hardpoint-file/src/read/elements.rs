@@ -82,7 +82,8 @@ pub(crate) fn weightless(file: &ModelFile) -> Option<Diagnostic> {
         [one] => format!("body {one} has no mass"),
         several => format!("{} bodies have no mass: {}", several.len(), some_of(several, ", ", MOST_NAMES)),
     };
-    let first = (Section::Bodies, light[0] - 1);
+    // `Section::Bodies` counts as the model does: ground is the first.
+    let first = (Section::Bodies, light[0]);
     let d = file.diagnostic(Severity::Note, "HP0253", message, Some(first));
     Some(
         d.note("without mass a body carries forces and needs none")

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::data::{DataError, delimiter, number, text_from, unquoted};
 use super::sweep::bare;
+use crate::csv_table::original;
 use crate::diagnostic::shown;
 
 /// More rows than these are surely a slip: each is a posture that is solved by itself.
@@ -42,7 +43,8 @@ pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
     if !reader.read_record(&mut record).map_err(no_csv)? {
         return Err(DataError::content(format!("`{name}` is empty"), write));
     }
-    let names: Vec<(String, Option<String>)> = record.iter().map(|field| named(unquoted(field))).collect();
+    let names: Vec<(String, Option<String>)> =
+        record.iter().map(|field| named(original(unquoted(field)))).collect();
     if names.iter().all(|(n, _)| n.parse::<f64>().is_ok()) {
         let message = format!("`{name}`, line 1: there are numbers in place of names");
         return Err(DataError::content(message, write));

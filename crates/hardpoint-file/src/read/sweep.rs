@@ -6,6 +6,7 @@ use hardpoint::draft::{DesignListDraft, Section, SweepRangeDraft, SweepingDraft}
 use hardpoint::model::{SweepMethod, Sweeping};
 use toml::de::DeValue;
 
+use crate::csv_table::original;
 use crate::diagnostic::shown;
 use crate::format::{METRIC, NUMBER, OUTPUT, Shape, TWO_NUMBERS, Table, table};
 use crate::places::EntryPlace;
@@ -199,7 +200,7 @@ fn list_in(text: &str, name: &str) -> Result<List, DataError> {
     if !reader.read_record(&mut record).map_err(no_csv)? {
         return Err(DataError::content(format!("`{name}` is empty"), write));
     }
-    let names: Vec<String> = record.iter().map(|field| bare(unquoted(field)).to_owned()).collect();
+    let names: Vec<String> = record.iter().map(|field| bare(original(unquoted(field))).to_owned()).collect();
     if names.iter().all(|n| n.parse::<f64>().is_ok()) {
         let message =
             format!("`{name}`, line 1: there are numbers in place of the names of design variables");

@@ -295,3 +295,43 @@ rub = { type = "spring_force", force = "rub" }
     let file = parse(&nothing, "slider.toml").unwrap_or_else(|e| panic!("{e}"));
     assert!(file.remarks[0].message.contains("gravity acts on nothing"), "{:?}", file.remarks);
 }
+
+/// The note about bodies without mass is at the first of them, wherever it is in the list.
+#[test]
+fn the_note_about_bodies_without_mass_is_at_the_first_of_them() {
+    let text = |heavy: &str| {
+        format!(
+            r#"
+name = "two arms"
+units = {{ length = "m", angle = "deg" }}
+planar = "xy"
+hardpoints = {{ O = [0, 0], P = [1, 0], Q = [2, 0] }}
+[bodies]
+first = {{}}
+second = {{}}
+third = {{}}
+[joints]
+a = {{ type = "revolute", bodies = ["ground", "first"], at = "O" }}
+b = {{ type = "revolute", bodies = ["first", "second"], at = "P" }}
+c = {{ type = "revolute", bodies = ["second", "third"], at = "Q" }}
+[drivers]
+l = {{ joint = "a", law = "t" }}
+m = {{ joint = "b", law = "t" }}
+n = {{ joint = "c", law = "t" }}
+[gravity]
+along = "-y"
+[masses]
+m = {{ type = "rigid", centre = {{ body = "{heavy}", at = "O" }}, mass = 1 }}
+[time]
+at = [0]
+"#
+        )
+    };
+    for (heavy, light) in [("first", "second"), ("second", "first"), ("third", "first")] {
+        let text = text(heavy);
+        let file = parse(&text, "arms.toml").unwrap_or_else(|e| panic!("{e}"));
+        let [note] = &file.remarks[..] else { panic!("{:?}", file.remarks) };
+        let line = 1 + text.lines().position(|l| l.starts_with(&format!("{light} ="))).unwrap();
+        assert_eq!((note.line, note.column), (Some(line), Some(1)), "{heavy}");
+    }
+}

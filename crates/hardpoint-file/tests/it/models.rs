@@ -190,3 +190,38 @@ fn places_are_those_of_the_text() {
     assert_eq!(rssr.place(Section::Design, 0), rssr.place(Section::Design, 2));
     assert_ne!(rssr.place(Section::Design, 2), rssr.place(Section::Design, 3));
 }
+
+/// Diagnostics point at `place`: it must be the entry of that name for every list of the model that follows the file's.
+#[test]
+fn the_place_of_every_entry_has_its_name() {
+    use hardpoint::draft::Section;
+    for path in models() {
+        let file = read(&path).unwrap_or_else(|e| panic!("{e}"));
+        let m = &file.model;
+        let bodies = m.bodies.iter().map(|x| &x.name).collect::<Vec<_>>();
+        let lists: [(Section, Vec<&String>); 5] = [
+            (Section::Bodies, bodies),
+            (Section::Joints, m.joints.iter().map(|x| &x.name).collect()),
+            (Section::Drivers, m.drivers.iter().map(|x| &x.name).collect()),
+            (Section::Measures, m.measures.iter().map(|x| &x.name).collect()),
+            (Section::Points, m.points.iter().map(|x| &x.name).collect()),
+        ];
+        let mut found = 0;
+        for (section, names) in lists {
+            // Measures of wheels, `front.toe`, are found in the list that asks for them.
+            for (k, name) in names.into_iter().enumerate().filter(|(_, name)| !name.contains('.')) {
+                let Some((line, column)) = file.place(section, k) else { continue };
+                let text = file.text().lines().nth(line - 1).unwrap();
+                let rest: String = text.chars().skip(column - 1).collect();
+                // A mirrored entry is found where its original is.
+                let twin = name.replace("right", "left");
+                let fits = [name, &twin]
+                    .iter()
+                    .any(|n| rest.starts_with(n.as_str()) || rest.starts_with(&format!("\"{n}\"")));
+                found += 1;
+                assert!(fits, "{}: {section:?} {k} `{name}` is said to be at `{rest}`", path.display());
+            }
+        }
+        assert!(found > 0 || !m.cases.is_empty(), "{}", path.display());
+    }
+}

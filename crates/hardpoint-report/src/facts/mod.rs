@@ -398,9 +398,10 @@ fn why_cut(joint: &Joint, reason: CutReason) -> &'static str {
 
 fn couplers(model: &Model, units: Units) -> Vec<CouplerFact> {
     let fact = |coupler: &Coupler| {
-        // The equation may be multiplied by any number: so that the first coordinate keeps its factor.
         let inside = |t: &hardpoint::model::CouplerTerm| units.to_si(model.coupled(t).quantity, 1.0);
-        let first = inside(&coupler.terms[0]);
+        // The equation may be multiplied by any number. Coefficients of the file are shown as they are there; teeth and radii
+        // make coefficients of their own, of which the first coordinate keeps its factor.
+        let first = coupler.transmission.map_or(1.0, |_| inside(&coupler.terms[0]));
         let term = |t: &hardpoint::model::CouplerTerm| TermFact {
             joint: joint_name(model, t.joint),
             coordinate: model.coupled(t).name,

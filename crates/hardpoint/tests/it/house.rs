@@ -181,6 +181,21 @@ fn unsafe_stands_where_the_safety_argument_says() {
     assert!(!wasm.contains("unsafe {"), "the engine of the page has no block that is unsafe");
 }
 
+/// Every CSV file is written by the one writer that marks texts which begin like a formula.
+#[test]
+fn one_writer_writes_all_csv_files() {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let mut writing = Vec::new();
+    for entry in std::fs::read_dir(crates).unwrap() {
+        let folder = entry.unwrap().path().join("src");
+        let files = sources(&folder).into_iter();
+        let bare =
+            files.filter(|(_, text)| text.contains("csv::Writer") || text.contains("WriterBuilder::new()"));
+        writing.extend(bare.map(|(path, _)| path.strip_prefix(crates).unwrap().to_str().unwrap().to_owned()));
+    }
+    assert_eq!(writing, ["hardpoint-file/src/csv_table.rs"]);
+}
+
 /// The words of `docs/glossary.md` name types that there are.
 #[test]
 fn the_glossary_names_what_is_in_the_sources() {

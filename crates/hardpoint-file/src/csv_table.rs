@@ -1,0 +1,92 @@
+//! CSV tables whose cells spreadsheets never take for formulas: one writer for every file, and its inverse for every reader.
+
+use std::borrow::Cow;
+use std::io::{self, Write};
+
+/// Characters with which a formula begins in the common spreadsheet programs.
+const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
+
+/// Returns the cell that stands for a text in a table: a text that begins like a formula gets an apostrophe before it, which
+/// spreadsheets do not show. A number is itself, whatever its sign.
+pub fn neutral(text: &str) -> Cow<'_, str> {
+    if text.starts_with(FORMULA) && text.parse::<f64>().is_err() {
+        format!("'{text}").into()
+    } else {
+        text.into()
+    }
+}
+
+/// Returns the text that a cell stands for: the inverse of [`neutral`].
+pub fn original(cell: &str) -> &str {
+    cell.strip_prefix('\'').filter(|text| text.starts_with(FORMULA)).unwrap_or(cell)
+}
+
+/// Writes the rows of a CSV table, header first.
+pub struct CsvWriter<W: Write>(csv::Writer<W>);
+
+impl<W: Write> CsvWriter<W> {
+    /// A writer of rows of any length.
+    pub fn new(out: W) -> Self {
+        Self(csv::WriterBuilder::new().has_headers(false).flexible(true).from_writer(out))
+    }
+
+    /// Writes a row of texts and numbers, each cell [`neutral`].
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn row<C: AsRef<str>>(&mut self, cells: impl IntoIterator<Item = C>) -> csv::Result<()> {
+        for cell in cells {
+            self.0.write_field(neutral(cell.as_ref()).as_bytes())?;
+        }
+        self.0.write_record(None::<&[u8]>)
+    }
+
+    /// Writes a row of numbers, with texts that are [`neutral`] already.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn serialize(&mut self, row: impl serde::Serialize) -> csv::Result<()> {
+        self.0.serialize(row)
+    }
+
+    /// Writes a row as another table has it.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn copy(&mut self, row: &csv::ByteRecord) -> csv::Result<()> {
+        self.0.write_byte_record(row)
+    }
+
+    /// Hands back what was written to.
+    ///
+    /// # Errors
+    /// Where the rest cannot be written.
+    pub fn end(self) -> io::Result<W> {
+        self.0.into_inner().map_err(|e| e.into_error())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_that_begin_like_a_formula_are_marked_and_read_back() {
+        for text in ["=1+1", "+x", "-x", "@x", "\tx", "\rx", "-1+1", "="] {
+            assert_eq!(neutral(text), format!("'{text}"));
+            assert_eq!(original(&neutral(text)), text);
+        }
+        for text in ["x", "'x", "", "a=b", " =1", "-1.5", "+3e-4", "'"] {
+            assert_eq!(neutral(text), text);
+            assert_eq!(original(&neutral(text)), text);
+        }
+    }
+
+    #[test]
+    fn a_row_quotes_what_it_must() {
+        let mut table = CsvWriter::new(Vec::new());
+        table.row(["name", "=a,b"]).unwrap();
+        table.row([String::from("say \"so\""), (-0.5).to_string()]).unwrap();
+        assert_eq!(table.end().unwrap(), b"name,\"'=a,b\"\n\"say \"\"so\"\"\",-0.5\n");
+    }
+}
