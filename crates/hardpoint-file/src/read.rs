@@ -28,6 +28,7 @@ use hardpoint::draft::{
 };
 use hardpoint::joint::{self, Freedom, JointType, Quantity};
 use hardpoint::law::Law;
+use hardpoint::model::LoadMode;
 use hardpoint::space::{Angles, Pose, Quat, Vec3};
 use toml::de::{DeTable, DeValue};
 
@@ -80,6 +81,8 @@ pub(crate) const MODEL: Table = table! {
     may "axles": Shape::Entries("an axle", &Shape::Table(&wheels::AXLE)), "{}";
     /// Which way everything falls, and how fast.
     may "gravity": Shape::Table(&elements::GRAVITY), "{ along = \"-z\" }";
+    /// Whether loads include the inertia of the masses.
+    or("\"dynamic\"") "loads": LOADS, "\"static\"";
     /// What has mass, for loads.
     may "masses": Shape::Entries("a mass", &Shape::Kinds(&elements::MASS)), "{}";
     /// What pushes: springs, dampers, friction, given forces; and what gives way.
@@ -105,6 +108,15 @@ pub(crate) const MODEL: Table = table! {
     /// Which designs are swept over, and what is kept of them.
     may "sweep": Shape::Table(&sweep::SWEEP), "{ variables = { B_x = [-5, 5] } }";
 };
+/// The values of `loads`, in the order of [`LOAD_MODES`].
+pub(crate) const LOADS: Shape = Shape::Words(&[
+    ("dynamic", "Masses need forces for their accelerations along the motion."),
+    (
+        "static",
+        "At each output time the mechanism is in equilibrium at rest there: no inertia. Dampers and friction keep the speeds of the motion.",
+    ),
+]);
+pub(crate) const LOAD_MODES: [LoadMode; 2] = [LoadMode::Dynamic, LoadMode::Static];
 const UNITS: Table = table! {
     /// The units of all numbers in the file.
     "Units":
@@ -351,6 +363,7 @@ impl Reader<'_> {
         self.wheels(&fields, &mut raw);
         self.axles(&fields, &mut raw);
         self.gravity(&fields, &mut raw);
+        raw.draft.load_mode = self.word_of(&fields, "loads").map_or(LoadMode::default(), |k| LOAD_MODES[k]);
         self.masses(&fields, &mut raw);
         self.forces(&fields, &mut raw);
         self.metrics(&fields, &mut raw);

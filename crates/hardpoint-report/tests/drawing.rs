@@ -184,11 +184,11 @@ fn static_values_are_those_of_the_drawing() {
     let value = |name: &str| page.values.iter().find(|v| v.name == name).unwrap();
     // The model's own static toe and camber: atan(0.0035), -asin(0.0175 / abs(axis)).
     let toe = value("toe");
-    assert_eq!((toe.what.as_str(), toe.time), ("static", Some(0.0)));
+    assert_eq!((toe.what.as_str(), toe.time), ("design configuration", Some(0.0)));
     assert!(close(toe.value.unwrap(), 0.0035_f64.atan().to_degrees()));
     assert!((value("camber").value.unwrap() + 1.0026).abs() < 1e-3);
     // Nothing moves a distance that a rod keeps, whatever the last digits.
     assert!(value("wheel_travel").value == Some(0.0));
     let starts = page_of(&model("excavator"));
-    assert!(starts.values.iter().all(|v| v.what == "static" || v.what == "at the start"));
+    assert!(starts.values.iter().all(|v| v.what == "design configuration" || v.what == "at the start"));
 }

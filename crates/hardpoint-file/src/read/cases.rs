@@ -12,7 +12,7 @@ use crate::places::EntryPlace;
 use crate::tree::{Field, Fields, MOST_ENTRIES, Reader, Subject, Value};
 
 use super::results::{MOST_TIMES, TIME};
-use super::{Raw, law};
+use super::{LOAD_MODES, LOADS, Raw, law};
 
 /// More cases than this are surely a slip.
 const MOST_CASES: usize = 1000;
@@ -23,6 +23,8 @@ pub(crate) const CASE: Table = table! {
     or("{}") "laws": Shape::Entries("a driver", &law::LAW), "{ bump = \"40*sin(2*pi*t)\" }";
     /// What all other drivers do.
     or("\"held\"") "rest": REST, "\"as_above\"";
+    /// Whether its loads include inertia, as `loads` of the file. Default: as the file has it.
+    may "loads": LOADS, "\"static\"";
     /// Its output times, as `[time]` has them. Default: those of `[time]`.
     may "time": Shape::Kinds(&TIME), "{ end = 1.0, steps = 100 }";
     /// In place of all these, two drivers by name and where each of them stands: every position of the one with every position of the
@@ -75,7 +77,7 @@ impl Reader<'_> {
             let fields = self.entry("case", &entry, CASE.keys());
             let mut place = EntryPlace::of(&fields);
             if fields.get("grid").is_some() {
-                for key in ["laws", "rest", "time"] {
+                for key in ["laws", "rest", "loads", "time"] {
                     let why = "a `grid` says where two drivers stand; all others are held as drawn, and there is no time in it";
                     self.out_of_place(&fields, key, why);
                 }
@@ -99,12 +101,15 @@ impl Reader<'_> {
                 self.unread.push("time");
                 times = Some(Vec::new());
             }
+            let load_mode = fields.get("loads").is_some().then(|| self.word_of(&fields, "loads")).flatten();
+            let load_mode = load_mode.map(|k| LOAD_MODES[k]);
             let laws = laws.unwrap_or_default();
             if rest == Some(Rest::AsAbove) && !self.unread.contains(&"laws") {
                 self.laws_of_their_own(&fields, &laws, raw);
             }
             self.push(raw, Section::Cases, place);
-            raw.draft.cases.push(CaseDraft { name: entry.0, laws, rest: rest.unwrap_or_default(), times });
+            let rest = rest.unwrap_or_default();
+            raw.draft.cases.push(CaseDraft { name: entry.0, laws, rest, times, load_mode });
         }
         self.only_grids(raw);
     }

@@ -28,7 +28,13 @@ fn alone(model: &Model, map: &GridMap, [i, j]: [usize; 2]) -> Solution {
         let stands = map.grid.values[k][place];
         laws[map.grid.drivers[k].0] = Some(Law::parse(&format!("({stands:?})*t")).unwrap());
     }
-    let case = Case { name: "alone".into(), laws, formulas: Vec::new(), times: vec![0.0, 0.5, 1.0] };
+    let case = Case {
+        name: "alone".into(),
+        laws,
+        formulas: Vec::new(),
+        times: vec![0.0, 0.5, 1.0],
+        load_mode: None,
+    };
     let model = Model { cases: vec![case], ..model.clone() }.in_case(CaseId(0));
     Analysis::new(&model).unwrap().run()
 }

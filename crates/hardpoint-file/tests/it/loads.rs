@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use hardpoint::model::{Dimension, Metric, Model, OutputSource, Reduction, VariableId};
+use hardpoint::model::{CaseId, Dimension, Metric, Model, OutputSource, Reduction, VariableId};
 use hardpoint::motion::BodyState;
 use hardpoint::space::{Mat3, Vec3};
 use hardpoint::topology::Formulation;
@@ -481,4 +481,103 @@ fn every_model_of_the_gallery_balances_its_wrenches_and_its_power_in_both_formul
         }
     }
     assert!(seen > 30);
+}
+
+/// A scissor lift (legs of 2 m at 30 deg, 1000 N on the platform, 200 N of legs): F = (W + Wa/2) / tan(phi), whatever the law does.
+#[test]
+fn static_loads_have_no_inertia_in_either_formulation() {
+    /// Of forces of a kilonewton, over joints whose positions are solved to 1e-12.
+    const SAME: f64 = 1e-9;
+    let text = |law: &str, loads: &str| {
+        format!(
+            r#"
+name = "scissor lift"
+units = {{ length = "m", angle = "deg" }}
+planar = "xy"
+{loads}
+[parameters]
+leg = {{ value = 2, unit = "length" }}
+phi = {{ value = 30, unit = "angle", design = false }}
+[hardpoints]
+O = [0, 0]
+R = ["leg*cos(phi)", 0]
+T1 = ["leg*cos(phi)", "leg*sin(phi)"]
+T2 = [0, "leg*sin(phi)"]
+M = ["leg*cos(phi)/2", "leg*sin(phi)/2"]
+W = ["leg*cos(phi)/2", "leg*sin(phi)"]
+[bodies]
+leg1 = {{}}
+leg2 = {{}}
+platform = {{}}
+[joints]
+O = {{ type = "revolute", bodies = ["ground", "leg1"], at = "O" }}
+R = {{ type = "pin_in_slot", bodies = ["ground", "leg2"], at = "R", axis2 = "x" }}
+M = {{ type = "revolute", bodies = ["leg1", "leg2"], at = "M" }}
+T2 = {{ type = "revolute", bodies = ["leg2", "platform"], at = "T2" }}
+T1 = {{ type = "pin_in_slot", bodies = ["platform", "leg1"], at = "T1", axis2 = "x" }}
+[drivers]
+ram = {{ joint = "R", coordinate = "displacement", law = "{law}" }}
+[gravity]
+along = "-y"
+[masses]
+w1 = {{ type = "rigid", centre = {{ body = "leg1", at = "M" }}, mass = "100/9.80665", izz = 3 }}
+w2 = {{ type = "rigid", centre = {{ body = "leg2", at = "M" }}, mass = "100/9.80665", izz = 3 }}
+[forces]
+load = {{ type = "force", at = {{ body = "platform", at = "W" }}, force = 1000, along = "-y" }}
+[measures]
+F = {{ type = "driver_force", driver = "ram" }}
+h = {{ type = "position", point = {{ body = "platform", at = "W" }}, along = "y" }}
+[time]
+end = 1
+steps = 200
+"#
+        )
+    };
+    let closed = |h: f64| -1100.0 / (h / 2.0).asin().tan();
+    let file = parse(&text("-0.3*t", "loads = \"static\""), "lift.toml").unwrap_or_else(|e| panic!("{e}"));
+    for formulation in [Formulation::Relative, Formulation::Absolute] {
+        let solution = Analysis::with(&file.model, formulation).unwrap().run();
+        assert!(solution.stop.is_none());
+        let (force, height) = (values(&solution, "F"), values(&solution, "h"));
+        for (f, h) in force.iter().zip(&height) {
+            assert!((f - closed(*h)).abs() <= SAME * closed(*h).abs(), "{f} {}", closed(*h));
+        }
+        // By the length of the legs, against designs that are solved again.
+        let variable = file.model.variables.iter().position(|v| v.name == "leg").unwrap();
+        let m = solution.measured.index("F").unwrap();
+        let d: Vec<f64> =
+            (0..force.len()).map(|k| solution.measured.d(k, VariableId(variable), m)[0]).collect();
+        let step = 1e-5;
+        let moved = |by: f64| {
+            let t =
+                text("-0.3*t", "loads = \"static\"").replace("value = 2,", &format!("value = {},", 2.0 + by));
+            let file = parse(&t, "lift.toml").unwrap_or_else(|e| panic!("{e}"));
+            values(&Analysis::with(&file.model, formulation).unwrap().run(), "F")
+        };
+        let (up, down) = (moved(step), moved(-step));
+        for k in (0..d.len()).step_by(50) {
+            let difference = (up[k] - down[k]) / (2.0 * step);
+            /// Central differences of 1e-5 m.
+            const DIFFERENCE: f64 = 1e-6;
+            assert!(
+                (d[k] - difference).abs() <= DIFFERENCE * difference.abs().max(1.0),
+                "{} {difference}",
+                d[k]
+            );
+        }
+    }
+    // With inertia the same law needs other forces; a case may be static by itself.
+    let dynamic = parse(&text("-0.3*t", ""), "lift.toml").unwrap_or_else(|e| panic!("{e}"));
+    let first = values(&solved(&dynamic), "F")[0];
+    assert!((first - closed(1.0)).abs() > 1.0, "{first}");
+    let cases = text("-0.3*t", "")
+        + "[cases.slow]\nloads = \"static\"\nrest = \"as_above\"\n[cases.fast]\nrest = \"as_above\"\n";
+    let file = parse(&cases, "lift.toml").unwrap_or_else(|e| panic!("{e}"));
+    let of = |case: usize| {
+        let model = file.model.in_case(CaseId(case));
+        let solution = Analysis::new(&model).unwrap().run();
+        values(&solution, "F")[0]
+    };
+    assert!((of(0) - closed(1.0)).abs() <= SAME * closed(1.0).abs());
+    assert!((of(1) - first).abs() <= SAME * first.abs());
 }

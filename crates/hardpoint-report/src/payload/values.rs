@@ -15,14 +15,14 @@ use super::Compose;
 const AS_DRAWN: f64 = 1e-9;
 
 impl Compose<'_> {
-    /// Metrics, then the static values of all measures.
+    /// Metrics, then the values of all measures in the design configuration, or at the start.
     pub(super) fn values(&self, summary: &Summary) -> Vec<Value> {
         let metrics = summary.metrics.iter().enumerate().map(|(k, fact)| self.metric_value(k, fact));
         let outputs = self.solution.measured.outputs.iter().enumerate();
         let measures = outputs.filter(|(_, o)| matches!(o.source, OutputSource::Measure(_))).map(|(m, _)| m);
-        let at = self.static_step();
-        let statics = measures.filter_map(|m| Some(self.static_value(summary, m, at?)));
-        metrics.chain(statics).collect()
+        let at = self.design_step();
+        let at_step = measures.filter_map(|m| Some(self.value_at_step(summary, m, at?)));
+        metrics.chain(at_step).collect()
     }
 
     fn metric_value(&self, metric: usize, fact: &MetricFact) -> Value {
@@ -47,8 +47,8 @@ impl Compose<'_> {
         }
     }
 
-    /// The step at which the mechanism stands as it was drawn, or else that at which it starts, and what that is called.
-    fn static_step(&self) -> Option<(usize, &'static str)> {
+    /// The step in the design configuration, or else the first one, and its name.
+    fn design_step(&self) -> Option<(usize, &'static str)> {
         let times = &self.solution.motion.times;
         let size = self.model.size();
         let as_drawn = |driver: &Driver, t: f64| {
@@ -57,12 +57,12 @@ impl Compose<'_> {
         };
         let drawn = times.iter().position(|&t| self.model.drivers.iter().all(|d| as_drawn(d, t)));
         match drawn {
-            Some(step) => Some((step, "static")),
+            Some(step) => Some((step, "design configuration")),
             None => (!times.is_empty()).then_some((0, "at the start")),
         }
     }
 
-    fn static_value(&self, summary: &Summary, m: usize, (step, what): (usize, &str)) -> Value {
+    fn value_at_step(&self, summary: &Summary, m: usize, (step, what): (usize, &str)) -> Value {
         let measured = &self.solution.measured;
         let output = &measured.outputs[m];
         let value = settled(measured.value(step, m)[0], self.round_off.value(output.dimension, 0));

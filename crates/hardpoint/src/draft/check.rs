@@ -202,6 +202,7 @@ impl<'a> Checker<'a> {
             elements: Vec::new(),
             numbers: Vec::new(),
             gravity: draft.gravity,
+            load_mode: draft.load_mode,
             measures: Vec::new(),
             metrics: Vec::new(),
             idle: Vec::new(),

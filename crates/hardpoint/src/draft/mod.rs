@@ -23,8 +23,8 @@ use crate::expression::Expression;
 use crate::joint::{self, JointType, Quantity};
 use crate::law::Law;
 use crate::model::{
-    AllocationRule, Dimension, Reduction, Side, SweepMethod, Sweeping, Tolerancing, Transmission, Vehicle,
-    VehicleEnd,
+    AllocationRule, Dimension, LoadMode, Reduction, Side, SweepMethod, Sweeping, Tolerancing, Transmission,
+    Vehicle, VehicleEnd,
 };
 use crate::space::{Pose, Vec3};
 
@@ -64,6 +64,8 @@ pub struct Draft {
     pub forces: Vec<ElementDraft>,
     /// What everything falls with, m/s^2, global.
     pub gravity: Vec3,
+    /// Whether masses need forces for their accelerations.
+    pub load_mode: LoadMode,
     /// Measures.
     pub measures: Vec<MeasureDraft>,
     /// Metrics.
@@ -514,6 +516,8 @@ pub struct CaseDraft {
     pub rest: Rest,
     /// Its output times, s; those of the draft where they are left out.
     pub times: Option<Vec<f64>>,
+    /// Whether its loads include inertia; as the draft has it where there is none.
+    pub load_mode: Option<LoadMode>,
 }
 
 /// A case that sweeps two drivers over a grid; see [`Grid`](crate::model::Grid).

@@ -6,8 +6,8 @@ use crate::constraint::MarkerPair;
 use crate::design::Geometry;
 use crate::measure::WheelAt;
 use crate::model::{
-    Axes, BodyId, ElementId, ElementKind, Inertia, Joint, JointId, Length, Model, NumberId, PointId,
-    Stiffness, TorsionalStiffness, Wheel, WheelId, about_centre,
+    Axes, BodyId, ElementId, ElementKind, Inertia, Joint, JointId, Length, LoadMode, Model, NumberId,
+    PointId, Stiffness, TorsionalStiffness, Wheel, WheelId, about_centre,
 };
 use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 
@@ -188,11 +188,17 @@ impl<T: Real> Acting<'_, T> {
         if let Some(Solid { body, mass, centre, inertia }) = self.solid(kind) {
             let moving = &self.bodies[body.0];
             let weight: Vec3<T> = self.model.gravity.spread();
-            // f = m (a_c - g0) at c,   m = I alpha + omega x I omega                                            (43)
-            let force = (moving.acceleration(centre) - weight) * mass;
-            let spin = moving.v.w.cross_plus(inertia.on(moving.v.w), inertia.on(moving.a.w));
-            out[body.0] += Wrench::force(force, centre);
-            out[body.0] += Wrench::moment(spin);
+            match self.model.load_mode {
+                // f = m (a_c - g0) at c,   m = I alpha + omega x I omega                                        (43)
+                LoadMode::Dynamic => {
+                    let force = (moving.acceleration(centre) - weight) * mass;
+                    let spin = moving.v.w.cross_plus(inertia.on(moving.v.w), inertia.on(moving.a.w));
+                    out[body.0] += Wrench::force(force, centre);
+                    out[body.0] += Wrench::moment(spin);
+                }
+                // f = -m g0 at c
+                LoadMode::Static => out[body.0] += Wrench::force(-weight * mass, centre),
+            }
             return;
         }
         match kind {

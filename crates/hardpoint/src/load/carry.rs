@@ -205,7 +205,7 @@ impl<T: Real> Equilibrium<T> {
         }
         for b in 1..now.bodies.len() {
             let twists = flow.twists.each_ref().map(|w| w[b]);
-            inertial[b] = inertia[b].changed(model.gravity.spread(), &now.bodies[b], twists);
+            inertial[b] = inertia[b].changed(model, &now.bodies[b], twists);
         }
         field.turn_axes(topology, state, flow, (x, l));
     }

@@ -120,7 +120,7 @@ impl LoadGradients {
             // Masses are felt by a matrix of each body.
             let Equilibrium { inertia, now, .. } = &solver.bodies;
             let y = self.virtual_motion.twists()[body] - ground;
-            let [p0, p1, p2] = inertia[body].weights(solver.model.gravity, &now.bodies[body], y);
+            let [p0, p1, p2] = inertia[body].weights(solver.model, &now.bodies[body], y);
             let loads = &mut self.loads[n].1;
             loads[0] += p2;
             loads[1] = p1.times_plus(0.5, loads[1]);

@@ -4,7 +4,7 @@
 //! in their body turn with it, `M' = ad*(W) M - M ad(W)`, so that their part of F' is a few products of each body's (49), whatever they are made of.
 
 use crate::design::Geometry;
-use crate::model::{ElementId, Model};
+use crate::model::{ElementId, LoadMode, Model};
 use crate::number::{Dual, Real};
 use crate::space::{Mat3, Twist, Vec3, Wrench};
 
@@ -60,18 +60,29 @@ impl<T: Real> SpatialInertia<T> {
     /// ```text
     /// P2  =  M Y,    P1  =  ad(Y)^T M V - ad(V)^T M Y - M ad(V) Y,    P0  =  ad(Y)^T f + [g0 x (M Y)_f; 0]
     /// ```
-    pub fn weights(&self, gravity: Vec3<T>, body: &Moving<T>, y: Twist<T>) -> [Wrench<T>; 3] {
+    ///
+    /// Of static loads only P0 is left, with the weight alone as f.
+    pub fn weights(&self, model: &Model, body: &Moving<T>, y: Twist<T>) -> [Wrench<T>; 3] {
         let Moving { v, .. } = *body;
         let moved = self.on(y);
-        let p1 = y.ad_transposed(self.on(v)) - v.ad_transposed(moved) - self.on(v.ad(y));
-        let mut p0 = y.ad_transposed(self.needed(gravity, body));
-        p0 += Wrench::moment(gravity.cross(moved.f));
-        [p0, p1, moved]
+        let mut p0 = y.ad_transposed(self.needed(model, body));
+        p0 += Wrench::moment(model.gravity.spread().cross(moved.f));
+        match model.load_mode {
+            LoadMode::Static => [p0, Wrench::zero(), Wrench::zero()],
+            LoadMode::Dynamic => {
+                let p1 = y.ad_transposed(self.on(v)) - v.ad_transposed(moved) - self.on(v.ad(y));
+                [p0, p1, moved]
+            }
+        }
     }
 
-    /// f = M (A - [0; g0]) + ad*(V) M V,    ad*(X) l = -ad(X)^T l
-    fn needed(&self, gravity: Vec3<T>, Moving { v, a, .. }: &Moving<T>) -> Wrench<T> {
-        self.on(Twist { w: a.w, v: a.v - gravity }) - v.ad_transposed(self.on(*v))
+    /// f = M (A - [0; g0]) + ad*(V) M V,    ad*(X) l = -ad(X)^T l;    of static loads  f = -M [0; g0]
+    fn needed(&self, model: &Model, Moving { v, a, .. }: &Moving<T>) -> Wrench<T> {
+        let gravity: Vec3<T> = model.gravity.spread();
+        match model.load_mode {
+            LoadMode::Static => self.on(Twist { w: Vec3::zero(), v: -gravity }),
+            LoadMode::Dynamic => self.on(Twist { w: a.w, v: a.v - gravity }) - v.ad_transposed(self.on(*v)),
+        }
     }
 
     /// f' of masses that stay where they are in their body, where its design twists are W, W., W..:
@@ -81,12 +92,18 @@ impl<T: Real> SpatialInertia<T> {
     /// ```
     ///
     /// which is what somebody who turns with the body sees, whose V changes by W. and whose A by W.. + ad(W.) V, and that turned (14).
-    pub fn changed(&self, gravity: Vec3<T>, body: &Moving<T>, [w0, w1, w2]: [Twist<T>; 3]) -> Wrench<T> {
+    /// Of static loads V, W. and W.. have no part in it.
+    pub fn changed(&self, model: &Model, body: &Moving<T>, [w0, w1, w2]: [Twist<T>; 3]) -> Wrench<T> {
         let Moving { v, .. } = *body;
-        let (momentum, needed) = (self.on(v), self.needed(gravity, body));
-        let turned = Twist { w: Vec3::zero(), v: w0.w.cross(gravity) };
-        let seen =
-            self.on(w2 + w1.ad(v) + turned) - w1.ad_transposed(momentum) - v.ad_transposed(self.on(w1));
+        let needed = self.needed(model, body);
+        let turned = Twist { w: Vec3::zero(), v: w0.w.cross(model.gravity.spread()) };
+        let seen = match model.load_mode {
+            LoadMode::Static => self.on(turned),
+            LoadMode::Dynamic => {
+                let momentum = self.on(v);
+                self.on(w2 + w1.ad(v) + turned) - w1.ad_transposed(momentum) - v.ad_transposed(self.on(w1))
+            }
+        };
         seen - w0.ad_transposed(needed)
     }
 }

@@ -121,8 +121,7 @@ impl<'a> RecordedLoads<'a> {
         virtual_motion.go(&bodies.places, topology, state, &weights);
         // The wrench on ground is -sum F.
         let moves: Vec<_> = virtual_motion.twists().iter().map(|y| *y - weights.ground).collect();
-        let gravity = model.gravity.spread();
-        let of_masses = |b: usize| bodies.inertia[b].weights(gravity, &bodies.now.bodies[b], moves[b]);
+        let of_masses = |b: usize| bodies.inertia[b].weights(model, &bodies.now.bodies[b], moves[b]);
         let mut loads: Vec<_> = (0..count).map(of_masses).collect();
         let of = (&bodies.places, &bodies.transmission);
         virtual_motion.turn(of, topology, state, &weights, |body, load| loads[body.0][0] += load);

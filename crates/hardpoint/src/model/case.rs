@@ -15,6 +15,19 @@ pub struct Case {
     pub formulas: Vec<Formula>,
     /// Output times, s, increasing.
     pub times: Vec<f64>,
+    /// Whether masses need forces for their accelerations; as the model has it where there is none.
+    pub load_mode: Option<LoadMode>,
+}
+
+/// Whether the loads of a motion include inertia.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LoadMode {
+    /// Newton and Euler: forces that accelerate the masses along the motion are part of all loads.
+    #[default]
+    Dynamic,
+    /// Quasi-static: at each output time the mechanism is in equilibrium at rest there, under weight, springs and given forces. Forces by
+    /// speed, of dampers and friction, are those of the motion.
+    Static,
 }
 
 /// A case of two drivers, each of which stands wherever the other does: toe over wheel travel and steer. All other drivers are held as
@@ -45,9 +58,10 @@ impl Model {
     /// # Panics
     /// If there is no such case.
     pub fn in_case(&self, case: CaseId) -> Self {
-        let Case { name, laws, formulas, times } = &self.cases[case.0];
+        let Case { name, laws, formulas, times, load_mode } = &self.cases[case.0];
         let mut model = Self {
             times: times.clone(),
+            load_mode: load_mode.unwrap_or(self.load_mode),
             cases: Vec::new(),
             optimization: None,
             tolerancing: None,

@@ -19,7 +19,7 @@ mod sweeping;
 mod tolerancing;
 mod wheel;
 
-pub use case::{Case, Grid};
+pub use case::{Case, Grid, LoadMode};
 pub use change::{Change, ChangeText, End};
 pub use coupler::{Coupler, CouplerTerm, Transmission};
 pub(crate) use curve::Contact;
@@ -123,6 +123,8 @@ pub struct Model {
     pub numbers: Vec<ElementNumber>,
     /// What everything falls with, m/s^2, global.
     pub gravity: Vec3,
+    /// Whether masses need forces for their accelerations.
+    pub load_mode: LoadMode,
     /// Measures, in the order of the file.
     pub measures: Vec<Measure>,
     /// Metrics, in the order of the file.

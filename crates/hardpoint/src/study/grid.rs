@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::law::Law;
 use crate::measure::Output;
-use crate::model::{Case, CaseId, DriverId, Formula, Grid, Model, Target, VariableId};
+use crate::model::{Case, CaseId, DriverId, Formula, Grid, LoadMode, Model, Target, VariableId};
 use crate::motion::{Stop, StopKind};
 use crate::run::{Analysis, Run, Solution};
 use crate::topology::{Formulation, TopologyFault};
@@ -235,7 +235,9 @@ fn row_model(model: &Model, grid: &Grid, ways: [f64; 2], places: impl Iterator<I
     // The drawn position comes first: the rest is followed from there.
     let mut times = vec![begin];
     times.extend(places.map(|place| time_of(place, ways[0])));
-    let case = Case { name: grid.name.clone(), laws, formulas, times };
+    // A position of a grid is no moment of a motion: loads are those of the mechanism at rest there.
+    let load_mode = Some(LoadMode::Static);
+    let case = Case { name: grid.name.clone(), laws, formulas, times, load_mode };
     Model { cases: vec![case], ..model.clone() }.in_case(CaseId(0))
 }
 

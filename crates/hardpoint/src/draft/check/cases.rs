@@ -26,7 +26,13 @@ impl Checker<'_> {
             let case = CaseId(self.model.cases.len());
             let times_of_case = times.clone();
             let (name, formulas) = (c.name.clone(), Vec::new());
-            self.model.cases.push(Case { name, laws: Vec::new(), formulas, times: times_of_case });
+            self.model.cases.push(Case {
+                name,
+                laws: Vec::new(),
+                formulas,
+                times: times_of_case,
+                load_mode: c.load_mode,
+            });
             for (k, (driver, law)) in c.laws.iter().enumerate() {
                 let names = draft.drivers.iter().map(|d| d.name.as_str());
                 let at = here.item("law", k);

@@ -1,6 +1,6 @@
 //! Where a mechanism was measured: its drivers stand, and every posture is reached from the drawing by itself.
 
-use crate::model::{Case, CaseId, DriverId, Model, VariableId};
+use crate::model::{Case, CaseId, DriverId, LoadMode, Model, VariableId};
 use crate::motion::Stop;
 use crate::run::{Analysis, Run, Solution};
 use crate::study::evaluation::Cost;
@@ -49,7 +49,13 @@ pub(super) fn standing(model: &Model, places: &[f64]) -> Model {
         laws.push(Some(law));
         formulas.extend(formula);
     }
-    let case = Case { name: "posture".into(), laws, formulas, times: vec![begin, end] };
+    let case = Case {
+        name: "posture".into(),
+        laws,
+        formulas,
+        times: vec![begin, end],
+        load_mode: Some(LoadMode::Static),
+    };
     Model { cases: vec![case], ..model.clone() }.in_case(CaseId(0))
 }
 

@@ -432,6 +432,7 @@ mod tests {
             name: name.into(),
             laws: vec![Some(Law::parse(law).unwrap())],
             times: model.times.clone(),
+            load_mode: None,
         };
         model.cases = vec![case("slow", "t"), case("fast", "3*t")];
         model.metrics[6].case = Some(CaseId(1));
