@@ -47,6 +47,16 @@ fn csv(file: &ModelFile, out: &mut Exported) {
     }
 }
 
+/// The name without its side, and the side as this format calls it.
+fn side_of(name: &str) -> (&str, &'static str) {
+    let of = |side: &'static str| {
+        let short = name.strip_prefix(side).and_then(|rest| rest.strip_prefix('_'));
+        let short = short.or_else(|| name.strip_suffix(side).and_then(|rest| rest.strip_suffix('_')));
+        short.filter(|short| !short.is_empty()).map(|short| (short, side))
+    };
+    of("left").or_else(|| of("right")).unwrap_or((name, "single"))
+}
+
 /// In Adams/Car's axes: from x forward, y left to x back, y right.
 fn teimorbit(file: &ModelFile, out: &mut Exported) {
     let unit = match file.units.length {
@@ -61,11 +71,7 @@ fn teimorbit(file: &ModelFile, out: &mut Exported) {
     );
     out.text += "$----------------------------------------------------------------------HARDPOINT\n[HARDPOINT]\n{hardpoint_name              symmetry        x_value      y_value      z_value}\n";
     for (name, [x, y, z]) in hardpoints(file) {
-        let (short, side) = match (name.strip_suffix("_left"), name.strip_suffix("_right")) {
-            (Some(short), _) => (short, "left"),
-            (_, Some(short)) => (short, "right"),
-            _ => (name, "single"),
-        };
+        let (short, side) = side_of(name);
         if name.contains('\'') {
             out.unsaid("hardpoint", name, "names with quotes cannot be written");
             continue;
