@@ -140,6 +140,79 @@ impl Format {
     }
 }
 
+/// A file of another program that is not read, although its name or its program suggests it.
+struct Sibling {
+    /// What it is.
+    what: &'static str,
+    /// How names of its files end.
+    endings: &'static [&'static str],
+    /// Beginnings of lines that show it, in small letters.
+    lines: &'static [&'static str],
+    /// What to do instead.
+    help: &'static str,
+}
+
+/// Known files that are not read.
+const SIBLINGS: &[Sibling] = &[
+    Sibling {
+        what: "an Adams/View command file",
+        endings: &["cmd"],
+        lines: &["model create", "part create", "mdi_", "defaults model", "marker create"],
+        help: "export the model from Adams/View as an Adams/Solver dataset (`.adm`): File, Export, Adams/Solver Data Set",
+    },
+    Sibling {
+        what: "an Adams database",
+        endings: &["bin"],
+        lines: &[],
+        help: "export the model from Adams/View as an Adams/Solver dataset (`.adm`): File, Export, Adams/Solver Data Set",
+    },
+    Sibling {
+        what: "an MBDyn input file",
+        endings: &["mbd", "mbdyn"],
+        lines: &["begin: data", "begin: nodes", "begin: elements"],
+        help: "write the mechanism as URDF, SDF or MJCF, or begin from a table of its points: \
+               `hardpoint new NAME --template TEMPLATE --hardpoints FILE`",
+    },
+    Sibling {
+        what: "a MotionView model",
+        endings: &["mdl"],
+        lines: &["*beginmdl", "*begincontext"],
+        help: "export it from MotionView as an Adams/Solver dataset (`.adm`)",
+    },
+    Sibling {
+        what: "a xacro file",
+        endings: &["xacro"],
+        lines: &["<xacro:"],
+        help: "expand it first: `xacro FILE.xacro > FILE.urdf`",
+    },
+    Sibling {
+        what: "a CAD part or assembly",
+        endings: &["step", "stp", "iges", "igs", "sldasm", "sldprt", "catproduct", "catpart", "ipt", "iam", "x_t"],
+        lines: &["iso-10303-21"],
+        help: "CAD files have no joints: export an assembly with joints as URDF, or begin from a table of its points: \
+               `hardpoint new NAME --template TEMPLATE --hardpoints FILE`",
+    },
+    Sibling {
+        what: "a Simulink or Simscape model",
+        endings: &["slx"],
+        lines: &[],
+        help: "write its hardpoints into a table: `hardpoint new NAME --template TEMPLATE --hardpoints FILE`",
+    },
+];
+
+impl Sibling {
+    /// The sibling that a file is, by what is in it or by how its name ends.
+    fn of(bytes: &[u8], name: &str) -> Option<&'static Self> {
+        let head = decoded(&bytes[..bytes.len().min(LOOKED_AT)]).to_lowercase();
+        let shows = |s: &&Self| {
+            let begins = |line: &str| s.lines.iter().any(|l| line.trim_start().starts_with(l));
+            head.lines().any(begins)
+        };
+        let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
+        SIBLINGS.iter().find(shows).or_else(|| SIBLINGS.iter().find(|s| s.endings.contains(&ending.as_str())))
+    }
+}
+
 /// Formats of robots, which name no points to look at.
 const ROBOTS: [&str; 3] = ["urdf", "sdf", "mjcf"];
 /// Tables, which many keep their hardpoints in.
@@ -158,6 +231,10 @@ pub fn import(bytes: &[u8], name: &str, resolve: Resolve<'_>) -> Result<Imported
         Some(format) => import_as(format, bytes, name, resolve),
         None => {
             let notes = Notes::new(name, "");
+            if let Some(sibling) = Sibling::of(bytes, name) {
+                let message = format!("the file is {}, which is not read", sibling.what);
+                return Err(notes.only(notes.diagnostic("HP0801", None, message).help(sibling.help)));
+            }
             let known = FORMATS.iter().map(|f| format!("`{}` ({})", f.name, f.about)).collect::<Vec<_>>();
             let message = notes.diagnostic("HP0801", None, "the format of the file is not recognised");
             let message = message.note(format!("known are {}", known.join(", ")));
@@ -208,6 +285,10 @@ pub fn import_as(
         return Err(problems);
     }
     let Some(mut m) = mechanism else {
+        if let Some(sibling) = Sibling::of(bytes, name) {
+            let message = format!("the file is {}, which is not read", sibling.what);
+            return whole(&notes, "HP0801", message, sibling.help);
+        }
         let message = format!("there is no mechanism in the file; it was read as {}", format.about);
         return whole(
             &notes,

@@ -2,7 +2,9 @@
 
 use hardpoint::space::Vec3;
 
-use crate::corner::{Corner, role_of, spin_axis};
+use std::collections::BTreeMap;
+
+use crate::corner::{Corner, Link, role_of, spin_axis};
 use crate::lotus::half_round;
 use crate::mechanism::Mechanism;
 use crate::report::{At, Notes};
@@ -27,6 +29,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     let mut m = Mechanism::new(input.stem, "mm", "deg");
     // Left, right and single.
     let mut corners = [Corner::default(), Corner::default(), Corner::default()];
+    let mut ends = [LinkEnds::default(), LinkEnds::default(), LinkEnds::default()];
     let (mut section, mut columns) = (String::new(), COLUMNS.map(str::to_owned).to_vec());
     let (mut start, mut block, mut has_units) = (0, None, false);
     // Camber and toe, of both sides.
@@ -68,7 +71,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
                     columns = names.map(|n| n.to_ascii_lowercase()).collect();
                 }
                 None if section == "PARAMETER" => parameter(&mut static_angles, &columns, line, at, notes),
-                None => row(&mut m, &mut corners, &columns, line, at, notes),
+                None => row(&mut m, &mut corners, &mut ends, &columns, line, at, notes),
             },
             _ => {}
         }
@@ -91,6 +94,9 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         Some(block),
         "turned half round about z, so that x points forward and y left",
     );
+    for (corner, ends) in corners.iter_mut().zip(&ends) {
+        corner.links = ends.links();
+    }
     let [left, right, single] = corners;
     let mut rack = None;
     let mut known = false;
@@ -185,9 +191,38 @@ fn words(line: &str) -> Vec<String> {
     out
 }
 
+/// Ends of links whose names say no more than which end they are: `camber_rod_inner`, `camber_rod_outer`.
+#[derive(Default)]
+struct LinkEnds(BTreeMap<String, [Option<Vec3>; 2]>, Option<At>);
+
+impl LinkEnds {
+    /// Endings of the names of both ends, inboard first.
+    const ENDINGS: [[&str; 2]; 2] = [["_inner", "_outer"], ["_inboard", "_outboard"]];
+
+    fn add(&mut self, name: &str, place: Vec3, at: At) {
+        let ending = |end: usize| Self::ENDINGS.iter().find_map(|e| name.strip_suffix(e[end]));
+        for (end, stem) in [0, 1].map(|end| (end, ending(end))) {
+            if let Some(stem) = stem {
+                self.0.entry(stem.to_owned()).or_default()[end] = Some(place);
+                self.1 = self.1.or(Some(at));
+            }
+        }
+    }
+
+    /// The links both of whose ends are there.
+    fn links(&self) -> Vec<Link> {
+        let link = |(name, ends): (&String, &[Option<Vec3>; 2])| {
+            let ends = [ends[0]?, ends[1]?];
+            Some(Link { name: name.clone(), ends, pins: None, at: self.1 })
+        };
+        self.0.iter().filter_map(link).collect()
+    }
+}
+
 fn row(
     m: &mut Mechanism,
     corners: &mut [Corner; 3],
+    ends: &mut [LinkEnds; 3],
     columns: &[String],
     line: &str,
     at: At,
@@ -220,8 +255,9 @@ fn row(
     let role = role_of(short);
     let mut put = |k: usize, suffix: &str, place: Vec3| {
         m.hardpoints.push((format!("{short}{suffix}"), place));
-        if let Some(role) = role {
-            corners[k].points.insert(role, place);
+        match role {
+            Some(role) => drop(corners[k].points.insert(role, place)),
+            None => ends[k].add(short, place, at),
         }
     };
     match (symmetry.as_str(), prefix) {

@@ -157,3 +157,39 @@ fn what_a_format_cannot_say_is_named() {
         insta::assert_snapshot!("export_unsaid", told.join("\n"));
     });
 }
+
+/// Suspensions of the gallery: with one side, with both, on rods, on a strut.
+#[test]
+fn a_teimorbit_table_that_was_exported_is_a_suspension_again() {
+    /// Millimetres through metres and back.
+    const ROUNDED: f64 = 1e-9;
+    for model in ["double_wishbone", "double_wishbone_4x4", "macpherson", "front_axle", "five_link"] {
+        let bench = Bench::with(&[]);
+        let source = models_folder().join(format!("{model}.toml"));
+        let run = |arguments: &[&str]| {
+            let output = bench.run(arguments);
+            assert!(output.status.success(), "{model}: {}", String::from_utf8_lossy(&output.stderr));
+        };
+        run(&["export", source.to_str().unwrap(), "-o", "table.sub"]);
+        run(&["import", "table.sub", "-o", "again.toml"]);
+        run(&["check", "again.toml"]);
+        let places = |path: &Path| {
+            let file = hardpoint_file::read(path).unwrap_or_else(|e| panic!("{model}: {e}"));
+            let named = file.model.hardpoints.iter().filter(|h| !h.unnamed);
+            // The side is before the name there, and behind it here.
+            let bare = |name: &str| {
+                let side = ["left", "right"].into_iter().find(|side| name.contains(side)).unwrap_or("");
+                let short = name.replace(&format!("{side}_"), "").replace(&format!("_{side}"), "");
+                format!("{short} {side}")
+            };
+            let at = |h: &hardpoint::model::Hardpoint| (bare(&h.name), h.position.to_array().map(|x| 1e3 * x));
+            named.map(at).collect::<BTreeMap<_, _>>()
+        };
+        let (before, after) = (places(&source), places(&bench.path("again.toml")));
+        assert!(before.len() >= 8, "{model}");
+        for (name, at) in &before {
+            let again = after.get(name).unwrap_or_else(|| panic!("{model}: {name} is not in {after:?}"));
+            assert!(at.iter().zip(again).all(|(a, b)| (a - b).abs() <= ROUNDED), "{model} {name}: {at:?} {again:?}");
+        }
+    }
+}
