@@ -35,7 +35,7 @@ const MOST_HELD: usize = 400;
 pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
     ground(m, notes);
     straightened(m, notes);
-    let moves = m.drivers.iter().any(|d| d.law != Law::Held);
+    let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Held | Law::Set(_)));
     let mut left = match freedom(m, notes) {
         Ok(left) => left,
         Err(fault) => return Some(*fault),
@@ -88,6 +88,22 @@ pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
     }
     unfollowed(m, notes);
     None
+}
+
+/// Says first of all where nothing moves: of a mechanism all of whose motions are held, mostly something is missing.
+pub fn remark(m: &Mechanism, notes: &mut Notes, closes: bool) {
+    let held = m.drivers.iter().filter(|d| d.law == Law::Held).count();
+    let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Held | Law::Set(_)));
+    if moves || held == 0 {
+        return;
+    }
+    let is_tree = m.joints.len() < m.bodies.len();
+    let how = if closes { ": name the frames that meet, as `--close A=B`, if it has loops" } else { "" };
+    let loops =
+        if is_tree { format!("; it is a tree, in which no loop is closed{how}") } else { String::new() };
+    notes.remark(format!(
+        "nothing in the source drives it: all {held} motions that it has are held as drawn{loops}"
+    ));
 }
 
 /// Takes as closed what is drawn open where it does not close, since what nothing drives is held as drawn.

@@ -23,6 +23,7 @@ mod asmt;
 mod chain;
 mod chrono;
 mod chrono_generic;
+mod closing;
 mod collada;
 mod corner;
 mod explorer;
@@ -34,6 +35,7 @@ mod markers;
 pub mod mechanism;
 mod mjcf;
 mod report;
+mod robot;
 mod sdf;
 mod series;
 mod shapes;
@@ -45,6 +47,7 @@ mod urdf;
 mod write;
 mod xml;
 
+pub use closing::Closing;
 pub use mechanism::Mechanism;
 pub use report::{At, Entry, Fate, Notes, Place, Problems, Report};
 pub use series::{Difference, Series, Stored};
@@ -154,8 +157,30 @@ pub const LARGEST: usize = 64 << 20;
 /// # Errors
 /// Everything that is wrong with it.
 pub fn import(bytes: &[u8], name: &str, resolve: Resolve<'_>) -> Result<Imported, Problems> {
-    match Format::of(bytes, name) {
-        Some(format) => import_as(format, bytes, name, resolve),
+    import_with(&Options::default(), bytes, name, resolve)
+}
+
+/// How a source is read.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Its format; none where it shows.
+    pub format: Option<Format>,
+    /// Loops that the source leaves open.
+    pub closings: Vec<Closing>,
+}
+
+/// The same, as the options say.
+///
+/// # Errors
+/// As there.
+pub fn import_with(
+    options: &Options,
+    bytes: &[u8],
+    name: &str,
+    resolve: Resolve<'_>,
+) -> Result<Imported, Problems> {
+    match options.format.as_ref().or_else(|| Format::of(bytes, name)) {
+        Some(format) => read_as(format, &options.closings, bytes, name, resolve),
         None => {
             let notes = Notes::new(name, "");
             let known = FORMATS.iter().map(|f| format!("`{}` ({})", f.name, f.about)).collect::<Vec<_>>();
@@ -177,6 +202,16 @@ pub fn import(bytes: &[u8], name: &str, resolve: Resolve<'_>) -> Result<Imported
 /// As there.
 pub fn import_as(
     format: &Format,
+    bytes: &[u8],
+    name: &str,
+    resolve: Resolve<'_>,
+) -> Result<Imported, Problems> {
+    read_as(format, &[], bytes, name, resolve)
+}
+
+fn read_as(
+    format: &Format,
+    closings: &[Closing],
     bytes: &[u8],
     name: &str,
     resolve: Resolve<'_>,
@@ -203,7 +238,15 @@ pub fn import_as(
     let shapes = shapes::Shapes::default();
     let mut input = Input { bytes, text: &text, stem, resolve, shapes, series: None };
     notes.report.format = report::printable(&format!("{base}: {}", format.about));
-    let mechanism = (format.read)(&mut input, &mut notes);
+    let is_robot = ROBOTS.contains(&format.name);
+    let mut mechanism = (format.read)(&mut input, &mut notes);
+    if let Some(m) = mechanism.as_mut().filter(|_| notes.problem_count() == 0) {
+        if is_robot {
+            closing::of_exporters(m, &mut notes);
+        }
+        closing::close(m, &mut notes, closings);
+        closing::pairs(m, &mut notes);
+    }
     if let Some(problems) = notes.problems() {
         return Err(problems);
     }
@@ -223,10 +266,12 @@ pub fn import_as(
     }
     let about = report::printable(&format!("Imported from {base} ({})", format.about));
     let fault = if m.bodies.len() > 1 {
-        if ROBOTS.contains(&format.name) {
+        if is_robot {
             finish::end_point(&mut m, &mut notes);
         }
-        finish::finish(&mut m, &mut notes)
+        let fault = finish::finish(&mut m, &mut notes);
+        finish::remark(&m, &mut notes, is_robot);
+        fault
     } else {
         let message = "the topology is not recognised: only the hardpoints are written";
         let help = "write bodies and joints between them, as in docs/file-format.md";
