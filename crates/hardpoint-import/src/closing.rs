@@ -1,5 +1,6 @@
 //! Loops that a source leaves open: frames on two bodies that meet, as the user names them, or as they look like a pair.
 
+use std::collections::BTreeSet;
 use std::str::FromStr;
 
 use crate::markers::{Called, Marker, join};
@@ -32,11 +33,13 @@ const ENDS: [(&str, &str); 8] = [
     ("A", "B"),
 ];
 
-/// Two frames that a joint closes a loop between: `A=B`, `A=B:revolute`, `A=B:revolute:x`.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Two frames that a joint closes a loop between: `A=B`, `A=B:revolute`, `A=B:revolute:x`, `A@0.2,0,0=B`.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Closing {
     /// The names of the frames.
     pub frames: [String; 2],
+    /// Places in these frames, from their origins along their axes, in the source's unit.
+    pub places: [[f64; 3]; 2],
     /// The joint type.
     pub kind: &'static str,
     /// Which axis of the first frame the joint has: 0, 1, 2 for x, y, z.
@@ -57,16 +60,29 @@ impl FromStr for Closing {
         };
         let axis = suffix(&mut rest, &AXES);
         let kind = suffix(&mut rest, &TYPES);
-        let frames = rest.split_once('=').map(|(a, b)| [a, b].map(|f| f.trim().to_owned()));
-        let frames = frames.filter(|f| f.iter().all(|name| !name.is_empty()));
-        let (Some(frames), true) = (frames, axis.is_none() || kind.is_some()) else {
+        let ends = rest.split_once('=').map(|(a, b)| [a, b].map(end));
+        let (Some([Some(a), Some(b)]), true) = (ends, axis.is_none() || kind.is_some()) else {
             return Err(format!(
-                "`{text}` names no two frames: write `A=B`, or `A=B:TYPE` with a type of {}, or `A=B:TYPE:AXIS` with x, y or z of frame A",
+                "`{text}` names no two frames: write `A=B`, `A=B:TYPE` with a type of {}, or `A=B:TYPE:AXIS` with x, y or z of frame A; \
+                 a place in a frame is written behind it, as `A@0.2,0,0=B`",
                 TYPES.join(", ")
             ));
         };
-        Ok(Self { frames, kind: TYPES[kind.unwrap_or(0)], axis: axis.unwrap_or(2) })
+        let (frames, places) = ([a.0, b.0], [a.1, b.1]);
+        Ok(Self { frames, places, kind: TYPES[kind.unwrap_or(0)], axis: axis.unwrap_or(2) })
     }
+}
+
+/// A frame and a place in it: `NAME`, or `NAME@x,y,z`.
+fn end(text: &str) -> Option<(String, [f64; 3])> {
+    let (name, place) = match text.rsplit_once('@') {
+        Some((name, place)) => {
+            let numbers: Option<Vec<f64>> = place.split(',').map(|x| x.trim().parse().ok()).collect();
+            (name, <[f64; 3]>::try_from(numbers?).ok().filter(|p| p.iter().all(|x| x.is_finite()))?)
+        }
+        None => (text, [0.0; 3]),
+    };
+    Some((name.trim().to_owned(), place)).filter(|(name, _)| !name.is_empty())
 }
 
 /// Closes loops between frames that the user has named.
@@ -92,7 +108,10 @@ pub fn close(m: &mut Mechanism, notes: &mut Notes, closings: &[Closing]) {
             }
             found
         });
-        let [Some(a), Some(b)] = ends else { continue };
+        let [Some(mut a), Some(mut b)] = ends else { continue };
+        for (frame, place) in [&mut a, &mut b].into_iter().zip(closing.places) {
+            frame.pose.r = frame.pose.point(place.into());
+        }
         let name = format!("{}_{}", a.name, b.name);
         connect(m, notes, &name, closing.kind, closing.axis, [&a, &b]);
     }
@@ -149,7 +168,7 @@ pub fn pairs(m: &Mechanism, notes: &mut Notes) {
     let bare: Vec<&NamedFrame> = m.frames.iter().filter(|f| f.bare).take(MOST_FRAMES).collect();
     let group = groups(m);
     let near = SAME_PLACE * m.size();
-    let mut named = 0;
+    let mut named = BTreeSet::new();
     for (k, a) in bare.iter().enumerate() {
         for b in &bare[k + 1..] {
             let alike = are_a_pair(&a.name, &b.name);
@@ -157,8 +176,11 @@ pub fn pairs(m: &Mechanism, notes: &mut Notes) {
             if !(alike || meet) || group[a.body] == group[b.body] || is_joined(m, [a, b], &group) {
                 continue;
             }
-            named += 1;
-            if named > MOST_NAMED {
+            let bodies = [group[a.body].min(group[b.body]), group[a.body].max(group[b.body])];
+            if !named.insert(bodies) {
+                continue;
+            }
+            if named.len() > MOST_NAMED {
                 return;
             }
             let why = if meet { "are at one place on two bodies" } else { "have names that go together" };

@@ -32,7 +32,9 @@ const MOST_HELD: usize = 400;
 
 /// Holds what nothing holds, and drives what nothing drives. What remains wrong is handed back: the model is written all the same, for
 /// the user to mend.
-pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
+///
+/// Gaps of up to `closed` parts of its size are taken as closed where they stand, if what is held keeps them open.
+pub fn finish(m: &mut Mechanism, notes: &mut Notes, closed: f64) -> Option<Diagnostic> {
     ground(m, notes);
     straightened(m, notes);
     let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Held | Law::Set(_)));
@@ -82,7 +84,7 @@ pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
             _ => m.drivers.truncate(before),
         }
     }
-    as_drawn(m, notes);
+    as_drawn(m, notes, closed);
     if only_one {
         swing(m, notes);
     }
@@ -107,10 +109,16 @@ pub fn remark(m: &Mechanism, notes: &mut Notes, closes: bool) {
 }
 
 /// Takes as closed what is drawn open where it does not close, since what nothing drives is held as drawn.
-fn as_drawn(m: &mut Mechanism, notes: &mut Notes) {
+fn as_drawn(m: &mut Mechanism, notes: &mut Notes, closed: f64) {
     let rods = ["distance", "leg", "revolute_spherical"];
     let is_open = |j: &Joint| j.length.is_some() || (j.at.len() > 1 && !rods.contains(&j.kind));
-    if !m.joints.iter().any(is_open) || assembles(m) {
+    let gap = |j: &Joint| match j.at[..] {
+        [a, b] if j.length.is_none() => (a - b).norm(),
+        [a, b] => j.length.map_or(0.0, |l| (l - (a - b).norm()).abs()),
+        _ => 0.0,
+    };
+    let largest = m.joints.iter().filter(|j| is_open(j)).map(gap).fold(0.0, f64::max);
+    if !m.joints.iter().any(is_open) || !(largest <= closed * m.size()) || assembles(m) {
         return;
     }
     let mut closed = m.clone();

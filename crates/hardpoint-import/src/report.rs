@@ -11,7 +11,7 @@ const LISTED: usize = 40;
 /// So many problems are shown; the others are counted.
 const SHOWN: usize = 50;
 /// So many problems are kept; the others are counted. Nobody mends more of them at a time.
-const MOST_PROBLEMS: usize = 1000;
+const MOST_PROBLEMS: usize = 200;
 /// A text has a mark every so many bytes: how many characters are before it.
 const MARK: usize = 1024;
 
@@ -278,21 +278,27 @@ impl Notes {
             "HP0804" => "correct the value, or export the file again",
             _ => "export the file again",
         };
+        if self.problems.len() >= MOST_PROBLEMS {
+            // To show its place would take time, and nobody sees it.
+            self.dropped += 1;
+            return;
+        }
         let diagnostic = self.diagnostic(code, at, message).help(help);
         self.tell(at.map_or(0, |at| at.text), diagnostic);
     }
 
     /// The same, with what to do.
     pub fn problem_with(&mut self, code: &'static str, at: Option<At>, message: impl AsRef<str>, help: &str) {
+        if self.problems.len() >= MOST_PROBLEMS {
+            // To show its place would take time, and nobody sees it.
+            self.dropped += 1;
+            return;
+        }
         let diagnostic = self.diagnostic(code, at, message).help(help);
         self.tell(at.map_or(0, |at| at.text), diagnostic);
     }
 
     fn tell(&mut self, text: usize, diagnostic: Diagnostic) {
-        if self.problems.len() >= MOST_PROBLEMS {
-            self.dropped += 1;
-            return;
-        }
         let key = (text, diagnostic.line, diagnostic.column, diagnostic.message.clone());
         if self.known.insert(key) {
             self.problems.push((text, diagnostic));

@@ -166,9 +166,11 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let at = xml::at(0, node);
         let why = match named[..] {
             [a, b] => {
-                let why =
-                    format!("it names the links `{a}` and `{b}`: if it closes a loop, add `--close {a}={b}`");
-                self.notes.remark(format!("`{kind}` is not understood, and may close a loop: {why}, or name the two frames that meet"));
+                let why = format!(
+                    "it names the links `{a}` and `{b}`: if it closes a loop, `--close {a}={b}` does so at their origins, \
+                     `--close {a}@X,Y,Z={b}@X,Y,Z` at places in them"
+                );
+                self.notes.remark(format!("`{kind}` is not understood, and may close a loop: {why}"));
                 why
             }
             _ => "an element of the robot that is not known here".to_owned(),

@@ -6,6 +6,7 @@ mod fuzz;
 mod meanings;
 mod models;
 mod robots;
+mod unknown;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
