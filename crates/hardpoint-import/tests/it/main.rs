@@ -1,6 +1,7 @@
 //! Files of other programs become models that run.
 
 mod broken;
+mod extensions;
 mod four_bars;
 mod fuzz;
 mod meanings;
