@@ -1,5 +1,6 @@
 //! Files of other programs become models that run.
 
+mod bounded;
 mod broken;
 mod extensions;
 mod four_bars;
