@@ -110,8 +110,11 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut Exported) -> (Str
                 // The constant is by how much it is longer than drawn.
                 let drawn = (places(model, joint)[1] - places(model, joint)[0]).norm();
                 let constant = joint.length.map_or(0.0, |length| length - drawn);
-                let constant =
-                    if constant == 0.0 { String::new() } else { format!(" polycoef=\"{} 0 0 0 0\"", number(constant)) };
+                let constant = if constant == 0.0 {
+                    String::new()
+                } else {
+                    format!(" polycoef=\"{} 0 0 0 0\"", number(constant))
+                };
                 let _ = writeln!(equalities, "    <tendon name=\"{name}\" tendon1=\"{name}\"{constant}/>");
             }
             other => {

@@ -660,9 +660,20 @@ impl Reader<'_> {
             self.unknown(sets, &["Joints", "Motions", "Limits", "GeneralConstraintSets"]);
         }
         for motion in sets.and_then(|c| c.child("Motions")).map_or(&[][..], |p| &p.children) {
-            const OF_MOTIONS: [&str; 12] = [
-                "Name", "MarkerI", "MarkerJ", "MotionJoint", "RotationZ", "TranslationZ", "rIJI", "angIJJ", "RotationOrder", "rotationZ", "translationZ",
-                "Tool",
+            const OF_MOTIONS: [&str; 13] = [
+                "Name",
+                "MarkerI",
+                "MarkerJ",
+                "MotionJoint",
+                "RotationZ",
+                "TranslationZ",
+                "rIJI1",
+                "rIJI2",
+                "rIJI3",
+                "angIJJ1",
+                "angIJJ2",
+                "angIJJ3",
+                "RotationOrder",
             ];
             self.unknown(motion, &OF_MOTIONS);
         }

@@ -103,7 +103,8 @@ pub fn remark(m: &Mechanism, notes: &mut Notes, closes: bool) {
     let how = if closes { ": name the frames that meet, as `--close A=B`, if it has loops" } else { "" };
     let loops =
         if is_tree { format!("; it is a tree, in which no loop is closed{how}") } else { String::new() };
-    let motions = if held == 1 { "its one motion is".to_owned() } else { format!("all of its {held} motions are") };
+    let motions =
+        if held == 1 { "its one motion is".to_owned() } else { format!("all of its {held} motions are") };
     notes.remark(format!("nothing in the source drives it: {motions} held as drawn{loops}"));
 }
 

@@ -261,6 +261,15 @@ fn read_as(
             "name another format, like `--format urdf`, if it is of another",
         );
     };
+    let count = m.bodies.len().max(m.joints.len() / 2);
+    if count > robot::MOST_PARTS {
+        let message = format!("the mechanism has {} bodies and {} joints", m.bodies.len(), m.joints.len());
+        let help = format!(
+            "at most {} bodies are read: leave out of the source what need not move",
+            robot::MOST_PARTS
+        );
+        return whole(&notes, "HP0802", message, &help);
+    }
     let numbers = m.joints.iter().flat_map(|j| j.at.iter().chain(&j.axis).chain(&j.axis2));
     if !numbers.chain(m.hardpoints.iter().map(|h| &h.1)).all(|v| v.is_finite()) {
         let message = "places of joints are beyond all numbers".to_owned();

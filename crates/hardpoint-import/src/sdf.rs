@@ -54,7 +54,7 @@ const LINK: Vocabulary = Vocabulary {
     ],
 };
 /// What of models and worlds does not concern how links and joints move.
-const IRRELEVANT: [&str; 23] = [
+const IRRELEVANT: [&str; 22] = [
     "self_collide",
     "allow_auto_disable",
     "enable_wind",
@@ -69,7 +69,6 @@ const IRRELEVANT: [&str; 23] = [
     "gui",
     "road",
     "gripper",
-    "static",
     "material",
     "collision_filter_group",
     "proximity_properties",
@@ -318,7 +317,7 @@ impl<'d> Reader<'d, '_> {
         for node in children(model.node) {
             let (name, at) = (local(node), xml::at(model.text, node));
             match name {
-                "pose" | "world" | "ball_constraint" | "linear_bushing_rpy" | "loop_joint" | "mujoco"
+                "pose" | "static" | "world" | "ball_constraint" | "linear_bushing_rpy" | "loop_joint" | "mujoco"
                 | "gravity" => {}
                 name if PLACED.contains(&name) => {}
                 "plugin" if robot::is_mimic_plugin(node) => {}

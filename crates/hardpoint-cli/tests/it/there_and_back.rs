@@ -196,7 +196,9 @@ steps = 10
 #[test]
 fn names_that_a_format_cannot_hold_are_written_otherwise_and_told() {
     let file = hardpoint_file::parse(NAMES, "names.toml").unwrap_or_else(|e| panic!("{e}"));
-    for (format, name) in [("urdf", "names.urdf"), ("mjcf", "names.xml"), ("dxf", "names.dxf"), ("teimorbit", "names.sub")] {
+    for (format, name) in
+        [("urdf", "names.urdf"), ("mjcf", "names.xml"), ("dxf", "names.dxf"), ("teimorbit", "names.sub")]
+    {
         let exported = Format::named(format).unwrap().export(&file);
         // DXF ends its lines as on Windows.
         let odd = exported.text.chars().find(|c| c.is_control() && !['\n', '\r'].contains(c));
@@ -208,9 +210,11 @@ fn names_that_a_format_cannot_hold_are_written_otherwise_and_told() {
         if !["urdf", "mjcf"].contains(&format) {
             continue;
         }
-        let again = hardpoint_import::import(exported.text.as_bytes(), name, &|_| None).unwrap_or_else(|e| panic!("{e}"));
+        let again = hardpoint_import::import(exported.text.as_bytes(), name, &|_| None)
+            .unwrap_or_else(|e| panic!("{e}"));
         let again = model(&again.text);
-        let names: std::collections::BTreeSet<&str> = again.model.bodies.iter().map(|b| b.name.as_str()).collect();
+        let names: std::collections::BTreeSet<&str> =
+            again.model.bodies.iter().map(|b| b.name.as_str()).collect();
         for body in ["crank_", "crank__2", "a<b>&\"c\""] {
             assert!(names.contains(body), "{format}: {names:?}");
         }

@@ -7,7 +7,11 @@ use hardpoint_import::{Format, Imported, Problems};
 /// More than any of these takes without optimisation on a busy machine, s; unbounded they take hours, or all memory.
 const LONGEST: f64 = 30.0;
 
-fn import(format: &str, bytes: &[u8], beside: &dyn Fn(&str) -> Option<Vec<u8>>) -> Result<Imported, Problems> {
+fn import(
+    format: &str,
+    bytes: &[u8],
+    beside: &dyn Fn(&str) -> Option<Vec<u8>>,
+) -> Result<Imported, Problems> {
     let start = Instant::now();
     let result = hardpoint_import::import_as(Format::named(format).unwrap(), bytes, "source", beside);
     let taken = start.elapsed().as_secs_f64();
@@ -39,9 +43,15 @@ fn entities_are_not_expanded() {
     let kind = format!("<!DOCTYPE x [<!ENTITY a \"x>x\">{inner}]>");
     for (format, [begin, element, end]) in FORMATS {
         refused(format, &format!("{kind}{begin}{element}<what>&k;</what>{end}"), "entities");
-        refused(format, &format!("<?xml version=\"1.0\"?><!-- [ --> {kind}{begin}{element}{end}"), "entities");
+        refused(
+            format,
+            &format!("<?xml version=\"1.0\"?><!-- [ --> {kind}{begin}{element}{end}"),
+            "entities",
+        );
         // A document type alone is no entity.
-        let plain = format!("<?xml version=\"1.0\"?><!DOCTYPE x SYSTEM \"x.dtd\" [<!ELEMENT a ANY>]>{begin}{element}{end}");
+        let plain = format!(
+            "<?xml version=\"1.0\"?><!DOCTYPE x SYSTEM \"x.dtd\" [<!ELEMENT a ANY>]>{begin}{element}{end}"
+        );
         let told = import(format, plain.as_bytes(), &|_| None);
         assert!(told.is_ok(), "{format}: {}", told.unwrap_err());
     }
@@ -80,10 +90,13 @@ fn elements_and_attributes_are_counted() {
 #[test]
 fn files_that_include_each_other_twice_end() {
     // 2^25 inclusions by 25 small files.
-    let number = |path: &str| path.trim_start_matches(|c: char| !c.is_ascii_digit()).split('.').next()?.parse::<u32>().ok();
+    let number = |path: &str| {
+        path.trim_start_matches(|c: char| !c.is_ascii_digit()).split('.').next()?.parse::<u32>().ok()
+    };
     let mjcf = |path: &str| {
         let k = number(path)?;
-        let inner = if k < 25 { format!("<include file=\"i{0}.xml\"/>", k + 1).repeat(2) } else { "<body/>".into() };
+        let inner =
+            if k < 25 { format!("<include file=\"i{0}.xml\"/>", k + 1).repeat(2) } else { "<body/>".into() };
         Some(format!("<mujocoinclude>{inner}</mujocoinclude>").into_bytes())
     };
     let text = "<mujoco><worldbody><include file=\"i1.xml\"/></worldbody></mujoco>";
@@ -91,14 +104,19 @@ fn files_that_include_each_other_twice_end() {
     assert!(problems.contains("more than 5000 bodies") && problems.contains("too often"), "{problems}");
     let empty = |path: &str| {
         let k = number(path)?;
-        let inner = if k < 25 { format!("<include file=\"i{0}.xml\"/>", k + 1).repeat(2) } else { String::new() };
+        let inner =
+            if k < 25 { format!("<include file=\"i{0}.xml\"/>", k + 1).repeat(2) } else { String::new() };
         Some(format!("<mujocoinclude>{inner}</mujocoinclude>").into_bytes())
     };
     let problems = import("mjcf", text.as_bytes(), &empty).unwrap_err().to_string();
     assert!(problems.contains("too often"), "{problems}");
     let sdf = |path: &str| {
         let k = number(path)?;
-        let inner = if k < 25 { format!("<include><uri>m{}.sdf</uri></include>", k + 1).repeat(2) } else { "<link name=\"l\"/>".into() };
+        let inner = if k < 25 {
+            format!("<include><uri>m{}.sdf</uri></include>", k + 1).repeat(2)
+        } else {
+            "<link name=\"l\"/>".into()
+        };
         Some(format!("<sdf version=\"1.9\"><model name=\"m{k}\">{inner}</model></sdf>").into_bytes())
     };
     let text = "<sdf version=\"1.9\"><model name=\"m0\"><include><uri>m1.sdf</uri></include></model></sdf>";
@@ -113,7 +131,8 @@ fn files_that_include_each_other_twice_end() {
     // Classes of defaults take what those around them have.
     let wide: String = (0..900).map(|k| format!(" a{k}=\"1\"")).collect();
     let classes: String = (0..3000).map(|k| format!("<default class=\"c{k}\"/>")).collect();
-    let text = format!("<mujoco><default><geom{wide}/>{classes}</default><worldbody><body/></worldbody></mujoco>");
+    let text =
+        format!("<mujoco><default><geom{wide}/>{classes}</default><worldbody><body/></worldbody></mujoco>");
     refused("mjcf", &text, "classes of defaults");
 }
 
@@ -122,7 +141,8 @@ fn functions_of_many_terms_and_levels_are_read_or_refused() {
     let folder = crate::folder();
     let adams = std::fs::read_to_string(folder.join("adams/four_bar.adm")).unwrap();
     let asmt = std::fs::read_to_string(folder.join("asmt/four_bar.asmt")).unwrap();
-    let in_adams = |function: &str| adams.replace("FUNCTION = 60D\n, + 360.0D*time", &format!("FUNCTION = {function}"));
+    let in_adams =
+        |function: &str| adams.replace("FUNCTION = 60D\n, + 360.0D*time", &format!("FUNCTION = {function}"));
     let in_asmt = |function: &str| asmt.replace("1.0471975511966d + (2.0d*pi*time)", function);
     for (format, write) in [("adams", &in_adams as &dyn Fn(&str) -> String), ("asmt", &in_asmt)] {
         assert_ne!(write("0"), write("1"), "{format}");

@@ -90,7 +90,11 @@ fn a_weld_holds_the_frames_that_it_names() {
     let turned = [0.9, 0.1, -0.2, 0.3];
     let welds: [(&str, &str, [Pose; 2]); 5] = [
         ("coupler", r#"<weld site1="s1" site2="s3"/>"#, [site_1, site_3]),
-        ("rocker", r#"<weld body1="rocker" body2="tool" relpose="0 0 1 1 0 0 0"/>"#, [at([0.0, 0.0, 1.0]), at([0.0; 3])]),
+        (
+            "rocker",
+            r#"<weld body1="rocker" body2="tool" relpose="0 0 1 1 0 0 0"/>"#,
+            [at([0.0, 0.0, 1.0]), at([0.0; 3])],
+        ),
         (
             "rocker",
             r#"<weld body1="rocker" body2="tool" relpose="0.1 0.2 1 0.9 0.1 -0.2 0.3"/>"#,
@@ -117,7 +121,9 @@ fn a_weld_holds_the_frames_that_it_names() {
                 let off = off(&poses, frames);
                 assert!(off < SAME, "{weld} is off by {off}\n{}", imported.report);
                 // And the linkage moves.
-                let first = poses.iter().map(|p| (p[0].r - poses[0][0].r).norm() + p[0].rot.angle_to(poses[0][0].rot));
+                let first = poses
+                    .iter()
+                    .map(|p| (p[0].r - poses[0][0].r).norm() + p[0].rot.angle_to(poses[0][0].rot));
                 assert!(first.fold(0.0, f64::max) > 0.1, "{weld}");
             }
         }
@@ -126,7 +132,8 @@ fn a_weld_holds_the_frames_that_it_names() {
 
 #[test]
 fn points_that_lie_apart_are_brought_together() {
-    let text = linkage("", r#"<connect site1="s1" site2="s2"/>"#).replace(r#"name="s2" pos="0 0 1""#, r#"name="s2" pos="0 0 1.2""#);
+    let text = linkage("", r#"<connect site1="s1" site2="s2"/>"#)
+        .replace(r#"name="s2" pos="0 0 1""#, r#"name="s2" pos="0 0 1.2""#);
     let (_, file) = read("m.xml", &text);
     let poses = poses(&file, &["coupler", "rocker"]);
     for p in poses {
@@ -154,7 +161,14 @@ fn constants_of_relations_count() {
         <fixed name="both"><joint joint="D" coef="2"/><joint joint="A" coef="1"/></fixed></tendon></mujoco>"#;
     for relation in relations {
         let (imported, file) = read("m.xml", &linkage("", relation).replace("</mujoco>", tendons));
-        assert_eq!(imported.report.of(Fate::Approximated).filter(|e| ["joint", "tendon"].contains(&e.kind.as_str())).count(), 0);
+        assert_eq!(
+            imported
+                .report
+                .of(Fate::Approximated)
+                .filter(|e| ["joint", "tendon"].contains(&e.kind.as_str()))
+                .count(),
+            0
+        );
         for p in poses(&file, &["crank", "rocker"]) {
             let upright = at([0.0; 3]);
             let [a, d] = [0, 1].map(|k| about_y([&upright, &p[k]]));
@@ -189,12 +203,23 @@ fn joints_follow_others_however_that_is_written() {
         <multiplier>-2</multiplier><offset>0.1</offset></plugin>"#;
     let control = r#"<ros2_control name="c" type="system"><joint name="j"><param name="mimic">g</param><param name="multiplier">-2</param>
         <param name="offset">0.1</param></joint></ros2_control>"#;
-    let block = r#"<mujoco><equality><joint joint1="j" joint2="g" polycoef="0.1 -2 0 0 0"/></equality></mujoco>"#;
+    let block =
+        r#"<mujoco><equality><joint joint1="j" joint2="g" polycoef="0.1 -2 0 0 0"/></equality></mujoco>"#;
     let gazebo = format!("<gazebo>{plugin}</gazebo>");
     let ways = [
         // (leader - reference) multiplier + offset
-        ("m.sdf", SDF, "", r#"<mimic joint="g"><multiplier>-2</multiplier><offset>0.1</offset><reference>0</reference></mimic>"#),
-        ("m.sdf", SDF, "", r#"<mimic joint="g"><multiplier>-2</multiplier><offset>0.5</offset><reference>-0.2</reference></mimic>"#),
+        (
+            "m.sdf",
+            SDF,
+            "",
+            r#"<mimic joint="g"><multiplier>-2</multiplier><offset>0.1</offset><reference>0</reference></mimic>"#,
+        ),
+        (
+            "m.sdf",
+            SDF,
+            "",
+            r#"<mimic joint="g"><multiplier>-2</multiplier><offset>0.5</offset><reference>-0.2</reference></mimic>"#,
+        ),
         ("m.sdf", SDF, plugin, ""),
         ("m.sdf", SDF, block, ""),
         ("m.urdf", URDF, "", r#"<mimic joint="g" multiplier="-2" offset="0.1"/>"#),
@@ -246,8 +271,15 @@ fn loops_of_other_conventions_are_closed_or_named() {
     let report = imported.report.to_string();
     let above: Vec<&str> = report.lines().take(3).collect();
     assert!(above[1].contains("`--close coupler=rocker`"), "{report}");
-    assert!(above[2].contains("all of its 3 motions are held as drawn") && above[2].contains("tree"), "{report}");
-    for closing in ["coupler@2,0,0=rocker@0,1,0", "rocker@0,1,0=coupler@2,0,0:revolute", "coupler@2,0,0=rocker@0,1,0:revolute:z"] {
+    assert!(
+        above[2].contains("all of its 3 motions are held as drawn") && above[2].contains("tree"),
+        "{report}"
+    );
+    for closing in [
+        "coupler@2,0,0=rocker@0,1,0",
+        "rocker@0,1,0=coupler@2,0,0:revolute",
+        "coupler@2,0,0=rocker@0,1,0:revolute:z",
+    ] {
         let (imported, file) = read_with("r.urdf", &text, &[closing]);
         meets(&file);
         assert!(!imported.report.to_string().contains("held as drawn"), "{}", imported.report);
@@ -308,7 +340,8 @@ fn what_is_to_be_closed_is_read() {
 /// The single mass of a model: its centre and its moments of inertia as written.
 fn mass_of(text: &str) -> Vec<(String, f64)> {
     let table: toml_edit::DocumentMut = text.parse().unwrap();
-    let entry = table["masses"].as_table().unwrap().iter().next().unwrap().1.as_inline_table().unwrap().clone();
+    let entry =
+        table["masses"].as_table().unwrap().iter().next().unwrap().1.as_inline_table().unwrap().clone();
     let mut out = Vec::new();
     for (key, value) in &entry {
         if let Some(x) = value.as_float() {
@@ -330,7 +363,8 @@ fn is(found: &[(String, f64)], wanted: &[(&str, f64)]) {
 #[test]
 fn masses_come_along_in_the_global_axes() {
     // A link that is turned by 90 degrees about z, its inertia by another 90 about x: x, y, z become y, -z... of the world.
-    let inertia = r#"<mass value="2"/><inertia ixx="0.3" iyy="0.4" izz="0.5" ixy="0.01" ixz="0.02" iyz="0.03"/>"#;
+    let inertia =
+        r#"<mass value="2"/><inertia ixx="0.3" iyy="0.4" izz="0.5" ixy="0.01" ixz="0.02" iyz="0.03"/>"#;
     let urdf = format!(
         r#"<robot name="r"><link name="world"/><link name="a"><inertial><origin xyz="0.1 0.2 0.3" rpy="1.5707963267948966 0 0"/>{inertia}</inertial></link>
         <joint name="j" type="continuous"><parent link="world"/><child link="a"/><origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/><axis xyz="0 1 0"/></joint></robot>"#
@@ -417,7 +451,13 @@ fn springs_and_dampers_of_joints_push_as_the_source_says() {
         <joint name="j" axis="0 1 0" damping="0.6" stiffness="7" springref="0.5" ref="0.2"/><inertial pos="0.5 0 0" mass="2"/></body></worldbody></mujoco>"#;
     for (name, text) in [("r.urdf", urdf), ("m.sdf", sdf), ("m.xml", mjcf)] {
         let (imported, _) = read(name, text);
-        let driver = imported.text.lines().find_map(|l| l.strip_prefix("[drivers.")).unwrap().trim_end_matches(']').to_owned();
+        let driver = imported
+            .text
+            .lines()
+            .find_map(|l| l.strip_prefix("[drivers."))
+            .unwrap()
+            .trim_end_matches(']')
+            .to_owned();
         let start = imported.text.find("law = \"").unwrap();
         let end = start + imported.text[start..].find('\n').unwrap();
         let measured = format!(

@@ -34,7 +34,8 @@ type Change = (&'static str, &'static str, &'static str);
 
 fn named_in(format: &str, bytes: &[u8], what: &str) {
     let format = Format::named(format).unwrap();
-    let imported = hardpoint_import::import_as(format, bytes, "source", &|_| None).unwrap_or_else(|e| panic!("{what}: {e}"));
+    let imported = hardpoint_import::import_as(format, bytes, "source", &|_| None)
+        .unwrap_or_else(|e| panic!("{what}: {e}"));
     let report = &imported.report;
     let named: Vec<&str> = report.of(Fate::NotUnderstood).map(|e| e.kind.as_str()).collect();
     assert_eq!(named, [what], "{report}");
@@ -48,7 +49,8 @@ fn named_in(format: &str, bytes: &[u8], what: &str) {
 }
 
 fn all_named(format: &str, text: &str, changes: &[Change]) {
-    let known = hardpoint_import::import(text.as_bytes(), "source", &|_| None).unwrap_or_else(|e| panic!("{e}"));
+    let known =
+        hardpoint_import::import(text.as_bytes(), "source", &|_| None).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(known.report.of(Fate::NotUnderstood).count(), 0, "{}", known.report);
     for (from, to, what) in changes {
         let changed = text.replacen(from, to, 1);
@@ -63,7 +65,11 @@ fn in_urdf() {
         "urdf",
         URDF,
         &[
-            (r#"<axis xyz="0 1 0"/><limit"#, r#"<axis xyz="0 1 0"/><child_pose xyz="0 0 1"/><limit"#, "child_pose"),
+            (
+                r#"<axis xyz="0 1 0"/><limit"#,
+                r#"<axis xyz="0 1 0"/><child_pose xyz="0 0 1"/><limit"#,
+                "child_pose",
+            ),
             (r#"type="revolute""#, r#"type="revolute" zero="0.5""#, "zero"),
             (r#"<origin xyz="0 0 1""#, r#"<origin xyz="0 0 1" about="z""#, "about"),
             (r#"<axis xyz="0 1 0""#, r#"<axis xyz="0 1 0" zero_at="0.5""#, "zero_at"),
@@ -106,7 +112,11 @@ fn in_sdformat() {
         &[
             ("<child>b</child>", "<child>b</child><child_pose>0 0 1 0 0 0</child_pose>", "child_pose"),
             ("<xyz>0 1 0</xyz>", "<xyz>0 1 0</xyz><zero_at>0.5</zero_at>", "zero_at"),
-            ("<xyz>0 1 0</xyz>", "<xyz>0 1 0</xyz><initial_position>0.5</initial_position>", "initial_position"),
+            (
+                "<xyz>0 1 0</xyz>",
+                "<xyz>0 1 0</xyz><initial_position>0.5</initial_position>",
+                "initial_position",
+            ),
             ("<xyz>", "<xyz about='z'>", "about"),
             ("<lower>", "<stop>1</stop><lower>", "stop"),
             ("<damping>", "<rest>1</rest><damping>", "rest"),
@@ -128,7 +138,11 @@ fn in_sdformat() {
                 "<drake:ball_constraint><drake:ball_constraint_body_A>a</drake:ball_constraint_body_A><drake:ball_constraint_body_B>b</drake:ball_constraint_body_B><stiff/></drake:ball_constraint><plugin",
                 "stiff",
             ),
-            ("<plugin", "<mujoco><equality><weld body1='a' body2='b' twist='1'/></equality></mujoco><plugin", "twist"),
+            (
+                "<plugin",
+                "<mujoco><equality><weld body1='a' body2='b' twist='1'/></equality></mujoco><plugin",
+                "twist",
+            ),
         ],
     );
 }
@@ -179,7 +193,12 @@ fn in_adams() {
     // Where a joint starts is no detail of its own.
     let starts = text.replace("JOINT/1, REVOLUTE", "JOINT/1, REVOLUTE, ICROT = 0.5, 0");
     let imported = hardpoint_import::import(starts.as_bytes(), "geared.adm", &|_| None).unwrap();
-    assert_eq!(imported.report.of(Fate::Refused).filter(|e| e.kind == "ICROT").count(), 1, "{}", imported.report);
+    assert_eq!(
+        imported.report.of(Fate::Refused).filter(|e| e.kind == "ICROT").count(),
+        1,
+        "{}",
+        imported.report
+    );
 }
 
 #[test]
