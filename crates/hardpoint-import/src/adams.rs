@@ -1,5 +1,7 @@
 //! Adams/Solver datasets (`.adm`): parts, markers, joints, primitives, motions, couplers, gears.
 
+mod loads;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
@@ -55,7 +57,8 @@ fn read(source: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     reader.markers(&statements);
     reader.constraints(&statements);
     reader.motions(&statements);
-    reader.rest(&statements);
+    let loads = reader.loads(&statements);
+    reader.rest(&statements, &loads);
     if !source.text.lines().rev().any(|l| l.trim().eq_ignore_ascii_case("END")) {
         let at = At { text: 0, start: source.text.len(), end: source.text.len() };
         reader.notes.approximated(
@@ -891,7 +894,7 @@ impl Reader<'_> {
     }
 
     /// All that is neither mechanism nor force.
-    fn rest(&mut self, statements: &[Statement]) {
+    fn rest(&mut self, statements: &[Statement], loads: &BTreeSet<(String, String)>) {
         const DONE: [&str; 10] = [
             "PART",
             "POINT_MASS",
@@ -972,7 +975,10 @@ impl Reader<'_> {
         for s in statements {
             self.unknown_keys(s);
         }
-        for s in statements.iter().filter(|s| !DONE.contains(&s.name.as_str())) {
+        let is_read = |s: &Statement| {
+            DONE.contains(&s.name.as_str()) || loads.contains(&(s.name.clone(), s.id.clone()))
+        };
+        for s in statements.iter().filter(|s| !is_read(s)) {
             if s.name == "FE_PART" {
                 let why = "an elastic part: what is on it is refused";
                 self.notes.refused(&s.name, &s.label, Some(s.at), why);

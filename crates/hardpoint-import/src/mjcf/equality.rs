@@ -4,7 +4,7 @@ use hardpoint::space::{Pose, Quat, Vec3};
 
 use super::{CLOSED, Element, Meet, Reader};
 use crate::markers::{Called, Marker, join};
-use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law};
+use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law};
 use crate::turn::{home, none};
 use crate::{robot, xml};
 
@@ -303,8 +303,54 @@ impl<'d> Reader<'d, '_> {
                     self.rods.insert(name.to_owned(), [from.clone(), to.clone()]);
                 }
                 // It holds nothing of its own; an equality may.
-                self.notes.ignored(node.tag_name().name(), xml::at(text, node));
+                self.tendon_spring(element, name);
             }
         }
     }
+
+    /// The spring and damper of a tendon between two sites, and what else it has.
+    fn tendon_spring(&mut self, element: Element<'d>, name: &str) {
+        let (text, node) = element;
+        let (kind, at) = (node.tag_name().name(), xml::at(text, node));
+        let list = |key: &str| node.attribute(key).and_then(xml::numbers).unwrap_or_default();
+        let first = |key: &str| list(key).first().copied().unwrap_or(0.0);
+        if node.has_attribute("range") && node.attribute("limited") != Some("false") {
+            self.notes.refused(kind, name, at, "its limits are not held: drivers prescribe what moves");
+        }
+        robot::friction(self.notes, name, at, first("frictionloss"));
+        let [stiffness, damping] = ["stiffness", "damping"].map(first);
+        if stiffness == 0.0 && damping == 0.0 {
+            self.notes.ignored(kind, at);
+            return;
+        }
+        let lengths = list("springlength");
+        let ends = self.rods.get(name).map(|ends| ends.each_ref().map(|site| self.sites.get(site).copied()));
+        let (Some([Some((i, from)), Some((j, to))]), true) = (ends, lengths.len() < 2 && are_two(ends)) else {
+            let why = "only springs of tendons between two sites on two bodies, with one length, have an equivalent";
+            self.notes.refused(kind, name, at, why);
+            return;
+        };
+        if !(stiffness >= 0.0 && damping >= 0.0) {
+            self.notes.refused(kind, name, at, "no spring has a stiffness or damping below zero");
+            return;
+        }
+        let called = Called { kind, name, at };
+        // A length below zero stands for that of the drawing.
+        let free = lengths.first().copied().filter(|l| *l > 0.0 && stiffness > 0.0);
+        self.m.force(Force {
+            name: name.to_owned(),
+            note: called.note(self.notes),
+            on: ForceOn::Points([(i, from.r), (j, to.r)]),
+            stiffness,
+            damping,
+            free,
+            preload: None,
+        });
+        self.notes.taken(kind, name, at);
+    }
+}
+
+/// Whether the two ends of a tendon are on two bodies.
+fn are_two(ends: Option<[Option<(usize, Pose)>; 2]>) -> bool {
+    matches!(ends, Some([Some((i, _)), Some((j, _))]) if i != j)
 }

@@ -475,3 +475,84 @@ fn springs_and_dampers_of_joints_push_as_the_source_says() {
         assert!((found - wanted).abs() < 1e-9, "{name}: {found} instead of {wanted}\n{measured}");
     }
 }
+
+#[test]
+fn springs_of_tendons_pull() {
+    // From (0.5, 0, 0) on the pendulum to (0.5, 0, 1) on the ground: 40 N/m over 0.25 m beyond its length, straight up.
+    let text = r#"<mujoco><option gravity="0 0 0"/><worldbody><site name="top" pos="0.5 0 1"/><body name="a"><joint name="j" axis="0 1 0"/>
+        <inertial pos="0.5 0 0" mass="2"/><site name="end" pos="0.5 0 0"/></body></worldbody>
+        <tendon><spatial name="s" stiffness="40" damping="3" springlength="0.75"><site site="end"/><site site="top"/></spatial></tendon></mujoco>"#;
+    let (imported, _) = read("m.xml", text);
+    let start = imported.text.find("law = \"").unwrap();
+    let end = start + imported.text[start..].find('\n').unwrap();
+    let driver = imported.text.lines().find_map(|l| l.strip_prefix("[drivers.")).unwrap().trim_end_matches(']').to_owned();
+    let measured = format!(
+        "{}law = \"0.4*t\"{}\n[measures.torque]\ntype = \"driver_force\"\ndriver = \"{driver}\"\n",
+        &imported.text[..start],
+        &imported.text[end..]
+    );
+    let file = hardpoint_file::parse(&measured, "m.toml").unwrap_or_else(|e| panic!("{e}\n{measured}"));
+    let run = Analysis::new(&file.model).unwrap().run();
+    let torque = run.measured.outputs.iter().position(|o| o.name == "torque").unwrap();
+    // Its end goes down with 0.4 x 0.5 m/s, so that it is drawn out.
+    let wanted = 0.5 * (40.0 * 0.25 + 3.0 * 0.4 * 0.5);
+    let found = run.measured.value(0, torque)[0];
+    assert!((found - wanted).abs() < 1e-9, "{found} instead of {wanted}\n{measured}");
+}
+
+#[test]
+fn datasets_of_adams_bring_masses_gravity_and_springs() {
+    let text = "pendulum\nUNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND\nPART/1, GROUND\nMARKER/1, PART=1, REULER=0D,-90D,0D\n\
+        MARKER/10, PART=1, QP=0,0,400\nPART/2, MASS=2, CM=21, IM=20, IP=6E5,7E5,8E5,1E4,2E4,3E4\nMARKER/20, PART=2\n\
+        MARKER/21, PART=2, QP=100,50,0, REULER=30D,20D,0D\nMARKER/22, PART=2, QP=200,0,0\nMARKER/23, PART=2, REULER=0D,-90D,0D\n\
+        JOINT/1, REVOLUTE, I=23, J=1\nMOTION/1, ROTATIONAL, JOINT=1, FUNCTION=0.4*TIME\nACCGRAV/KGRAV=-9806.65\n\
+        SPRINGDAMPER/1, I=22, J=10, TRANSLATION, K=3, C=0.2, LENGTH=300, FORCE=12\nEND\n";
+    let (imported, _) = read("pendulum.adm", text);
+    assert_eq!(imported.report.of(Fate::NotUnderstood).count(), 0, "{}", imported.report);
+    assert_eq!(imported.report.of(Fate::Ignored).count(), 0, "{}", imported.report);
+    // I_c = I_P - m (d^2 1 - d d^T) with d = (0.1, 0.05, 0) m; products are integrals on both sides.
+    is(
+        &mass_of(&imported.text),
+        &[
+            ("mass", 2.0),
+            ("x", 100.0),
+            ("y", 50.0),
+            ("ixx", 0.595),
+            ("iyy", 0.68),
+            ("izz", 0.775),
+            ("ixy", 0.0),
+            ("izx", 0.02),
+            ("iyz", 0.03),
+        ],
+    );
+    let torque = |text: &str| {
+        let (imported, _) = read("pendulum.adm", text);
+        let measured = format!("{}\n[measures.torque]\ntype = \"driver_force\"\ndriver = \"MOTION_1\"\n", imported.text);
+        let file = hardpoint_file::parse(&measured, "m.toml").unwrap_or_else(|e| panic!("{e}\n{measured}"));
+        let run = Analysis::new(&file.model).unwrap().run();
+        let torque = run.measured.outputs.iter().position(|o| o.name == "torque").unwrap();
+        run.measured.value(0, torque)[0]
+    };
+    // About y: the weight turns with m g 0.1; the spring pulls its end at (0.2, 0, 0) towards (0, 0, 0.4), which comes nearer or goes
+    // farther with the component of 0.4 rad/s x 0.2 m along it.
+    let length = 0.2_f64.hypot(0.4);
+    let up = 0.4 / length;
+    let tension = 3.0 * (1e3 * length - 300.0) - 12.0 + 0.2 * 1e3 * (0.4 * 0.2 * up);
+    let wanted = -(2.0 * 9.80665 * 0.1 - 0.2 * up * tension);
+    let found = torque(text);
+    assert!((found - wanted).abs() < 1e-9, "{found} instead of {wanted}");
+    // The same in other units of mass, force, length and time.
+    let other = text
+        .replace("FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND", "FORCE=KNEWTON, MASS=GRAM, LENGTH=METER, TIME=MILLISECOND")
+        .replace("QP=0,0,400", "QP=0,0,0.4")
+        .replace("QP=100,50,0", "QP=0.1,0.05,0")
+        .replace("QP=200,0,0", "QP=0.2,0,0")
+        .replace("MASS=2,", "MASS=2000,")
+        .replace("IP=6E5,7E5,8E5,1E4,2E4,3E4", "IP=600,700,800,10,20,30")
+        .replace("0.4*TIME", "0.4E-3*TIME")
+        .replace("KGRAV=-9806.65", "KGRAV=-9.80665E-6")
+        .replace("K=3, C=0.2, LENGTH=300, FORCE=12", "K=3, C=200, LENGTH=0.3, FORCE=0.012");
+    assert_ne!(other, text);
+    let found = torque(&other);
+    assert!((found - wanted).abs() < 1e-9, "{found} instead of {wanted}");
+}
