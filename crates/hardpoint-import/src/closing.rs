@@ -128,7 +128,7 @@ fn connect(
     let called = Called { kind: "loop", name, at: None };
     if kind == "fixed" {
         let ends = ends.map(|f| Marker { body: f.body, pose: f.pose });
-        robot::weld(m, notes, called, ends);
+        robot::weld(m, notes, called, kind, ends);
         return;
     }
     let markers = ends.map(|f| match kind {

@@ -3,7 +3,7 @@
 use hardpoint::space::{Mat3, Pose};
 use roxmltree::Node;
 
-use crate::markers::{Called, Marker, join};
+use crate::markers::{Called, Marker};
 use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mass, Mechanism};
 use crate::report::{At, Notes};
 use crate::xml::{self, child};
@@ -212,42 +212,44 @@ pub fn follow(
     notes.taken("mimic", name, at);
 }
 
-/// Welds two frames on two bodies together, which may lie apart and be turned against each other as drawn: the mechanism is assembled so.
-pub fn weld(m: &mut Mechanism, notes: &mut Notes, called: Called<'_>, [i, j]: [Marker; 2]) {
+/// Holds two frames on two bodies together, as a joint of type `fixed` or, but for their places, `orientation`; its number. Where they lie
+/// apart or are turned against each other as drawn, the mechanism is assembled so.
+pub fn weld(
+    m: &mut Mechanism,
+    notes: &mut Notes,
+    called: Called<'_>,
+    kind: &'static str,
+    [i, j]: [Marker; 2],
+) -> Option<usize> {
     if i.body == j.body {
         notes.refused(called.kind, called.name, called.at, "both its frames are on the same body");
-        return;
-    }
-    // What turns frame j into frame i: R = A_i A_j^T, by an angle about an axis.
-    let angle = j.pose.rot.angle_to(i.pose.rot);
-    let apart = (i.pose.r - j.pose.r).norm() > SAME_PLACE * m.size();
-    if angle <= PARALLEL && !apart {
-        join(m, notes, called, "fixed", [i, j]);
-        return;
+        return None;
     }
     let note = called.note(notes);
-    let (mut body, at) = (i.body, j.pose.r);
-    let carrier = (angle > PARALLEL).then(|| turn_of(i.pose.rot * j.pose.rot.transpose(), angle));
-    if let Some(axis) = carrier {
-        // A frame between both turns from where body j is drawn to where it belongs.
+    let angle = j.pose.rot.angle_to(i.pose.rot);
+    let apart = kind == "fixed" && (i.pose.r - j.pose.r).norm() > SAME_PLACE * m.size();
+    let turned = angle > PARALLEL;
+    let mut body = i.body;
+    if turned {
+        // A frame between both turns from where body j is drawn to where it belongs: R = A_i A_j^T, by an angle about an axis.
+        let axis = turn_of(i.pose.rot * j.pose.rot.transpose(), angle);
         let frame = Pose { rot: j.pose.rot, r: i.pose.r };
         let between = m.body(&format!("{}_frame", called.name), note.clone(), Some(frame));
-        let turn = Joint::new(
-            &format!("{}_turn", called.name),
-            note.clone(),
-            "revolute",
-            [i.body, between],
-            i.pose.r,
-        );
+        let turn = Joint::new(&format!("{}_turn", called.name), note.clone(), "revolute", [i.body, between], i.pose.r);
         let joint = m.joint(turn.along(axis));
         let drives = Drives::Coordinate(Coordinate { joint, name: "angle" });
         m.driver(&format!("{}_turn", called.name), note.clone(), drives, Law::Set(angle));
         body = between;
     }
-    let fixed = Joint::new(called.name, note, "fixed", [body, j.body], at);
-    m.joint(if apart { fixed.between(i.pose.r, at) } else { fixed });
-    let why = "its frames lie apart as drawn: the mechanism is assembled to it before it moves";
-    notes.approximated(called.kind, called.name, called.at, why);
+    let held = Joint::new(called.name, note, kind, [body, j.body], j.pose.r);
+    let number = m.joint(if apart { held.between(i.pose.r, j.pose.r) } else { held });
+    if apart || turned {
+        let why = "its frames lie apart as drawn: the mechanism is assembled to it before it moves";
+        notes.approximated(called.kind, called.name, called.at, why);
+    } else {
+        notes.taken(called.kind, called.name, called.at);
+    }
+    Some(number)
 }
 
 /// The axis about which a rotation turns by this angle.

@@ -474,6 +474,10 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 return None;
             }
         };
+        if type_name == "fixed" {
+            let ends = [(i, at_i), (j, at_j)].map(|(body, pose)| Marker { body, pose });
+            return robot::weld(&mut self.m, self.notes, Called { kind: "joint", name, at }, "fixed", ends);
+        }
         // A universal joint turns about x of the first frame and y of the second.
         let axes = if kind == "universal" { [X, Y].map(Vec3::from) } else { [axis; 2] };
         let end = |body, pose: Pose, axis| Marker::along(body, pose.r, pose.rot * axis);

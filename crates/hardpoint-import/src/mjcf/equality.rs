@@ -107,7 +107,7 @@ impl<'d> Reader<'d, '_> {
         }
         self.place_free(&i, &mut j);
         self.place_free(&j, &mut i);
-        robot::weld(&mut self.m, self.notes, called, [i, j]);
+        robot::weld(&mut self.m, self.notes, called, "fixed", [i, j]);
     }
 
     /// Puts a body that nothing but a weld holds where that has it: `own` is its frame, which comes to the other one.

@@ -242,8 +242,10 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             };
             xml::unknown(0, node, &name, LOOP, self.notes);
             if let [Some(i), Some(j)] = ends {
-                // Directions are those of the first link.
-                let j = (j.0, Pose { rot: i.1.rot, r: j.1.r });
+                // Directions are those of the first link, but where frames are held together and both are written.
+                let both = links.len() == 2 && links.iter().all(|end| end.has_attribute("rpy"));
+                let rot = if kind == "fixed" && both { j.1.rot } else { i.1.rot };
+                let j = (j.0, Pose { rot, r: j.1.r });
                 self.connect(node, &name, &kind, [i, j], axis);
             }
         }

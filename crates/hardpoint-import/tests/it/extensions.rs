@@ -556,3 +556,34 @@ fn datasets_of_adams_bring_masses_gravity_and_springs() {
     let found = torque(&other);
     assert!((found - wanted).abs() < 1e-9, "{found} instead of {wanted}");
 }
+
+#[test]
+fn fixed_joints_hold_the_frames_that_are_drawn_apart_in_every_format() {
+    // A hinge carries a, which carries b by a frame that is elsewhere and turned as drawn.
+    let frame = |place: &str| format!("MARKER/22, PART=2, QP=100,0,0\nMARKER/30, PART=3, {place}\n");
+    let adams = |place: &str| {
+        format!(
+            "fixed\nUNITS/LENGTH=MILLIMETER\nPART/1, GROUND\nMARKER/1, PART=1, REULER=0D,-90D,0D\nPART/2\nMARKER/23, PART=2, REULER=0D,-90D,0D\n\
+             PART/3, QG=400,50,0\n{}JOINT/1, REVOLUTE, I=23, J=1\nJOINT/2, FIXED, I=30, J=22\nEND\n",
+            frame(place)
+        )
+    };
+    for (place, wanted) in [
+        ("QP=0,0,20", pose([0.0, 0.0, 0.02], [1.0, 0.0, 0.0, 0.0])),
+        ("QP=0,0,20, REULER=40D,0D,0D", pose([0.0, 0.0, 0.02], [20.0_f64.to_radians().cos(), 0.0, 0.0, 20.0_f64.to_radians().sin()])),
+        ("QP=-300,-50,0", pose([-0.3, -0.05, 0.0], [1.0, 0.0, 0.0, 0.0])),
+    ] {
+        let (_, file) = read("fixed.adm", &adams(place));
+        let poses = poses(&file, &["PART_2", "PART_3"]);
+        let off = off(&poses, [at([0.1, 0.0, 0.0]), wanted]);
+        assert!(off < SAME, "{place}: {off}");
+        assert!(poses[0][0].rot.angle_to(poses[25][0].rot) > 0.1);
+    }
+    let urdf = r#"<robot name="m"><link name="world"/><link name="a"/><link name="b"/>
+        <joint name="g" type="continuous"><parent link="world"/><child link="a"/><axis xyz="0 1 0"/></joint>
+        <joint name="f" type="floating"><parent link="world"/><child link="b"/><origin xyz="0.4 0.05 0"/></joint>
+        <loop_joint name="j" type="fixed"><link1 link="a" xyz="0.1 0 0" rpy="0 0 0"/><link2 link="b" xyz="0 0 0.02" rpy="0.3 0 0"/></loop_joint></robot>"#;
+    let (_, file) = read("m.urdf", urdf);
+    let turned = Pose { rot: Mat3::about([1.0, 0.0, 0.0].into(), 0.3), r: [0.0, 0.0, 0.02].into() };
+    assert!(off(&poses(&file, &["a", "b"]), [at([0.1, 0.0, 0.0]), turned]) < SAME);
+}
