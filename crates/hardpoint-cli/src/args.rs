@@ -542,8 +542,11 @@ pub struct Import {
     /// Read it as this format [default: as it shows]
     #[arg(long, value_name = "NAME")]
     pub format: Option<String>,
+    /// Close a loop of a robot where its frames A and B meet [joint: a ball joint, or as in `A=B:revolute:x`]
+    #[arg(long, value_name = "A=B")]
+    pub close: Vec<String>,
     /// List the formats
-    #[arg(long, conflicts_with_all = ["source", "output", "format"])]
+    #[arg(long, conflicts_with_all = ["source", "output", "format", "close"])]
     pub list: bool,
     /// Print one JSON document instead of text
     #[arg(long)]

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run};
 use hardpoint_file::{LARGEST_FILE, ModelFile};
-use hardpoint_import::{Difference, FORMATS, Format, Imported, Problems};
+use hardpoint_import::{Closing, Difference, FORMATS, Format, Imported, Options, Problems};
 use hardpoint_report::GENERATOR;
 use hardpoint_report::summary::Summary;
 use serde_json::json;
@@ -46,15 +46,15 @@ fn list(session: &Session) {
 
 fn import_to(session: &Session, options: &Import, source: &Path, to: &Path) -> Result<Outcome, Outcome> {
     let format = options.format.as_deref().map(|name| format_named(session, name)).transpose()?;
+    let closings: Result<Vec<Closing>, String> = options.close.iter().map(|text| text.parse()).collect();
+    let closings = closings.map_err(|why| session.misunderstood(&format!("`--close`: {why}")))?;
     session.may_save(source, Some(to))?;
     let bytes = session.bytes_of(source)?;
     let name = source.display().to_string();
     let folder = source.parent().unwrap_or(Path::new("")).to_owned();
     let resolve = |path: &str| beside(&folder, path);
-    let imported = match format {
-        Some(format) => hardpoint_import::import_as(format, &bytes, &name, &resolve),
-        None => hardpoint_import::import(&bytes, &name, &resolve),
-    };
+    let options = Options { format: format.copied(), closings };
+    let imported = hardpoint_import::import_with(&options, &bytes, &name, &resolve);
     let imported = imported.map_err(|problems| refused(session, &problems))?;
     write(to, &imported).map_err(|e| session.not_written(&e))?;
     if !session.is_json() {

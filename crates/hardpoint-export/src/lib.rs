@@ -21,6 +21,7 @@ mod animation;
 mod dxf;
 mod links;
 mod mjcf;
+mod names;
 mod skeleton;
 mod tables;
 mod urdf;
@@ -72,6 +73,9 @@ impl std::fmt::Debug for Format {
 /// All formats.
 pub const FORMATS: &[Format] = &[tables::CSV, tables::TEIMORBIT, urdf::FORMAT, mjcf::FORMAT, dxf::FORMAT];
 
+/// Formats whose writers quote names, whatever is in them.
+const QUOTES_NAMES: [&str; 1] = ["csv"];
+
 impl Format {
     /// The format of that name.
     pub fn named(name: &str) -> Option<&'static Self> {
@@ -87,7 +91,8 @@ impl Format {
     /// A model as a file of this format.
     pub fn export(&self, file: &ModelFile) -> Exported {
         let mut out = Exported::default();
-        (self.write)(file, &mut out);
+        let neutral = if QUOTES_NAMES.contains(&self.name) { None } else { names::neutral(file, &mut out) };
+        (self.write)(neutral.as_ref().unwrap_or(file), &mut out);
         out
     }
 }
@@ -124,7 +129,7 @@ fn numbers(list: [f64; 3]) -> String {
     list.map(number).join(" ")
 }
 
-/// A text in an attribute of XML.
+/// A text in an attribute of XML, which holds no control characters.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

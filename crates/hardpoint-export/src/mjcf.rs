@@ -7,7 +7,7 @@ use hardpoint::space::Vec3;
 use hardpoint_file::ModelFile;
 
 use crate::skeleton::{Carrier, Skeleton, axis, followers, is_closed, places};
-use crate::{Exported, Format, escaped, numbers};
+use crate::{Exported, Format, escaped, number, numbers};
 
 /// See the module.
 pub const FORMAT: Format = Format { name: "mjcf", about: "MuJoCo model", endings: &["xml", "mjcf"], write };
@@ -107,10 +107,15 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut Exported) -> (Str
                     tendons,
                     "    <spatial name=\"{name}\"><site site=\"{a}\"/><site site=\"{b}\"/></spatial>"
                 );
-                let _ = writeln!(equalities, "    <tendon name=\"{name}\" tendon1=\"{name}\"/>");
-                if joint.length.is_some() {
-                    out.unsaid("joint", &joint.name, "its length is written as drawn");
-                }
+                // The constant is by how much it is longer than drawn.
+                let drawn = (places(model, joint)[1] - places(model, joint)[0]).norm();
+                let constant = joint.length.map_or(0.0, |length| length - drawn);
+                let constant = if constant == 0.0 {
+                    String::new()
+                } else {
+                    format!(" polycoef=\"{} 0 0 0 0\"", number(constant))
+                };
+                let _ = writeln!(equalities, "    <tendon name=\"{name}\" tendon1=\"{name}\"{constant}/>");
             }
             other => {
                 let why = format!("MJCF has nothing like a joint of type {other} that closes a loop");
@@ -123,8 +128,9 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut Exported) -> (Str
         let [own, master] = [f.own, f.master].map(|k| escaped(&model.joints[k].name));
         let _ = writeln!(
             equalities,
-            "    <joint name=\"{}\" joint1=\"{own}\" joint2=\"{master}\" polycoef=\"0 {} 0 0 0\"/>",
+            "    <joint name=\"{}\" joint1=\"{own}\" joint2=\"{master}\" polycoef=\"{} {} 0 0 0\"/>",
             escaped(&f.name),
+            f.constant,
             f.factor
         );
     }

@@ -142,6 +142,8 @@ pub struct Follower {
     pub master: usize,
     /// By what factor.
     pub factor: f64,
+    /// What is added to that: in rad, or m.
+    pub constant: f64,
 }
 
 /// The couplers by which one joint of the tree follows another; the names of all others are handed back.
@@ -152,7 +154,14 @@ pub fn followers(tree: &Skeleton<'_>) -> (Vec<Follower>, Vec<String>) {
         match &coupler.terms[..] {
             [a, b] if single(a.joint.0) && single(b.joint.0) && a.coefficient != 0.0 => {
                 let factor = -b.coefficient / a.coefficient;
-                two.push(Follower { name: coupler.name.clone(), own: a.joint.0, master: b.joint.0, factor });
+                let constant = coupler.constant / a.coefficient;
+                two.push(Follower {
+                    name: coupler.name.clone(),
+                    own: a.joint.0,
+                    master: b.joint.0,
+                    factor,
+                    constant,
+                });
             }
             _ => other.push(coupler.name.clone()),
         }

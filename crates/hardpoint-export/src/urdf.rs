@@ -65,7 +65,9 @@ fn write(file: &ModelFile, out: &mut Exported) {
                 continue;
             }
             let master = escaped(&model.joints[f.master].name);
-            let _ = writeln!(text, "    <mimic joint=\"{master}\" multiplier=\"{}\"/>", f.factor);
+            let offset =
+                if f.constant == 0.0 { String::new() } else { format!(" offset=\"{}\"", f.constant) };
+            let _ = writeln!(text, "    <mimic joint=\"{master}\" multiplier=\"{}\"{offset}/>", f.factor);
         }
         text += "  </joint>\n";
     }

@@ -1,5 +1,7 @@
 //! Adams/Solver datasets (`.adm`): parts, markers, joints, primitives, motions, couplers, gears.
 
+mod loads;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
@@ -55,7 +57,8 @@ fn read(source: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     reader.markers(&statements);
     reader.constraints(&statements);
     reader.motions(&statements);
-    reader.rest(&statements);
+    let loads = reader.loads(&statements);
+    reader.rest(&statements, &loads);
     if !source.text.lines().rev().any(|l| l.trim().eq_ignore_ascii_case("END")) {
         let at = At { text: 0, start: source.text.len(), end: source.text.len() };
         reader.notes.approximated(
@@ -664,6 +667,11 @@ impl Reader<'_> {
     }
 
     fn coupler(&mut self, s: &Statement) {
+        if s.has("FUNCTION") || s.has("ROUTINE") {
+            let why = "a relation by a subroutine is not in the file";
+            self.notes.refused("COUPLER", &s.label, Some(s.at), why);
+            return;
+        }
         let names: Vec<&str> =
             s.text("JOINTS").unwrap_or_default().split([',', ':', SEAM]).map(str::trim).collect();
         let scales = s.numbers("SCALES", self.notes).unwrap_or_default();
@@ -749,8 +757,144 @@ impl Reader<'_> {
         self.notes.taken("GEAR", &s.label, Some(s.at));
     }
 
+    /// Lists the keys of a statement that are not known here: unknown is not irrelevant.
+    fn unknown_keys(&mut self, s: &Statement) {
+        // What a joint's own friction is made of moves nothing that is driven.
+        const FRICTION: &[&str] = &[
+            "FRICTION",
+            "MU_STATIC",
+            "MU_DYNAMIC",
+            "STICTION_TRANSITION_VELOCITY",
+            "MAX_STICTION_DEFORMATION",
+            "FRICTION_TORQUE_PRELOAD",
+            "FRICTION_FORCE_PRELOAD",
+            "PIN_RADIUS",
+            "FRICTION_ARM",
+            "BENDING_REACTION_ARM",
+            "INITIAL_OVERLAP",
+            "OVERLAP_DELTA",
+            "EFFECT",
+            "BALL_RADIUS",
+            "REACTION_ARM",
+            "INNER_RADIUS",
+            "DELTA_V",
+            "MAXIT",
+            "PD",
+            "YOKE",
+            "INACTIVE",
+            "OUTER_RADIUS",
+            "INPUTS",
+            "FORCE_PRELOAD",
+            "TORQUE_PRELOAD",
+            "SLIDING_AND_STICTION",
+            "TORSIONAL_MOMENT",
+            "BENDING_MOMENT",
+            "PRELOAD",
+            "REACTION_FORCE",
+            "X_PIN",
+            "Y_PIN",
+        ];
+        // Velocities at the start belong to motions that follow from forces.
+        const SPEEDS: &[&str] = &["VX", "VY", "VZ", "WX", "WY", "WZ", "VM", "WM"];
+        let (known, irrelevant): (&[&str], &[&str]) = match s.name.as_str() {
+            "JOINT" => (
+                &[
+                    "I",
+                    "J",
+                    "REVOLUTE",
+                    "TRANSLATIONAL",
+                    "CYLINDRICAL",
+                    "SPHERICAL",
+                    "UNIVERSAL",
+                    "HOOKE",
+                    "PLANAR",
+                    "FIXED",
+                    "CONVEL",
+                    "SCREW",
+                    "INLINE",
+                    "RACKPIN",
+                    "PITCH",
+                    "PD",
+                ],
+                FRICTION,
+            ),
+            "JPRIM" => (
+                &["I", "J", "ATPOINT", "INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR"],
+                &["INACTIVE"],
+            ),
+            "MOTION" => (
+                &[
+                    "I",
+                    "J",
+                    "JOINT",
+                    "FUNCTION",
+                    "ROTATIONAL",
+                    "TRANSLATIONAL",
+                    "DISPLACEMENT",
+                    "VELOCITY",
+                    "ACCELERATION",
+                    "X",
+                    "Y",
+                    "Z",
+                    "B1",
+                    "B2",
+                    "B3",
+                    "ICDISP",
+                    "ICVEL",
+                ],
+                &[],
+            ),
+            "COUPLER" => (&["JOINTS", "TYPE", "SCALES", "FUNCTION", "ROUTINE"], &[]),
+            "GEAR" => (&["JOINTS", "CV"], &[]),
+            "MARKER" => (
+                &[
+                    "PART",
+                    "POINT_MASS",
+                    "FLEX_BODY",
+                    "FE_PART",
+                    "NODE_ID",
+                    "FLOATING",
+                    "QP",
+                    "REULER",
+                    "EULER",
+                    "ZP",
+                    "XP",
+                    "USEXP",
+                ],
+                SPEEDS,
+            ),
+            "PART" | "POINT_MASS" => (
+                &["GROUND", "QG", "REULER", "EULER", "ZG", "XG", "USEXP"],
+                &[
+                    "MASS", "CM", "IM", "IP", "MATERIAL", "EXACT", "VX", "VY", "VZ", "WX", "WY", "WZ", "VM",
+                    "WM", "DENSITY",
+                ],
+            ),
+            _ => return,
+        };
+        let is = |list: &[&str], key: &str| {
+            list.iter().any(|k| *k == key || (key.len() >= SHORTEST && k.starts_with(key)))
+        };
+        for (key, value) in &s.keys {
+            let key = key.trim_matches(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+            if key.is_empty() || is(known, key) || is(irrelevant, key) {
+                continue;
+            }
+            let zero = value.split([',', SEAM]).all(|w| number(w.trim()) == Some(0.0));
+            if ["ICTRAN", "ICROT", "IC"].contains(&key) {
+                if !zero {
+                    let why = "where the joint starts is left out: the model begins as drawn";
+                    self.notes.refused(key, &s.label, Some(s.at), why);
+                }
+                continue;
+            }
+            let why = format!("`{}` has a key `{key}` that is not known here", s.name);
+            self.notes.not_understood(key, &s.label, Some(s.at), why);
+        }
+    }
+
     /// All that is neither mechanism nor force.
-    fn rest(&mut self, statements: &[Statement]) {
+    fn rest(&mut self, statements: &[Statement], loads: &BTreeSet<(String, String)>) {
         const DONE: [&str; 10] = [
             "PART",
             "POINT_MASS",
@@ -764,7 +908,77 @@ impl Reader<'_> {
             "UNITS",
         ];
         const HOLD: [&str; 8] = ["PTCV", "CVCV", "PTSF", "CURVE", "UCON", "GCON", "SURFACE", "NFORCE"];
-        for s in statements.iter().filter(|s| !DONE.contains(&s.name.as_str())) {
+        // Statements that do not concern how parts move, as far as the motion is driven.
+        const IRRELEVANT: &[&str] = &[
+            "ACCGRAV",
+            "ADAMS",
+            "GRAPHICS",
+            "REQUEST",
+            "MREQUEST",
+            "OUTPUT",
+            "RESULTS",
+            "MATRIX",
+            "ARRAY",
+            "STRING",
+            "VARIABLE",
+            "SPLINE",
+            "SFORCE",
+            "VFORCE",
+            "GFORCE",
+            "VTORQUE",
+            "MFORCE",
+            "NFORCE",
+            "SPRINGDAMPER",
+            "BUSHING",
+            "BEAM",
+            "FIELD",
+            "FRICTION",
+            "CONTACT",
+            "DIFF",
+            "LSE",
+            "GSE",
+            "TFSISO",
+            "SENSOR",
+            "INTEGRATOR",
+            "EQUILIBRIUM",
+            "KINEMATICS",
+            "IC",
+            "PRINT",
+            "DEBUG",
+            "LIST",
+            "SURFACE",
+            "CURVE",
+            "PINPUT",
+            "POUTPUT",
+            "PSTATE",
+            "LINEAR",
+            "SIMULATE",
+            "PREFERENCES",
+            "POINT",
+            "PLANT_INPUT",
+            "PLANT_OUTPUT",
+            "CONTROL",
+            "VTO",
+            "VFO",
+            "REQSAVE",
+            "DYNAMICS",
+            "TIRE",
+            "ROAD",
+            "FEMDATA",
+            "END",
+            "SAVE",
+            "MATERIAL",
+            "CBUSHING",
+            "FE_LOAD",
+            "COMMAND",
+        ];
+        for s in statements {
+            self.unknown_keys(s);
+        }
+        let is_read = |s: &Statement| {
+            DONE.contains(&s.name.as_str()) || loads.contains(&(s.name.clone(), s.id.clone()))
+        };
+        for s in statements.iter().filter(|s| !is_read(s)) {
             if s.name == "FE_PART" {
                 let why = "an elastic part: what is on it is refused";
                 self.notes.refused(&s.name, &s.label, Some(s.at), why);
@@ -775,8 +989,14 @@ impl Reader<'_> {
                     Some(s.at),
                     "a constraint that has no equivalent: what it holds is held by a driver",
                 );
-            } else {
+            } else if IRRELEVANT
+                .iter()
+                .any(|k| *k == s.name || (s.name.len() > SHORTEST && k.starts_with(&s.name)))
+            {
                 self.notes.ignored(&s.name, Some(s.at));
+            } else {
+                let why = "a statement that is not known here";
+                self.notes.not_understood(&s.name, &s.label, Some(s.at), why);
             }
         }
     }

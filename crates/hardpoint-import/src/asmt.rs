@@ -346,6 +346,19 @@ impl Reader<'_> {
         let sets = assembly.child("ConstraintSets");
         let joints = sets.and_then(|c| c.child("Joints")).map_or(&[][..], |p| &p.children);
         for joint in joints {
+            let of_type: &[&str] = match joint.text {
+                "SphericalSphericalJoint" | "SphSphJoint" | "RevRevJoint" | "RevCylJoint" | "CylSphJoint" => {
+                    &["distanceIJ"]
+                }
+                "InPlaneJoint" | "PointInPlaneJoint" | "LineInPlaneJoint" | "PlanarJoint" => &["offset"],
+                "AngleJoint" => &["theIzJz"],
+                "ScrewJoint" => &["pitch"],
+                "GearJoint" => &["radiusI", "radiusJ"],
+                "RackPinionJoint" => &["pitchRadius"],
+                contact if contact.ends_with("Contact") => continue,
+                _ => &[],
+            };
+            self.unknown(joint, &[&["Name", "MarkerI", "MarkerJ"], of_type].concat());
             self.joint(joint);
         }
         for joint in joints.iter().filter(|j| j.text == "ScrewJoint") {
@@ -353,6 +366,18 @@ impl Reader<'_> {
         }
         for joint in joints.iter().filter(|j| ["GearJoint", "RackPinionJoint"].contains(&j.text)) {
             self.gear(joint);
+        }
+    }
+
+    /// Lists what is below a heading and not known here: unknown is not irrelevant.
+    fn unknown(&mut self, owner: &Node<'_>, known: &[&str]) {
+        for part in owner.children.iter().filter(|c| !known.contains(&c.text)) {
+            // Other headings of the format may stand there empty.
+            if part.children.is_empty() {
+                continue;
+            }
+            let why = format!("`{}` has `{}`, which is not known here", owner.text, part.text);
+            self.notes.not_understood(part.text, owner.name(), Some(part.at), why);
         }
     }
 
@@ -630,6 +655,27 @@ impl Reader<'_> {
         }
         for set in sets.and_then(|c| c.child("GeneralConstraintSets")).map_or(&[][..], |p| &p.children) {
             self.notes.refused(set.text, set.name(), Some(set.at), "a general constraint has no equivalent");
+        }
+        if let Some(sets) = sets {
+            self.unknown(sets, &["Joints", "Motions", "Limits", "GeneralConstraintSets"]);
+        }
+        for motion in sets.and_then(|c| c.child("Motions")).map_or(&[][..], |p| &p.children) {
+            const OF_MOTIONS: [&str; 13] = [
+                "Name",
+                "MarkerI",
+                "MarkerJ",
+                "MotionJoint",
+                "RotationZ",
+                "TranslationZ",
+                "rIJI1",
+                "rIJI2",
+                "rIJI3",
+                "angIJJ1",
+                "angIJJ2",
+                "angIJJ3",
+                "RotationOrder",
+            ];
+            self.unknown(motion, &OF_MOTIONS);
         }
         for force in assembly.child("ForceTorques").map_or(&[][..], |p| &p.children) {
             self.notes.ignored(force.text, Some(force.at));

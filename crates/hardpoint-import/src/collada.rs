@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use hardpoint::space::{Mat3, Vec3};
-use roxmltree::{Document, Node, ParsingOptions};
+use roxmltree::Node;
 
 use crate::xml::{self, child, children, named};
 
@@ -38,12 +38,7 @@ impl Placed {
 /// What is wrong with it.
 pub fn triangles(text: &str) -> Result<Vec<Triangle>, String> {
     let text = xml::lenient(text);
-    if xml::nesting(&text) > xml::DEEPEST {
-        return Err("its elements are nested too deep".into());
-    }
-    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
-    let document =
-        Document::parse_with_options(&text, options).map_err(|e| format!("it is not valid XML: {e}"))?;
+    let document = xml::parse_quietly(&text)?;
     let root = document.root_element();
     let ids = root.descendants().filter_map(|n| Some((n.attribute("id")?, n))).collect();
     let unit =

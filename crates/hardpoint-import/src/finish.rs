@@ -32,10 +32,12 @@ const MOST_HELD: usize = 400;
 
 /// Holds what nothing holds, and drives what nothing drives. What remains wrong is handed back: the model is written all the same, for
 /// the user to mend.
-pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
+///
+/// Gaps of up to `closed` parts of its size are taken as closed where they stand, if what is held keeps them open.
+pub fn finish(m: &mut Mechanism, notes: &mut Notes, closed: f64) -> Option<Diagnostic> {
     ground(m, notes);
     straightened(m, notes);
-    let moves = m.drivers.iter().any(|d| d.law != Law::Held);
+    let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Held | Law::Set(_)));
     let mut left = match freedom(m, notes) {
         Ok(left) => left,
         Err(fault) => return Some(*fault),
@@ -82,7 +84,7 @@ pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
             _ => m.drivers.truncate(before),
         }
     }
-    as_drawn(m, notes);
+    as_drawn(m, notes, closed);
     if only_one {
         swing(m, notes);
     }
@@ -90,11 +92,33 @@ pub fn finish(m: &mut Mechanism, notes: &mut Notes) -> Option<Diagnostic> {
     None
 }
 
+/// Says first of all where nothing moves: of a mechanism all of whose motions are held, mostly something is missing.
+pub fn remark(m: &Mechanism, notes: &mut Notes, closes: bool) {
+    let held = m.drivers.iter().filter(|d| d.law == Law::Held).count();
+    let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Held | Law::Set(_)));
+    if moves || held == 0 {
+        return;
+    }
+    let is_tree = m.joints.len() < m.bodies.len();
+    let how = if closes { ": name the frames that meet, as `--close A=B`, if it has loops" } else { "" };
+    let loops =
+        if is_tree { format!("; it is a tree, in which no loop is closed{how}") } else { String::new() };
+    let motions =
+        if held == 1 { "its one motion is".to_owned() } else { format!("all of its {held} motions are") };
+    notes.remark(format!("nothing in the source drives it: {motions} held as drawn{loops}"));
+}
+
 /// Takes as closed what is drawn open where it does not close, since what nothing drives is held as drawn.
-fn as_drawn(m: &mut Mechanism, notes: &mut Notes) {
+fn as_drawn(m: &mut Mechanism, notes: &mut Notes, closed: f64) {
     let rods = ["distance", "leg", "revolute_spherical"];
     let is_open = |j: &Joint| j.length.is_some() || (j.at.len() > 1 && !rods.contains(&j.kind));
-    if !m.joints.iter().any(is_open) || assembles(m) {
+    let gap = |j: &Joint| match j.at[..] {
+        [a, b] if j.length.is_none() => (a - b).norm(),
+        [a, b] => j.length.map_or(0.0, |l| (l - (a - b).norm()).abs()),
+        _ => 0.0,
+    };
+    let largest = m.joints.iter().filter(|j| is_open(j)).map(gap).fold(0.0, f64::max);
+    if !m.joints.iter().any(is_open) || !(largest <= closed * m.size()) || assembles(m) {
         return;
     }
     let mut closed = m.clone();

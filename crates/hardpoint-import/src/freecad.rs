@@ -206,6 +206,54 @@ impl<'a, 'i> Object<'a, 'i> {
     }
 }
 
+/// Properties of joints that are read, are contained in others, or do not concern the motion.
+const OF_JOINTS: [&str; 42] = [
+    "Activated",
+    "Suppressed",
+    "JointType",
+    "Label",
+    "Label2",
+    "Placement1",
+    "Placement2",
+    "Reference1",
+    "Reference2",
+    "Object1",
+    "Object2",
+    "Part1",
+    "Part2",
+    "Element1",
+    "Element2",
+    "Vertex1",
+    "Vertex2",
+    "Distance",
+    "Distance2",
+    "Angle",
+    "EnableLengthMin",
+    "EnableLengthMax",
+    "EnableAngleMin",
+    "EnableAngleMax",
+    "LengthMin",
+    "LengthMax",
+    "AngleMin",
+    "AngleMax",
+    "ObjectToGround",
+    // Placements contain these.
+    "Offset1",
+    "Offset2",
+    "Detach1",
+    "Detach2",
+    "AttachmentOffset",
+    // Of every object.
+    "Visibility",
+    "ExpressionEngine",
+    "Proxy",
+    "Placement",
+    "ShowInTree",
+    "Group",
+    "Version",
+    "Document",
+];
+
 struct Reader<'a, 'i, 'n> {
     m: Mechanism,
     notes: &'n mut Notes,
@@ -380,6 +428,13 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         if object.text_of("Activated") == Some("false") || object.text_of("Suppressed") == Some("true") {
             self.notes.refused(&kind, label, at, "it is not active");
             return;
+        }
+        for (property, node) in &object.properties {
+            if !OF_JOINTS.contains(property) {
+                let at = xml::at(object.text, *node);
+                let why = format!("the joint has a property `{property}` that is not known here");
+                self.notes.not_understood("property", label, at, why);
+            }
         }
         let limited = ["EnableLengthMin", "EnableLengthMax", "EnableAngleMin", "EnableAngleMax"];
         let has_limits = limited.iter().any(|k| object.text_of(k) == Some("true"));

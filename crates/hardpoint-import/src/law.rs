@@ -13,6 +13,15 @@ pub enum Language {
 
 /// Expressions may be nested so deep.
 const DEEPEST: usize = 60;
+/// Written out, an expression has so many bytes at most: functions of other programs repeat their arguments.
+const LONGEST: usize = 4 << 20;
+/// No function repeats an argument more often than this, but for the sums over all that follow.
+const REPEATED: usize = 8;
+
+/// The error of an expression that grows beyond all use.
+fn too_long() -> String {
+    format!("written out it would be longer than {} MiB", LONGEST >> 20)
+}
 
 /// The expression of model files that says the same, in SI's radians.
 ///
@@ -173,17 +182,26 @@ impl Parser {
         let mut out = self.product()?;
         while let Some(sign @ ("+" | "-")) = self.sign() {
             self.at += 1;
-            out = format!("{out} {sign} {}", self.product()?);
+            let term = self.product()?;
+            out.extend([" ", sign, " ", term.as_str()]);
+            self.bounded(&out)?;
         }
         self.depth -= 1;
         Ok(out)
+    }
+
+    /// What is written so far, unless it is too long.
+    fn bounded(&self, out: &str) -> Result<(), String> {
+        if out.len() > LONGEST { Err(too_long()) } else { Ok(()) }
     }
 
     fn product(&mut self) -> Result<String, String> {
         let mut out = self.signed()?;
         while let Some(sign @ ("*" | "/")) = self.sign() {
             self.at += 1;
-            out = format!("{out}{sign}{}", self.signed()?);
+            let factor = self.signed()?;
+            out.extend([sign, factor.as_str()]);
+            self.bounded(&out)?;
         }
         Ok(out)
     }
@@ -255,6 +273,11 @@ impl Parser {
 
     /// A function of the source by those of model files.
     fn call(&self, name: &str, x: &[String]) -> Result<String, String> {
+        let each: usize = x.iter().map(String::len).sum();
+        let first: usize = x.iter().take(3).map(String::len).sum();
+        if REPEATED * each + x.len() * first > LONGEST {
+            return Err(too_long());
+        }
         let same = |to: &str, n: usize| {
             if x.len() == n {
                 Ok(format!("{to}({})", x.join(", ")))
@@ -396,6 +419,11 @@ mod tests {
             let why = translate(text, Language::Adams).unwrap_err();
             assert!(why.contains(word), "{why}");
         }
+        // Functions that repeat their arguments, in each other, grow without bounds.
+        let steps = format!("{}time{}", "step5(".repeat(50), ", 0, 0, 1, 1)".repeat(50));
+        assert!(translate(&steps, Language::Adams).unwrap_err().contains("longer"));
+        let signs = format!("{}time{}", "sign(1, ".repeat(50), ")".repeat(50));
+        assert!(translate(&signs, Language::Ondsel).is_ok());
         assert!(translate(&"(".repeat(10_000), Language::Adams).is_err());
         assert!(translate(&"2^".repeat(10_000), Language::Adams).is_err());
     }

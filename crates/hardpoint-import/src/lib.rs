@@ -23,6 +23,7 @@ mod asmt;
 mod chain;
 mod chrono;
 mod chrono_generic;
+mod closing;
 mod collada;
 mod corner;
 mod explorer;
@@ -34,6 +35,7 @@ mod markers;
 pub mod mechanism;
 mod mjcf;
 mod report;
+mod robot;
 mod sdf;
 mod series;
 mod shapes;
@@ -45,6 +47,7 @@ mod urdf;
 mod write;
 mod xml;
 
+pub use closing::Closing;
 pub use mechanism::Mechanism;
 pub use report::{At, Entry, Fate, Notes, Place, Problems, Report};
 pub use series::{Difference, Series, Stored};
@@ -187,7 +190,19 @@ const SIBLINGS: &[Sibling] = &[
     },
     Sibling {
         what: "a CAD part or assembly",
-        endings: &["step", "stp", "iges", "igs", "sldasm", "sldprt", "catproduct", "catpart", "ipt", "iam", "x_t"],
+        endings: &[
+            "step",
+            "stp",
+            "iges",
+            "igs",
+            "sldasm",
+            "sldprt",
+            "catproduct",
+            "catpart",
+            "ipt",
+            "iam",
+            "x_t",
+        ],
         lines: &["iso-10303-21"],
         help: "CAD files have no joints: export an assembly with joints as URDF, or begin from a table of its points: \
                `hardpoint new NAME --template TEMPLATE --hardpoints FILE`",
@@ -219,6 +234,8 @@ const ROBOTS: [&str; 3] = ["urdf", "sdf", "mjcf"];
 const TABLES: [&str; 7] = ["csv", "tsv", "txt", "xlsx", "xlsm", "xls", "ods"];
 /// So much of a file is looked at to tell its format.
 const LOOKED_AT: usize = 1 << 16;
+/// Places in files of robots agree to about this part of the mechanism's size.
+const FEW_DIGITS: f64 = 1e-4;
 /// Larger sources are not read, bytes.
 pub const LARGEST: usize = 64 << 20;
 
@@ -227,8 +244,30 @@ pub const LARGEST: usize = 64 << 20;
 /// # Errors
 /// Everything that is wrong with it.
 pub fn import(bytes: &[u8], name: &str, resolve: Resolve<'_>) -> Result<Imported, Problems> {
-    match Format::of(bytes, name) {
-        Some(format) => import_as(format, bytes, name, resolve),
+    import_with(&Options::default(), bytes, name, resolve)
+}
+
+/// How a source is read.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Its format; none where it shows.
+    pub format: Option<Format>,
+    /// Loops that the source leaves open.
+    pub closings: Vec<Closing>,
+}
+
+/// The same, as the options say.
+///
+/// # Errors
+/// As there.
+pub fn import_with(
+    options: &Options,
+    bytes: &[u8],
+    name: &str,
+    resolve: Resolve<'_>,
+) -> Result<Imported, Problems> {
+    match options.format.as_ref().or_else(|| Format::of(bytes, name)) {
+        Some(format) => read_as(format, &options.closings, bytes, name, resolve),
         None => {
             let notes = Notes::new(name, "");
             if let Some(sibling) = Sibling::of(bytes, name) {
@@ -258,6 +297,16 @@ pub fn import_as(
     name: &str,
     resolve: Resolve<'_>,
 ) -> Result<Imported, Problems> {
+    read_as(format, &[], bytes, name, resolve)
+}
+
+fn read_as(
+    format: &Format,
+    closings: &[Closing],
+    bytes: &[u8],
+    name: &str,
+    resolve: Resolve<'_>,
+) -> Result<Imported, Problems> {
     let text = if format.binary { String::new() } else { decoded(bytes) };
     let mut notes = Notes::new(name, &text);
     let whole = |notes: &Notes, code, message: String, help: &str| {
@@ -280,7 +329,15 @@ pub fn import_as(
     let shapes = shapes::Shapes::default();
     let mut input = Input { bytes, text: &text, stem, resolve, shapes, series: None };
     notes.report.format = report::printable(&format!("{base}: {}", format.about));
-    let mechanism = (format.read)(&mut input, &mut notes);
+    let is_robot = ROBOTS.contains(&format.name);
+    let mut mechanism = (format.read)(&mut input, &mut notes);
+    if let Some(m) = mechanism.as_mut().filter(|_| notes.problem_count() == 0) {
+        if is_robot {
+            closing::of_exporters(m, &mut notes);
+        }
+        closing::close(m, &mut notes, closings);
+        closing::pairs(m, &mut notes);
+    }
     if let Some(problems) = notes.problems() {
         return Err(problems);
     }
@@ -297,6 +354,15 @@ pub fn import_as(
             "name another format, like `--format urdf`, if it is of another",
         );
     };
+    let count = m.bodies.len().max(m.joints.len() / 2);
+    if count > robot::MOST_PARTS {
+        let message = format!("the mechanism has {} bodies and {} joints", m.bodies.len(), m.joints.len());
+        let help = format!(
+            "at most {} bodies are read: leave out of the source what need not move",
+            robot::MOST_PARTS
+        );
+        return whole(&notes, "HP0802", message, &help);
+    }
     let numbers = m.joints.iter().flat_map(|j| j.at.iter().chain(&j.axis).chain(&j.axis2));
     if !numbers.chain(m.hardpoints.iter().map(|h| &h.1)).all(|v| v.is_finite()) {
         let message = "places of joints are beyond all numbers".to_owned();
@@ -304,10 +370,14 @@ pub fn import_as(
     }
     let about = report::printable(&format!("Imported from {base} ({})", format.about));
     let fault = if m.bodies.len() > 1 {
-        if ROBOTS.contains(&format.name) {
+        if is_robot {
             finish::end_point(&mut m, &mut notes);
         }
-        finish::finish(&mut m, &mut notes)
+        // Robots say which frames meet: only what few digits leave open is closed where it stands.
+        let closed = if is_robot { FEW_DIGITS } else { f64::INFINITY };
+        let fault = finish::finish(&mut m, &mut notes, closed);
+        finish::remark(&m, &mut notes, is_robot);
+        fault
     } else {
         let message = "the topology is not recognised: only the hardpoints are written";
         let help = "write bodies and joints between them, as in docs/file-format.md";

@@ -86,6 +86,9 @@ pub fn join(
         notes.refused(called.kind, called.name, called.at, "both its markers are on the same body");
         return None;
     }
+    if ["fixed", "orientation"].contains(&kind) {
+        return crate::robot::weld(m, notes, called, kind, [i, j]);
+    }
     let reach = [i, j].iter().map(|k| k.pose.r.norm()).fold(m.size(), f64::max);
     let gap = j.pose.r - i.pose.r;
     let across = gap - i.z() * i.z().dot(gap);
@@ -93,7 +96,6 @@ pub fn join(
     let mut joint = Joint::new(called.name, called.note(notes), kind, [i.body, j.body], j.pose.r);
     let parallel = |a: Vec3, b: Vec3| a.cross(b).norm() <= AWRY;
     match kind {
-        "fixed" | "orientation" => {}
         "spherical" => open = gap.norm() > APART * reach,
         "revolute" => {
             joint = joint.along(i.z());

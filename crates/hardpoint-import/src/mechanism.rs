@@ -1,8 +1,8 @@
 //! What every format says, in one form: bodies, joints, couplers, drivers as drawn. Importers fill it, one writer makes a model file of it.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
-use hardpoint::space::{Pose, Vec3};
+use hardpoint::space::{Mat3, Pose, Vec3};
 
 /// The body that does not move: the first of every mechanism.
 pub const GROUND: usize = 0;
@@ -34,6 +34,80 @@ pub struct Mechanism {
     pub unfollowed: Vec<String>,
     /// The output times: when they end, and how many intervals there are.
     pub times: Option<Times>,
+    /// Masses of the bodies.
+    pub masses: Vec<Mass>,
+    /// Springs and dampers.
+    pub forces: Vec<Force>,
+    /// Acceleration of gravity, m/s^2.
+    pub gravity: Option<Vec3>,
+    /// Frames that the source names, each on a body: the ends of loops that it does not close.
+    pub frames: Vec<NamedFrame>,
+    /// Names that are taken, by what they are of.
+    names: HashMap<&'static str, Names>,
+}
+
+/// Names of things of one kind.
+#[derive(Clone, Debug, Default)]
+struct Names {
+    taken: HashSet<String>,
+    /// The last number behind a name that is wanted more than once.
+    numbers: HashMap<String, usize>,
+}
+
+/// Mass of a body: about its centre, along the global axes as drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mass {
+    /// Its name in the model file.
+    pub name: String,
+    /// The body.
+    pub body: usize,
+    /// Its centre.
+    pub centre: Vec3,
+    /// In kg.
+    pub mass: f64,
+    /// Inertia matrix, kg m^2; none of a point mass.
+    pub inertia: Option<Mat3>,
+}
+
+/// A spring with a damper.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Force {
+    /// Its name in the model file.
+    pub name: String,
+    /// What the source calls it.
+    pub note: String,
+    /// On what it acts.
+    pub on: ForceOn,
+    /// Per unit of length or angle of the mechanism, in N or N m.
+    pub stiffness: f64,
+    /// Likewise, times s.
+    pub damping: f64,
+    /// The coordinate, counted from the drawing, or the length at which it has no force.
+    pub free: Option<f64>,
+    /// The tension as drawn, N, where the source says that instead.
+    pub preload: Option<f64>,
+}
+
+/// What a spring acts on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ForceOn {
+    /// A joint's coordinate.
+    Coordinate(Coordinate),
+    /// Two points, each of a body.
+    Points([(usize, Vec3); 2]),
+}
+
+/// A frame that the source names.
+#[derive(Clone, Debug)]
+pub struct NamedFrame {
+    /// Its name in the source.
+    pub name: String,
+    /// The body that it is on.
+    pub body: usize,
+    /// The frame, global.
+    pub pose: Pose,
+    /// Whether it is nothing but a frame, so that it may be the end of a loop.
+    pub bare: bool,
 }
 
 /// Output times.
@@ -105,7 +179,7 @@ pub struct Coordinate {
     pub name: &'static str,
 }
 
-/// A linear relation of joint coordinates: the sum of the terms is zero.
+/// A linear relation of joint coordinates: the sum of the terms is the constant.
 #[derive(Clone, Debug)]
 pub struct Coupler {
     /// Its name in the model file.
@@ -114,6 +188,8 @@ pub struct Coupler {
     pub note: String,
     /// Coordinates and their coefficients, per unit of the mechanism.
     pub terms: Vec<(Coordinate, f64)>,
+    /// In the mechanism's units.
+    pub constant: f64,
 }
 
 /// A prescribed number.
@@ -159,6 +235,8 @@ pub enum Drives {
 pub enum Law {
     /// It stays as drawn.
     Held,
+    /// It stays at this value.
+    Set(f64),
     /// By an expression of model files.
     Text(String),
     /// Through points of time and value.
@@ -214,45 +292,81 @@ impl Mechanism {
             wheels: Vec::new(),
             unfollowed: Vec::new(),
             times: None,
+            masses: Vec::new(),
+            forces: Vec::new(),
+            gravity: None,
+            frames: Vec::new(),
+            names: HashMap::new(),
         }
+    }
+
+    /// The name that comes nearest to the one that is wanted, and is not taken by another of this kind.
+    fn name(&mut self, wanted: &str, kind: &'static str) -> String {
+        let names = self.names.entry(kind).or_default();
+        let clean = clean_name(wanted, kind);
+        let mut name = clean.clone();
+        let number = names.numbers.entry(clean.clone()).or_insert(1);
+        while names.taken.contains(&name) || name == "ground" {
+            *number += 1;
+            name = format!("{clean}_{number}");
+        }
+        names.taken.insert(name.clone());
+        name
     }
 
     /// A further body; its number.
     pub fn body(&mut self, name: &str, note: String, pose: Option<Pose>) -> usize {
-        let taken = self.bodies.iter().map(|b| b.name.as_str()).collect();
-        let name = valid_name(name, "body", &taken);
+        let name = self.name(name, "body");
         self.bodies.push(Body { name, note, pose, mesh: None });
         self.bodies.len() - 1
     }
 
     /// A further joint; its number.
     pub fn joint(&mut self, joint: Joint) -> usize {
-        let taken = self.joints.iter().map(|j| j.name.as_str()).collect();
-        let name = valid_name(&joint.name, "joint", &taken);
+        let name = self.name(&joint.name, "joint");
         self.joints.push(Joint { name, ..joint });
         self.joints.len() - 1
     }
 
-    /// A further coupler.
+    /// A further coupler, whose terms sum up to zero.
     pub fn coupler(&mut self, name: &str, note: String, terms: Vec<(Coordinate, f64)>) {
-        let taken = self.couplers.iter().map(|c| c.name.as_str()).collect();
-        let name = valid_name(name, "coupler", &taken);
-        self.couplers.push(Coupler { name, note, terms });
+        self.coupler_to(name, note, terms, 0.0);
+    }
+
+    /// A further coupler, whose terms sum up to a constant.
+    pub fn coupler_to(&mut self, name: &str, note: String, terms: Vec<(Coordinate, f64)>, constant: f64) {
+        let name = self.name(name, "coupler");
+        self.couplers.push(Coupler { name, note, terms, constant });
     }
 
     /// A further driver; its number.
     pub fn driver(&mut self, name: &str, note: String, drives: Drives, law: Law) -> usize {
-        let taken = self.drivers.iter().map(|d| d.name.as_str()).collect();
-        let name = valid_name(name, "driver", &taken);
+        let name = self.name(name, "driver");
         self.drivers.push(Driver { name, note, drives, law });
         self.drivers.len() - 1
     }
 
     /// A further point.
     pub fn point(&mut self, name: &str, body: usize, at: Vec3) {
-        let taken = self.points.iter().map(|p| p.name.as_str()).collect();
-        let name = valid_name(name, "point", &taken);
+        let name = self.name(name, "point");
         self.points.push(Point { name, body, at });
+    }
+
+    /// A further mass.
+    pub fn mass(&mut self, mass: Mass) {
+        let name = self.name(&mass.name, "mass");
+        self.masses.push(Mass { name, ..mass });
+    }
+
+    /// A further spring or damper.
+    pub fn force(&mut self, force: Force) {
+        let name = self.name(&force.name, "force");
+        self.forces.push(Force { name, ..force });
+    }
+
+    /// A further frame that the source names.
+    pub fn frame(&mut self, name: &str, body: usize, pose: Pose, bare: bool) {
+        self.frames.push(NamedFrame { name: name.to_owned(), body, pose, bare });
     }
 
     /// Whether something prescribes this coordinate.
@@ -337,10 +451,15 @@ impl Joint {
 /// Names of model files have so many characters at most.
 const LONGEST_NAME: usize = 100;
 
+/// What is left of a name without what no name may hold.
+fn clean_name(wanted: &str, kind: &str) -> String {
+    let clean: String = wanted.trim().chars().filter(|c| !c.is_control()).take(LONGEST_NAME - 8).collect();
+    if clean.is_empty() { kind.to_owned() } else { clean }
+}
+
 /// The name that comes nearest to the one that is wanted: without what no name may hold, and not taken.
 pub fn valid_name(wanted: &str, kind: &str, taken: &HashSet<&str>) -> String {
-    let clean: String = wanted.trim().chars().filter(|c| !c.is_control()).take(LONGEST_NAME - 8).collect();
-    let clean = if clean.is_empty() { kind.to_owned() } else { clean };
+    let clean = clean_name(wanted, kind);
     let free = |name: &str| !taken.contains(name) && name != "ground";
     if free(&clean) {
         return clean;

@@ -6,7 +6,7 @@ mod equality;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use hardpoint::space::{Pose, Vec3};
+use hardpoint::space::{Mat3, Pose, Vec3};
 use roxmltree::{Document, Node};
 
 use crate::markers::{Called, Marker, join};
@@ -14,8 +14,8 @@ use crate::mechanism::{Coordinate, GROUND, Joint, Mechanism};
 use crate::report::{At, Notes};
 use crate::shapes::Solid;
 use crate::turn::{from_z_and_x, home};
-use crate::xml::{children, exactly};
-use crate::{Format, Input, xml};
+use crate::xml::{Vocabulary, children, exactly};
+use crate::{Format, Input, robot, xml};
 
 /// See the module.
 pub const FORMAT: Format = Format {
@@ -33,6 +33,85 @@ const DEEPEST: usize = 100;
 const CLOSED: f64 = 1e-7;
 /// So many files are included at most.
 const MOST_INCLUDED: usize = 100;
+/// Files are put into each other so many times at most.
+const MOST_EXPANDED: usize = 20_000;
+/// Sections that do not concern how bodies and joints move.
+const IRRELEVANT: [&str; 8] =
+    ["size", "visual", "statistic", "contact", "sensor", "actuator", "custom", "option"];
+/// What is known of a joint.
+const JOINT: Vocabulary = Vocabulary {
+    attributes: &[
+        "name",
+        "class",
+        "type",
+        "pos",
+        "axis",
+        "range",
+        "limited",
+        "ref",
+        "springref",
+        "stiffness",
+        "damping",
+        "frictionloss",
+        "group",
+        "armature",
+        "margin",
+        "solreflimit",
+        "solimplimit",
+        "solreffriction",
+        "solimpfriction",
+        "user",
+        "actuatorfrcrange",
+        "actuatorfrclimited",
+        "actuatorgravcomp",
+        "align",
+    ],
+    read: &[],
+    irrelevant: &[],
+};
+/// What is known of a body, besides what is in it.
+const BODY: [&str; 12] = [
+    "name",
+    "childclass",
+    "pos",
+    "quat",
+    "axisangle",
+    "xyaxes",
+    "zaxis",
+    "euler",
+    "mocap",
+    "gravcomp",
+    "user",
+    "sleep",
+];
+/// What is known of an equality.
+const EQUALITY: Vocabulary = Vocabulary {
+    attributes: &[
+        "name",
+        "class",
+        "active",
+        "body1",
+        "body2",
+        "site1",
+        "site2",
+        "anchor",
+        "relpose",
+        "joint1",
+        "joint2",
+        "tendon1",
+        "tendon2",
+        "polycoef",
+        "solref",
+        "solimp",
+        "torquescale",
+    ],
+    read: &[],
+    irrelevant: &[],
+};
+/// Gravity of MuJoCo where a source names none, m/s^2.
+const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
+/// Density of MuJoCo where a source names none, kg/m^3.
+const DENSITY: f64 = 1000.0;
 
 /// An element, and the number of the text that it is in.
 type Element<'d> = (usize, Node<'d, 'd>);
@@ -69,6 +148,10 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         shapes: Vec::new(),
         names: BTreeSet::new(),
         told: BTreeSet::new(),
+        expanded: 0,
+        solids: Vec::new(),
+        weighed: BTreeSet::new(),
+        meshes_without_mass: 0,
     };
     let top = reader.contents((0, root), 0);
     reader.settings(&top);
@@ -83,11 +166,24 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         match node.tag_name().name() {
             "equality" => reader.equalities((*text, *node)),
             "compiler" | "default" | "asset" | "worldbody" | "tendon" => {}
-            other => reader.notes.ignored(other, xml::at(*text, *node)),
+            "keyframe" => reader.keys((*text, *node)),
+            other => reader.section(other, (*text, *node)),
         }
     }
     reader.meet();
     reader.free_bodies();
+    reader.masses(&top);
+    for (list, bare) in [(&reader.bodies, false), (&reader.sites, true)] {
+        for (name, (body, pose)) in list {
+            reader.m.frame(name, *body, *pose, bare);
+        }
+    }
+    if reader.m.bodies.len() > robot::MOST_PARTS {
+        let message = format!("it has more than {} bodies", robot::MOST_PARTS);
+        let help = "look for files that include each other more than once, or leave out what need not move";
+        reader.notes.problem_with("HP0802", None, message, help);
+        return None;
+    }
     let (m, shapes) = (reader.m, std::mem::take(&mut reader.shapes));
     for shape in shapes {
         shown(input, notes, shape);
@@ -95,12 +191,58 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     (m.bodies.len() > 1).then_some(m)
 }
 
+/// Equalities of MuJoCo in a file of another format, whose bodies and joints are there.
+pub fn extension<'d>(
+    m: Mechanism,
+    notes: &mut Notes,
+    blocks: &[Node<'d, 'd>],
+    text: usize,
+    bodies: &BTreeMap<String, (usize, Pose)>,
+    joints: &BTreeMap<String, Coordinate>,
+) -> Mechanism {
+    let mut reader = Reader {
+        m,
+        notes,
+        paths: vec![String::new(); text + 1],
+        documents: &[],
+        compiler: Compiler::default(),
+        classes: BTreeMap::new(),
+        meshes: BTreeMap::new(),
+        bodies: bodies.clone(),
+        sites: BTreeMap::new(),
+        joints: joints.clone(),
+        tendons: BTreeMap::new(),
+        rods: BTreeMap::new(),
+        meets: Vec::new(),
+        free: Vec::new(),
+        shapes: Vec::new(),
+        names: BTreeSet::new(),
+        told: BTreeSet::new(),
+        expanded: 0,
+        solids: Vec::new(),
+        weighed: BTreeSet::new(),
+        meshes_without_mass: 0,
+    };
+    let top: Vec<Element<'d>> = blocks.iter().flat_map(|b| children(*b)).map(|n| (text, n)).collect();
+    reader.settings(&top);
+    reader.tendons(&top);
+    for (text, node) in &top {
+        match node.tag_name().name() {
+            "equality" => reader.equalities((*text, *node)),
+            "compiler" | "default" | "asset" | "tendon" => {}
+            other => reader.section(other, (*text, *node)),
+        }
+    }
+    reader.meet();
+    reader.m
+}
+
 /// The text itself and those that it includes, by the paths from the main file's folder.
 fn included(input: &Input<'_>, notes: &mut Notes) -> Vec<(String, String)> {
     let mut texts = vec![(String::new(), xml::lenient(input.text))];
     let mut k = 0;
     while k < texts.len() && texts.len() < MOST_INCLUDED {
-        let named: Vec<String> = Document::parse(&texts[k].1).map_or(Vec::new(), |d| {
+        let named: Vec<String> = xml::parse_quietly(&texts[k].1).map_or(Vec::new(), |d| {
             let files =
                 d.descendants().filter(|n| n.has_tag_name("include")).filter_map(|n| n.attribute("file"));
             files.map(str::to_owned).collect()
@@ -214,6 +356,23 @@ struct Reader<'d, 'n> {
     names: BTreeSet<String>,
     /// The places of the includes that have been told of.
     told: BTreeSet<(usize, usize)>,
+    /// How many times files were put into each other.
+    expanded: usize,
+    /// Masses of the geoms.
+    solids: Vec<Weighed>,
+    /// Bodies whose mass is written.
+    weighed: BTreeSet<usize>,
+    /// How many geoms are meshes, whose masses are not worked out.
+    meshes_without_mass: usize,
+}
+
+/// The mass of a geom.
+struct Weighed {
+    body: usize,
+    centre: Vec3,
+    mass: f64,
+    /// About the centre, along the global axes.
+    inertia: Mat3,
 }
 
 impl<'d> Reader<'d, '_> {
@@ -235,7 +394,13 @@ impl<'d> Reader<'d, '_> {
                     let help = "look for a file that includes itself";
                     self.notes.problem_with("HP0805", at, "files include each other in a circle", help);
                 }
+                Some(_) if self.expanded > MOST_EXPANDED => {}
                 Some(root) => {
+                    self.expanded += 1;
+                    if self.expanded > MOST_EXPANDED {
+                        let help = "look for files that include each other more than once";
+                        self.notes.problem_with("HP0802", at, "files are included too often", help);
+                    }
                     if self.told.insert((text, inner.range().start)) {
                         self.notes.taken("include", file, at);
                     }
@@ -285,7 +450,9 @@ impl<'d> Reader<'d, '_> {
                     self.notes.ignored("site", at);
                 }
                 "geom" => self.geom((text, node), inside, name),
+                "inertial" => self.inertial((text, node), inside, name),
                 "joint" | "freejoint" => {}
+                "camera" | "light" => self.notes.ignored(node.tag_name().name(), at),
                 "composite" | "flexcomp" | "replicate" | "attach" => {
                     let why = "it makes bodies by rules: save the model from MuJoCo, which writes them out";
                     self.notes.refused(
@@ -295,7 +462,34 @@ impl<'d> Reader<'d, '_> {
                         why,
                     );
                 }
-                other => self.notes.ignored(other, at),
+                other => {
+                    let why = "an element of a body that is not known here";
+                    self.notes.not_understood(other, name, at, why);
+                }
+            }
+        }
+    }
+
+    /// A section of the model that is not read.
+    fn section(&mut self, kind: &str, (text, node): Element<'d>) {
+        let at = xml::at(text, node);
+        if IRRELEVANT.contains(&kind) {
+            self.notes.ignored(kind, at);
+        } else {
+            let name = node.attribute("name").unwrap_or_default();
+            self.notes.not_understood(kind, name, at, "a section of the model that is not known here");
+        }
+    }
+
+    /// Postures that the source has stored.
+    fn keys(&mut self, list: Element<'d>) {
+        for (text, key) in self.contents(list, 0) {
+            let (name, at) = (key.attribute("name").unwrap_or_default(), xml::at(text, key));
+            if key.has_attribute("qpos") || key.has_attribute("mpos") || key.has_attribute("mquat") {
+                let why = "its posture is left out: the model begins where the source draws it, with joints at their reference (`qpos0`)";
+                self.notes.refused("key", name, at, why);
+            } else {
+                self.notes.ignored("key", at);
             }
         }
     }
@@ -307,6 +501,18 @@ impl<'d> Reader<'d, '_> {
         let pose = outer.pose.compose(self.pose(element, None));
         let own = node.attribute("name").unwrap_or_default();
         let name = if own.is_empty() { format!("body_{}", self.m.bodies.len()) } else { own.to_owned() };
+        if self.m.bodies.len() > robot::MOST_PARTS {
+            // That is told when all is read.
+            return;
+        }
+        for a in node.attributes().filter(|a| !BODY.contains(&a.name())) {
+            let why = format!("`body` has an attribute `{}` that is not known here", a.name());
+            self.notes.not_understood(a.name(), &name, xml::attribute_at(text, node, a.name()), why);
+        }
+        if node.attribute("mocap") == Some("true") {
+            let why = "a body that a program moves while it runs: it stands as drawn";
+            self.notes.approximated("mocap", &name, at, why);
+        }
         let mut joints = Vec::new();
         self.joints_of(element, pose, class.as_deref(), 0, &mut joints);
         let note = Called { kind: "body", name: &name, at }.note(self.notes);
@@ -386,6 +592,7 @@ impl<'d> Reader<'d, '_> {
             let message = format!("there are two joints `{name}`");
             self.notes.problem_with("HP0803", at, message, "rename one of them");
         }
+        xml::unknown(text, node, &name, JOINT, self.notes);
         let called = Called { kind: "joint", name: &name, at };
         let (type_name, coordinate) = match kind.as_str() {
             "hinge" => ("revolute", Some("angle")),
@@ -432,10 +639,136 @@ impl<'d> Reader<'d, '_> {
             let scaled = |x: f64| if coordinate == Some("angle") { self.angle(x - zero) } else { x - zero };
             self.m.joints[number].limits = range.map(|ends| ends.map(scaled));
         }
+        let coordinate = coordinate.map(|name| Coordinate { joint: number, name });
+        self.spring(element, class, called, coordinate);
         if let Some(coordinate) = coordinate
             && !own.is_empty()
         {
-            self.joints.insert(name, Coordinate { joint: number, name: coordinate });
+            self.joints.insert(name, coordinate);
+        }
+    }
+
+    /// The spring and damper of a joint.
+    fn spring(
+        &mut self,
+        element: Element<'d>,
+        class: Option<&str>,
+        called: Called<'_>,
+        coordinate: Option<Coordinate>,
+    ) {
+        let mut number = |key: &str| {
+            let (value, at) = self.attribute(element, key, class)?;
+            let list = xml::numbers(&value);
+            match list.as_deref() {
+                Some([x]) => Some(*x),
+                Some([_, rest @ ..]) if rest.iter().any(|x| *x != 0.0) => {
+                    let why = format!("`{key}` that changes with the coordinate is left out");
+                    self.notes.refused(key, called.name, at, why);
+                    None
+                }
+                Some([x, ..]) => Some(*x),
+                _ => {
+                    let help = "write it with a point in fractions";
+                    let message = format!("`{key}` is a number, not `{}`", value.trim());
+                    self.notes.problem_with("HP0804", at, message, help);
+                    None
+                }
+            }
+        };
+        let [stiffness, damping, springref, zero, friction] =
+            ["stiffness", "damping", "springref", "ref", "frictionloss"]
+                .map(|key| number(key).unwrap_or(0.0));
+        let turns = coordinate.is_some_and(|c| c.name == "angle");
+        // Coordinates count from the drawing, where the joint's value is `ref`.
+        let free = if turns { self.angle(springref - zero) } else { springref - zero };
+        let called = Called { kind: "spring", ..called };
+        robot::joint_spring(&mut self.m, self.notes, called, coordinate, [stiffness, damping, free]);
+        robot::friction(self.notes, called.name, called.at, friction);
+    }
+
+    /// The mass of a body that is written.
+    fn inertial(&mut self, element: Element<'d>, inside: &Inside, name: &str) {
+        let called = Called { kind: "inertial", name, at: xml::at(element.0, element.1) };
+        let frame = inside.pose.compose(self.pose(element, None));
+        let [mass] = self.numbers::<1>(element, "mass", None).unwrap_or_default();
+        let diagonal = self.numbers::<3>(element, "diaginertia", None);
+        let full = self.numbers::<6>(element, "fullinertia", None);
+        let [xx, yy, zz, xy, xz, yz] = full.unwrap_or_else(|| {
+            let [x, y, z] = diagonal.unwrap_or_default();
+            [x, y, z, 0.0, 0.0, 0.0]
+        });
+        let matrix = Mat3 { cols: [[xx, xy, xz].into(), [xy, yy, yz].into(), [xz, yz, zz].into()] };
+        self.weighed.insert(inside.body);
+        robot::mass(&mut self.m, self.notes, called, inside.body, frame, mass, Some(matrix));
+    }
+
+    /// The mass of a geom: its volume times its density, as far as it is no mesh.
+    fn weigh(&mut self, element: Element<'d>, inside: &Inside, solid: Option<(Solid, Pose)>) {
+        let class = inside.class.as_deref();
+        let [mass] = self.numbers::<1>(element, "mass", class).map_or([f64::NAN], |m| m);
+        let [density] = self.numbers::<1>(element, "density", class).unwrap_or([DENSITY]);
+        let Some((solid, place)) = solid else {
+            self.meshes_without_mass += usize::from(mass != 0.0 && density != 0.0);
+            return;
+        };
+        let (volume, per_mass) = volume_of(solid);
+        let mass = if mass.is_nan() { density * volume } else { mass };
+        if !(mass > 0.0 && mass.is_finite()) {
+            return;
+        }
+        let rot = inside.pose.rot * place.rot;
+        let axes = [0, 1, 2].map(|k| {
+            let mut column = [0.0; 3];
+            column[k] = mass * per_mass[k];
+            column.into()
+        });
+        let inertia = rot * Mat3 { cols: axes } * rot.transpose();
+        self.solids.push(Weighed { body: inside.body, centre: inside.pose.point(place.r), mass, inertia });
+    }
+
+    /// Masses of bodies by their geoms, where they are not written, and gravity.
+    fn masses(&mut self, top: &[Element<'d>]) {
+        let mut of_body: BTreeMap<usize, Vec<Weighed>> = BTreeMap::new();
+        for solid in std::mem::take(&mut self.solids) {
+            if solid.body != GROUND && !self.weighed.contains(&solid.body) {
+                of_body.entry(solid.body).or_default().push(solid);
+            }
+        }
+        for (body, solids) in of_body {
+            let mass: f64 = solids.iter().map(|s| s.mass).sum();
+            let centre = solids.iter().fold(Vec3::zero(), |c, s| c + s.centre * (s.mass / mass));
+            let mut matrix = [[0.0; 3]; 3];
+            for s in &solids {
+                // I = sum of I_k + m_k (d^2 1 - d d^T)
+                let d = s.centre - centre;
+                for (c, column) in matrix.iter_mut().enumerate() {
+                    for (r, x) in column.iter_mut().enumerate() {
+                        let one = if r == c { d.dot(d) } else { 0.0 };
+                        *x += s.inertia.cols[c][r] + s.mass * (one - d[r] * d[c]);
+                    }
+                }
+            }
+            let name = self.m.bodies[body].name.clone();
+            let called = Called { kind: "mass of geoms", name: &name, at: None };
+            let frame = Pose { rot: home().rot, r: centre };
+            let matrix = Mat3 { cols: matrix.map(Vec3::from) };
+            robot::mass(&mut self.m, self.notes, called, body, frame, mass, Some(matrix));
+        }
+        if self.meshes_without_mass > 0 {
+            let why =
+                format!("{} of them are meshes, whose masses are not worked out", self.meshes_without_mass);
+            self.notes.refused("mass of geoms", "", None, why);
+        }
+        if self.m.masses.is_empty() {
+            return;
+        }
+        let mut gravity = GRAVITY;
+        for element in top.iter().filter(|(_, n)| n.has_tag_name("option") && n.has_attribute("gravity")) {
+            gravity = self.numbers::<3>(*element, "gravity", None).unwrap_or(gravity);
+        }
+        if gravity.iter().any(|x| *x != 0.0) {
+            self.m.gravity = Some(gravity.into());
+            self.notes.taken("gravity", "", None);
         }
     }
 
@@ -456,6 +789,13 @@ impl<'d> Reader<'d, '_> {
         let mesh = self.attribute(element, "mesh", class).map(|(mesh, _)| mesh);
         let kind =
             if mesh.is_some() && element.1.attribute("type").is_none() { "mesh".to_owned() } else { kind };
+        let size =
+            self.attribute(element, "size", class).and_then(|(s, _)| xml::numbers(&s)).unwrap_or_default();
+        let ends = self.numbers::<6>(element, "fromto", class);
+        if inside.body != GROUND {
+            let own = if ends.is_some() { home() } else { self.pose(element, class) };
+            self.weigh(element, inside, solid_of(&kind, &size, ends, own));
+        }
         // Shapes for contact alone stand where the visible ones do.
         let group = self
             .attribute(element, "group", class)
@@ -467,9 +807,6 @@ impl<'d> Reader<'d, '_> {
         }
         let owner = self.m.bodies[inside.body].pose.unwrap_or_else(home);
         let place = owner.inverse().compose(inside.pose.compose(self.pose(element, class)));
-        let size =
-            self.attribute(element, "size", class).and_then(|(s, _)| xml::numbers(&s)).unwrap_or_default();
-        let ends = self.numbers::<6>(element, "fromto", class);
         let mesh = mesh.and_then(|name| {
             let found = self.meshes.get(&name).cloned();
             if found.is_none() {
@@ -495,10 +832,27 @@ impl<'d> Reader<'d, '_> {
 fn shown(input: &mut Input<'_>, notes: &mut Notes, shape: Shown<'_>) {
     let (text, node) = shape.element;
     let at = xml::at(text, node);
-    let size = |k: usize| shape.size.get(k).copied().unwrap_or(0.0);
-    let mut place = shape.place;
+    match (shape.kind.as_str(), &shape.mesh) {
+        ("mesh", Some((path, scale))) => {
+            input.mesh(shape.body, shape.place, *scale, path, &shape.link, at, notes);
+        }
+        ("mesh", None) => {}
+        (kind, _) => match solid_of(kind, &shape.size, shape.ends, shape.place) {
+            Some((solid, place)) => {
+                input.shapes.solid(shape.body, place, solid);
+                notes.taken("geom", &shape.link, at);
+            }
+            None => notes.refused("geom", &shape.link, at, format!("a shape `{kind}` is not shown")),
+        },
+    }
+}
+
+/// The solid that a geom is, and where: by its size, or by its two ends.
+fn solid_of(kind: &str, size: &[f64], ends: Option<[f64; 6]>, mut place: Pose) -> Option<(Solid, Pose)> {
+    let by_ends = ends.is_some();
+    let size = |k: usize| size.get(k).copied().unwrap_or(0.0);
     let mut half = size(1);
-    if let Some([a, b, c, d, e, f]) = shape.ends {
+    if let Some([a, b, c, d, e, f]) = ends {
         let (from, to) = (Vec3::from([a, b, c]), Vec3::from([d, e, f]));
         let axis = to - from;
         half = axis.norm() / 2.0;
@@ -506,25 +860,44 @@ fn shown(input: &mut Input<'_>, notes: &mut Notes, shape: Shown<'_>) {
             place = place.compose(Pose { rot, r: (from + to) * 0.5 });
         }
     }
-    let solid = match (shape.kind.as_str(), &shape.mesh) {
-        ("mesh", Some((path, scale))) => {
-            input.mesh(shape.body, place, *scale, path, &shape.link, at, notes);
-            return;
-        }
-        ("mesh", None) => return,
+    let solid = match kind {
         // By its ends a box or ellipsoid is as long as they are apart.
-        ("box", _) if shape.ends.is_some() => Solid::Box([size(0), size(1), half].map(|x| 2.0 * x)),
-        ("ellipsoid", _) if shape.ends.is_some() => Solid::Ball([size(0), size(1), half]),
-        ("box", _) => Solid::Box([2.0 * size(0), 2.0 * size(1), 2.0 * size(2)]),
-        ("cylinder", _) => Solid::Cylinder(size(0), 2.0 * half),
-        ("capsule", _) => Solid::Capsule(size(0), 2.0 * half),
-        ("sphere", _) => Solid::Ball([size(0); 3]),
-        ("ellipsoid", _) => Solid::Ball([size(0), size(1), size(2)]),
-        (other, _) => {
-            notes.refused("geom", &shape.link, at, format!("a shape `{other}` is not shown"));
-            return;
-        }
+        "box" if by_ends => Solid::Box([size(0), size(1), half].map(|x| 2.0 * x)),
+        "ellipsoid" if by_ends => Solid::Ball([size(0), size(1), half]),
+        "box" => Solid::Box([2.0 * size(0), 2.0 * size(1), 2.0 * size(2)]),
+        "cylinder" => Solid::Cylinder(size(0), 2.0 * half),
+        "capsule" => Solid::Capsule(size(0), 2.0 * half),
+        "sphere" => Solid::Ball([size(0); 3]),
+        "ellipsoid" => Solid::Ball([size(0), size(1), size(2)]),
+        _ => return None,
     };
-    input.shapes.solid(shape.body, place, solid);
-    notes.taken("geom", &shape.link, at);
+    Some((solid, place))
+}
+
+/// The volume of a solid, and its moments of inertia about its own axes per mass.
+fn volume_of(solid: Solid) -> (f64, [f64; 3]) {
+    use std::f64::consts::PI;
+    match solid {
+        Solid::Box([x, y, z]) => {
+            let [x2, y2, z2] = [x, y, z].map(|a| a * a);
+            (x * y * z, [(y2 + z2) / 12.0, (z2 + x2) / 12.0, (x2 + y2) / 12.0])
+        }
+        Solid::Cylinder(r, l) => {
+            let across = (3.0 * r * r + l * l) / 12.0;
+            (PI * r * r * l, [across, across, r * r / 2.0])
+        }
+        Solid::Capsule(r, l) => {
+            // A cylinder, and two halves of a ball at its ends.
+            let [tube, ball] = [PI * r * r * l, 4.0 / 3.0 * PI * r * r * r];
+            let volume = tube + ball;
+            let [t, b] = [tube / volume, ball / volume];
+            let h = l / 2.0;
+            let across = t * (3.0 * r * r + l * l) / 12.0 + b * (0.4 * r * r + h * h + 0.75 * r * h);
+            (volume, [across, across, t * r * r / 2.0 + b * 0.4 * r * r])
+        }
+        Solid::Ball([a, b, c]) => {
+            let [a2, b2, c2] = [a, b, c].map(|x| x * x);
+            (4.0 / 3.0 * PI * a * b * c, [(b2 + c2) / 5.0, (c2 + a2) / 5.0, (a2 + b2) / 5.0])
+        }
+    }
 }

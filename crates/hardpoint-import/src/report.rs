@@ -1,6 +1,6 @@
 //! What became of every element of the source, and what is wrong with it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::fmt;
 
 use hardpoint_file::{Diagnostic, Severity, Source};
@@ -10,10 +10,14 @@ use serde::Serialize;
 const LISTED: usize = 40;
 /// So many problems are shown; the others are counted.
 const SHOWN: usize = 50;
+/// So many problems are kept; the others are counted. Nobody mends more of them at a time.
+const MOST_PROBLEMS: usize = 200;
+/// A text has a mark every so many bytes: how many characters are before it.
+const MARK: usize = 1024;
 
 /// What became of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "snake_case")]
 pub enum Fate {
     /// The model says the same.
     Taken,
@@ -23,6 +27,8 @@ pub enum Fate {
     Ignored,
     /// The model cannot say it.
     Refused,
+    /// The importer does not know it: it may concern how things move.
+    NotUnderstood,
 }
 
 /// Where something stands: bytes of one of the texts that a source consists of.
@@ -67,6 +73,9 @@ pub struct Entry {
 pub struct Report {
     /// In words, what the source is.
     pub format: String,
+    /// Remarks about the mechanism as a whole, which are read first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub remarks: Vec<String>,
     /// In the order in which they were met.
     pub entries: Vec<Entry>,
 }
@@ -81,6 +90,10 @@ impl Report {
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.format)?;
+        for remark in &self.remarks {
+            writeln!(f, "  note: {remark}")?;
+        }
+        self.listed(f, Fate::NotUnderstood, "not understood, and left out; it may concern the motion")?;
         for (fate, title) in [(Fate::Taken, "taken"), (Fate::Ignored, "does not concern the motion")] {
             let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
             for e in self.of(fate) {
@@ -91,18 +104,24 @@ impl fmt::Display for Report {
                 writeln!(f, "  {title}: {}", list.join(", "))?;
             }
         }
-        for (fate, title) in [(Fate::Approximated, "approximated or added"), (Fate::Refused, "refused")] {
-            let list: Vec<&Entry> = self.of(fate).collect();
-            if list.is_empty() {
-                continue;
-            }
-            writeln!(f, "  {title}:")?;
-            for e in list.iter().take(LISTED) {
-                writeln!(f, "    {e}")?;
-            }
-            if list.len() > LISTED {
-                writeln!(f, "    ... and {} more like these", list.len() - LISTED)?;
-            }
+        self.listed(f, Fate::Approximated, "approximated or added")?;
+        self.listed(f, Fate::Refused, "refused")
+    }
+}
+
+impl Report {
+    /// Writes the entries of one fate, line by line.
+    fn listed(&self, f: &mut fmt::Formatter<'_>, fate: Fate, title: &str) -> fmt::Result {
+        let list: Vec<&Entry> = self.of(fate).collect();
+        if list.is_empty() {
+            return Ok(());
+        }
+        writeln!(f, "  {title}:")?;
+        for e in list.iter().take(LISTED) {
+            writeln!(f, "    {e}")?;
+        }
+        if list.len() > LISTED {
+            writeln!(f, "    ... and {} more like these", list.len() - LISTED)?;
         }
         Ok(())
     }
@@ -135,6 +154,8 @@ impl fmt::Display for Entry {
 pub struct Problems {
     sources: Vec<Source>,
     list: Vec<(usize, Diagnostic)>,
+    /// How many more there are.
+    dropped: usize,
 }
 
 impl Problems {
@@ -148,7 +169,7 @@ impl Problems {
         let shown = self.list.iter().take(SHOWN);
         let mut list: Vec<String> = shown.map(|(k, d)| self.sources[*k].render(d, color)).collect();
         if self.list.len() > SHOWN {
-            list.push(format!("... and {} more like these", self.list.len() - SHOWN));
+            list.push(format!("... and {} more like these", self.list.len() - SHOWN + self.dropped));
         }
         list.join("\n\n")
     }
@@ -167,29 +188,79 @@ impl std::error::Error for Problems {}
 pub struct Notes {
     /// The texts that there are.
     sources: Vec<Source>,
+    /// Where the lines and characters of these texts are.
+    indexes: Vec<Index>,
     /// What became of what.
     pub report: Report,
     /// What is wrong; where there is any of it there is no model.
     problems: Vec<(usize, Diagnostic)>,
+    /// Text, line, column and message of these.
+    known: HashSet<(usize, Option<usize>, Option<usize>, String)>,
+    /// How many more there are.
+    dropped: usize,
+}
+
+/// Lines and characters of a text, so that places in it are found in a time that does not grow with it.
+#[derive(Debug)]
+struct Index {
+    /// Where lines begin.
+    lines: Vec<usize>,
+    /// Per [`MARK`] bytes, how many characters begin before.
+    marks: Vec<usize>,
+}
+
+impl Index {
+    fn new(text: &str) -> Self {
+        let bytes = text.as_bytes();
+        let ends = bytes.iter().enumerate().filter(|(_, b)| **b == b'\n').map(|(k, _)| k + 1);
+        let lines = std::iter::once(0).chain(ends).collect();
+        let (mut marks, mut count) = (vec![0], 0);
+        for block in bytes.chunks(MARK) {
+            count += begins(block);
+            marks.push(count);
+        }
+        Self { lines, marks }
+    }
+
+    /// How many characters begin before a byte.
+    fn before(&self, text: &str, at: usize) -> usize {
+        let block = at / MARK;
+        self.marks[block] + begins(&text.as_bytes()[block * MARK..at])
+    }
+
+    /// The line and the column in characters of a byte, from 1.
+    fn line_column(&self, text: &str, at: usize) -> (usize, usize) {
+        let at = at.min(text.len());
+        let line = self.lines.partition_point(|start| *start <= at);
+        (line, self.before(text, at) - self.before(text, self.lines[line - 1]) + 1)
+    }
+}
+
+/// How many characters begin in these bytes.
+fn begins(bytes: &[u8]) -> usize {
+    bytes.iter().filter(|b| **b & 0xc0 != 0x80).count()
 }
 
 impl Notes {
     /// Of a file, as yet empty.
     pub fn new(file: &str, text: &str) -> Self {
         let sources = vec![Source::new(&printable(file), text)];
-        Self { sources, report: Report::default(), problems: Vec::new() }
+        let indexes = vec![Index::new(text)];
+        let (report, problems) = (Report::default(), Vec::new());
+        Self { sources, indexes, report, problems, known: HashSet::new(), dropped: 0 }
     }
 
     /// A further text that the source includes; its number.
     pub fn text(&mut self, file: &str, text: &str) -> usize {
         self.sources.push(Source::new(&printable(file), text));
+        self.indexes.push(Index::new(text));
         self.sources.len() - 1
     }
 
     /// Where that is, for people.
     pub fn place(&self, at: At) -> Option<Place> {
         let source = self.sources.get(at.text)?;
-        let (line, column) = source.line_column(at.start);
+        let (line, column) = self.indexes[at.text].line_column(&source.text, at.start);
         Some(Place { file: source.file.to_string(), line, column })
     }
 
@@ -207,19 +278,29 @@ impl Notes {
             "HP0804" => "correct the value, or export the file again",
             _ => "export the file again",
         };
+        if self.problems.len() >= MOST_PROBLEMS {
+            // To show its place would take time, and nobody sees it.
+            self.dropped += 1;
+            return;
+        }
         let diagnostic = self.diagnostic(code, at, message).help(help);
         self.tell(at.map_or(0, |at| at.text), diagnostic);
     }
 
     /// The same, with what to do.
     pub fn problem_with(&mut self, code: &'static str, at: Option<At>, message: impl AsRef<str>, help: &str) {
+        if self.problems.len() >= MOST_PROBLEMS {
+            // To show its place would take time, and nobody sees it.
+            self.dropped += 1;
+            return;
+        }
         let diagnostic = self.diagnostic(code, at, message).help(help);
         self.tell(at.map_or(0, |at| at.text), diagnostic);
     }
 
     fn tell(&mut self, text: usize, diagnostic: Diagnostic) {
-        let known = self.problems.iter().any(|(k, d)| *k == text && *d == diagnostic);
-        if !known {
+        let key = (text, diagnostic.line, diagnostic.column, diagnostic.message.clone());
+        if self.known.insert(key) {
             self.problems.push((text, diagnostic));
         }
     }
@@ -236,12 +317,12 @@ impl Notes {
         }
         let mut list = std::mem::take(&mut self.problems);
         list.sort_by_key(|(k, d)| (*k, d.line, d.column));
-        Some(Problems { sources: self.sources.clone(), list })
+        Some(Problems { sources: self.sources.clone(), list, dropped: self.dropped })
     }
 
     /// One thing that is wrong with the file as a whole.
     pub fn only(&self, diagnostic: Diagnostic) -> Problems {
-        Problems { sources: self.sources.clone(), list: vec![(0, diagnostic)] }
+        Problems { sources: self.sources.clone(), list: vec![(0, diagnostic)], dropped: 0 }
     }
 
     fn entry(&mut self, fate: Fate, kind: &str, name: &str, at: Option<At>, why: &str) {
@@ -263,6 +344,18 @@ impl Notes {
     /// It does not concern how things move.
     pub fn ignored(&mut self, kind: &str, at: Option<At>) {
         self.entry(Fate::Ignored, kind, "", at, "");
+    }
+
+    /// A remark about the mechanism as a whole.
+    pub fn remark(&mut self, remark: impl AsRef<str>) {
+        self.report
+            .remarks
+            .push(remark.as_ref().chars().map(|c| if c.is_control() { ' ' } else { c }).collect());
+    }
+
+    /// The importer does not know it, and it may concern how things move.
+    pub fn not_understood(&mut self, kind: &str, name: &str, at: Option<At>, why: impl AsRef<str>) {
+        self.entry(Fate::NotUnderstood, kind, name, at, why.as_ref());
     }
 
     /// The model cannot say it.

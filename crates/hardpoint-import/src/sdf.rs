@@ -12,8 +12,8 @@ use crate::mechanism::{GROUND, Joint, Mechanism};
 use crate::report::Notes;
 use crate::shapes::Solid;
 use crate::turn::{home, roll_pitch_yaw};
-use crate::xml::{child, children, exactly, named};
-use crate::{Format, Input, xml};
+use crate::xml::{Vocabulary, child, children, exactly, local, named};
+use crate::{Format, Input, robot, xml};
 
 /// See the module.
 pub const FORMAT: Format = Format {
@@ -29,6 +29,57 @@ pub const FORMAT: Format = Format {
 const DEEPEST: usize = 40;
 /// So many files are included at most.
 const MOST_INCLUDED: usize = 100;
+/// Models are placed so many times at most, nested ones more than once.
+const MOST_PLACED: usize = 20_000;
+/// What is known of a link.
+const LINK: Vocabulary = Vocabulary {
+    attributes: &["name", "type"],
+    read: &["visual", "pose", "inertial"],
+    irrelevant: &[
+        "collision",
+        "sensor",
+        "light",
+        "audio_source",
+        "audio_sink",
+        "projector",
+        "particle_emitter",
+        "battery",
+        "gravity",
+        "enable_wind",
+        "self_collide",
+        "must_be_base_link",
+        "velocity_decay",
+        "material",
+        "damping",
+    ],
+};
+/// What of models and worlds does not concern how links and joints move.
+const IRRELEVANT: [&str; 22] = [
+    "self_collide",
+    "allow_auto_disable",
+    "enable_wind",
+    "light",
+    "physics",
+    "scene",
+    "magnetic_field",
+    "atmosphere",
+    "audio",
+    "wind",
+    "spherical_coordinates",
+    "gui",
+    "road",
+    "gripper",
+    "material",
+    "collision_filter_group",
+    "proximity_properties",
+    "camera",
+    "sensor",
+    "uri",
+    "name",
+    "placement_frame",
+];
+/// Gravity of SDFormat where a source names none, m/s^2.
+const GRAVITY: [f64; 3] = [0.0, 0.0, -9.8];
 /// What has a place in a model or world.
 const PLACED: [&str; 5] = ["link", "frame", "joint", "model", "include"];
 
@@ -58,6 +109,9 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         joints: BTreeMap::new(),
         several: false,
         shapes: Vec::new(),
+        declared: 0,
+        bare: BTreeSet::new(),
+        placed: 0,
     };
     let mut worlds = named(root, "world");
     let world = worlds.next();
@@ -84,7 +138,11 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         let k = reader.declare(outermost, 0);
         reader.place(k, home());
     }
+    if reader.placed > MOST_PLACED || reader.declared > robot::MOST_PARTS {
+        return None;
+    }
     reader.connect();
+    reader.masses(&outer);
     if let Some(name) = outer.iter().flat_map(|w| named(*w, "model")).find_map(|m| m.attribute("name")) {
         reader.m.name = name.to_owned();
     }
@@ -100,7 +158,7 @@ fn included(input: &Input<'_>, notes: &mut Notes) -> Vec<(String, String)> {
     let mut texts = vec![(String::new(), xml::lenient(input.text))];
     let mut k = 0;
     while k < texts.len() && texts.len() < MOST_INCLUDED {
-        let uris: Vec<String> = Document::parse(&texts[k].1).map_or(Vec::new(), |d| {
+        let uris: Vec<String> = xml::parse_quietly(&texts[k].1).map_or(Vec::new(), |d| {
             let uris =
                 d.descendants().filter(|n| n.has_tag_name("include")).filter_map(|n| child(n, "uri")?.text());
             uris.map(|u| u.trim().to_owned()).collect()
@@ -124,7 +182,7 @@ fn included(input: &Input<'_>, notes: &mut Notes) -> Vec<(String, String)> {
 /// The file of a model that its description names last: mostly that of the newest version.
 fn described(input: &Input<'_>, uri: &str) -> Option<String> {
     let text = xml::lenient(&crate::decoded(&input.file(&format!("{uri}/model.config"))?));
-    let document = Document::parse(&text).ok()?;
+    let document = xml::parse_quietly(&text).ok()?;
     let name = named(document.root_element(), "sdf").last()?.text()?.trim().to_owned();
     Some(name)
 }
@@ -197,6 +255,12 @@ struct Reader<'d, 'n> {
     /// Whether the file has more than one model: then names have their model's before them.
     several: bool,
     shapes: Vec<Shown<'d>>,
+    /// How many models, links, frames and joints there are.
+    declared: usize,
+    /// Frames that are neither links nor joints.
+    bare: BTreeSet<String>,
+    /// How many times a model was placed.
+    placed: usize,
 }
 
 impl<'d> Reader<'d, '_> {
@@ -206,6 +270,16 @@ impl<'d> Reader<'d, '_> {
             let help = "look for a model that includes itself";
             let at = xml::at(model.text, model.node);
             self.notes.problem_with("HP0805", at, "models include each other too deep", help);
+            self.models.push(model);
+            return self.models.len() - 1;
+        }
+        self.declared +=
+            1 + children(model.node).filter(|n| ["link", "joint", "frame"].contains(&local(*n))).count();
+        if self.declared > robot::MOST_PARTS {
+            let message = format!("it has more than {} models, links, frames and joints", robot::MOST_PARTS);
+            let help =
+                "look for models that include each other more than once, or leave out what need not move";
+            self.notes.problem_with("HP0802", None, message, help);
             self.models.push(model);
             return self.models.len() - 1;
         }
@@ -233,19 +307,26 @@ impl<'d> Reader<'d, '_> {
                 let message = format!("there are two links `{name}`");
                 self.notes.problem_with("HP0803", at, message, "rename one of them");
             }
-            for part in children(link).filter(|p| !["visual", "pose"].contains(&p.tag_name().name())) {
-                self.notes.ignored(part.tag_name().name(), xml::at(model.text, part));
-            }
+            xml::unknown(model.text, link, &name, LINK, self.notes);
+            self.poses_of(model.text, link, &name);
         }
         let first = named(model.node, "link").next().and_then(|l| l.attribute("name"));
         let wanted = model.node.attribute("canonical_link").filter(|l| !l.is_empty()).or(first);
         let of = wanted.and_then(|link| self.bodies.get(&format!("{}{}", model.scope, link.trim())).copied());
         model.canonical = of.or_else(|| model.inner.iter().find_map(|k| self.models[*k].canonical));
         for node in children(model.node) {
-            let name = node.tag_name().name();
-            let known = ["pose", "static", "world", "ball_constraint", "linear_bushing_rpy"];
-            if !PLACED.contains(&name) && !known.contains(&name) {
-                self.notes.ignored(name, xml::at(model.text, node));
+            let (name, at) = (local(node), xml::at(model.text, node));
+            match name {
+                "pose" | "static" | "world" | "ball_constraint" | "linear_bushing_rpy" | "loop_joint"
+                | "mujoco" | "gravity" => {}
+                name if PLACED.contains(&name) => {}
+                "plugin" if robot::is_mimic_plugin(node) => {}
+                "plugin" => robot::plugin(model.text, node, self.notes),
+                name if IRRELEVANT.contains(&name) => self.notes.ignored(name, at),
+                name => {
+                    let why = "an element of a model or world that is not known here";
+                    self.notes.not_understood(name, node.attribute("name").unwrap_or_default(), at, why);
+                }
             }
         }
         self.models.push(model);
@@ -319,6 +400,12 @@ impl<'d> Reader<'d, '_> {
     /// Places what is in a model as its poses refer to each other. A model may be placed more than once: its own frame may depend on
     /// another that is in it.
     fn place(&mut self, k: usize, place: Pose) {
+        self.placed += 1;
+        if self.placed > MOST_PLACED {
+            let help = "look for models with a `placement_frame` in each other";
+            self.notes.problem_with("HP0802", None, "its models are placed by each other too often", help);
+            return;
+        }
         self.models[k].place = place;
         let model = self.models[k].clone();
         if !model.is_merged {
@@ -427,6 +514,7 @@ impl<'d> Reader<'d, '_> {
                     let message = format!("there are a link and a frame `{name}`");
                     self.notes.problem_with("HP0803", xml::at(text, node), message, "rename one of them");
                 }
+                self.bare.insert(full.clone());
                 self.frames.insert(full, Frame { body: on.body, pose });
             }
         }
@@ -493,6 +581,83 @@ impl<'d> Reader<'d, '_> {
                 self.relation(joint, model);
             }
             self.constraints(model);
+            self.extensions(model);
+        }
+        let frames: Vec<(String, Frame)> = self.frames.iter().map(|(name, f)| (name.clone(), *f)).collect();
+        for (name, Frame { body, pose }) in frames {
+            if name.contains("joint ") || name.ends_with("__model__") {
+                continue;
+            }
+            let bare = self.bare.contains(&name);
+            self.m.frame(&name, body, pose, bare);
+        }
+    }
+
+    /// What a pose has that is not known.
+    fn poses_of(&mut self, text: usize, node: Node<'d, 'd>, owner: &str) {
+        const POSE: Vocabulary = Vocabulary {
+            attributes: &["relative_to", "frame", "degrees", "rotation_format"],
+            read: &[],
+            irrelevant: &[],
+        };
+        for pose in named(node, "pose") {
+            xml::unknown(text, pose, owner, POSE, self.notes);
+        }
+    }
+
+    /// The masses of links, and gravity.
+    fn masses(&mut self, outer: &[Node<'d, 'd>]) {
+        for model in self.models.clone() {
+            for link in named(model.node, "link") {
+                let name = link.attribute("name").unwrap_or_default().trim();
+                let found = self.frame(&model.scope, name);
+                let (Some(inertial), Some(Frame { body, pose })) = (child(link, "inertial"), found) else {
+                    continue;
+                };
+                let written = child(inertial, "pose");
+                let base = written.and_then(relative_to).and_then(|frame| self.frame(&model.scope, frame));
+                let base = base.map_or(pose, |frame| frame.pose);
+                let frame = base.compose(written.map_or_else(home, |p| self.written_pose(model.text, p)));
+                let mut number = |node: Option<Node<'d, 'd>>, key: &'static str, default: f64| {
+                    let Some(n) = node.and_then(|n| child(n, key)) else { return default };
+                    let words = n.text().unwrap_or_default();
+                    let found = exactly::<1>(words, &format!("`{key}`"), xml::at(model.text, n), self.notes);
+                    let [x] = found.unwrap_or([default]);
+                    x
+                };
+                // These are the defaults of SDFormat.
+                let mass = number(Some(inertial), "mass", 1.0);
+                let i = child(inertial, "inertia");
+                let diagonal = ["ixx", "iyy", "izz"].map(|key| number(i, key, 1.0));
+                let [xy, xz, yz] = ["ixy", "ixz", "iyz"].map(|key| number(i, key, 0.0));
+                let [xx, yy, zz] = diagonal;
+                let cols = [[xx, xy, xz].into(), [xy, yy, yz].into(), [xz, yz, zz].into()];
+                let called = Called { kind: "inertial", name, at: xml::at(model.text, inertial) };
+                let matrix = hardpoint::space::Mat3 { cols };
+                robot::mass(&mut self.m, self.notes, called, body, frame, mass, Some(matrix));
+            }
+        }
+        if self.m.masses.is_empty() {
+            return;
+        }
+        let written = outer.iter().find_map(|w| child(*w, "gravity"));
+        let given = written
+            .and_then(|g| exactly::<3>(g.text().unwrap_or_default(), "`gravity`", xml::at(0, g), self.notes));
+        match given {
+            Some(g) if g.iter().any(|x| *x != 0.0) => {
+                self.m.gravity = Some(g.into());
+                self.notes.taken("gravity", "", written.and_then(|g| xml::at(0, g)));
+            }
+            Some(_) => {}
+            None => {
+                self.m.gravity = Some(GRAVITY.into());
+                self.notes.approximated(
+                    "gravity",
+                    "",
+                    None,
+                    "none is written: that of SDFormat, 9.8 m/s^2 along -z",
+                );
+            }
         }
     }
 

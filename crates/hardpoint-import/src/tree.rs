@@ -1,5 +1,7 @@
 //! YAML and JSON as one tree whose every node knows its place in the text.
 
+use std::collections::HashSet;
+
 use saphyr_parser::{Event, Parser, ScalarStyle};
 
 use crate::report::{At, Notes};
@@ -114,7 +116,7 @@ fn blanked(text: &str) -> String {
 
 /// What is open while the events come: a map with its next key, or a list.
 enum Open {
-    Map(At, Vec<(String, At, Tree)>, Option<(String, At)>),
+    Map(At, Vec<(String, At, Tree)>, Option<(String, At)>, HashSet<String>),
     List(At, Vec<Tree>),
 }
 
@@ -144,7 +146,7 @@ fn parse(original: &str, text: &str, language: &str, notes: &mut Notes) -> Optio
         let at = At { text: 0, start: byte(span.start.index()), end: byte(span.end.index()) };
         let done = match event {
             Event::MappingStart(..) => {
-                open.push(Open::Map(at, Vec::new(), None));
+                open.push(Open::Map(at, Vec::new(), None, HashSet::new()));
                 None
             }
             Event::SequenceStart(..) => {
@@ -152,7 +154,7 @@ fn parse(original: &str, text: &str, language: &str, notes: &mut Notes) -> Optio
                 None
             }
             Event::MappingEnd | Event::SequenceEnd => match open.pop() {
-                Some(Open::Map(start, entries, _)) => Some(Tree { at: start, value: Value::Map(entries) }),
+                Some(Open::Map(start, entries, ..)) => Some(Tree { at: start, value: Value::Map(entries) }),
                 Some(Open::List(start, list)) => Some(Tree { at: start, value: Value::List(list) }),
                 None => None,
             },
@@ -178,9 +180,9 @@ fn parse(original: &str, text: &str, language: &str, notes: &mut Notes) -> Optio
         }
         let Some(tree) = done else { continue };
         match open.last_mut() {
-            Some(Open::Map(_, entries, key)) => match key.take() {
+            Some(Open::Map(_, entries, key, known)) => match key.take() {
                 Some((name, at)) => {
-                    if entries.iter().any(|(k, ..)| *k == name) {
+                    if !known.insert(name.clone()) {
                         notes.problem_with(
                             "HP0803",
                             Some(at),

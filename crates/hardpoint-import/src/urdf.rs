@@ -13,8 +13,8 @@ use crate::mechanism::{Coordinate, GROUND, Mechanism};
 use crate::report::{At, Notes};
 use crate::shapes::Solid;
 use crate::turn::{X, Y, home, roll_pitch_yaw};
-use crate::xml::{attribute, attribute_at, child, children, named};
-use crate::{Format, Input, xml};
+use crate::xml::{Vocabulary, attribute, attribute_at, child, children, local, named};
+use crate::{Format, Input, robot, xml};
 
 /// See the module.
 pub const FORMAT: Format = Format {
@@ -28,8 +28,101 @@ pub const FORMAT: Format = Format {
 
 /// Types of joints without an axis.
 const WITHOUT_AXIS: [&str; 5] = ["fixed", "floating", "ball", "spherical", "universal"];
-/// What a joint consists of that says how it moves.
-const OF_JOINTS: [&str; 7] = ["parent", "child", "origin", "axis", "limit", "mimic", "screw_thread_pitch"];
+/// What is known of a joint.
+const JOINT: Vocabulary = Vocabulary {
+    attributes: &["name", "type"],
+    read: &["parent", "child", "origin", "axis", "limit", "mimic", "screw_thread_pitch", "dynamics"],
+    irrelevant: &["safety_controller", "calibration", "hardwareInterface", "visual", "material"],
+};
+/// What is known of the parts of a joint.
+const PARTS_OF_JOINTS: [(&str, &[&str]); 8] = [
+    ("parent", &["link"]),
+    ("child", &["link"]),
+    ("origin", &["xyz", "rpy", "quat_xyzw"]),
+    ("axis", &["xyz"]),
+    (
+        "limit",
+        &[
+            "lower",
+            "upper",
+            "effort",
+            "velocity",
+            "acceleration",
+            "drake_acceleration",
+            "deceleration",
+            "jerk",
+        ],
+    ),
+    ("mimic", &["joint", "multiplier", "offset"]),
+    ("screw_thread_pitch", &["value"]),
+    ("dynamics", &["damping", "friction", "spring_reference", "spring_stiffness"]),
+];
+/// What is known of a link.
+const LINK: Vocabulary = Vocabulary {
+    attributes: &["name", "type"],
+    read: &["visual", "inertial"],
+    irrelevant: &[
+        "collision",
+        "contact",
+        "material",
+        "sensor",
+        "self_collision_checking",
+        "verbose",
+        "origin",
+    ],
+};
+/// Elements of a robot that do not concern how it moves.
+const IRRELEVANT: [&str; 8] = [
+    "material",
+    "transmission",
+    "sensor",
+    "ros2_control",
+    "camera",
+    "collision_filter_group",
+    "disable_collisions",
+    "light",
+];
+/// Elements for Gazebo that do not concern how links and joints move.
+const IRRELEVANT_IN_GAZEBO: [&str; 36] = [
+    "material",
+    "mu1",
+    "mu2",
+    "mu",
+    "kp",
+    "kd",
+    "selfCollide",
+    "self_collide",
+    "sensor",
+    "visual",
+    "collision",
+    "maxVel",
+    "minDepth",
+    "laserRetro",
+    "dampingFactor",
+    "maxContacts",
+    "fdir1",
+    "gravity",
+    "turnGravityOff",
+    "provideFeedback",
+    "stopKd",
+    "stopKp",
+    "stopCfm",
+    "stopErp",
+    "cfmDamping",
+    "implicitSpringDamper",
+    "fudgeFactor",
+    "preserveFixedJoint",
+    "disableFixedJointLumping",
+    "disableJointLumping",
+    "physics",
+    "light",
+    "always_on",
+    "update_rate",
+    "maxSpeed",
+    "springReference",
+];
+/// Gravity where a source names none, m/s^2.
+const STANDARD_GRAVITY: f64 = 9.80665;
 /// Mimic joints follow each other so deep at most.
 const DEEPEST: usize = 100;
 
@@ -46,6 +139,8 @@ struct Written<'a, 'i> {
     /// The advance of a screw per turn.
     pitch: Option<f64>,
     mimic: Option<Mimic<'a, 'i>>,
+    /// Stiffness, damping, and the value at which the spring has no force.
+    spring: [f64; 3],
 }
 
 /// The joint that a joint follows, by what factor and offset.
@@ -85,23 +180,35 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
             reader.notes.problem_with("HP0803", xml::at(0, link), message, "rename one of them");
         }
     }
+    let count = reader.links.len().max(named(robot, "joint").count());
+    if count > robot::MOST_PARTS {
+        let message =
+            format!("the robot has {count} links or joints; at most {} are read", robot::MOST_PARTS);
+        reader.notes.problem_with("HP0802", None, message, "leave out of the source what need not move");
+        return None;
+    }
     let mut joints: Vec<Written<'_, '_>> = named(robot, "joint").filter_map(|j| reader.written(j)).collect();
     reader.followers(robot, &mut joints);
     reader.tree(&joints);
     reader.mimics(&joints);
+    reader.springs(robot, &joints);
     reader.loops(robot);
+    reader.mujoco(robot);
     reader.floating();
+    reader.masses();
     for node in children(robot) {
-        match node.tag_name().name() {
-            "link" | "joint" | "loop_joint" | "ball_constraint" => {}
-            "gazebo" if named(node, "joint").next().is_some() => {}
+        match local(node) {
+            "link" | "joint" | "loop_joint" | "ball_constraint" | "mujoco" => {}
+            "gazebo" => reader.gazebo(node),
             "linear_bushing_rpy" => {
                 let why = "a bushing is a force: where it closes a loop, write a `loop_joint` instead";
                 reader.notes.refused("linear_bushing_rpy", "", xml::at(0, node), why);
             }
-            other => reader.notes.ignored(other, xml::at(0, node)),
+            other if IRRELEVANT.contains(&other) => reader.notes.ignored(other, xml::at(0, node)),
+            other => reader.unknown(other, node),
         }
     }
+    reader.frames(&joints);
     let (m, poses, links) = (reader.m, reader.poses, reader.links);
     for (name, (body, _)) in poses {
         if let Some(link) = links.get(&name) {
@@ -228,8 +335,16 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             }
         });
         let pitch = child(node, "screw_thread_pitch").and_then(|p| number(self, p, "value"));
-        for part in children(node).filter(|p| !OF_JOINTS.contains(&p.tag_name().name())) {
-            self.notes.ignored(part.tag_name().name(), xml::at(0, part));
+        xml::unknown(0, node, &name, JOINT, self.notes);
+        for (part, attributes) in PARTS_OF_JOINTS {
+            let words = Vocabulary { attributes, read: &[], irrelevant: &[] };
+            named(node, part).for_each(|part| xml::unknown(0, part, &name, words, self.notes));
+        }
+        let dynamics = child(node, "dynamics");
+        let spring = ["spring_stiffness", "damping", "spring_reference"]
+            .map(|key| dynamics.and_then(|d| number(self, d, key)).unwrap_or(0.0));
+        if let Some(friction) = dynamics.and_then(|d| number(self, d, "friction")) {
+            robot::friction(self.notes, &name, dynamics.and_then(|d| xml::at(0, d)), friction);
         }
         if !self.names.insert(name.clone()) {
             let message = format!("there are two joints `{name}`");
@@ -246,6 +361,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             limits,
             pitch,
             mimic,
+            spring,
         })
     }
 
@@ -358,6 +474,10 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 return None;
             }
         };
+        if type_name == "fixed" {
+            let ends = [(i, at_i), (j, at_j)].map(|(body, pose)| Marker { body, pose });
+            return robot::weld(&mut self.m, self.notes, Called { kind: "joint", name, at }, "fixed", ends);
+        }
         // A universal joint turns about x of the first frame and y of the second.
         let axes = if kind == "universal" { [X, Y].map(Vec3::from) } else { [axis; 2] };
         let end = |body, pose: Pose, axis| Marker::along(body, pose.r, pose.rot * axis);
@@ -391,17 +511,22 @@ fn moved(frame: Pose, kind: &str, axis: Vec3, by: f64) -> Pose {
 
 fn pose(origin: Node<'_, '_>, notes: &mut Notes) -> Pose {
     let [r, angles] = ["xyz", "rpy"].map(|key| attribute::<3>(0, origin, key, notes).unwrap_or_default());
-    Pose { rot: roll_pitch_yaw(angles), r: r.into() }
+    let rot = match attribute::<4>(0, origin, "quat_xyzw", notes) {
+        Some([x, y, z, w]) => crate::turn::quaternion([w, x, y, z]).unwrap_or_else(|| {
+            let at = attribute_at(0, origin, "quat_xyzw");
+            notes.problem_with("HP0804", at, "the quaternion is null", "give it a length other than zero");
+            home().rot
+        }),
+        None => roll_pitch_yaw(angles),
+    };
+    Pose { rot, r: r.into() }
 }
 
 /// The shapes of a link.
 fn shapes(input: &mut Input<'_>, notes: &mut Notes, link: Node<'_, '_>, body: usize, name: &str) {
-    for part in children(link) {
+    xml::unknown(0, link, name, LINK, notes);
+    for part in named(link, "visual") {
         let at: Option<At> = xml::at(0, part);
-        if part.tag_name().name() != "visual" {
-            notes.ignored(part.tag_name().name(), at);
-            continue;
-        }
         let place = child(part, "origin").map_or_else(home, |o| pose(o, notes));
         let Some(shape) = child(part, "geometry").and_then(|g| children(g).next()) else {
             notes.refused("visual", name, at, "it has no shape");

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use hardpoint::space::{Quat, Vec3};
 use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value, value};
 
-use crate::mechanism::{Drives, GROUND, Law, Mechanism, valid_name};
+use crate::mechanism::{Drives, ForceOn, GROUND, Law, Mechanism, valid_name};
 
 /// Places nearer to each other than this part of the mechanism's size are one hardpoint; coordinates that were typed agree to about this.
 pub(crate) const SAME_PLACE: f64 = 1e-9;
@@ -76,6 +76,14 @@ impl<'m> Writer<'m> {
         put(&mut doc, "design", self.design());
         put(&mut doc, "points", self.points());
         put(&mut doc, "wheels", wheels);
+        if let Some(gravity) = m.gravity {
+            let mut table = Table::new();
+            table["along"] = direction(gravity);
+            table["acceleration"] = value(gravity.norm());
+            put(&mut doc, "gravity", table);
+        }
+        put(&mut doc, "masses", self.masses());
+        put(&mut doc, "forces", self.forces());
         let mut time = Table::new();
         match m.times {
             Some(t) => {
@@ -185,8 +193,73 @@ impl<'m> Writer<'m> {
                 term
             });
             t["terms"] = value(terms.collect::<Array>());
+            if coupler.constant != 0.0 {
+                t["constant"] = value(coupler.constant);
+            }
             decorate(&mut t, &coupler.note);
             table[&coupler.name] = Item::Table(t);
+        }
+        table
+    }
+
+    /// A point of a body.
+    fn point(&self, body: usize, at: Vec3) -> Value {
+        let mut point = InlineTable::new();
+        point.insert("body", self.m.bodies[body].name.as_str().into());
+        point.insert("at", self.place(at).into());
+        point.into()
+    }
+
+    fn masses(&self) -> Table {
+        let mut table = Table::new();
+        for mass in &self.m.masses {
+            let mut entry = InlineTable::new();
+            entry.insert("type", "rigid".into());
+            entry.insert("centre", self.point(mass.body, mass.centre));
+            entry.insert("mass", mass.mass.into());
+            if let Some(inertia) = mass.inertia {
+                let i = |r: usize, c: usize| inertia.cols[c][r];
+                let most = i(0, 0).max(i(1, 1)).max(i(2, 2));
+                // Products are the opposite of the matrix's entries.
+                let moments = [("ixx", i(0, 0)), ("iyy", i(1, 1)), ("izz", i(2, 2))];
+                let products = [("ixy", -i(0, 1)), ("iyz", -i(1, 2)), ("izx", -i(2, 0))];
+                moments.into_iter().for_each(|(key, x)| drop(entry.insert(key, x.into())));
+                let products = products.into_iter().filter(|(_, x)| x.abs() > ROUND_OFF * most);
+                products.for_each(|(key, x)| drop(entry.insert(key, x.into())));
+            }
+            table[&mass.name] = value(entry);
+        }
+        table
+    }
+
+    fn forces(&self) -> Table {
+        let mut table = Table::new();
+        for force in &self.m.forces {
+            let mut t = Table::new();
+            match force.on {
+                ForceOn::Coordinate(c) => {
+                    let turns = c.name.starts_with("angle");
+                    t["type"] = value(if turns { "torsion_spring" } else { "joint_spring" });
+                    t["joint"] = value(self.m.joints[c.joint].name.as_str());
+                    t["coordinate"] = value(c.name);
+                    t["stiffness"] = value(force.stiffness);
+                    force.free.filter(|x| *x != 0.0).into_iter().for_each(|x| t["free"] = value(x));
+                }
+                ForceOn::Points(ends) => {
+                    t["type"] = value("spring");
+                    for (key, (body, at)) in ["from", "to"].into_iter().zip(ends) {
+                        t[key] = value(self.point(body, at));
+                    }
+                    t["stiffness"] = value(force.stiffness);
+                    force.free.into_iter().for_each(|x| t["free_length"] = value(x));
+                    force.preload.into_iter().for_each(|x| t["preload"] = value(x));
+                }
+            }
+            if force.damping != 0.0 {
+                t["damping"] = value(force.damping);
+            }
+            decorate(&mut t, &force.note);
+            table[&force.name] = Item::Table(t);
         }
         table
     }
@@ -225,6 +298,7 @@ impl<'m> Writer<'m> {
             }
             match &driver.law {
                 Law::Held => t["law"] = value(0),
+                Law::Set(x) => t["law"] = value(*x),
                 Law::Text(text) => t["law"] = value(text.as_str()),
                 Law::Table(points) => {
                     let mut law = InlineTable::new();

@@ -1,6 +1,6 @@
 //! What the formats in XML share: places of elements, numbers in attributes.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
@@ -13,14 +13,49 @@ pub const DEEPEST: usize = 200;
 /// Limits as far off as this say that there are none: SDFormat's own default is 1e16.
 const UNLIMITED: f64 = 1e15;
 
+/// An element has so many attributes at most: parsers compare each with all others.
+const MOST_ATTRIBUTES: usize = 1000;
+
+/// Why a text is not handed to the parser.
+enum Unfit {
+    /// Its elements are nested too deep, from this byte on.
+    Deep(usize),
+    /// The element at this byte has too many attributes.
+    Wide(usize),
+    /// It declares entities at this byte, of which few stand for any length of text.
+    Entities(usize),
+}
+
+impl Unfit {
+    fn message(&self) -> (usize, &'static str, &'static str) {
+        match *self {
+            Self::Deep(at) => (at, "its elements are nested too deep", "export the mechanism again"),
+            Self::Wide(at) => (
+                at,
+                "an element has more than a thousand attributes",
+                "no element of such a file has that many",
+            ),
+            Self::Entities(at) => (
+                at,
+                "the file declares entities of its own, which are not expanded",
+                "write out what they stand for, as `xmllint --noent FILE` does",
+            ),
+        }
+    }
+}
+
+fn options<'t>() -> ParsingOptions<'t> {
+    ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() }
+}
+
 /// The document of a text; what is wrong with it is told.
 pub fn parse<'t>(text: &'t str, number: usize, notes: &mut Notes) -> Option<Document<'t>> {
-    let options = ParsingOptions { allow_dtd: true, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    if nesting(text) > DEEPEST {
-        notes.problem_with("HP0802", None, "its elements are nested too deep", "export the mechanism again");
+    if let Some(unfit) = unfit(text) {
+        let (start, message, help) = unfit.message();
+        notes.problem_with("HP0802", Some(At { text: number, start, end: start + 1 }), message, help);
         return None;
     }
-    match Document::parse_with_options(text, options) {
+    match Document::parse_with_options(text, options()) {
         Ok(document) => Some(document),
         Err(e) => {
             let start = offset(text, e.pos());
@@ -36,8 +71,19 @@ pub fn parse<'t>(text: &'t str, number: usize, notes: &mut Notes) -> Option<Docu
     }
 }
 
+/// The document of a text.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn parse_quietly(text: &str) -> Result<Document<'_>, String> {
+    if let Some(unfit) = unfit(text) {
+        return Err(unfit.message().1.into());
+    }
+    Document::parse_with_options(text, options()).map_err(|e| format!("it is not valid XML: {e}"))
+}
+
 /// The text as the readers of robot formats take it, every byte where it was: comments, which may hold `--`, and the declaration, which
-/// need not come first, are blank; what has a prefix that nothing declares is written with `_`, as `controller_joint`.
+/// need not come first, are blank, and so is a document type that declares no entities; what has a prefix that nothing declares is written with `_`, as `controller_joint`.
 pub fn lenient(text: &str) -> String {
     let mut out = text.as_bytes().to_vec();
     let blank = |out: &mut Vec<u8>, range: std::ops::Range<usize>| {
@@ -52,6 +98,12 @@ pub fn lenient(text: &str) -> String {
             end
         } else if text[start..].starts_with("<![CDATA[") {
             behind("]]>").unwrap_or(text.len())
+        } else if text[start..].starts_with("<!DOCTYPE") {
+            let end = document_type(text, start);
+            if !text[start..end].contains("<!ENTITY") {
+                blank(&mut out, start..end);
+            }
+            end
         } else {
             start + 2
         };
@@ -62,15 +114,37 @@ pub fn lenient(text: &str) -> String {
     {
         blank(&mut out, first..first + end + 2);
     }
-    let mut declared: BTreeMap<&str, bool> = BTreeMap::from([("xml", true), ("xmlns", true)]);
+    const DECLARES: &str = "xmlns:";
+    let mut declared: BTreeSet<&str> = BTreeSet::from(["xml", "xmlns"]);
+    declared.extend(text.match_indices(DECLARES).map(|(k, _)| {
+        let rest = &text[k + DECLARES.len()..];
+        let end = rest.bytes().position(|b| !is_of_name(b)).unwrap_or(rest.len());
+        &rest[..end]
+    }));
     for colon in colons(&out) {
         let start = out[..colon].iter().rposition(|b| !is_of_name(*b)).map_or(0, |k| k + 1);
-        let prefix = &text[start..colon];
-        if !*declared.entry(prefix).or_insert_with(|| text.contains(&format!("xmlns:{prefix}"))) {
+        if !declared.contains(&text[start..colon]) {
             out[colon] = b'_';
         }
     }
     String::from_utf8(out).unwrap_or_else(|_| text.to_owned())
+}
+
+/// The byte behind a document type that begins at `start`, with what is declared in its brackets.
+fn document_type(text: &str, start: usize) -> usize {
+    let (mut inner, mut quote) = (false, None);
+    for (k, b) in text.bytes().enumerate().skip(start) {
+        match (quote, b) {
+            (Some(q), _) if q == b => quote = None,
+            (Some(_), _) => {}
+            (None, b'"' | b'\'') => quote = Some(b),
+            (None, b'[') => inner = true,
+            (None, b']') => inner = false,
+            (None, b'>') if !inner => return k + 1,
+            (None, _) => {}
+        }
+    }
+    text.len()
 }
 
 fn is_of_name(b: u8) -> bool {
@@ -93,20 +167,58 @@ fn colons(text: &[u8]) -> Vec<usize> {
     out
 }
 
-/// How deep elements are nested, at most, as far as that can be told without reading them.
-pub fn nesting(text: &str) -> usize {
+/// Why a parser would take too long, or too much memory, with a text.
+fn unfit(text: &str) -> Option<Unfit> {
     let bytes = text.as_bytes();
-    let (mut depth, mut deepest) = (0_usize, 0);
-    for (k, b) in bytes.iter().enumerate() {
-        match (b, bytes.get(k + 1)) {
-            (b'<', Some(b'/')) => depth = depth.saturating_sub(1),
-            (b'/', Some(b'>')) => depth = depth.saturating_sub(1),
-            (b'<', Some(c)) if c.is_ascii_alphabetic() || *c == b'_' => depth += 1,
-            _ => {}
+    let (mut k, mut depth) = (0, 0_usize);
+    while let Some(start) = bytes[k..].iter().position(|b| *b == b'<').map(|n| k + n) {
+        let behind = |close: &str| text[start..].find(close).map_or(text.len(), |n| start + n + close.len());
+        let rest = &text[start..];
+        if rest.starts_with("<!--") {
+            k = behind("-->");
+            continue;
         }
-        deepest = deepest.max(depth);
+        if rest.starts_with("<![CDATA[") {
+            k = behind("]]>");
+            continue;
+        }
+        if rest.starts_with("<!DOCTYPE") {
+            let end = document_type(text, start);
+            if let Some(at) = text[start..end].find("<!ENTITY") {
+                return Some(Unfit::Entities(start + at));
+            }
+            k = end;
+            continue;
+        }
+        // A tag: to its end outside of quotes.
+        let (mut quote, mut attributes, mut end) = (None, 0, bytes.len());
+        for (n, b) in bytes.iter().enumerate().skip(start + 1) {
+            match (quote, b) {
+                (Some(q), _) if q == *b => quote = None,
+                (Some(_), _) => {}
+                (None, b'"' | b'\'') => quote = Some(*b),
+                (None, b'=') => attributes += 1,
+                (None, b'>') => {
+                    end = n + 1;
+                    break;
+                }
+                (None, _) => {}
+            }
+        }
+        if attributes > MOST_ATTRIBUTES {
+            return Some(Unfit::Wide(start));
+        }
+        match (bytes.get(start + 1), bytes.get(end.saturating_sub(2))) {
+            (Some(b'/'), _) => depth = depth.saturating_sub(1),
+            (Some(b'?' | b'!'), _) | (_, Some(b'/')) => {}
+            _ => depth += 1,
+        }
+        if depth > DEEPEST {
+            return Some(Unfit::Deep(start));
+        }
+        k = end;
     }
-    deepest
+    None
 }
 
 /// The byte at a line and column.
@@ -124,6 +236,43 @@ pub fn at(text: usize, node: Node<'_, '_>) -> Option<At> {
     Some(At { text, start, end: start + 1 + node.tag_name().name().len() })
 }
 
+/// The name of an element without the prefix of a program that is known: `drake:ball_constraint`, whether the prefix is declared or not.
+pub fn local<'a>(node: Node<'a, '_>) -> &'a str {
+    let name = node.tag_name().name();
+    name.strip_prefix("drake_").unwrap_or(name)
+}
+
+/// What of an element its reader knows.
+#[derive(Clone, Copy, Debug)]
+pub struct Vocabulary {
+    /// Attributes that it reads, or that do not concern the motion.
+    pub attributes: &'static [&'static str],
+    /// Elements that it reads.
+    pub read: &'static [&'static str],
+    /// Elements that do not concern the motion.
+    pub irrelevant: &'static [&'static str],
+}
+
+/// Lists what an element has that its reader does not know: unknown is not irrelevant. `owner` is the name of what it belongs to.
+pub fn unknown(text: usize, node: Node<'_, '_>, owner: &str, words: Vocabulary, notes: &mut Notes) {
+    let kind = node.tag_name().name();
+    for a in node.attributes().filter(|a| !words.attributes.contains(&a.name())) {
+        let range = a.range();
+        let at = Some(At { text, start: range.start, end: range.end });
+        let why = format!("`{}` has an attribute `{}` that is not known here", kind, a.name());
+        notes.not_understood(a.name(), owner, at, why);
+    }
+    for part in children(node) {
+        let name = local(part);
+        if words.irrelevant.contains(&name) {
+            notes.ignored(name, at(text, part));
+        } else if !words.read.contains(&name) {
+            let why = format!("`{kind}` has an element `{name}` that is not known here");
+            notes.not_understood(name, owner, at(text, part), why);
+        }
+    }
+}
+
 /// The child elements.
 pub fn children<'a, 'i>(node: Node<'a, 'i>) -> impl Iterator<Item = Node<'a, 'i>> {
     node.children().filter(Node::is_element)
@@ -131,7 +280,7 @@ pub fn children<'a, 'i>(node: Node<'a, 'i>) -> impl Iterator<Item = Node<'a, 'i>
 
 /// The child elements of a name.
 pub fn named<'a, 'i: 'a>(node: Node<'a, 'i>, name: &'static str) -> impl Iterator<Item = Node<'a, 'i>> {
-    children(node).filter(move |n| n.tag_name().name() == name)
+    children(node).filter(move |n| local(*n) == name)
 }
 
 /// The first child element of a name.

@@ -105,6 +105,7 @@ fn gears() -> Draft {
                     by: Transmission::Gears { teeth: [20.0, 40.0], internal: false, bevel: false },
                     joints: pair,
                 },
+                constant: 0.0,
             },
             CouplerDraft {
                 name: "teeth".into(),
@@ -112,6 +113,7 @@ fn gears() -> Draft {
                     by: Transmission::Rack { radius: 0.02 },
                     joints: ["way", "pinion_axle"].map(String::from),
                 },
+                constant: 0.0,
             },
         ],
         drivers: vec![driver("motor", "pinion_axle", law("t"))],

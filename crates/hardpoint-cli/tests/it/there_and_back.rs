@@ -1,10 +1,13 @@
 //! Import, export, import again: the same model.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use hardpoint::space::Vec3;
 use hardpoint_export::Format;
 use hardpoint_file::ModelFile;
+
+use crate::bench::{Bench, models_folder};
 
 fn source(name: &str) -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hardpoint-import/tests/models");
@@ -182,14 +185,93 @@ fn a_teimorbit_table_that_was_exported_is_a_suspension_again() {
                 let short = name.replace(&format!("{side}_"), "").replace(&format!("_{side}"), "");
                 format!("{short} {side}")
             };
-            let at = |h: &hardpoint::model::Hardpoint| (bare(&h.name), h.position.to_array().map(|x| 1e3 * x));
+            let at =
+                |h: &hardpoint::model::Hardpoint| (bare(&h.name), h.position.to_array().map(|x| 1e3 * x));
             named.map(at).collect::<BTreeMap<_, _>>()
         };
         let (before, after) = (places(&source), places(&bench.path("again.toml")));
         assert!(before.len() >= 8, "{model}");
         for (name, at) in &before {
             let again = after.get(name).unwrap_or_else(|| panic!("{model}: {name} is not in {after:?}"));
-            assert!(at.iter().zip(again).all(|(a, b)| (a - b).abs() <= ROUNDED), "{model} {name}: {at:?} {again:?}");
+            assert!(
+                at.iter().zip(again).all(|(a, b)| (a - b).abs() <= ROUNDED),
+                "{model} {name}: {at:?} {again:?}"
+            );
+        }
+    }
+}
+
+/// A linkage whose names hold what no other format can: a tab, a new line, a bell, and what becomes the same without them.
+const NAMES: &str = r#"
+name = "tab\there"
+units = { length = "mm", angle = "deg" }
+bodies = { "crank\u0007" = {}, crank_ = {}, "a<b>&\"c\"" = {} }
+[joints."one\nline"]
+type = "revolute"
+bodies = ["ground", "crank\u0007"]
+at = [0, 0, 0]
+axis = "y"
+[joints.one_line]
+type = "revolute"
+bodies = ["crank\u0007", "crank_"]
+at = [100, 0, 0]
+axis = "y"
+[joints.third]
+type = "revolute"
+bodies = ["ground", "a<b>&\"c\""]
+at = [300, 0, 0]
+axis = "y"
+[couplers."pair\u0001"]
+type = "linear"
+terms = [{ joint = "third", coefficient = 2 }, { joint = "one_line", coefficient = 3 }]
+constant = 30
+[drivers.motor]
+joint = "one\nline"
+law = "10*t"
+[drivers.second]
+joint = "one_line"
+law = "0"
+[time]
+end = 1
+steps = 10
+"#;
+
+#[test]
+fn names_that_a_format_cannot_hold_are_written_otherwise_and_told() {
+    let file = hardpoint_file::parse(NAMES, "names.toml").unwrap_or_else(|e| panic!("{e}"));
+    for (format, name) in
+        [("urdf", "names.urdf"), ("mjcf", "names.xml"), ("dxf", "names.dxf"), ("teimorbit", "names.sub")]
+    {
+        let exported = Format::named(format).unwrap().export(&file);
+        // DXF ends its lines as on Windows.
+        let odd = exported.text.chars().find(|c| c.is_control() && !['\n', '\r'].contains(c));
+        assert_eq!(odd, None, "{format}: {}", exported.text);
+        let told: Vec<&str> = exported.unsaid.iter().map(|u| u.name.as_str()).collect();
+        for renamed in ["tab\\there", "crank\\u{7}", "one\\nline", "pair\\u{1}"] {
+            assert!(told.contains(&renamed), "{format}: {told:?}");
+        }
+        if !["urdf", "mjcf"].contains(&format) {
+            continue;
+        }
+        let again = hardpoint_import::import(exported.text.as_bytes(), name, &|_| None)
+            .unwrap_or_else(|e| panic!("{e}"));
+        let again = model(&again.text);
+        let names: std::collections::BTreeSet<&str> =
+            again.model.bodies.iter().map(|b| b.name.as_str()).collect();
+        for body in ["crank_", "crank__2", "a<b>&\"c\""] {
+            assert!(names.contains(body), "{format}: {names:?}");
+        }
+        let joints: Vec<&str> = again.model.named_joints().map(|(_, j)| j.name.as_str()).collect();
+        assert!(joints.contains(&"one_line") && joints.contains(&"one_line_2"), "{format}: {joints:?}");
+        // The constant of the coupler comes along: 2 third + 3 one_line = 30 deg, third = 15 deg where the other is at zero.
+        let coupler = &again.model.couplers[0];
+        if format == "mjcf" {
+            let first = coupler.terms[0].coefficient;
+            assert!((coupler.constant / first - 15.0_f64.to_radians()).abs() < 1e-12, "{coupler:?}");
+        } else {
+            // URDF draws it where the offset has it.
+            let third = again.model.bodies.iter().find(|b| b.name.starts_with("a<b>")).unwrap();
+            assert!((third.frame.rot.cols[2].x - 15.0_f64.to_radians().sin()).abs() < 1e-12, "{third:?}");
         }
     }
 }

@@ -57,10 +57,12 @@ static TYPES: [(Table, Read); 6] = [
     ),
     (
         table! {
-            /// Any linear relation: the sum of `coefficient x coordinate` is zero.
+            /// Any linear relation: the sum of `coefficient x coordinate` is zero, or the given constant.
             "linear":
             /// Two terms or more.
             must "terms": Shape::list(&Shape::Table(&TERM)), "[{ joint = \"J1\", coefficient = 2 }, { joint = \"J2\", coefficient = -1 }]";
+            /// Value of the sum, in the file's units of coefficient x coordinate. Where it is not zero, the mechanism is assembled to it.
+            or("0.0") "constant": NUMBER, "2.5";
         },
         |r, fields, raw, _| r.linear(fields, raw),
     ),
@@ -109,7 +111,11 @@ impl Reader<'_> {
             let mut place = EntryPlace::of(&fields);
             if let Some(kind) = read(self, &fields, raw, &mut place) {
                 self.push(raw, Section::Couplers, place);
-                raw.draft.couplers.push(CouplerDraft { name: entry.0, kind });
+                let constant = match kind {
+                    CouplerKindDraft::Linear(_) => self.number_of(&fields, "constant").unwrap_or_default(),
+                    CouplerKindDraft::Pair { .. } => 0.0,
+                };
+                raw.draft.couplers.push(CouplerDraft { name: entry.0, kind, constant });
             }
         }
     }

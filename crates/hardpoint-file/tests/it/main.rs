@@ -3,6 +3,7 @@
 
 mod calibrations;
 mod cases;
+mod couplers;
 mod diagnostics;
 mod docs;
 mod edit;

@@ -1,12 +1,18 @@
 //! What MJCF says for many elements at once: the compiler's settings, classes of defaults, meshes; and what an element has of it.
 
+use std::collections::HashMap;
+
 use hardpoint::space::{Mat3, Pose, Quat, Vec3};
 
 use super::{DEEPEST, Element, Reader};
+
 use crate::report::At;
 use crate::turn::{from_z_and_x, none, sequence};
 use crate::xml;
 use crate::xml::exactly;
+
+/// Classes of defaults hold so many attributes in all at most.
+const MOST_DEFAULTS: usize = 100_000;
 
 impl<'d> Reader<'d, '_> {
     pub(super) fn settings(&mut self, top: &[Element<'d>]) {
@@ -68,7 +74,18 @@ impl<'d> Reader<'d, '_> {
 
     /// A class of defaults and those in it.
     fn class(&mut self, (text, node): Element<'d>, outer: Option<&str>, depth: usize) {
-        if depth > DEEPEST {
+        // What classes hold in all, with what they take from those around them.
+        let held: usize = self.classes.values().map(HashMap::len).sum();
+        if held > MOST_DEFAULTS {
+            let help = "leave out classes that nothing names";
+            self.notes.problem_with(
+                "HP0802",
+                xml::at(text, node),
+                "its classes of defaults are too many",
+                help,
+            );
+        }
+        if depth > DEEPEST || held > MOST_DEFAULTS {
             return;
         }
         let name = node.attribute("class").unwrap_or(if outer.is_none() { "main" } else { "" });
@@ -77,7 +94,12 @@ impl<'d> Reader<'d, '_> {
             None => self.classes.get("main").cloned().unwrap_or_default(),
         };
         let inner = self.contents((text, node), 0);
-        for (_, element) in inner.iter().filter(|(_, n)| !n.has_tag_name("default")) {
+        for (text, element) in inner.iter().filter(|(_, n)| !n.has_tag_name("default")) {
+            match element.tag_name().name() {
+                "joint" => xml::unknown(*text, *element, name, super::JOINT, self.notes),
+                "equality" => xml::unknown(*text, *element, name, super::EQUALITY, self.notes),
+                _ => {}
+            }
             for a in element.attributes() {
                 class.insert(
                     (element.tag_name().name().to_owned(), a.name().to_owned()),
@@ -110,6 +132,7 @@ impl<'d> Reader<'d, '_> {
         let defaults = self.classes.get(class)?;
         let element = match node.tag_name().name() {
             "connect" | "weld" => "equality",
+            "freejoint" => "",
             name => name,
         };
         let value = defaults.get(&(element.to_owned(), key.to_owned()))?;

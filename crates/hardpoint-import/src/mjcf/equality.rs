@@ -4,9 +4,9 @@ use hardpoint::space::{Pose, Quat, Vec3};
 
 use super::{CLOSED, Element, Meet, Reader};
 use crate::markers::{Called, Marker, join};
-use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law};
+use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law};
 use crate::turn::{home, none};
-use crate::xml;
+use crate::{robot, xml};
 
 impl<'d> Reader<'d, '_> {
     fn end(&mut self, element: Element<'d>, key: &str) -> Option<(usize, Pose)> {
@@ -57,6 +57,7 @@ impl<'d> Reader<'d, '_> {
                 self.notes.refused(kind, &name, at, "it is not active");
                 continue;
             }
+            xml::unknown(text, node, &name, super::EQUALITY, self.notes);
             match kind {
                 "connect" | "weld" => self.closure(element, kind, &name),
                 "joint" | "tendon" => self.relation(element, kind, &name),
@@ -94,16 +95,39 @@ impl<'d> Reader<'d, '_> {
             [put(first), put(second)]
         };
         let [Some(i), Some(j)] = ends else { return };
-        let [i, j] = [i, j].map(|(body, pose)| Marker { body, pose });
-        if kind == "weld" && !self.is_as_drawn(element) {
-            let why = "its `relpose` is left out: the bodies are welded as they are drawn";
-            self.notes.approximated(kind, name, at, why);
-        }
+        let [mut i, mut j] = [i, j].map(|(body, pose)| Marker { body, pose });
         if kind == "connect" {
             self.meets.push(Meet { name: name.to_owned(), at, ends: [i, j] });
             return;
         }
-        join(&mut self.m, self.notes, called, "fixed", [i, j]);
+        if !matches!(sites, [Some(_), Some(_)])
+            && let Some((first, second)) = self.relative_pose(element)
+        {
+            (i.pose, j.pose) = (first, second);
+        }
+        self.place_free(&i, &mut j);
+        self.place_free(&j, &mut i);
+        robot::weld(&mut self.m, self.notes, called, "fixed", [i, j]);
+    }
+
+    /// Puts a body that nothing but a weld holds where that has it: `own` is its frame, which comes to the other one.
+    fn place_free(&mut self, other: &Marker, own: &mut Marker) {
+        let body = own.body;
+        let is_free = self.free.iter().any(|f| f.bodies[1] == body);
+        let is_held = self.m.joints.iter().any(|j| j.bodies.contains(&body))
+            || self.meets.iter().any(|meet| meet.ends.iter().any(|end| end.body == body));
+        let Some(drawn) = self.m.bodies[body].pose.filter(|_| is_free && !is_held) else { return };
+        // X_new = X_other (X^-1 X_own)^-1
+        let moved = other.pose.compose(own.pose.inverse()).compose(drawn);
+        let carried = |pose: Pose| moved.compose(drawn.inverse()).compose(pose);
+        self.m.bodies[body].pose = Some(moved);
+        for (_, pose) in self.bodies.values_mut().chain(self.sites.values_mut()).filter(|(b, _)| *b == body) {
+            *pose = carried(*pose);
+        }
+        for free in self.free.iter_mut().filter(|f| f.bodies[1] == body) {
+            free.place = moved.r;
+        }
+        own.pose = other.pose;
     }
 
     /// Points in which two bodies meet. Where two bodies meet in two points, they turn about the line through both.
@@ -162,21 +186,14 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// Whether the pose that a weld asks for is the one in which its bodies are drawn.
-    fn is_as_drawn(&mut self, element: Element<'d>) -> bool {
-        /// Exporters write six digits.
-        const SAME: f64 = 1e-5;
-        let Some([x, y, z, q @ ..]) = self.numbers::<7>(element, "relpose", None) else { return true };
+    /// The two frames that a weld with a pose of its own brings together: where it puts the second body, and that body.
+    fn relative_pose(&mut self, element: Element<'d>) -> Option<(Pose, Pose)> {
+        let [x, y, z, q @ ..] = self.numbers::<7>(element, "relpose", None)?;
         // Without an orientation it stands for the pose as drawn.
-        let Some(turn) = Quat::from_array(q) else { return true };
-        let (Some((_, first)), Some((_, second))) = (self.end(element, "body1"), self.end(element, "body2"))
-        else {
-            return false;
-        };
-        let drawn = first.inverse().compose(second);
-        let turned = turn.rotation();
-        let off = (0..3).map(|k| (drawn.rot.cols[k] - turned.cols[k]).norm()).fold(0.0, f64::max);
-        off < SAME && (drawn.r - Vec3::from([x, y, z])).norm() < SAME * self.m.size()
+        let rot = Quat::from_array(q)?.rotation();
+        let (_, first) = self.end(element, "body1")?;
+        let (_, second) = self.end(element, "body2")?;
+        Some((first.compose(Pose { rot, r: [x, y, z].into() }), second))
     }
 
     /// A polynomial between two joints, or two tendons that are sums of joints.
@@ -218,21 +235,16 @@ impl<'d> Reader<'d, '_> {
         if let Some(second) = second {
             terms.extend(second.iter().map(|(c, k)| (*c, -a[1] * k)));
         }
+        // The constant counts from the reference, as coordinates of the model do.
         match terms[..] {
-            [(only, _)] => {
-                self.m.driver(name, note, Drives::Coordinate(only), Law::Held);
+            [(only, factor)] => {
+                let value = if factor == 0.0 { 0.0 } else { a[0] / factor };
+                let law = if value == 0.0 { Law::Held } else { Law::Set(value) };
+                self.m.driver(name, note, Drives::Coordinate(only), law);
             }
-            _ => self.m.coupler(name, note, terms),
+            _ => self.m.coupler_to(name, note, terms, a[0]),
         }
-        match a[0] {
-            0.0 => self.notes.taken(kind, name, at),
-            _ => self.notes.approximated(
-                kind,
-                name,
-                at,
-                "its constant is left out: the relation counts from the drawing",
-            ),
-        }
+        self.notes.taken(kind, name, at);
     }
 
     /// A tendon of constant length between two sites: a rod.
@@ -252,17 +264,16 @@ impl<'d> Reader<'d, '_> {
             return;
         }
         let constant = self.attribute(element, "polycoef", None).and_then(|(p, _)| xml::numbers(&p));
-        match constant.and_then(|c| c.first().copied()).unwrap_or(0.0) {
-            0.0 => self.notes.taken("tendon", name, at),
-            _ => self.notes.approximated(
-                "tendon",
-                name,
-                at,
-                "its constant is left out: the rod is as long as it is drawn",
-            ),
+        let constant = constant.and_then(|c| c.first().copied()).unwrap_or(0.0);
+        let length = (to.r - from.r).norm() + constant;
+        if !(length > 0.0) {
+            self.notes.refused("tendon", name, at, format!("it would be {length} m long"));
+            return;
         }
+        self.notes.taken("tendon", name, at);
         let note = Called { kind: "tendon", name, at }.note(self.notes);
-        self.m.joint(Joint::new(name, note, "distance", [i, j], to.r).between(from.r, to.r));
+        let rod = Joint::new(name, note, "distance", [i, j], to.r).between(from.r, to.r);
+        self.m.joint(Joint { length: (constant != 0.0).then_some(length), ..rod });
     }
 
     /// Tendons: fixed ones are sums of joints, those between two sites can be rods.
@@ -292,8 +303,55 @@ impl<'d> Reader<'d, '_> {
                     self.rods.insert(name.to_owned(), [from.clone(), to.clone()]);
                 }
                 // It holds nothing of its own; an equality may.
-                self.notes.ignored(node.tag_name().name(), xml::at(text, node));
+                self.tendon_spring(element, name);
             }
         }
     }
+
+    /// The spring and damper of a tendon between two sites, and what else it has.
+    fn tendon_spring(&mut self, element: Element<'d>, name: &str) {
+        let (text, node) = element;
+        let (kind, at) = (node.tag_name().name(), xml::at(text, node));
+        let list = |key: &str| node.attribute(key).and_then(xml::numbers).unwrap_or_default();
+        let first = |key: &str| list(key).first().copied().unwrap_or(0.0);
+        if node.has_attribute("range") && node.attribute("limited") != Some("false") {
+            self.notes.refused(kind, name, at, "its limits are not held: drivers prescribe what moves");
+        }
+        robot::friction(self.notes, name, at, first("frictionloss"));
+        let [stiffness, damping] = ["stiffness", "damping"].map(first);
+        if stiffness == 0.0 && damping == 0.0 {
+            self.notes.ignored(kind, at);
+            return;
+        }
+        let lengths = list("springlength");
+        let ends = self.rods.get(name).map(|ends| ends.each_ref().map(|site| self.sites.get(site).copied()));
+        let (Some([Some((i, from)), Some((j, to))]), true) = (ends, lengths.len() < 2 && are_two(ends))
+        else {
+            let why = "only springs of tendons between two sites on two bodies, with one length, have an equivalent";
+            self.notes.refused(kind, name, at, why);
+            return;
+        };
+        if !(stiffness >= 0.0 && damping >= 0.0) {
+            self.notes.refused(kind, name, at, "no spring has a stiffness or damping below zero");
+            return;
+        }
+        let called = Called { kind, name, at };
+        // A length below zero stands for that of the drawing.
+        let free = lengths.first().copied().filter(|l| *l > 0.0 && stiffness > 0.0);
+        self.m.force(Force {
+            name: name.to_owned(),
+            note: called.note(self.notes),
+            on: ForceOn::Points([(i, from.r), (j, to.r)]),
+            stiffness,
+            damping,
+            free,
+            preload: None,
+        });
+        self.notes.taken(kind, name, at);
+    }
+}
+
+/// Whether the two ends of a tendon are on two bodies.
+fn are_two(ends: Option<[Option<(usize, Pose)>; 2]>) -> bool {
+    matches!(ends, Some([Some((i, _)), Some((j, _))]) if i != j)
 }

@@ -1,27 +1,74 @@
 //! Joints of SDFormat: their axes, what ties them to each other, and what Drake adds.
 
+use std::collections::BTreeMap;
+
 use hardpoint::space::{Pose, Vec3};
 use roxmltree::Node;
 
 use super::{Frame, Model, Reader, version};
 use crate::markers::{Called, Joined, Marker, carrying, join, way};
-use crate::mechanism::Coordinate;
+use crate::mechanism::{Coordinate, Mechanism};
 use crate::turn::home;
-use crate::xml;
-use crate::xml::{child, children, exactly, named};
+use crate::xml::{Vocabulary, child, children, exactly, local, named};
+use crate::{robot, xml};
 
-/// What a joint consists of that says how it moves.
-const OF_JOINTS: [&str; 10] = [
-    "parent",
-    "child",
-    "pose",
-    "axis",
-    "axis2",
-    "thread_pitch",
-    "screw_thread_pitch",
-    "gearbox_ratio",
-    "gearbox_reference_body",
-    "mimic",
+/// What is known of a joint.
+const JOINT: Vocabulary = Vocabulary {
+    attributes: &["name", "type"],
+    read: &[
+        "parent",
+        "child",
+        "pose",
+        "axis",
+        "axis2",
+        "thread_pitch",
+        "screw_thread_pitch",
+        "gearbox_ratio",
+        "gearbox_reference_body",
+    ],
+    irrelevant: &["physics", "sensor"],
+};
+/// What is known of an axis.
+const AXIS: Vocabulary = Vocabulary {
+    attributes: &[],
+    read: &[
+        "xyz",
+        "use_parent_model_frame",
+        "limit",
+        "dynamics",
+        "mimic",
+        "thread_pitch",
+        "screw_thread_pitch",
+    ],
+    irrelevant: &[],
+};
+/// What is known of the parts of an axis.
+const OF_AXES: [(&str, Vocabulary); 4] = [
+    ("xyz", Vocabulary { attributes: &["expressed_in"], read: &[], irrelevant: &[] }),
+    (
+        "limit",
+        Vocabulary {
+            attributes: &[],
+            read: &["lower", "upper"],
+            irrelevant: &["effort", "velocity", "stiffness", "dissipation", "acceleration"],
+        },
+    ),
+    (
+        "dynamics",
+        Vocabulary {
+            attributes: &[],
+            read: &["damping", "friction", "spring_reference", "spring_stiffness"],
+            irrelevant: &[],
+        },
+    ),
+    (
+        "mimic",
+        Vocabulary {
+            attributes: &["joint", "axis", "multiplier", "offset", "reference"],
+            read: &["multiplier", "offset", "reference"],
+            irrelevant: &[],
+        },
+    ),
 ];
 
 impl<'d> Reader<'d, '_> {
@@ -93,8 +140,13 @@ impl<'d> Reader<'d, '_> {
             let message = format!("there are two joints `{name}`");
             self.notes.problem_with("HP0803", at, message, "rename one of them");
         }
-        for part in children(joint).filter(|p| !OF_JOINTS.contains(&p.tag_name().name())) {
-            self.notes.ignored(part.tag_name().name(), xml::at(text, part));
+        xml::unknown(text, joint, &name, JOINT, self.notes);
+        self.poses_of(text, joint, &name);
+        for axis in children(joint).filter(|c| ["axis", "axis2"].contains(&local(*c))) {
+            xml::unknown(text, axis, &name, AXIS, self.notes);
+            for (part, words) in OF_AXES {
+                named(axis, part).for_each(|part| xml::unknown(text, part, &name, words, self.notes));
+            }
         }
         let ends = ["parent", "child"].map(|end| self.end(joint, model, end));
         let [Some(i), Some(j)] = ends else { return };
@@ -159,7 +211,27 @@ impl<'d> Reader<'d, '_> {
                 ),
             }
         }
-        self.joints.insert(full, Joined { number, kind: type_name, markers: [i, j] });
+        let joined = Joined { number, kind: type_name, markers: [i, j] };
+        self.dynamics(joint, text, &full, only_coordinate(&joined));
+        self.joints.insert(full, joined);
+    }
+
+    /// Springs and dampers of a joint.
+    fn dynamics(&mut self, joint: Node<'d, 'd>, text: usize, name: &str, coordinate: Option<Coordinate>) {
+        for dynamics in children(joint).flat_map(|axis| named(axis, "dynamics")) {
+            let at = xml::at(text, dynamics);
+            let [stiffness, damping, free, friction] =
+                ["spring_stiffness", "damping", "spring_reference", "friction"].map(|key| {
+                    let Some(n) = child(dynamics, key) else { return 0.0 };
+                    let words = n.text().unwrap_or_default();
+                    let found = exactly::<1>(words, &format!("`{key}`"), xml::at(text, n), self.notes);
+                    let [x] = found.unwrap_or_default();
+                    x
+                });
+            let called = Called { kind: "spring", name, at };
+            robot::joint_spring(&mut self.m, self.notes, called, coordinate, [stiffness, damping, free]);
+            robot::friction(self.notes, name, at, friction);
+        }
     }
 
     /// What ties a joint to others: `mimic`, and gearboxes.
@@ -198,17 +270,7 @@ impl<'d> Reader<'d, '_> {
                 self.notes.problem_with("HP0803", at, message, "name a joint that turns or slides");
                 continue;
             };
-            let note = Called { kind: "mimic of", name: other, at }.note(self.notes);
-            self.m.coupler(&format!("{name}_mimic"), note, vec![(own, 1.0), (master, -factor)]);
-            match drawn {
-                0.0 => self.notes.taken("mimic", name, at),
-                _ => self.notes.approximated(
-                    "mimic",
-                    name,
-                    at,
-                    "its offset is left out: both joints count from the drawing",
-                ),
-            }
+            robot::follow(&mut self.m, self.notes, [name, other], at, [own, master], [factor, drawn]);
         }
         if joint.attribute("type").map(str::trim) != Some("gearbox") {
             return;
@@ -254,10 +316,81 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
+    /// What other programs add to models: joints that follow others by plugins, equalities of MuJoCo, joints that close loops.
+    pub(super) fn extensions(&mut self, model: &Model<'d>) {
+        let (text, scope) = (model.text, &model.scope);
+        for node in named(model.node, "plugin") {
+            let Some(f) = robot::mimic_plugin(text, node, self.notes) else { continue };
+            let at = xml::at(text, node);
+            let ends = [&f.own, &f.master]
+                .map(|n| self.joints.get(&format!("{scope}{n}")).and_then(only_coordinate));
+            match ends {
+                [Some(own), Some(master)] if own != master => {
+                    // Most models say it twice, for those that draw them and for those that simulate them.
+                    let coupled = |c: &crate::mechanism::Coupler| {
+                        c.terms.len() == 2 && [own, master].iter().all(|x| c.terms.iter().any(|t| t.0 == *x))
+                    };
+                    if !self.m.couplers.iter().any(coupled) {
+                        let constants = [f.factor, f.offset];
+                        robot::follow(
+                            &mut self.m,
+                            self.notes,
+                            [&f.own, &f.master],
+                            at,
+                            [own, master],
+                            constants,
+                        );
+                    }
+                }
+                _ => {
+                    let why = format!(
+                        "there are no joints `{}` and `{}`, of which one follows the other",
+                        f.own, f.master
+                    );
+                    self.notes.refused("plugin", node.attribute("name").unwrap_or_default(), at, why);
+                }
+            }
+        }
+        for node in named(model.node, "loop_joint") {
+            let why = "an extension of URDF: write a `joint` of this model instead, which may close a loop";
+            self.notes.refused(
+                "loop_joint",
+                node.attribute("name").unwrap_or_default(),
+                xml::at(text, node),
+                why,
+            );
+        }
+        let blocks: Vec<Node<'d, 'd>> = named(model.node, "mujoco").collect();
+        if blocks.is_empty() {
+            return;
+        }
+        let within = |name: &str| name.strip_prefix(scope.as_str()).map(str::to_owned);
+        let mut bodies = BTreeMap::new();
+        for (name, body) in &self.bodies {
+            let pose = self.m.bodies[*body].pose;
+            bodies.extend(within(name).zip(pose).map(|(name, pose)| (name, (*body, pose))));
+        }
+        let joints =
+            self.joints.iter().filter_map(|(name, j)| Some((within(name)?, only_coordinate(j)?))).collect();
+        let m = std::mem::replace(&mut self.m, Mechanism::new("", "m", "rad"));
+        self.m = crate::mjcf::extension(m, self.notes, &blocks, text, &bodies, &joints);
+    }
+
     /// What Drake adds to models.
     pub(super) fn constraints(&mut self, model: &Model<'d>) {
         for (k, node) in named(model.node, "ball_constraint").enumerate() {
             let at = xml::at(model.text, node);
+            const KNOWN: Vocabulary = Vocabulary {
+                attributes: &[],
+                read: &[
+                    "ball_constraint_body_A",
+                    "ball_constraint_p_AP",
+                    "ball_constraint_body_B",
+                    "ball_constraint_p_BQ",
+                ],
+                irrelevant: &[],
+            };
+            xml::unknown(model.text, node, "", KNOWN, self.notes);
             let ends = [
                 ("ball_constraint_body_A", "ball_constraint_p_AP"),
                 ("ball_constraint_body_B", "ball_constraint_p_BQ"),

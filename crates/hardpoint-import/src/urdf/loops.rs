@@ -1,44 +1,194 @@
 //! What URDF has no element of its own for: joints that follow others, loops, floating links.
 
-use hardpoint::space::{Pose, Vec3};
+use std::collections::BTreeSet;
+
+use hardpoint::space::{Mat3, Pose, Vec3};
 use roxmltree::Node;
 
-use super::{Mimic, Reader, WITHOUT_AXIS, Written, pose};
+use super::{
+    IRRELEVANT_IN_GAZEBO, Mimic, Reader, STANDARD_GRAVITY, WITHOUT_AXIS, Written, pose, value_as_drawn,
+};
 use crate::markers::Called;
+use crate::mechanism::Mechanism;
+use crate::robot::{self, Follower};
 use crate::turn::{Z, home, roll_pitch_yaw};
 use crate::xml;
-use crate::xml::{attribute, attribute_at, child, children, named};
+use crate::xml::{Vocabulary, attribute, attribute_at, child, children, local, named};
+
+/// What is known of a joint that closes a loop.
+const LOOP: Vocabulary = Vocabulary {
+    attributes: &["name", "type"],
+    read: &["link1", "link2", "parent", "child", "origin", "parent_origin", "child_origin", "pose", "axis"],
+    irrelevant: &["limit", "dynamics", "physics", "sensor"],
+};
+/// What is known of a ball constraint.
+const BALL_CONSTRAINT: Vocabulary = Vocabulary {
+    attributes: &[],
+    read: &[
+        "ball_constraint_body_A",
+        "ball_constraint_p_AP",
+        "ball_constraint_body_B",
+        "ball_constraint_p_BQ",
+    ],
+    irrelevant: &[],
+};
+/// Links lighter than this, kg, are there for their frames.
+const LIGHT: f64 = 1e-6;
 
 impl<'a, 'i> Reader<'a, 'i, '_> {
-    /// What plugins of Gazebo say of joints that follow others: in `mimicJoint` the one that follows.
+    /// What plugins of Gazebo and `ros2_control` say of joints that follow others.
     pub(super) fn followers(&mut self, robot: Node<'a, 'i>, joints: &mut [Written<'a, 'i>]) {
-        for node in named(robot, "gazebo").flat_map(|g| named(g, "plugin")) {
-            let text = |key| Some(child(node, key)?.text()?.trim().to_owned());
-            let Some(follows) = text("mimicJoint") else { continue };
-            let master = text("joint").or_else(|| text("jointName")).unwrap_or_default();
-            let at = xml::at(0, node);
-            let [mut factor, mut offset] = [1.0, 0.0];
-            for (key, to) in [("multiplier", &mut factor), ("offset", &mut offset)] {
-                let Some(element) = child(node, key) else { continue };
-                let what = format!("`{key}`");
-                let words = element.text().unwrap_or_default();
-                if let Some([x]) = xml::exactly::<1>(words, &what, xml::at(0, element), self.notes) {
-                    *to = x;
-                }
-            }
+        let mut found = Vec::new();
+        for node in named(robot, "gazebo").flat_map(|g| named(g, "plugin")).chain(named(robot, "plugin")) {
+            found.extend(robot::mimic_plugin(0, node, self.notes));
+        }
+        for node in named(robot, "ros2_control") {
+            found.extend(robot::followers_of_control(0, node, self.notes));
+        }
+        for Follower { node, own, master, factor, offset } in found {
             let is_there = joints.iter().any(|j| j.name == master);
-            match joints.iter_mut().find(|j| j.name == follows) {
+            match joints.iter_mut().find(|j| j.name == own) {
                 Some(j) if is_there => {
                     // Most robots say it twice, for those that draw them and for those that simulate them.
                     j.mimic.get_or_insert(Mimic { node, joint: master, factor, offset });
                 }
                 _ => {
-                    let why = format!(
-                        "there are no joints `{follows}` and `{master}`, of which one follows the other"
-                    );
-                    self.notes.refused("plugin", node.attribute("name").unwrap_or_default(), at, why);
+                    let why =
+                        format!("there are no joints `{own}` and `{master}`, of which one follows the other");
+                    let (kind, name) = (node.tag_name().name(), node.attribute("name").unwrap_or_default());
+                    self.notes.refused(kind, name, xml::at(0, node), why);
                 }
             }
+        }
+    }
+
+    /// Springs and dampers of joints, of their own and those that Gazebo is told of.
+    pub(super) fn springs(&mut self, robot: Node<'a, 'i>, joints: &[Written<'a, 'i>]) {
+        for (k, j) in joints.iter().enumerate() {
+            let [mut stiffness, damping, mut free] = j.spring;
+            let mut at = child(j.node, "dynamics").and_then(|d| xml::at(0, d));
+            for node in named(robot, "gazebo").filter(|g| g.attribute("reference") == Some(j.name.as_str())) {
+                for (key, to) in [("springStiffness", &mut stiffness), ("springReference", &mut free)] {
+                    let Some(element) = child(node, key) else { continue };
+                    let words = element.text().unwrap_or_default();
+                    at = xml::at(0, element);
+                    if let Some([x]) = xml::exactly::<1>(words, &format!("`{key}`"), at, self.notes) {
+                        *to = x;
+                    }
+                }
+            }
+            // Coordinates count from the drawing.
+            let free = free - value_as_drawn(joints, k, 0);
+            let called = Called { kind: "spring", name: &j.name, at };
+            let coordinate = self.joints.get(&j.name).copied();
+            robot::joint_spring(&mut self.m, self.notes, called, coordinate, [stiffness, damping, free]);
+        }
+    }
+
+    /// The masses of links.
+    pub(super) fn masses(&mut self) {
+        let links: Vec<(String, Node<'a, 'i>)> = self.links.iter().map(|(n, l)| (n.clone(), *l)).collect();
+        for (name, link) in links {
+            let (Some(inertial), Some((body, outer))) =
+                (child(link, "inertial"), self.poses.get(&name).copied())
+            else {
+                continue;
+            };
+            let frame = outer.compose(self.origin(inertial));
+            let one = |reader: &mut Self, e: Option<Node<'a, 'i>>, key| {
+                let [x] = e.and_then(|e| attribute::<1>(0, e, key, reader.notes)).unwrap_or_default();
+                x
+            };
+            let mass = one(self, child(inertial, "mass"), "value");
+            let matrix = child(inertial, "inertia");
+            let [xx, yy, zz, xy, xz, yz] =
+                ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"].map(|k| one(self, matrix, k));
+            let matrix = Mat3 { cols: [[xx, xy, xz].into(), [xy, yy, yz].into(), [xz, yz, zz].into()] };
+            let called = Called { kind: "inertial", name: &name, at: xml::at(0, inertial) };
+            robot::mass(&mut self.m, self.notes, called, body, frame, mass, Some(matrix));
+        }
+        if !self.m.masses.is_empty() {
+            self.m.gravity = Some([0.0, 0.0, -STANDARD_GRAVITY].into());
+            let why = format!("URDF has none: {STANDARD_GRAVITY} m/s^2 along -z");
+            self.notes.approximated("gravity", "", None, why);
+        }
+    }
+
+    /// Equalities of MuJoCo in a URDF file.
+    pub(super) fn mujoco(&mut self, robot: Node<'a, 'i>) {
+        let blocks: Vec<Node<'a, 'i>> = named(robot, "mujoco").collect();
+        if blocks.is_empty() {
+            return;
+        }
+        let m = std::mem::replace(&mut self.m, Mechanism::new("", "m", "rad"));
+        self.m = crate::mjcf::extension(m, self.notes, &blocks, 0, &self.poses, &self.joints);
+    }
+
+    /// What is in an element for Gazebo.
+    pub(super) fn gazebo(&mut self, node: Node<'a, 'i>) {
+        const READ: [&str; 2] = ["joint", "springStiffness"];
+        let owner = node.attribute("reference").unwrap_or_default();
+        let mut told = false;
+        for part in children(node) {
+            match local(part) {
+                name if READ.contains(&name) => told = true,
+                name if IRRELEVANT_IN_GAZEBO.contains(&name) => {}
+                "plugin" => {
+                    told = true;
+                    if robot::is_mimic_plugin(part) {
+                        continue;
+                    }
+                    robot::plugin(0, part, self.notes);
+                }
+                name => {
+                    told = true;
+                    let why = "an element for Gazebo that is not known here";
+                    self.notes.not_understood(name, owner, xml::at(0, part), why);
+                }
+            }
+        }
+        if !told {
+            self.notes.ignored("gazebo", xml::at(0, node));
+        }
+    }
+
+    /// An element of the robot that is not known: perhaps the way in which another program closes loops.
+    pub(super) fn unknown(&mut self, kind: &str, node: Node<'a, 'i>) {
+        let mut named: Vec<&str> = Vec::new();
+        for n in node.descendants() {
+            let words = n.attributes().map(|a| a.value()).chain(n.is_text().then(|| n.text()).flatten());
+            for word in words.map(str::trim) {
+                if self.links.contains_key(word) && !named.contains(&word) && named.len() < 3 {
+                    named.push(word);
+                }
+            }
+        }
+        let at = xml::at(0, node);
+        let why = match named[..] {
+            [a, b] => {
+                let why = format!(
+                    "it names the links `{a}` and `{b}`: if it closes a loop, `--close {a}={b}` does so at their origins, \
+                     `--close {a}@X,Y,Z={b}@X,Y,Z` at places in them"
+                );
+                self.notes.remark(format!("`{kind}` is not understood, and may close a loop: {why}"));
+                why
+            }
+            _ => "an element of the robot that is not known here".to_owned(),
+        };
+        self.notes.not_understood(kind, node.attribute("name").unwrap_or_default(), at, why);
+    }
+
+    /// The frames of all links.
+    pub(super) fn frames(&mut self, joints: &[Written<'a, 'i>]) {
+        let parents: BTreeSet<&str> = joints.iter().map(|j| j.parent.as_str()).collect();
+        for (name, (body, pose)) in &self.poses {
+            let shaped = self.links.get(name).is_none_or(|l| {
+                ["visual", "collision"].iter().any(|key| child(*l, key).is_some())
+                    || child(*l, "inertial")
+                        .and_then(|i| child(i, "mass")?.attribute("value")?.parse().ok())
+                        .is_some_and(|m: f64| m > LIGHT)
+            });
+            self.m.frame(name, *body, *pose, !shaped && !parents.contains(name.as_str()));
         }
     }
 
@@ -74,7 +224,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     }
 
     /// Joints that close loops: `loop_joint`, with the places on both links as in Drake and Isaac Sim, or like a joint; ball constraints
-    /// of Drake; joints of SDF in a `gazebo` element; and frames that onshape-to-robot leaves where it cuts a loop.
+    /// of Drake; joints of SDF in a `gazebo` element.
     pub(super) fn loops(&mut self, robot: Node<'a, 'i>) {
         for node in named(robot, "loop_joint") {
             let Some(name) = self.name(node) else { continue };
@@ -90,13 +240,17 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 }),
                 _ => self.ends(node),
             };
+            xml::unknown(0, node, &name, LOOP, self.notes);
             if let [Some(i), Some(j)] = ends {
-                // Directions are those of the first link.
-                let j = (j.0, Pose { rot: i.1.rot, r: j.1.r });
+                // Directions are those of the first link, but where frames are held together and both are written.
+                let both = links.len() == 2 && links.iter().all(|end| end.has_attribute("rpy"));
+                let rot = if kind == "fixed" && both { j.1.rot } else { i.1.rot };
+                let j = (j.0, Pose { rot, r: j.1.r });
                 self.connect(node, &name, &kind, [i, j], axis);
             }
         }
         for (k, node) in named(robot, "ball_constraint").enumerate() {
+            xml::unknown(0, node, "", BALL_CONSTRAINT, self.notes);
             let ends = [
                 ("ball_constraint_body_A", "ball_constraint_p_AP"),
                 ("ball_constraint_body_B", "ball_constraint_p_BQ"),
@@ -117,6 +271,10 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
         for node in named(robot, "gazebo").flat_map(|g| named(g, "joint")) {
             let Some(name) = self.name(node) else { continue };
+            xml::unknown(0, node, &name, LOOP, self.notes);
+            let words =
+                Vocabulary { attributes: &[], read: &["xyz"], irrelevant: &["limit", "dynamics", "physics"] };
+            child(node, "axis").into_iter().for_each(|axis| xml::unknown(0, axis, &name, words, self.notes));
             let kind = node.attribute("type").unwrap_or_default().to_ascii_lowercase();
             let [Some(i), Some(j)] = self.ends(node) else { continue };
             let axis = child(node, "axis").and_then(|a| child(a, "xyz"));
@@ -130,21 +288,6 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 continue;
             }
             self.connect(node, &name, &kind, [(i.0, j.1), j], axis);
-        }
-        let cut: Vec<String> = self
-            .links
-            .keys()
-            .filter(|n| n.starts_with("closing_"))
-            .filter_map(|n| Some(n.strip_suffix("_1")?.to_owned()))
-            .collect();
-        for name in cut {
-            let ends = ["1", "2"].map(|k| format!("{name}_{k}"));
-            let found = ends.each_ref().map(|end| self.poses.get(end).copied());
-            let ([Some(i), Some(j)], Some(&node)) = (found, self.links.get(&ends[0])) else { continue };
-            let why =
-                "a loop that onshape-to-robot has cut: its two frames are taken to meet in a ball joint";
-            self.notes.approximated("loop", &name, xml::at(0, node), why);
-            self.connect(node, &name, "ball", [i, j], Z.into());
         }
     }
 

@@ -1,11 +1,14 @@
 //! Files of other programs become models that run.
 
+mod bounded;
 mod broken;
+mod extensions;
 mod four_bars;
 mod fuzz;
 mod meanings;
 mod models;
 mod robots;
+mod unknown;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -32,7 +32,9 @@ fn every_file_becomes_a_model_that_moves_from_end_to_end_and_follows_its_variabl
             let follows = !matches!(is, Admissibility::CannotFollow { .. });
             assert!(follows, "{}: `{}` cannot be followed", path.display(), variable.name);
         }
-        assert!(file.remarks.iter().all(|r| r.code == "HP0503"), "{}: {:?}", path.display(), file.remarks);
+        // Redundant loops, and bodies whose source gives no mass, are noted.
+        let noted = |code: &str| ["HP0503", "HP0253"].contains(&code);
+        assert!(file.remarks.iter().all(|r| noted(r.code)), "{}: {:?}", path.display(), file.remarks);
     }
 }
 

@@ -74,7 +74,7 @@ const ARM: &str = r#"<robot name="arm">
 fn texts_are_read_however_exporters_write_them() {
     let (plain, file) = read("arm.urdf", ARM);
     is_at(place(&file, "flange"), [0.0, 0.0, 1.5]);
-    assert_eq!(told(&plain, Fate::Ignored, "dynamics").len(), 1);
+    assert_eq!(told(&plain, Fate::Taken, "spring").len(), 1);
     let remark = "<!-- ==== -- an arm -- ==== -->";
     let utf16: Vec<u8> = format!("\u{feff}{ARM}").encode_utf16().flat_map(u16::to_le_bytes).collect();
     let ways: [(&str, Vec<u8>); 7] = [

@@ -252,12 +252,14 @@ pub struct CouplerDraft {
     pub name: String,
     /// What couples what.
     pub kind: CouplerKindDraft,
+    /// Value of the sum of its terms; zero for gears, racks and belts.
+    pub constant: f64,
 }
 
 /// What a coupler is made of. Angles and displacements count along their joints' own axes, of body j relative to body i.
 #[derive(Clone, Debug)]
 pub enum CouplerKindDraft {
-    /// `sum of coefficient x coordinate = 0`.
+    /// `sum of coefficient x coordinate = constant`.
     Linear(Vec<TermDraft>),
     /// Two joints, each with the coordinate that the transmission couples.
     Pair {

@@ -3,7 +3,7 @@
 use super::JointId;
 
 /// A linear relation between joint coordinates, each counted from the design configuration and through whole turns:
-/// `sum of coefficient x coordinate = 0`.
+/// `sum of coefficient x coordinate = constant`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coupler {
     /// Its name; that of the joint for a screw.
@@ -12,6 +12,8 @@ pub struct Coupler {
     pub transmission: Option<Transmission>,
     /// Its terms; no coefficient is zero. A change of the design leaves them alone.
     pub terms: Vec<CouplerTerm>,
+    /// Value of the sum, in the unit of its terms. Where it is not zero, the mechanism is assembled to it.
+    pub constant: f64,
 }
 
 /// A joint coordinate times a number.

@@ -107,7 +107,9 @@ impl PlanGeometry<f64> {
 fn kept<T: Real>(topology: &Topology, design: &Geometry<T>) -> Vec<T> {
     let of_row = |place: &RowPlace| {
         let closure = &topology[place.closure];
-        design.kept[closure.joint.0].by(closure.rows[place.index])
+        // A coupler's sum counts from its constant, by its first term.
+        let constant = T::constant(place.constant);
+        design.kept[closure.joint.0].by(closure.rows[place.index]) + constant
     };
     topology.rows.iter().map(of_row).collect()
 }

@@ -235,6 +235,8 @@ pub struct RowPlace {
     pub columns: Vec<CoupledColumn>,
     /// Whether it is a further term of a coupler, and no constraint by itself.
     pub is_term: bool,
+    /// Of the first term of a coupler: the value of the sum, per coefficient of this term; else zero.
+    pub constant: f64,
     /// What its residual is compared with: the size of its loop, m, if that is a length; else 1.
     pub unit: f64,
 }

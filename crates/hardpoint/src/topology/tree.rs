@@ -106,6 +106,7 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
             factor: t.coefficient / coupler.terms[0].coefficient,
         });
         topology.rows[first].terms = factors.collect();
+        topology.rows[first].constant = coupler.constant / coupler.terms[0].coefficient;
         topology.coupled_rows.push(RowId(first));
         for k in 1..coupler.terms.len() {
             topology.rows[first + k].is_term = true;
@@ -258,6 +259,7 @@ fn add_closure(
             terms: Vec::new(),
             columns: Vec::new(),
             is_term: false,
+            constant: 0.0,
             unit: 1.0,
         });
     }

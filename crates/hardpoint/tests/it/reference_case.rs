@@ -62,9 +62,11 @@ impl Case {
                 })
             });
             let terms: Vec<TermDraft> = terms.collect::<Result<_, String>>()?;
-            draft
-                .couplers
-                .push(CouplerDraft { name: text(c, "name")?, kind: CouplerKindDraft::Linear(terms) });
+            draft.couplers.push(CouplerDraft {
+                name: text(c, "name")?,
+                kind: CouplerKindDraft::Linear(terms),
+                constant: 0.0,
+            });
         }
         for d in list(&json, "drivers") {
             let coordinate = |name: &str| -> Result<DrivenDraft, String> {

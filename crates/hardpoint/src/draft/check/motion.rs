@@ -118,6 +118,10 @@ impl Checker<'_> {
                 self.fault("HP0224", here.key(ratios), message)
                     .help("give every joint a number of teeth, a radius or a coefficient other than zero");
             }
+            if !c.constant.is_finite() {
+                let message = format!("the constant of coupler `{}` is not finite", c.name);
+                self.fault("HP0224", here.key("constant"), message).help("give it a finite number");
+            }
             let twice = (1..terms.len()).any(|k| {
                 terms[..k].iter().any(|t| t.joint == terms[k].joint && t.coordinate == terms[k].coordinate)
             });
@@ -126,7 +130,12 @@ impl Checker<'_> {
                 self.fault("HP0224", here.key(joints), message)
                     .help("name two joints, or two coordinates of one joint");
             }
-            self.model.couplers.push(Coupler { name: c.name.clone(), transmission, terms });
+            self.model.couplers.push(Coupler {
+                name: c.name.clone(),
+                transmission,
+                terms,
+                constant: c.constant,
+            });
         }
         for k in 0..draft.joints.len() {
             if let (Some(joint), Some(lead)) = (self.joint_ids[k], draft.joints[k].lead) {
@@ -139,7 +148,7 @@ impl Checker<'_> {
                 };
                 let terms = by.relation().map(term).into();
                 let name = draft.joints[k].name.clone();
-                self.model.couplers.push(Coupler { name, transmission: Some(by), terms });
+                self.model.couplers.push(Coupler { name, transmission: Some(by), terms, constant: 0.0 });
             }
         }
     }

@@ -570,7 +570,7 @@ impl<'r> Drawing<'r> {
 
     fn coupler(&mut self, kind: CouplerKindDraft) {
         let name = format!("c{}", self.draft.couplers.len());
-        self.draft.couplers.push(CouplerDraft { name, kind });
+        self.draft.couplers.push(CouplerDraft { name, kind, constant: 0.0 });
     }
 
     /// All coordinates of joints that are not constant: joint, name, type.

@@ -1,0 +1,233 @@
+//! Loops that a source leaves open: frames on two bodies that meet, as the user names them, or as they look like a pair.
+
+use std::collections::BTreeSet;
+use std::str::FromStr;
+
+use crate::markers::{Called, Marker, join};
+use crate::mechanism::{Mechanism, NamedFrame};
+use crate::report::Notes;
+use crate::robot;
+use crate::turn::home;
+
+/// Types of joints that can close a loop between two frames; all but the first and the second have an axis.
+const TYPES: [&str; 6] = ["spherical", "fixed", "revolute", "cylindrical", "translational", "planar"];
+/// Axes of a frame.
+const AXES: [&str; 3] = ["x", "y", "z"];
+/// Frames nearer than this part of the mechanism's size are at one place.
+const SAME_PLACE: f64 = 1e-6;
+/// So many pairs of frames are named.
+const MOST_NAMED: usize = 8;
+/// So many frames are looked at for pairs.
+const MOST_FRAMES: usize = 1000;
+/// Words in the names of frames that are made for loops.
+const OF_LOOPS: [&str; 6] = ["loop", "clos", "cut", "weld", "constraint", "mate"];
+/// Ends of names that go together.
+const ENDS: [(&str, &str); 8] = [
+    ("_1", "_2"),
+    ("_a", "_b"),
+    ("_A", "_B"),
+    ("_i", "_j"),
+    ("_parent", "_child"),
+    ("_predecessor", "_successor"),
+    ("1", "2"),
+    ("A", "B"),
+];
+
+/// Two frames that a joint closes a loop between: `A=B`, `A=B:revolute`, `A=B:revolute:x`, `A@0.2,0,0=B`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Closing {
+    /// The names of the frames.
+    pub frames: [String; 2],
+    /// Places in these frames, from their origins along their axes, in the source's unit.
+    pub places: [[f64; 3]; 2],
+    /// The joint type.
+    pub kind: &'static str,
+    /// Which axis of the first frame the joint has: 0, 1, 2 for x, y, z.
+    pub axis: usize,
+}
+
+impl FromStr for Closing {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut rest = text.trim();
+        // Names of frames in SDFormat hold `::`.
+        let suffix = |rest: &mut &str, known: &[&'static str]| {
+            let (before, last) = rest.rsplit_once(':').filter(|(before, _)| !before.ends_with(':'))?;
+            let found = known.iter().position(|k| *k == last)?;
+            *rest = before;
+            Some(found)
+        };
+        let axis = suffix(&mut rest, &AXES);
+        let kind = suffix(&mut rest, &TYPES);
+        let ends = rest.split_once('=').map(|(a, b)| [a, b].map(end));
+        let (Some([Some(a), Some(b)]), true) = (ends, axis.is_none() || kind.is_some()) else {
+            return Err(format!(
+                "`{text}` names no two frames: write `A=B`, `A=B:TYPE` with a type of {}, or `A=B:TYPE:AXIS` with x, y or z of frame A; \
+                 a place in a frame is written behind it, as `A@0.2,0,0=B`",
+                TYPES.join(", ")
+            ));
+        };
+        let (frames, places) = ([a.0, b.0], [a.1, b.1]);
+        Ok(Self { frames, places, kind: TYPES[kind.unwrap_or(0)], axis: axis.unwrap_or(2) })
+    }
+}
+
+/// A frame and a place in it: `NAME`, or `NAME@x,y,z`.
+fn end(text: &str) -> Option<(String, [f64; 3])> {
+    let (name, place) = match text.rsplit_once('@') {
+        Some((name, place)) => {
+            let numbers: Option<Vec<f64>> = place.split(',').map(|x| x.trim().parse().ok()).collect();
+            (name, <[f64; 3]>::try_from(numbers?).ok().filter(|p| p.iter().all(|x| x.is_finite()))?)
+        }
+        None => (text, [0.0; 3]),
+    };
+    Some((name.trim().to_owned(), place)).filter(|(name, _)| !name.is_empty())
+}
+
+/// Closes loops between frames that the user has named.
+pub fn close(m: &mut Mechanism, notes: &mut Notes, closings: &[Closing]) {
+    for closing in closings {
+        let ends = closing.frames.each_ref().map(|name| {
+            let found = m.frames.iter().find(|f| f.name == *name).cloned();
+            if found.is_none() {
+                let near = hardpoint::draft::did_you_mean(name, m.frames.iter().map(|f| f.name.as_str()));
+                let help = near.map_or_else(
+                    || {
+                        "name links of URDF, links and frames of SDFormat, or bodies and sites of MJCF"
+                            .to_owned()
+                    },
+                    |near| format!("did you mean `{near}`?"),
+                );
+                notes.problem_with(
+                    "HP0803",
+                    None,
+                    format!("there is no frame `{name}` to close a loop at"),
+                    &help,
+                );
+            }
+            found
+        });
+        let [Some(mut a), Some(mut b)] = ends else { continue };
+        for (frame, place) in [&mut a, &mut b].into_iter().zip(closing.places) {
+            frame.pose.r = frame.pose.point(place.into());
+        }
+        let name = format!("{}_{}", a.name, b.name);
+        connect(m, notes, &name, closing.kind, closing.axis, [&a, &b]);
+    }
+}
+
+fn connect(
+    m: &mut Mechanism,
+    notes: &mut Notes,
+    name: &str,
+    kind: &'static str,
+    axis: usize,
+    ends: [&NamedFrame; 2],
+) {
+    let called = Called { kind: "loop", name, at: None };
+    if kind == "fixed" {
+        let ends = ends.map(|f| Marker { body: f.body, pose: f.pose });
+        robot::weld(m, notes, called, kind, ends);
+        return;
+    }
+    let markers = ends.map(|f| match kind {
+        "spherical" => {
+            Some(Marker { body: f.body, pose: hardpoint::space::Pose { rot: home().rot, r: f.pose.r } })
+        }
+        _ => Marker::along(f.body, f.pose.r, f.pose.rot.cols[axis]),
+    });
+    if let [Some(i), Some(j)] = markers {
+        join(m, notes, called, kind, [i, j]);
+    }
+}
+
+/// Closes the loops that onshape-to-robot has cut: it leaves two frames, `closing_NAME_1` and `closing_NAME_2`.
+pub fn of_exporters(m: &mut Mechanism, notes: &mut Notes) {
+    let cut = |f: &NamedFrame| {
+        Some(f.name.rsplit("::").next()?.strip_prefix("closing_")?.strip_suffix("_1")?.to_owned())
+    };
+    let first: Vec<(NamedFrame, String)> =
+        m.frames.iter().filter_map(|f| Some((f.clone(), cut(f)?))).collect();
+    for (i, name) in first {
+        let other = format!("{}_2", i.name.trim_end_matches("_1"));
+        let Some(j) = m.frames.iter().find(|f| f.name == other).cloned() else { continue };
+        let group = groups(m);
+        if group[i.body] == group[j.body] || is_joined(m, [&i, &j], &group) {
+            continue;
+        }
+        let name = format!("closing_{name}");
+        let why = "a loop that onshape-to-robot has cut: its two frames are taken to meet in a ball joint";
+        notes.approximated("loop", &name, None, why);
+        connect(m, notes, &name, "spherical", 2, [&i, &j]);
+    }
+}
+
+/// Names frames that look like the two ends of a loop that is cut there.
+pub fn pairs(m: &Mechanism, notes: &mut Notes) {
+    let bare: Vec<&NamedFrame> = m.frames.iter().filter(|f| f.bare).take(MOST_FRAMES).collect();
+    let group = groups(m);
+    let near = SAME_PLACE * m.size();
+    let mut named = BTreeSet::new();
+    for (k, a) in bare.iter().enumerate() {
+        for b in &bare[k + 1..] {
+            let alike = are_a_pair(&a.name, &b.name);
+            let meet = (a.pose.r - b.pose.r).norm() <= near;
+            if !(alike || meet) || group[a.body] == group[b.body] || is_joined(m, [a, b], &group) {
+                continue;
+            }
+            let bodies = [group[a.body].min(group[b.body]), group[a.body].max(group[b.body])];
+            if !named.insert(bodies) {
+                continue;
+            }
+            if named.len() > MOST_NAMED {
+                return;
+            }
+            let why = if meet { "are at one place on two bodies" } else { "have names that go together" };
+            notes.remark(format!(
+                "the frames `{0}` and `{1}` {why}: if a loop is cut there, `--close {0}={1}` closes it with a ball joint, \
+                 `--close {0}={1}:revolute` with a hinge about z of `{0}`",
+                a.name, b.name
+            ));
+        }
+    }
+}
+
+/// Per body, the lowest body that it is fixed to.
+fn groups(m: &Mechanism) -> Vec<usize> {
+    let mut group: Vec<usize> = (0..m.bodies.len()).collect();
+    let find = |group: &[usize], mut b: usize| {
+        while group[b] != b {
+            b = group[b];
+        }
+        b
+    };
+    for joint in m.joints.iter().filter(|j| j.kind == "fixed") {
+        let [a, b] = joint.bodies.map(|b| find(&group, b));
+        group[a.max(b)] = a.min(b);
+    }
+    (0..group.len()).map(|b| find(&group, b)).collect()
+}
+
+/// Whether a joint connects what two frames are on, at the place of one of them.
+fn is_joined(m: &Mechanism, [a, b]: [&NamedFrame; 2], group: &[usize]) -> bool {
+    let near = SAME_PLACE * m.size();
+    let pair = [group[a.body], group[b.body]];
+    m.joints.iter().any(|j| {
+        let [i, k] = j.bodies.map(|b| group[b]);
+        let same = pair == [i, k] || pair == [k, i];
+        same && j.at.iter().any(|at| [a, b].iter().any(|f| (*at - f.pose.r).norm() <= near))
+    })
+}
+
+fn are_a_pair(a: &str, b: &str) -> bool {
+    let lower = a.to_ascii_lowercase();
+    OF_LOOPS.iter().any(|word| lower.contains(word))
+        && ENDS.iter().any(|(x, y)| {
+            let stems = |a: &str, b: &str| match (a.strip_suffix(x), b.strip_suffix(y)) {
+                (Some(a), Some(b)) => a == b,
+                _ => false,
+            };
+            stems(a, b) || stems(b, a)
+        })
+}

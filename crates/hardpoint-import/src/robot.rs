@@ -1,0 +1,379 @@
+//! What the formats of robots share: welds of frames that lie apart, joints that follow others, masses, springs, plugins.
+
+use hardpoint::space::{Mat3, Pose};
+use roxmltree::Node;
+
+use crate::markers::{Called, Marker};
+use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mass, Mechanism};
+use crate::report::{At, Notes};
+use crate::xml::{self, child};
+
+/// Frames that are turned against each other by less than this, rad, are parallel: exporters write six digits.
+const PARALLEL: f64 = 1e-5;
+/// Frames nearer than this part of the mechanism's size are at one place, for the same reason.
+const SAME_PLACE: f64 = 1e-5;
+/// What a principal moment of inertia may be above the sum of the two others, as a part of the largest: files have few digits.
+const FLAT: f64 = 5e-4;
+/// So many links, joints and bodies of a source are read at most.
+pub const MOST_PARTS: usize = 5000;
+/// Words in the names of plugins that measure, control and draw, and hold no bodies together.
+const IRRELEVANT_PLUGINS: &[&str] = &[
+    "ros_control",
+    "ros2_control",
+    "gz_ros",
+    "ign_ros",
+    "diff_drive",
+    "diffdrive",
+    "skid_steer",
+    "ackermann",
+    "tricycle",
+    "camera",
+    "laser",
+    "lidar",
+    "ray_sensor",
+    "imu",
+    "gps",
+    "navsat",
+    "magnet",
+    "sonar",
+    "sensor",
+    "bumper",
+    "contact",
+    "ft_sensor",
+    "force_torque",
+    "forcetorque",
+    "joint_state",
+    "jointstate",
+    "joint-state",
+    "joint_pose",
+    "pose_publish",
+    "pose-publish",
+    "posepublisher",
+    "p3d",
+    "odom",
+    "joint_position_controller",
+    "joint-position-controller",
+    "jointposition",
+    "joint-controller",
+    "jointcontroller",
+    "joint_trajectory",
+    "joint-trajectory",
+    "jointtrajectory",
+    "jointvelocity",
+    "velocity-control",
+    "thruster",
+    "buoyancy",
+    "hydrodynamics",
+    "lift_drag",
+    "lift-drag",
+    "windeffects",
+    "wind_plugin",
+    "battery",
+    "physics",
+    "user-commands",
+    "scene-broadcaster",
+    "scenebroadcaster",
+    "air_pressure",
+    "altimeter",
+    "logical",
+    "vacuum",
+    "gripper",
+    "grasp",
+    "planar_move",
+    "hand_of_god",
+    "video",
+    "prosilica",
+    "openni",
+    "kinect",
+    "realsense",
+    "template",
+];
+
+/// A joint that follows another: `own = factor master + offset`.
+pub struct Follower<'a, 'i> {
+    /// The element that says so.
+    pub node: Node<'a, 'i>,
+    /// The joint that follows.
+    pub own: String,
+    /// The one that it follows.
+    pub master: String,
+    /// By what factor.
+    pub factor: f64,
+    /// And what is added to that.
+    pub offset: f64,
+}
+
+/// The element of a plugin for joints that follow others in which the one that follows is named.
+const FOLLOWS: [&str; 3] = ["mimicJoint", "mimic_joint", "mimicJointName"];
+
+/// Whether a plugin of Gazebo says that a joint follows another.
+pub fn is_mimic_plugin(node: Node<'_, '_>) -> bool {
+    FOLLOWS.iter().any(|key| child(node, *key).is_some())
+}
+
+/// What a plugin of Gazebo says of a joint that follows another, if it is one of those: in `mimicJoint` the one that follows.
+pub fn mimic_plugin<'a, 'i>(text: usize, node: Node<'a, 'i>, notes: &mut Notes) -> Option<Follower<'a, 'i>> {
+    let words = |keys: &[&'static str]| {
+        let found = keys.iter().find_map(|key| child(node, *key))?;
+        Some(found.text().unwrap_or_default().trim().to_owned())
+    };
+    let own = words(&FOLLOWS)?;
+    let master = words(&["joint", "jointName", "joint_name"]).unwrap_or_default();
+    let mut number = |key: &'static str, default: f64| {
+        let Some(element) = child(node, key) else { return default };
+        let value = element.text().unwrap_or_default();
+        let [x] =
+            xml::exactly::<1>(value, &format!("`{key}`"), xml::at(text, element), notes).unwrap_or([default]);
+        x
+    };
+    let (factor, offset) = (number("multiplier", 1.0), number("offset", 0.0));
+    const MIMIC: xml::Vocabulary = xml::Vocabulary {
+        attributes: &["name", "filename"],
+        read: &[
+            "mimicJoint",
+            "mimic_joint",
+            "mimicJointName",
+            "joint",
+            "jointName",
+            "joint_name",
+            "multiplier",
+            "offset",
+        ],
+        // How it is controlled: the constraint itself is exact here.
+        irrelevant: &[
+            "hasPID",
+            "maxEffort",
+            "sensitiveness",
+            "robotNamespace",
+            "namespace",
+            "pid",
+            "p",
+            "i",
+            "d",
+            "updateRate",
+        ],
+    };
+    xml::unknown(text, node, &own, MIMIC, notes);
+    Some(Follower { node, own, master, factor, offset })
+}
+
+/// What `ros2_control` says of joints that follow others.
+pub fn followers_of_control<'a, 'i>(
+    text: usize,
+    node: Node<'a, 'i>,
+    notes: &mut Notes,
+) -> Vec<Follower<'a, 'i>> {
+    let mut out = Vec::new();
+    for joint in xml::named(node, "joint") {
+        let value = |name: &str| {
+            let found = xml::named(joint, "param").find(|p| p.attribute("name") == Some(name))?;
+            Some((found, found.text().unwrap_or_default().trim()))
+        };
+        let Some((element, master)) = value("mimic").filter(|(_, m)| !["", "true", "false"].contains(m))
+        else {
+            continue;
+        };
+        let mut number = |name: &str, default: f64| {
+            let Some((element, words)) = value(name) else { return default };
+            let [x] = xml::exactly::<1>(words, &format!("`{name}`"), xml::at(text, element), notes)
+                .unwrap_or([default]);
+            x
+        };
+        let (factor, offset) = (number("multiplier", 1.0), number("offset", 0.0));
+        let own = joint.attribute("name").unwrap_or_default().trim().to_owned();
+        out.push(Follower { node: element, own, master: master.to_owned(), factor, offset });
+    }
+    out
+}
+
+/// Lists a plugin that is none of those that are read.
+pub fn plugin(text: usize, node: Node<'_, '_>, notes: &mut Notes) {
+    let [name, file] = ["name", "filename"].map(|key| node.attribute(key).unwrap_or_default());
+    let words = format!("{name} {file}").to_ascii_lowercase();
+    let at = xml::at(text, node);
+    if IRRELEVANT_PLUGINS.iter().any(|known| words.contains(known)) {
+        notes.ignored("plugin", at);
+    } else {
+        notes.not_understood("plugin", name, at, format!("a plugin `{file}` that is not known here"));
+    }
+}
+
+/// Couples a joint to the one that it follows: `own - factor master = constant`.
+pub fn follow(
+    m: &mut Mechanism,
+    notes: &mut Notes,
+    [name, other]: [&str; 2],
+    at: Option<At>,
+    [own, master]: [Coordinate; 2],
+    [factor, constant]: [f64; 2],
+) {
+    let note = Called { kind: "mimic of", name: other, at }.note(notes);
+    m.coupler_to(&format!("{name}_mimic"), note, vec![(own, 1.0), (master, -factor)], constant);
+    notes.taken("mimic", name, at);
+}
+
+/// Holds two frames on two bodies together, as a joint of type `fixed` or, but for their places, `orientation`; its number. Where they lie
+/// apart or are turned against each other as drawn, the mechanism is assembled so.
+pub fn weld(
+    m: &mut Mechanism,
+    notes: &mut Notes,
+    called: Called<'_>,
+    kind: &'static str,
+    [i, j]: [Marker; 2],
+) -> Option<usize> {
+    if i.body == j.body {
+        notes.refused(called.kind, called.name, called.at, "both its frames are on the same body");
+        return None;
+    }
+    let note = called.note(notes);
+    let angle = j.pose.rot.angle_to(i.pose.rot);
+    let apart = kind == "fixed" && (i.pose.r - j.pose.r).norm() > SAME_PLACE * m.size();
+    let turned = angle > PARALLEL;
+    let mut body = i.body;
+    if turned {
+        // A frame between both turns from where body j is drawn to where it belongs: R = A_i A_j^T, by an angle about an axis.
+        let axis = turn_of(i.pose.rot * j.pose.rot.transpose(), angle);
+        let frame = Pose { rot: j.pose.rot, r: i.pose.r };
+        let between = m.body(&format!("{}_frame", called.name), note.clone(), Some(frame));
+        let turn = Joint::new(
+            &format!("{}_turn", called.name),
+            note.clone(),
+            "revolute",
+            [i.body, between],
+            i.pose.r,
+        );
+        let joint = m.joint(turn.along(axis));
+        let drives = Drives::Coordinate(Coordinate { joint, name: "angle" });
+        m.driver(&format!("{}_turn", called.name), note.clone(), drives, Law::Set(angle));
+        body = between;
+    }
+    let held = Joint::new(called.name, note, kind, [body, j.body], j.pose.r);
+    let number = m.joint(if apart { held.between(i.pose.r, j.pose.r) } else { held });
+    if apart || turned {
+        let why = "its frames lie apart as drawn: the mechanism is assembled to it before it moves";
+        notes.approximated(called.kind, called.name, called.at, why);
+    } else {
+        notes.taken(called.kind, called.name, called.at);
+    }
+    Some(number)
+}
+
+/// The axis about which a rotation turns by this angle.
+fn turn_of(turn: Mat3, angle: f64) -> hardpoint::space::Vec3 {
+    let c = |row: usize, col: usize| turn.cols[col][row];
+    let skew = hardpoint::space::Vec3::from([c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1)]);
+    // Near half a turn the skew part vanishes; then (R + 1) has the axis in its columns.
+    let half = std::f64::consts::PI - angle;
+    if half > 1e-3 {
+        return skew.unit().unwrap_or_else(|| [0.0, 0.0, 1.0].into());
+    }
+    let mut best = hardpoint::space::Vec3::from([0.0; 3]);
+    for k in 0..3 {
+        let mut e = [0.0; 3];
+        e[k] = 1.0;
+        let column = turn.cols[k] + hardpoint::space::Vec3::from(e);
+        if column.norm() > best.norm() {
+            best = column;
+        }
+    }
+    let axis = best.unit().unwrap_or_else(|| [0.0, 0.0, 1.0].into());
+    if axis.dot(skew) < 0.0 { -axis } else { axis }
+}
+
+/// The mass of a body: `frame` is that of its centre, along whose axes the inertia matrix is.
+pub fn mass(
+    m: &mut Mechanism,
+    notes: &mut Notes,
+    called: Called<'_>,
+    body: usize,
+    frame: Pose,
+    mass: f64,
+    inertia: Option<Mat3>,
+) {
+    if body == GROUND || mass == 0.0 {
+        notes.ignored(called.kind, called.at);
+        return;
+    }
+    if !(mass > 0.0 && mass.is_finite()) {
+        notes.refused(called.kind, called.name, called.at, format!("no body has a mass of {mass} kg"));
+        return;
+    }
+    let matrix = inertia.map(|i| frame.rot * i * frame.rot.transpose());
+    let matrix = matrix.filter(|i| i.cols.iter().any(|c| c.norm() > 0.0));
+    let possible = matrix.is_none_or(is_possible);
+    m.mass(Mass {
+        name: called.name.to_owned(),
+        body,
+        centre: frame.r,
+        mass,
+        inertia: matrix.filter(|_| possible),
+    });
+    if possible {
+        notes.taken(called.kind, called.name, called.at);
+    } else {
+        let why = "no body can have its moments of inertia, of which none is above the sum of the other two: it is taken as a point mass";
+        notes.approximated(called.kind, called.name, called.at, why);
+    }
+}
+
+/// Whether a body can have this inertia matrix about its centre: half its trace times 1, less it, has no negative eigenvalue.
+fn is_possible(i: Mat3) -> bool {
+    let m = |r: usize, c: usize| i.cols[c][r];
+    let half = 0.5 * (m(0, 0) + m(1, 1) + m(2, 2));
+    let most = m(0, 0).max(m(1, 1)).max(m(2, 2));
+    let slack = FLAT * most;
+    let [x, y, z] = [0, 1, 2].map(|k| half - m(k, k) + slack);
+    let [d, e, f] = [-m(0, 1), -m(1, 2), -m(2, 0)];
+    let minors = [x, y, z, x * y - d * d, y * z - e * e, z * x - f * f];
+    let determinant = x * (y * z - e * e) - d * (d * z - e * f) + f * (d * e - y * f);
+    let above = [0, 1, 2].iter().all(|k| m(*k, *k) >= 0.0);
+    above && minors.iter().all(|x| *x >= 0.0) && determinant >= 0.0
+}
+
+/// A spring with a damper on a joint's coordinate; `free` counts from the drawing.
+pub fn joint_spring(
+    m: &mut Mechanism,
+    notes: &mut Notes,
+    called: Called<'_>,
+    coordinate: Option<Coordinate>,
+    [stiffness, damping, free]: [f64; 3],
+) {
+    if stiffness == 0.0 && damping == 0.0 {
+        return;
+    }
+    let Some(coordinate) = coordinate else {
+        let why = "a spring or damper of a joint without a single coordinate is left out";
+        notes.refused(called.kind, called.name, called.at, why);
+        return;
+    };
+    if !(stiffness >= 0.0
+        && damping >= 0.0
+        && stiffness.is_finite()
+        && damping.is_finite()
+        && free.is_finite())
+    {
+        let why = format!("no spring has a stiffness of {stiffness} and a damping of {damping}");
+        notes.refused(called.kind, called.name, called.at, why);
+        return;
+    }
+    m.force(Force {
+        name: called.name.to_owned(),
+        note: called.note(notes),
+        on: ForceOn::Coordinate(coordinate),
+        stiffness,
+        damping,
+        free: (stiffness != 0.0).then_some(free),
+        preload: None,
+    });
+    notes.taken(called.kind, called.name, called.at);
+}
+
+/// A constant friction of a joint, which the model cannot have.
+pub fn friction(notes: &mut Notes, name: &str, at: Option<At>, friction: f64) {
+    if friction != 0.0 {
+        let why = format!(
+            "a constant friction of {friction}: friction of the model follows what presses, see docs/loads.md"
+        );
+        notes.refused("friction", name, at, why);
+    }
+}
