@@ -160,7 +160,7 @@ const SIBLINGS: &[Sibling] = &[
     Sibling {
         what: "an Adams/View command file",
         endings: &["cmd"],
-        lines: &["model create", "part create", "mdi_", "defaults model", "marker create"],
+        lines: &["model create", "part create", "defaults model", "marker create"],
         help: "export the model from Adams/View as an Adams/Solver dataset (`.adm`): File, Export, Adams/Solver Data Set",
     },
     Sibling {
@@ -218,13 +218,25 @@ const SIBLINGS: &[Sibling] = &[
 impl Sibling {
     /// The sibling that a file is, by what is in it or by how its name ends.
     fn of(bytes: &[u8], name: &str) -> Option<&'static Self> {
+        let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
+        let by_name = || SIBLINGS.iter().find(|s| s.endings.contains(&ending.as_str()));
+        Self::by_content(bytes).or_else(by_name)
+    }
+
+    /// The sibling that a file is by what is in it.
+    fn by_content(bytes: &[u8]) -> Option<&'static Self> {
         let head = decoded(&bytes[..bytes.len().min(LOOKED_AT)]).to_lowercase();
         let shows = |s: &&Self| {
             let begins = |line: &str| s.lines.iter().any(|l| line.trim_start().starts_with(l));
             head.lines().any(begins)
         };
-        let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
-        SIBLINGS.iter().find(shows).or_else(|| SIBLINGS.iter().find(|s| s.endings.contains(&ending.as_str())))
+        SIBLINGS.iter().find(shows)
+    }
+
+    /// HP0801.
+    fn problem(&self, notes: &Notes) -> Problems {
+        let message = format!("the file is {}, which is not read", self.what);
+        notes.only(notes.diagnostic("HP0801", None, message).help(self.help))
     }
 }
 
@@ -266,13 +278,16 @@ pub fn import_with(
     name: &str,
     resolve: Resolve<'_>,
 ) -> Result<Imported, Problems> {
+    // What is in a file counts more than how its name ends.
+    if let (None, Some(sibling)) = (&options.format, Sibling::by_content(bytes)) {
+        return Err(sibling.problem(&Notes::new(name, "")));
+    }
     match options.format.as_ref().or_else(|| Format::of(bytes, name)) {
         Some(format) => read_as(format, &options.closings, bytes, name, resolve),
         None => {
             let notes = Notes::new(name, "");
             if let Some(sibling) = Sibling::of(bytes, name) {
-                let message = format!("the file is {}, which is not read", sibling.what);
-                return Err(notes.only(notes.diagnostic("HP0801", None, message).help(sibling.help)));
+                return Err(sibling.problem(&notes));
             }
             let known = FORMATS.iter().map(|f| format!("`{}` ({})", f.name, f.about)).collect::<Vec<_>>();
             let message = notes.diagnostic("HP0801", None, "the format of the file is not recognised");
@@ -343,8 +358,7 @@ fn read_as(
     }
     let Some(mut m) = mechanism else {
         if let Some(sibling) = Sibling::of(bytes, name) {
-            let message = format!("the file is {}, which is not read", sibling.what);
-            return whole(&notes, "HP0801", message, sibling.help);
+            return Err(sibling.problem(&notes));
         }
         let message = format!("there is no mechanism in the file; it was read as {}", format.about);
         return whole(
