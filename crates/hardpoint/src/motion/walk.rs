@@ -5,13 +5,14 @@
 //! pulses between two output times is followed all the same. The position is predicted along the drivers, too, so kinks of laws
 //! need no care.
 
-use crate::model::{BodyId, DriverId};
+use crate::model::DriverId;
 use crate::space::Real;
 
 use super::kinematics::PositionFailure;
 use super::singularity::Workspace;
 use super::stepper::{LOCKED, Lookahead, Refusal, Stepper, TRUST, TRUST_FLOOR};
-use super::{BodyState, PassedPlace, Singular, Stop, StopKind};
+use super::turns::{FINEST, TURN_TRUST};
+use super::{Singular, Stop, StopKind};
 
 /// A step may be this part of the estimated distance to the nearest singular position. The estimate is 0.94 to 2.17 times the true
 /// distance (`docs/theory.md`, section 4), so that no step reaches beyond.
@@ -79,9 +80,6 @@ impl Stepper<'_> {
             self.stand(path).map_err(|r| self.stop(path, self.time, r, true))?;
             self.examine_here(path);
         }
-        if path != Path::Laws {
-            self.pass(path, true);
-        }
         if path == Path::Laws {
             self.look_for_poles(target)?;
         }
@@ -132,22 +130,8 @@ impl Stepper<'_> {
             if self.time < target {
                 self.effort.substeps += 1;
             }
-            // At an output time the output speaks for itself; a straight path has none.
-            if self.time < target || path != Path::Laws {
-                self.pass(path, false);
-            }
         }
         Ok(())
-    }
-
-    /// Notes where the watched bodies are.
-    fn pass(&mut self, path: Path, begins: bool) {
-        if path == Path::Assembly || self.watched.is_empty() {
-            return;
-        }
-        let watched = (1..self.watched.len()).filter(|b| self.watched[*b]);
-        let states = watched.map(|b| (BodyId(b), BodyState::of(&self.state, b))).collect();
-        self.passed.push(PassedPlace { time: self.time, begins, states });
     }
 
     /// The driver that goes furthest.
@@ -201,7 +185,8 @@ impl Stepper<'_> {
     /// all go together.
     fn examine(&mut self, path: Path) {
         // On the laws' path one direction per driver, f_d' = 1: what is near is near whether a driver hurries or rests.
-        let Self { workspace, topology, parts, state, line, beyond, drivers, .. } = self;
+        let Self { workspace, topology, parts, state, line, beyond, drivers, turns, .. } = self;
+        let turns = turns.as_mut().filter(|_| path != Path::Assembly);
         let directions = if path == Path::Laws { drivers.len() } else { 1 };
         let workspace = workspace
             .get_or_insert_with(|| Box::new(Workspace::new(topology, state.pose.len(), drivers.len())));
@@ -217,7 +202,7 @@ impl Stepper<'_> {
                 }
             }
         };
-        workspace.examine(topology, parts, state, path.gap_rate(), directions, speed, beyond);
+        workspace.examine(topology, parts, state, path.gap_rate(), (directions, speed), turns, beyond);
     }
 
     /// How far each direction goes at most over a step h of the path.
@@ -261,7 +246,11 @@ impl Stepper<'_> {
             // sum Du_d / rho_d <= 0.4,    max over the unknowns of sum abs(q_d') Du_d <= 2,    Du_d <= 1
             let part = self.around.part_of_way(&self.travel) / PART_OF_WAY;
             let moved = self.around.move_of_fastest(&self.travel) / LONGEST_MOVE;
-            let much = part.max(moved).max(self.travelled() / LONGEST);
+            let travelled = self.travelled();
+            // max over the counted angles of sum abs(chi_d') Du_d <= 1
+            let turned =
+                if travelled > FINEST { self.around.turn_of_fastest(&self.travel) / TURN_TRUST } else { 0.0 };
+            let much = part.max(moved).max(travelled / LONGEST).max(turned);
             if much <= 1.0 || h <= shortest {
                 return h;
             }
@@ -284,10 +273,42 @@ impl Stepper<'_> {
         if selections == self.selections && !(self.beyond.part_of_way(&self.travel) <= PART_FROM_FAR_END) {
             return Err(Refusal::TooNear);
         }
+        if path != Path::Assembly && !self.follow_turns(path, h) {
+            return Err(Refusal::TooNear);
+        }
         std::mem::swap(&mut self.around, &mut self.beyond);
         self.save(t, h);
         self.ahead = Lookahead::Examined;
         Ok(())
+    }
+
+    /// Counts angles over a step h, to where the state stands; whether each is in the turn that is predicted along the drivers, from both
+    /// ends.
+    fn follow_turns(&mut self, path: Path, h: f64) -> bool {
+        let is_fine = self.travelled() <= FINEST;
+        let Self { turns, around, beyond, drivers, saved, travel, state, .. } = self;
+        let Some(turns) = turns else { return true };
+        let directions = if path == Path::Laws { drivers.len() } else { 1 };
+        let sure = turns.follow(state, |i| {
+            let (mut ahead, mut back, mut far) = (0.0, 0.0, 0.0);
+            for k in 0..directions {
+                let du = match path {
+                    Path::Laws => drivers[k][0] - saved.drivers[k][0],
+                    Path::Line { .. } | Path::Assembly => h,
+                };
+                // chi_d' Du_d + chi_d'' Du_d^2 / 2 of this end,  chi_d' Du_d - chi_d'' Du_d^2 / 2 of the far one
+                let half = 0.5 * du * du;
+                let ([slope, bend], [slope_there, bend_there]) = (around.angles[k][i], beyond.angles[k][i]);
+                ahead += slope * du + bend * half;
+                back += slope_there * du - bend_there * half;
+                far += (slope_there * travel[k]).abs();
+            }
+            [ahead, back, far]
+        });
+        if sure || is_fine {
+            turns.accept();
+        }
+        sure || is_fine
     }
 
     /// Solves the position at t on a path, a step h beyond the saved one, from a prediction along the drivers.
@@ -348,8 +369,8 @@ impl Stepper<'_> {
         self.time = t;
         self.attempt(Path::Laws, t).map_err(|r| self.stop(Path::Laws, t, r, true))?;
         self.save(t, 0.0);
+        self.renew_turns();
         self.examine_here(Path::Laws);
-        self.pass(Path::Laws, true);
         Ok(())
     }
 

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use crate::design::DesignMap;
 use crate::law::Law;
 use crate::load::{self, RecordedLoads};
-use crate::measure::{self, Measured, PreviousStep, StepValues};
+use crate::measure::{self, Measured, StepValues};
 use crate::model::{BodyId, Held, MeasureKind, Model};
 use crate::motion::execution::{Cache, Runnable};
 use crate::motion::parts::PlanGeometry;
@@ -240,16 +240,15 @@ impl<'m> Analysis<'m> {
         motion.margins.clear();
         motion.assembly = None;
         motion.solved_by = None;
-        motion.passed.clear();
+        motion.counted.clear();
         motion.beyond = None;
     }
 
-    /// Evaluates the measures of a motion that goes on from what was `before`.
+    /// Evaluates the measures of a motion.
     pub(super) fn measure(
         &self,
         design: &PreparedDesign,
         slopes: &StepValues,
-        before: Option<&PreviousStep>,
         solution: &mut Solution,
     ) {
         let Solution { motion, sensitivities, measured, .. } = solution;
@@ -266,7 +265,7 @@ impl<'m> Analysis<'m> {
                 .get(asked, |asked| measure::MeasureProgram::record(&self.design_map, asked, execution))
         });
         let (program, solved) = (program.flatten(), (&*motion, &*sensitivities));
-        measure::evaluate(&at, &self.topology, solved, slopes, before, program.as_deref(), measured);
+        measure::evaluate(&at, &self.topology, solved, slopes, program.as_deref(), measured);
     }
 
     /// The step of this plan as a program, recorded where the nominal motion begins.

@@ -76,7 +76,7 @@ impl Analysis<'_> {
             solution.sensitivities = Sensitivities::default();
             solution.stop = None;
             if scope.measures {
-                self.measure(&self.prepare(design, scope), &StepValues::default(), None, solution);
+                self.measure(&self.prepare(design, scope), &StepValues::default(), solution);
             } else {
                 solution.measured = Measured::default();
             }
