@@ -640,7 +640,7 @@ pub(super) fn smooth(difference: f64, fastest: f64, fastest_driver: f64) -> bool
 }
 
 /// Per driver, what its travel is compared with: 1 rad, or the size of the largest loop that it moves.
-fn driver_units(model: &Model, topology: &Topology) -> Vec<f64> {
+pub(crate) fn driver_units(model: &Model, topology: &Topology) -> Vec<f64> {
     let whole = model.size();
     // Du_d / unit is a number without dimension: rad, or a part of the loop.
     let unit = |(k, driver): (usize, &crate::model::Driver)| {

@@ -53,7 +53,7 @@ impl Footprint {
         self.bytes() * self.rows(bytes)
     }
 
-    fn rows(self, bytes: usize) -> usize {
+    pub(super) fn rows(self, bytes: usize) -> usize {
         usize::max(bytes / self.bytes().max(1) / LANES, 1) * LANES
     }
 }
@@ -76,6 +76,9 @@ impl Analysis<'_> {
         let design = self.prepare(run.design, run.scope);
         let first = self.walk(&design, rows, &mut *run.progress, &mut solution, &mut each);
         each(first, &solution);
+        if self.has_times_between() {
+            self.solve_between(&design, &mut *run.progress, &mut solution);
+        }
         solution
     }
 
@@ -284,6 +287,7 @@ impl Kept {
         self.solution.sensitivities.variables = whole.sensitivities.variables;
         self.solution.measured.variables = whole.sensitivities.variables;
         self.solution.stop = whole.stop.clone();
+        self.solution.between = whole.between.clone();
         let cannot =
             |v: &usize| matches!(whole.sensitivities.admissibility[*v], Admissibility::CannotFollow { .. });
         self.solution.measured.forget((0..whole.sensitivities.variables).filter(cannot));
