@@ -14,7 +14,7 @@ use crate::space::{Vec3, Wrench};
 use crate::topology::Topology;
 
 use super::acting::Acting;
-use super::carry::{Carried, Equilibrium, Scene, Stress, is_known};
+use super::carry::{Carried, Equilibrium, Stress, is_known};
 use super::friction::Friction;
 use super::inertia::Changed;
 use super::measures::Instant;
@@ -51,7 +51,7 @@ impl<'a> LoadSolver<'a> {
     ) -> Self {
         let model = design_map.model();
         let variables = if sensitivities { model.variables.len() } else { 0 };
-        let (measures, elements) = (model.measures.len(), model.elements.len());
+        let measures = model.measures.len();
         Self {
             model,
             asked: asked(model),
@@ -60,7 +60,7 @@ impl<'a> LoadSolver<'a> {
                 .map(|v| Changed::new(model, geometry_along(design_map, values, Some(v))))
                 .collect(),
             constant: geometry_along(design_map, values, None),
-            turns: (0..elements).map(|e| Turns::of(model, topology, ElementId(e))).collect(),
+            turns: Turns::of_all(model, topology),
             friction: Friction::new(model),
             bodies: Equilibrium::new(model, topology),
             judges: asks_for_reactions(model),
@@ -93,7 +93,7 @@ impl<'a> LoadSolver<'a> {
         for (law, element) in self.bodies.now.laws.iter_mut().zip(&model.elements) {
             *law = element.kind.law().map_or(1.0, |law| law.at(t).value());
         }
-        self.follow_turns(&state.q, t);
+        self.follow_turns(&state.q, one.turns.as_ref().map_or(&[], |turns| &turns.values));
         self.bodies.now.friction.fill(0.0);
         self.bodies.carry(topology, state, (model, &self.geometry));
         if self.judges || !self.friction.is_empty() {
@@ -186,23 +186,13 @@ impl<'a> LoadSolver<'a> {
         -needed[self.model.points[at.0].body.0].f
     }
 
-    /// Lets the coordinates that elements act on count their turns.
-    fn follow_turns(&mut self, q: &[f64], t: f64) {
-        let Self { model, geometry, bodies: Equilibrium { now, .. }, turns, .. } = self;
-        for (e, turns) in turns.iter_mut().enumerate() {
-            let coordinate = |now: &Scene<f64>| now.acting(model, geometry).coordinate(ElementId(e));
-            match turns {
+    /// Takes the turns of the coordinates that elements act on, from the tree or as the path has counted them.
+    fn follow_turns(&mut self, q: &[f64], counted: &[f64]) {
+        for (near, turns) in self.bodies.now.near.iter_mut().zip(&self.turns) {
+            match *turns {
                 Turns::None => {}
-                Turns::Coordinate(c) => now.near[e] = q[c.0],
-                Turns::Path(before) => {
-                    let Some([_, rate]) = coordinate(now) else { continue };
-                    if let Some([then, rate_then]) = *before {
-                        // As far as its mean rate takes it
-                        now.near[e] += 0.5 * (rate + rate_then) * (t - then);
-                    }
-                    now.near[e] = coordinate(now).map_or(0.0, |now| now[0]);
-                    *before = Some([t, rate]);
-                }
+                Turns::Coordinate(c) => *near = q[c.0],
+                Turns::Path(place) => *near = counted[place],
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Angles that elements act on, counted through whole turns.
 
+use crate::measure::is_counted_of_element;
 use crate::model::{ElementId, Model};
 use crate::topology::{CoordinateId, Topology};
 
@@ -10,11 +11,25 @@ pub(super) enum Turns {
     None,
     /// The coordinate of the tree, which is the angle itself.
     Coordinate(CoordinateId),
-    /// The path: when it was seen last, and its rate then.
-    Path(Option<[f64; 2]>),
+    /// The path, where the angle is counted in this place.
+    Path(usize),
 }
 
 impl Turns {
+    /// Of all elements.
+    pub fn of_all(model: &Model, topology: &Topology) -> Vec<Self> {
+        let mut turns: Vec<Self> =
+            (0..model.elements.len()).map(|e| Self::of(model, topology, ElementId(e))).collect();
+        // Angles of elements are counted before all others, one after the other.
+        let on_path = turns.iter_mut().filter_map(|turns| match turns {
+            Self::Path(place) => Some(place),
+            Self::None | Self::Coordinate(_) => None,
+        });
+        on_path.enumerate().for_each(|(k, place)| *place = k);
+        turns
+    }
+
+    /// Of one element; the place of an angle on the path is not known.
     pub fn of(model: &Model, topology: &Topology, e: ElementId) -> Self {
         let Some((joint, coordinate)) = model.elements[e.0].kind.coordinate(model) else { return Self::None };
         let link = topology.links.iter().find(|link| link.joint == Some(joint));
@@ -23,7 +38,8 @@ impl Turns {
                 let step = if link.parent_end == 0 { freedom } else { link.steps.len() - 1 - freedom };
                 Self::Coordinate(link.steps[step].first)
             }
-            None => Self::Path(None),
+            None if is_counted_of_element(model, topology, e) => Self::Path(0),
+            None => Self::None,
         }
     }
 }

@@ -10,6 +10,7 @@ mod bodies;
 mod program;
 mod slope;
 mod step_values;
+mod turns;
 mod wheel;
 
 use std::collections::BTreeMap;
@@ -22,6 +23,8 @@ use program::MeasureRun;
 pub(crate) use program::{MeasureProgram, ProgramKey, dependences};
 pub(crate) use slope::Slopes;
 pub(crate) use step_values::StepValues;
+use turns::{PathAngle, path_angles};
+pub(crate) use turns::{PathAngles, is_counted_of_element};
 pub(crate) use wheel::WheelAt;
 use wheel::{camber, toe};
 
@@ -33,7 +36,8 @@ use crate::model::{
     ArmPlane, AxleMeasure, BodyId, Dimension, DriverId, JointId, KnownOrders, MeasureKind, Model,
     OutputSource, PointId, Ray, Side, VariableId, WheelId,
 };
-use crate::motion::{Motion, PassedPlace};
+use crate::motion::Motion;
+use crate::motion::turns::turned;
 use crate::number::{Dual, Jet, Rates, Real};
 use crate::sensitivity::{Admissibility, Sensitivities};
 use crate::space::{Pose, Vec3};
@@ -258,14 +262,6 @@ pub(crate) struct MeasuredDesign<'a> {
     pub laws: &'a [Law],
 }
 
-/// What a motion goes on from: the output time before its first.
-#[derive(Clone, Debug)]
-pub(crate) struct PreviousStep {
-    pub time: f64,
-    /// Values, rates and accelerations of all outputs, angles counted.
-    pub values: Vec<[f64; 3]>,
-}
-
 /// Evaluates all outputs over a motion, and their derivatives by the variables that it has sensitivities for; by a program, if there
 /// is one, but for what it cannot tell.
 pub(crate) fn evaluate(
@@ -273,14 +269,13 @@ pub(crate) fn evaluate(
     topology: &Topology,
     (motion, sensitivities): (&Motion, &Sensitivities),
     slopes: &StepValues,
-    before: Option<&PreviousStep>,
     program: Option<&MeasureProgram>,
     measured: &mut Measured,
 ) {
     let &MeasuredDesign { model, values, .. } = design;
     make_room(model, sensitivities, motion.len(), program, measured);
     let mut run = program.map(|program| MeasureRun::new(program, values));
-    let mut formulas = FormulaEvaluator::new(design, topology, (motion, before), slopes, measured);
+    let mut formulas = FormulaEvaluator::new(design, topology, motion, slopes, measured);
     for first in (0..motion.len()).step_by(LANES) {
         let times = first..usize::min(first + LANES, motion.len());
         let asked = loop {
@@ -330,7 +325,6 @@ struct FormulaEvaluator<'a> {
     model: &'a Model,
     laws: &'a [Law],
     motion: &'a Motion,
-    before: Option<&'a PreviousStep>,
     slopes: &'a StepValues,
     fixed: BodyFixed<Rates>,
     /// The bodies that measures name, and where they are.
@@ -353,7 +347,7 @@ impl<'a> FormulaEvaluator<'a> {
     fn new(
         design: &MeasuredDesign<'a>,
         topology: &Topology,
-        (motion, before): (&'a Motion, Option<&'a PreviousStep>),
+        motion: &'a Motion,
         slopes: &'a StepValues,
         measured: &Measured,
     ) -> Self {
@@ -362,13 +356,12 @@ impl<'a> FormulaEvaluator<'a> {
             model,
             laws,
             motion,
-            before,
             slopes,
             // What is fixed in the bodies has no rates: they are all in the poses.
             fixed: design_map.fixed(values).map(Jet::constant),
             bodies: bodies_asked_for(model),
             poses: vec![Pose::IDENTITY.spread(); model.bodies.len()],
-            turns: turns(model, topology, &measured.outputs),
+            turns: placed_turns(model, topology, motion, &measured.outputs),
             counts: (0..model.measures.len()).any(|m| is_formula(model, m)),
             left: Vec::new(),
             counted: Vec::new(),
@@ -412,17 +405,9 @@ impl<'a> FormulaEvaluator<'a> {
         for &(_, m) in left {
             measured.set(k, m, instant.output(measured.outputs[m].source).0);
         }
-        let on_the_way = |m: usize, passed: &PassedPlace| {
-            let mut poses = poses.clone();
-            place(&mut poses);
-            passed.states.iter().for_each(|(body, state)| poses[body.0] = with_rates(state));
-            // An angle where the path passed between output times
-            let Jet([angle, rate, _]) = Instant::new(model, fixed, &poses).measure(m);
-            [angle, rate]
-        };
         whole_turns.clear();
         whole_turns.resize(model.measures.len(), Jet([0.0; 3]));
-        unwrap_angles(self.laws, (motion, self.before), k, &self.turns, measured, on_the_way, |m, whole| {
+        unwrap_angles(self.laws, motion, k, &self.turns, measured, |m, whole| {
             whole_turns[m].0[0] = whole;
         });
         if self.counts {
@@ -514,21 +499,24 @@ enum Turns {
     Driver(DriverId),
     /// The tree coordinate, which is the angle itself.
     Coordinate(CoordinateId),
-    /// The path alone, for a cut joint or an angle between two directions about an axis: where it begins, it is this, or as it is
-    /// measured, without a whole turn.
-    Path(Option<f64>),
+    /// The path alone, for a cut joint or an angle between two directions about an axis.
+    Path(PathTurns),
 }
 
-/// Per body: whether an angle that only the path tells is measured on it; empty where there is no such angle.
-pub(crate) fn watched(model: &Model, topology: &Topology) -> Vec<bool> {
-    let outputs = outputs(model);
-    let mut watched = Vec::new();
-    for (turns, output) in turns(model, topology, &outputs).iter().zip(&outputs) {
-        let (Some(Turns::Path(_)), OutputSource::Measure(m)) = (turns, output.source) else { continue };
-        watched.resize(model.bodies.len(), false);
-        model.bodies_of(&model.measures[m]).iter().for_each(|body| watched[body.0] = true);
-    }
-    watched
+/// What is known of an angle whose turns only the path tells.
+#[derive(Clone, Copy)]
+struct PathTurns {
+    /// Its place among the angles that were counted, where the path was followed.
+    angle: Option<CountedPlace>,
+    /// Its value where the path begins; as it is measured, without a whole turn, where that is `None`.
+    origin: Option<f64>,
+}
+
+/// A place among so many counted angles.
+#[derive(Clone, Copy)]
+struct CountedPlace {
+    place: usize,
+    of: usize,
 }
 
 /// The outputs that are counted angles, and what tells their turns.
@@ -541,23 +529,45 @@ fn turns(model: &Model, topology: &Topology, outputs: &[Output]) -> Vec<Option<T
     }
     let driver_of: BTreeMap<_, _> =
         model.drivers.iter().enumerate().map(|(k, d)| ((d.joint, d.coordinate), DriverId(k))).collect();
+    let path = |origin| Turns::Path(PathTurns { angle: None, origin });
     let of_joint = |joint: JointId, coordinate: usize| {
         if let Some(&d) = driver_of.get(&(joint, coordinate)) {
             return Turns::Driver(d);
         }
         let freedom = model.joints[joint.0].kind.coordinates[coordinate].freedom;
-        let Some((link, freedom)) = link_of[joint.0].zip(freedom) else { return Turns::Path(Some(0.0)) };
+        let Some((link, freedom)) = link_of[joint.0].zip(freedom) else { return path(Some(0.0)) };
         let step = if link.parent_end == 0 { freedom } else { link.steps.len() - 1 - freedom };
         Turns::Coordinate(link.steps[step].first)
     };
     let of_output = |output: &Output| match output.source {
         OutputSource::Measure(m) if is_counted(model, output) => match model.measures[m].kind {
             MeasureKind::Coordinate { joint, coordinate } => Some(of_joint(joint, coordinate)),
-            _ => Some(Turns::Path(None)),
+            _ => Some(path(None)),
         },
         _ => None,
     };
     outputs.iter().map(of_output).collect()
+}
+
+/// The same, with the places of what was counted along the path of this motion.
+fn placed_turns(
+    model: &Model,
+    topology: &Topology,
+    motion: &Motion,
+    outputs: &[Output],
+) -> Vec<Option<Turns>> {
+    let mut turns = turns(model, topology, outputs);
+    if !motion.counted.is_empty() {
+        let angles = path_angles(model, topology, true);
+        for (place, angle) in angles.iter().enumerate() {
+            if let PathAngle::Measure(m) = *angle
+                && let Some(Turns::Path(path)) = &mut turns[m]
+            {
+                path.angle = Some(CountedPlace { place, of: angles.len() });
+            }
+        }
+    }
+    turns
 }
 
 /// Whether an output is a formula over others, or the rate of one: what goes by angles with all their turns.
@@ -580,90 +590,32 @@ fn is_counted(model: &Model, output: &Output) -> bool {
     }
 }
 
-/// One turn, rad.
-const TURN: f64 = 2.0 * std::f64::consts::PI;
-
-/// The angle nearest to another that is a whole number of turns from this one; this one, where the other has no number.
-fn turned(angle: f64, near: f64) -> f64 {
-    // angle + 2 pi k,  k the whole number nearest to (near - angle) / 2 pi
-    let turns = ((near - angle) / TURN).round();
-    if turns.is_nan() { angle } else { angle + TURN * turns }
-}
-
-/// An angle on its way: its value with all turns, its rate, and when.
-#[derive(Clone, Copy)]
-struct Counted {
-    value: f64,
-    rate: f64,
-    time: f64,
-}
-
-impl Counted {
-    /// About what it is when it is going at this rate at that time.
-    fn then(self, rate: f64, time: f64) -> f64 {
-        // x + h (x. before + x. then) / 2: wrong by h^3 x... / 12, where anything below half a turn is right
-        self.value + 0.5 * (time - self.time) * (self.rate + rate)
-    }
-}
-
-/// Follows an angle along the places that were passed before an output time; `measure` takes it there, with its rate. Returns about
-/// what it is at the output time, where it is measured as `now`, going at `rate`.
-fn along_the_path<'p>(
-    last: Option<Counted>,
-    begins: Option<f64>,
-    passed: impl Iterator<Item = &'p PassedPlace>,
-    mut measure: impl FnMut(&PassedPlace) -> [f64; 2],
-    [now, rate, time]: [f64; 3],
-) -> f64 {
-    let (mut counted, first) = (last, last.is_none());
-    for place in passed {
-        let [angle, rate] = measure(place);
-        // about what it is: where the path begins, or where the one before ended, or by the trapezoidal rule
-        let near = match counted {
-            None => begins.unwrap_or(angle),
-            // Another path begins where the one before ended.
-            Some(before) if place.begins => before.value,
-            Some(before) => before.then(rate, place.time),
-        };
-        counted = Some(Counted { value: turned(angle, near), rate, time: place.time });
-    }
-    match counted {
-        None => begins.unwrap_or(now),
-        // What leads to the first output time ends there.
-        Some(counted) if first => counted.value,
-        Some(counted) => counted.then(rate, time),
-    }
-}
-
 /// Counts angles through whole turns, and says of each what these are.
 fn unwrap_angles(
     laws: &[Law],
-    (motion, before): (&Motion, Option<&PreviousStep>),
+    motion: &Motion,
     k: usize,
     turns: &[Option<Turns>],
     measured: &mut Measured,
-    measure: impl Fn(usize, &PassedPlace) -> [f64; 2] + Copy,
     mut counted: impl FnMut(usize, f64),
 ) {
     for (m, turns_of) in turns.iter().enumerate() {
         let Some(turns_of) = turns_of else { continue };
         let [now, rate, acceleration] = measured.value(k, m);
-        let near = match turns_of {
-            // About f(t), q of the tree, or what its rates make of the value before
+        let near = match *turns_of {
+            // About f(t), q of the tree, or what the path has counted
             Turns::Driver(d) => laws[d.0].at(motion.times[k]).value(),
             Turns::Coordinate(q) => motion.coordinates.row(k).get(q.0),
-            Turns::Path(begins) => {
-                let counted = |time: f64, [value, rate, _]: [f64; 3]| Counted { value, rate, time };
-                let last = match (k, before) {
-                    (0, None) => None,
-                    (0, Some(before)) => Some(counted(before.time, before.values[m])),
-                    _ => Some(counted(motion.times[k - 1], measured.value(k - 1, m))),
-                };
-                let first_passed = motion.passed.partition_point(|(before, _)| *before < k);
-                let passed = motion.passed[first_passed..].iter().take_while(|(before, _)| *before == k);
-                let passed = passed.map(|(_, place)| place);
-                along_the_path(last, *begins, passed, |p| measure(m, p), [now, rate, motion.times[k]])
-            }
+            Turns::Path(PathTurns { angle: Some(at), .. }) => motion.counted[k * at.of + at.place],
+            Turns::Path(PathTurns { angle: None, origin }) => match k {
+                // Designs side by side begin in the design configuration.
+                0 => origin.unwrap_or(now),
+                _ => {
+                    let [before, rate_before, _] = measured.value(k - 1, m);
+                    // x + h (x. before + x. now) / 2: wrong by h^3 x... / 12, where anything below half a turn is right
+                    before + 0.5 * (motion.times[k] - motion.times[k - 1]) * (rate_before + rate)
+                }
+            },
         };
         let value = turned(now, near);
         measured.set(k, m, [value, rate, acceleration]);

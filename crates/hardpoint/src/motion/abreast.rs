@@ -19,6 +19,7 @@ use super::stepper::{
     AcceptedPosition, EVEN, LONGEST, Lookahead, MILD, MILD_CHANGE, RESTS, Stepper, TRUST_FLOOR,
 };
 use super::tape::{SolveQuality, Tape, all_within, largest};
+use super::turns::TurnCounter;
 use super::walk::PART_OF_WAY;
 
 /// The first correction (rad, or sizes) must be within this: a forecast by all positions that fails by more is none.
@@ -170,7 +171,7 @@ impl<'p> TimesAbreast<'p> {
         // What was found before stays, whatever these come to.
         let room = room.filter(|room| first == 0 && room.each_ref().map(|part| part.len()) == tape.sizes());
         self.is_own = room.is_none();
-        let results = room.unwrap_or_else(|| {
+        let [states, derivatives] = room.unwrap_or_else(|| {
             for (own, size) in self.own.iter_mut().zip(tape.sizes()) {
                 own.resize(size, AlignedLanes::default());
             }
@@ -179,9 +180,12 @@ impl<'p> TimesAbreast<'p> {
         // As a motion begins, less is known of it.
         // With three nodes the forecast misses by (27) alone; a first correction above 1e-3 says that the motion is no such polynomial.
         let trust = if one.forecast.known() < NODES { TRUST_FLOOR } else { FORESEEN };
-        let solved = tape.solve(trust, results).ok()?;
+        let solved = tape.solve(trust, [&mut *states, derivatives]).ok()?;
         let change_step = determinants_are_even(tape, one, times, [first, last]);
-        match change_step.filter(|_| tape.speeds_are_smooth(one.fastest_driver)) {
+        let change_step = change_step.filter(|_| tape.speeds_are_smooth(one.fastest_driver));
+        let moved = one.moves_ahead.iter().sum();
+        let turns = |turns: &mut TurnCounter<'_>| turns.are_even(states, (times, one.time), [first, last], moved);
+        match change_step.filter(|_| one.turns.as_mut().is_none_or(turns)) {
             Some(step) => {
                 one.continue_from(tape, times, [first, last], solved, step);
                 Some(())

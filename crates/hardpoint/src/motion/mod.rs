@@ -19,6 +19,7 @@ pub(crate) mod step_program;
 pub(crate) mod stepper;
 mod stop;
 pub(crate) mod tape;
+pub(crate) mod turns;
 mod walk;
 
 pub use assembly::{Assembly, AssemblyShift, Closing, Gap};
@@ -138,8 +139,8 @@ pub struct Motion {
     pub assembly: Option<Assembly>,
     /// The singular position next after its end, if one is near.
     pub beyond: Option<Singular>,
-    /// Places that were passed on the way to an output time, by its number, of the bodies whose turns only the path tells.
-    pub(crate) passed: Vec<(usize, PassedPlace)>,
+    /// Per output time, the angles that are counted along the path, with all turns, rad; empty where the path was not followed.
+    pub(crate) counted: Vec<f64>,
     /// What it took.
     pub effort: Effort,
     /// What solved the steps that are even.
@@ -183,17 +184,6 @@ pub struct Singular {
     pub kind: StopKind,
     /// The joints of the loop.
     pub joints: Vec<JointId>,
-}
-
-/// A place between output times.
-#[derive(Clone, Debug)]
-pub(crate) struct PassedPlace {
-    /// When, on the path that it belongs to: the time, or from 0 to 1 on a straight one.
-    pub time: f64,
-    /// Whether another path begins here.
-    pub begins: bool,
-    /// Where the bodies are that were asked for.
-    pub states: Vec<(BodyId, BodyState)>,
 }
 
 /// What a solution took, and how well the constraints hold.

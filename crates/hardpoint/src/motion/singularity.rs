@@ -20,6 +20,7 @@ use crate::topology::{BlockId, CoordinateId, Topology};
 use super::kinematics::State;
 use super::level::Flow;
 use super::parts::PlanGeometry;
+use super::turns::TurnCounter;
 
 /// Loads on the rows. One could miss what is singular; two have not (270 hard cases in the plane and in space).
 const LOADS: usize = 2;
@@ -35,6 +36,8 @@ pub(super) struct Surroundings {
     pub bends: Vec<Vec<f64>>,
     /// Per direction and row of a coupler's term: the same of what it counts.
     pub turning: Vec<Vec<[f64; 2]>>,
+    /// Per direction and angle that is counted along the path: the same of the angle, where any is.
+    pub angles: Vec<Vec<[f64; 2]>>,
     /// Per direction: the fastest unknown coordinate, in its unit.
     pub fastest: Vec<f64>,
     /// How many of the directions are known.
@@ -77,6 +80,7 @@ impl Surroundings {
             slopes: Vec::new(),
             bends: Vec::new(),
             turning: Vec::new(),
+            angles: Vec::new(),
             fastest: Vec::new(),
             known: 0,
         }
@@ -94,6 +98,7 @@ impl Surroundings {
         self.bends.resize(directions, vec![zero; topology.coordinates.len()]);
         let rows = if topology.coupled_rows.is_empty() { 0 } else { topology.rows.len() };
         self.turning.resize(directions, vec![[zero; 2]; rows]);
+        self.angles.resize(directions, Vec::new());
         self.fastest.resize(directions, zero);
     }
 
@@ -115,6 +120,16 @@ impl Surroundings {
     /// How far the fastest coordinate goes, in its unit, when each direction moves by so much at most.
     pub fn move_of_fastest(&self, travel: &[f64]) -> f64 {
         travel[..self.known].iter().zip(&self.fastest).map(|(du, speed)| part(*du, *speed)).sum()
+    }
+
+    /// How far the fastest of the counted angles goes, rad, when each direction moves by so much at most.
+    pub fn turn_of_fastest(&self, travel: &[f64]) -> f64 {
+        let angles = self.angles.first().map_or(0, Vec::len);
+        let of_angle = |i: usize| -> f64 {
+            travel[..self.known].iter().zip(&self.angles).map(|(du, angles)| part(*du, angles[i][0].abs())).sum()
+        };
+        // One that has no number here, or no bound, limits nothing.
+        (0..angles).map(of_angle).filter(|turn| turn.is_finite()).fold(0.0, f64::max)
     }
 }
 
@@ -162,8 +177,8 @@ impl Workspace {
         parts: &PlanGeometry<f64>,
         state: &mut State<f64>,
         gap_rate: f64,
-        directions: usize,
-        speed: impl Fn(usize, usize) -> f64,
+        (directions, speed): (usize, impl Fn(usize, usize) -> f64),
+        mut turns: Option<&mut TurnCounter<'_>>,
         found: &mut Surroundings,
     ) {
         found.make_room(topology, directions);
@@ -182,6 +197,10 @@ impl Workspace {
                 // chi' and chi'' of what a coupler counts
                 let [_, speed, rate] = state.coordinate_of_row(topology, r);
                 found.turning[direction][r.0] = [speed, rate];
+            }
+            match &mut turns {
+                Some(turns) => turns.slopes(state, &mut found.angles[direction]),
+                None => found.angles[direction].clear(),
             }
             let mut fastest = 0.0;
             for c in topology.unknown_coordinates() {

@@ -16,7 +16,8 @@ use super::kinematics::{PositionFailure, Residuals, State, factors_of};
 use super::parts::PlanGeometry;
 use super::singularity::{Surroundings, Workspace};
 use super::walk::{PART_OF_WAY, Path};
-use super::{Effort, PassedPlace, Stop};
+use super::turns::TurnCounter;
+use super::{Effort, Stop};
 
 /// A first correction (rad, or sizes) up to this is accepted whatever the prediction's own length is.
 pub(super) const TRUST_FLOOR: f64 = 0.02;
@@ -108,9 +109,8 @@ pub(crate) struct Stepper<'m> {
     pub(super) selections: usize,
     /// How the mechanism was closed, if it was open as drawn.
     pub assembly: Option<Assembly>,
-    /// The bodies that are watched between output times, and where they were since the last one.
-    pub watched: Vec<bool>,
-    pub passed: Vec<PassedPlace>,
+    /// Counts the angles whose turns only the path tells; `None` where there are none.
+    pub turns: Option<TurnCounter<'m>>,
     /// Room for the changes and moves over output times that are tried at once.
     pub(super) changes_ahead: Vec<f64>,
     pub(super) moves_ahead: Vec<f64>,
@@ -240,8 +240,7 @@ impl<'m> Stepper<'m> {
             effort: Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() },
             selections: 0,
             assembly: None,
-            watched: Vec::new(),
-            passed: Vec::new(),
+            turns: None,
             changes_ahead: vec![0.0; blocks],
             moves_ahead: vec![0.0; drivers],
             drivers: saved.drivers.clone(),
@@ -253,9 +252,11 @@ impl<'m> Stepper<'m> {
     ///
     /// A changed design starts from the nominal design configuration and closes there first.
     pub fn start(&mut self, t: f64) -> Result<(), Box<Stop>> {
-        self.passed.clear();
         self.time = 0.0;
         self.assemble()?;
+        if let Some(turns) = &mut self.turns {
+            turns.begin(&self.state);
+        }
         // From there, where all drivers are zero, to their values at the first output time.
         for d in 0..self.line.len() {
             self.line[d] = [0.0, self.parts.law(d, t)[0]];
@@ -273,6 +274,7 @@ impl<'m> Stepper<'m> {
         self.time = t;
         self.attempt(Path::Laws, t).map_err(|r| self.stop(Path::Laws, t, r, false))?;
         self.save(t, 0.0);
+        self.renew_turns();
         self.examine_here(Path::Laws);
         self.count();
         Ok(())
@@ -280,12 +282,18 @@ impl<'m> Stepper<'m> {
 
     /// Moves on to the output time t.
     pub fn advance(&mut self, t: f64) -> Result<(), Box<Stop>> {
-        self.passed.clear();
         if !self.glide(t) {
             self.walk(Path::Laws, t)?;
         }
         self.count();
         Ok(())
+    }
+
+    /// Lets angles go on from the accepted position, where the state stands with the rates of another path.
+    pub(super) fn renew_turns(&mut self) {
+        if let Some(turns) = &mut self.turns {
+            turns.renew(&self.state);
+        }
     }
 
     fn count(&mut self) {
@@ -321,6 +329,12 @@ impl<'m> Stepper<'m> {
             return false;
         }
         self.note_moves();
+        if let Some(turns) = &mut self.turns {
+            if !turns.is_even(&self.state, h, self.moves.iter().sum()) {
+                return false;
+            }
+            turns.accept();
+        }
         self.save(t, h);
         self.ahead = if even { Lookahead::Even } else { Lookahead::Unknown };
         true
@@ -626,7 +640,7 @@ pub(super) fn smooth(difference: f64, fastest: f64, fastest_driver: f64) -> bool
 }
 
 /// Per driver, what its travel is compared with: 1 rad, or the size of the largest loop that it moves.
-fn driver_units(model: &Model, topology: &Topology) -> Vec<f64> {
+pub(crate) fn driver_units(model: &Model, topology: &Topology) -> Vec<f64> {
     let whole = model.size();
     // Du_d / unit is a number without dimension: rad, or a part of the loop.
     let unit = |(k, driver): (usize, &crate::model::Driver)| {

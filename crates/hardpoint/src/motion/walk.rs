@@ -5,13 +5,14 @@
 //! pulses between two output times is followed all the same. The position is predicted along the drivers, too, so kinks of laws
 //! need no care.
 
-use crate::model::{BodyId, DriverId};
+use crate::model::DriverId;
 use crate::space::Real;
 
 use super::kinematics::PositionFailure;
 use super::singularity::Workspace;
 use super::stepper::{LOCKED, Lookahead, Refusal, Stepper, TRUST, TRUST_FLOOR};
-use super::{BodyState, PassedPlace, Singular, Stop, StopKind};
+use super::turns::{FINEST, TURN_TRUST};
+use super::{Singular, Stop, StopKind};
 
 /// A step may be this part of the estimated distance to the nearest singular position. The estimate is 0.94 to 2.17 times the true
 /// distance (`docs/theory.md`, section 4), so that no step reaches beyond.
@@ -26,8 +27,11 @@ const LONGEST: f64 = 1.0;
 const LONGEST_MOVE: f64 = 2.0;
 /// A singular position nearer than this, in rad or sizes of driver travel, is where the walk ends; nearer by, round-off decides.
 const NEAREST: f64 = 1e-6;
-/// A step that takes this part of what it may is as long as it may be.
-const WHOLE_PART: f64 = 0.2;
+/// A law that comes within this part of the distance to a singular position reaches it: the estimate of that distance, 2e-6 rad away, is
+/// good to about 1e-4 (`docs/theory.md`, section 4).
+const REACHED: f64 = 0.99;
+/// The range of a law is asked for over so many parts of the way at most, to find out what it does first.
+const MOST_PARTS: usize = 2_000;
 /// A step that is refused at this length, rad or sizes, is refused for good.
 const SHORTEST: f64 = 1e-10;
 /// Times nearer to each other than this, relative to the times of the path, are one: what changes between them jumps.
@@ -43,6 +47,11 @@ const TELLING: f64 = 0.1;
 const MOST_STEPS: usize = 20_000;
 /// Between two output times no driver is followed further than this, rad or sizes: what runs away would be followed for ever.
 const FARTHEST: f64 = 1e5;
+/// Between two output times a law may jump so often: each jump is followed by itself, and one that jumps without end would be followed for
+/// ever.
+const MOST_JUMPS: usize = 1_000;
+/// ... and so often without a time at which it does not jump: one that goes on like that is faster than times can be told apart.
+const MOST_IN_A_ROW: usize = 32;
 /// A law that is not bounded over this part of a walk, however near by, and this large there, has a pole, 1e3 times what it is at
 /// the ends.
 const POLE: [f64; 2] = [1e-9, 1e3];
@@ -79,26 +88,30 @@ impl Stepper<'_> {
             self.stand(path).map_err(|r| self.stop(path, self.time, r, true))?;
             self.examine_here(path);
         }
-        if path != Path::Laws {
-            self.pass(path, true);
-        }
         if path == Path::Laws {
             self.look_for_poles(target)?;
         }
         let mut far = 0.0;
+        let (mut jumps, mut in_a_row) = (0, 0);
         while self.time < target {
             let rest = target - self.time;
             // The longest step with  sum over d of Du_d / rho_d <= 0.4  (22), Du_d the range of law d over [t, t + h]
             let mut h = self.stride(path, rest, ONE_TIME * scale);
-            if path == Path::Laws && h <= ONE_TIME * scale && h < rest && !(self.travelled() <= SHORTEST) {
-                self.jump(self.time + h)?;
+            if path == Path::Laws && h <= ONE_TIME * scale && !(self.travelled() <= SHORTEST) {
+                // However many times are asked for, what a law does in no time is a jump, also at the end of the way.
+                (jumps, in_a_row) = (jumps + 1, in_a_row + 1);
+                far += self.travelled();
+                if jumps > MOST_JUMPS || in_a_row > MOST_IN_A_ROW || !(far <= FARTHEST) {
+                    return Err(self.stop(path, self.time, self.too_far(), true));
+                }
+                self.jump(if h < rest { self.time + h } else { target })?;
                 continue;
             }
-            // The step is short because it is a part of the way there, not because a law rests and moves later.
-            let near = self.travelled() < NEAREST
-                && self.around.part_of_way(&self.travel) > WHOLE_PART * PART_OF_WAY;
-            // All that the distance allows is below 1e-6 rad, or sizes: nearer by, round-off decides.
-            if h < rest && near && self.is_singular_ahead(path) {
+            in_a_row = 0;
+            // The travel that the distance allows, 0.4 of it, whatever part of that the step is.
+            let allowed = self.travelled() * PART_OF_WAY / self.around.part_of_way(&self.travel);
+            // Where it is below 1e-6 rad, or sizes, round-off decides nearer by.
+            if h < rest && allowed < NEAREST && self.is_singular_ahead(path) && self.reaches(path, target) {
                 return Err(self.stop(path, self.time + h, Refusal::TooNear, true));
             }
             loop {
@@ -132,22 +145,8 @@ impl Stepper<'_> {
             if self.time < target {
                 self.effort.substeps += 1;
             }
-            // At an output time the output speaks for itself; a straight path has none.
-            if self.time < target || path != Path::Laws {
-                self.pass(path, false);
-            }
         }
         Ok(())
-    }
-
-    /// Notes where the watched bodies are.
-    fn pass(&mut self, path: Path, begins: bool) {
-        if path == Path::Assembly || self.watched.is_empty() {
-            return;
-        }
-        let watched = (1..self.watched.len()).filter(|b| self.watched[*b]);
-        let states = watched.map(|b| (BodyId(b), BodyState::of(&self.state, b))).collect();
-        self.passed.push(PassedPlace { time: self.time, begins, states });
     }
 
     /// The driver that goes furthest.
@@ -201,7 +200,8 @@ impl Stepper<'_> {
     /// all go together.
     fn examine(&mut self, path: Path) {
         // On the laws' path one direction per driver, f_d' = 1: what is near is near whether a driver hurries or rests.
-        let Self { workspace, topology, parts, state, line, beyond, drivers, .. } = self;
+        let Self { workspace, topology, parts, state, line, beyond, drivers, turns, .. } = self;
+        let turns = turns.as_mut().filter(|_| path != Path::Assembly);
         let directions = if path == Path::Laws { drivers.len() } else { 1 };
         let workspace = workspace
             .get_or_insert_with(|| Box::new(Workspace::new(topology, state.pose.len(), drivers.len())));
@@ -217,7 +217,7 @@ impl Stepper<'_> {
                 }
             }
         };
-        workspace.examine(topology, parts, state, path.gap_rate(), directions, speed, beyond);
+        workspace.examine(topology, parts, state, path.gap_rate(), (directions, speed), turns, beyond);
     }
 
     /// How far each direction goes at most over a step h of the path.
@@ -261,7 +261,11 @@ impl Stepper<'_> {
             // sum Du_d / rho_d <= 0.4,    max over the unknowns of sum abs(q_d') Du_d <= 2,    Du_d <= 1
             let part = self.around.part_of_way(&self.travel) / PART_OF_WAY;
             let moved = self.around.move_of_fastest(&self.travel) / LONGEST_MOVE;
-            let much = part.max(moved).max(self.travelled() / LONGEST);
+            let travelled = self.travelled();
+            // max over the counted angles of sum abs(chi_d') Du_d <= 1
+            let turned =
+                if travelled > FINEST { self.around.turn_of_fastest(&self.travel) / TURN_TRUST } else { 0.0 };
+            let much = part.max(moved).max(travelled / LONGEST).max(turned);
             if much <= 1.0 || h <= shortest {
                 return h;
             }
@@ -284,10 +288,42 @@ impl Stepper<'_> {
         if selections == self.selections && !(self.beyond.part_of_way(&self.travel) <= PART_FROM_FAR_END) {
             return Err(Refusal::TooNear);
         }
+        if path != Path::Assembly && !self.follow_turns(path, h) {
+            return Err(Refusal::TooNear);
+        }
         std::mem::swap(&mut self.around, &mut self.beyond);
         self.save(t, h);
         self.ahead = Lookahead::Examined;
         Ok(())
+    }
+
+    /// Counts angles over a step h, to where the state stands; whether each is in the turn that is predicted along the drivers, from both
+    /// ends.
+    fn follow_turns(&mut self, path: Path, h: f64) -> bool {
+        let is_fine = self.travelled() <= FINEST;
+        let Self { turns, around, beyond, drivers, saved, travel, state, .. } = self;
+        let Some(turns) = turns else { return true };
+        let directions = if path == Path::Laws { drivers.len() } else { 1 };
+        let sure = turns.follow(state, |i| {
+            let (mut ahead, mut back, mut far) = (0.0, 0.0, 0.0);
+            for k in 0..directions {
+                let du = match path {
+                    Path::Laws => drivers[k][0] - saved.drivers[k][0],
+                    Path::Line { .. } | Path::Assembly => h,
+                };
+                // chi_d' Du_d + chi_d'' Du_d^2 / 2 of this end,  chi_d' Du_d - chi_d'' Du_d^2 / 2 of the far one
+                let half = 0.5 * du * du;
+                let ([slope, bend], [slope_there, bend_there]) = (around.angles[k][i], beyond.angles[k][i]);
+                ahead += slope * du + bend * half;
+                back += slope_there * du - bend_there * half;
+                far += (slope_there * travel[k]).abs();
+            }
+            [ahead, back, far]
+        });
+        if sure || is_fine {
+            turns.accept();
+        }
+        sure || is_fine
     }
 
     /// Solves the position at t on a path, a step h beyond the saved one, from a prediction along the drivers.
@@ -348,8 +384,8 @@ impl Stepper<'_> {
         self.time = t;
         self.attempt(Path::Laws, t).map_err(|r| self.stop(Path::Laws, t, r, true))?;
         self.save(t, 0.0);
+        self.renew_turns();
         self.examine_here(Path::Laws);
-        self.pass(Path::Laws, true);
         Ok(())
     }
 
@@ -392,6 +428,40 @@ impl Stepper<'_> {
             return true;
         }
         !self.ahead(path).is_some_and(|ahead| ahead.distance < 0.0)
+    }
+
+    /// Whether the laws reach the singular position ahead before they go as far the other way, on the way to `target`. Where more than one
+    /// driver moves there, they are taken to reach it.
+    fn reaches(&mut self, path: Path, target: f64) -> bool {
+        let from = self.time;
+        let moving = |d: &usize| !(self.parts.travel(*d, from, target, self.saved.drivers[*d][0]) <= 0.0);
+        let mut movers = (0..self.drivers.len()).filter(moving);
+        let (Path::Laws, Some(d), None) = (path, movers.next(), movers.next()) else { return true };
+        // The distance as a travel of this driver, f' = 1
+        let mut along = vec![[0.0; 3]; self.drivers.len()];
+        along[d][1] = 1.0;
+        let Self { workspace, topology, parts, state, .. } = self;
+        let Some(workspace) = workspace.as_mut() else { return true };
+        let Some(ahead) = workspace.ahead(topology, parts, state, 0.0, &along) else { return true };
+        let law = parts.law_of(d);
+        let (begin, side) = (law.at(from).value(), ahead.distance.signum());
+        let distance = REACHED * ahead.distance.abs();
+        // Part by part in the order of time, halved until the law stays within the distance or is beyond it.
+        let (mut stretches, mut asked) = (vec![[from, target]], 0);
+        while let Some([low, high]) = stretches.pop() {
+            asked += 1;
+            let range = law.over(low, high).value;
+            if range.reach_from(begin) < distance {
+                continue;
+            }
+            let middle = low + 0.5 * (high - low);
+            if !(middle > low && middle < high) || asked > MOST_PARTS {
+                // Written so that NaN reaches it.
+                return !(side * (law.at(high).value() - begin) <= 0.0);
+            }
+            stretches.extend([[middle, high], [low, middle]]);
+        }
+        false
     }
 
     /// Why the path ends at the saved position; the step to t was refused.

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use crate::design::DesignMap;
 use crate::law::Law;
 use crate::load::{self, RecordedLoads};
-use crate::measure::{self, Measured, PreviousStep, StepValues};
+use crate::measure::{self, Measured, StepValues};
 use crate::model::{BodyId, Held, MeasureKind, Model};
 use crate::motion::execution::{Cache, Runnable};
 use crate::motion::parts::PlanGeometry;
@@ -48,6 +48,8 @@ pub struct Analysis<'m> {
     design_map: DesignMap<'m>,
     /// Per variable, the joints that it opens in the nominal design: worked out when first asked for.
     opens: OnceLock<Vec<Vec<JointDefect>>>,
+    /// The output times and those between them that metrics ask for: worked out when first asked for.
+    pub(super) between: OnceLock<Vec<f64>>,
     /// Steps as straight-line programs, recorded when they pay.
     programs: Arc<Programs>,
     /// The same of measures.
@@ -75,6 +77,7 @@ impl<'m> Analysis<'m> {
             topology,
             design_map: DesignMap::of(model),
             opens: OnceLock::new(),
+            between: OnceLock::new(),
             programs,
             formulas: Arc::default(),
         })
@@ -105,6 +108,7 @@ impl<'m> Analysis<'m> {
     pub fn solve(&self, mut run: Run<'_>) -> Solution {
         let (design, mut solution) = (self.prepare(run.design, run.scope), std::mem::take(&mut run.memory));
         self.walk(&design, self.model().times.len(), &mut *run.progress, &mut solution, &mut |_, _| ());
+        self.solve_between(&design, &mut *run.progress, &mut solution);
         solution
     }
 
@@ -137,6 +141,7 @@ impl<'m> Analysis<'m> {
     pub(super) fn solve_prepared(&self, design: &PreparedDesign, solution: &mut Solution) {
         let progress = &mut |_| ControlFlow::Continue(());
         self.walk(design, self.model().times.len(), progress, solution, &mut |_, _| ());
+        self.solve_between(design, progress, solution);
     }
 
     /// The design with variable k at `design[k]`, without sensitivities.
@@ -156,6 +161,11 @@ impl<'m> Analysis<'m> {
             scope,
             values,
         }
+    }
+
+    /// How its steps are solved.
+    pub(super) fn execution(&self) -> Execution {
+        self.programs.execution()
     }
 
     pub(crate) fn design_map(&self) -> &DesignMap<'m> {
@@ -240,16 +250,15 @@ impl<'m> Analysis<'m> {
         motion.margins.clear();
         motion.assembly = None;
         motion.solved_by = None;
-        motion.passed.clear();
+        motion.counted.clear();
         motion.beyond = None;
     }
 
-    /// Evaluates the measures of a motion that goes on from what was `before`.
+    /// Evaluates the measures of a motion.
     pub(super) fn measure(
         &self,
         design: &PreparedDesign,
         slopes: &StepValues,
-        before: Option<&PreviousStep>,
         solution: &mut Solution,
     ) {
         let Solution { motion, sensitivities, measured, .. } = solution;
@@ -266,7 +275,7 @@ impl<'m> Analysis<'m> {
                 .get(asked, |asked| measure::MeasureProgram::record(&self.design_map, asked, execution))
         });
         let (program, solved) = (program.flatten(), (&*motion, &*sensitivities));
-        measure::evaluate(&at, &self.topology, solved, slopes, before, program.as_deref(), measured);
+        measure::evaluate(&at, &self.topology, solved, slopes, program.as_deref(), measured);
     }
 
     /// The step of this plan as a program, recorded where the nominal motion begins.

@@ -36,7 +36,7 @@ impl Analysis<'_> {
         visit: impl FnMut(usize, &mut Solution) + Send,
     ) {
         let scope = Scope { of_many: designs.len(), ..run.scope };
-        let alone = scope.sensitivities || scope.measures && self.goes_by_step();
+        let alone = scope.sensitivities || scope.measures && (self.goes_by_step() || self.has_times_between());
         let (next, visit) = (AtomicUsize::new(0), Mutex::new(visit));
         let work = || {
             let mut solutions: [Solution; LANES] = std::array::from_fn(|_| Solution::default());
@@ -74,9 +74,9 @@ impl Analysis<'_> {
             solution.motion.times.extend_from_slice(&self.model().times);
             solution.motion.effort = effort;
             solution.sensitivities = Sensitivities::default();
-            solution.stop = None;
+            (solution.stop, solution.between) = (None, None);
             if scope.measures {
-                self.measure(&self.prepare(design, scope), &StepValues::default(), None, solution);
+                self.measure(&self.prepare(design, scope), &StepValues::default(), solution);
             } else {
                 solution.measured = Measured::default();
             }

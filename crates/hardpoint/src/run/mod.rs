@@ -3,6 +3,7 @@
 //! A [`Run`] says what is asked for, an [`Analysis`] answers it: at once, window by window, into a [`Sink`], or for many designs.
 
 mod analysis;
+mod between;
 mod designs;
 mod request;
 mod sink;

@@ -1,5 +1,7 @@
 //! What runs find.
 
+use std::sync::Arc;
+
 use crate::measure::Measured;
 use crate::model::BodyId;
 use crate::motion::{BodyState, Effort, Motion, Stop};
@@ -16,6 +18,8 @@ pub struct Solution {
     pub measured: Measured,
     /// Why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
+    /// The same motion at more times, where metrics ask for these.
+    pub(crate) between: Option<Arc<Solution>>,
 }
 
 impl Solution {

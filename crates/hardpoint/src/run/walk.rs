@@ -7,12 +7,14 @@ use hardpoint_tape::LANES;
 use crate::design::{DesignVelocity, Geometry};
 use crate::law::Law;
 use crate::load::LoadSolver;
+use crate::measure::PathAngles;
 use crate::model::BodyId;
 use crate::motion::abreast::TimesAbreast;
 use crate::motion::parts::PlanGeometry;
 use crate::motion::step_program::Purpose;
 use crate::motion::stepper::Stepper;
 use crate::motion::tape::Tape;
+use crate::motion::turns::TurnCounter;
 use crate::motion::{BodyState, Stop, StopKind};
 use crate::sensitivity::{Admissibility, JointDefect, SensitivitySolver};
 
@@ -65,7 +67,7 @@ pub(crate) struct Walk<'a> {
 /// What has just been solved: one output time, or several by a program, in these of its lanes.
 pub(crate) enum SolvedSteps<'w, 'a> {
     One(&'w mut Stepper<'a>, Option<&'w LoadSolver<'a>>),
-    Abreast(&'w Tape, Range<usize>, Option<&'w LoadSolver<'a>>),
+    Abreast(&'w Tape, Range<usize>, Option<&'w LoadSolver<'a>>, Option<&'w TurnCounter<'a>>),
 }
 
 impl<'a> Walk<'a> {
@@ -73,9 +75,13 @@ impl<'a> Walk<'a> {
     pub fn new(analysis: &'a Analysis<'a>, design: &'a PreparedDesign, wanted: Vec<bool>) -> Self {
         let (model, topology) = (analysis.model(), analysis.topology());
         let PreparedDesign { geometry, laws, fields, .. } = design;
+        let mut one = Stepper::new(model, topology, PlanGeometry::same(model, topology, geometry, laws));
+        let angles =
+            PathAngles::of(analysis.design_map(), topology, &design.values, design.scope.measures);
+        one.turns = angles.map(|angles| TurnCounter::new(Box::new(angles)));
         Self {
             analysis,
-            one: Stepper::new(model, topology, PlanGeometry::same(model, topology, geometry, laws)),
+            one,
             abreast: TimesAbreast::new(None, &[], None),
             solver: (!fields.is_empty())
                 .then(|| SensitivitySolver::new(model, topology, fields, wanted.clone())),
@@ -143,7 +149,7 @@ impl<'a> Walk<'a> {
             } else {
                 (count, stop) = self.tell(at_once, progress);
                 let lanes = self.give_abreast(k, count, sink);
-                SolvedSteps::Abreast(self.abreast.solved(), lanes, self.loads.as_ref())
+                SolvedSteps::Abreast(self.abreast.solved(), lanes, self.loads.as_ref(), self.one.turns.as_ref())
             };
             then(sink, solved, count, self.solver.as_ref());
             self.done += count;

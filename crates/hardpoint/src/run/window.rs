@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use hardpoint_tape::LANES;
 
 use crate::load::{Compliances, LoadSolver};
-use crate::measure::{self, PreviousStep, Slopes, StepValues};
+use crate::measure::{self, Slopes, StepValues};
 use crate::model::{BodyId, Model, OutputSource, VariableId};
 use crate::motion::margin::Margins;
 use crate::motion::{BodyState, Motion};
@@ -53,7 +53,7 @@ impl Footprint {
         self.bytes() * self.rows(bytes)
     }
 
-    fn rows(self, bytes: usize) -> usize {
+    pub(super) fn rows(self, bytes: usize) -> usize {
         usize::max(bytes / self.bytes().max(1) / LANES, 1) * LANES
     }
 }
@@ -76,6 +76,9 @@ impl Analysis<'_> {
         let design = self.prepare(run.design, run.scope);
         let first = self.walk(&design, rows, &mut *run.progress, &mut solution, &mut each);
         each(first, &solution);
+        if self.has_times_between() {
+            self.solve_between(&design, &mut *run.progress, &mut solution);
+        }
         solution
     }
 
@@ -104,9 +107,6 @@ impl Analysis<'_> {
         if loads {
             walk.loads = Some(LoadSolver::new(self.design_map(), topology, &design.values, sensitive));
         }
-        if measures {
-            walk.one.watched = measure::watched(model, topology);
-        }
         let rows = usize::min(rows, model.times.len());
         let mut sensitivities = std::mem::take(&mut solution.sensitivities);
         match &walk.solver {
@@ -119,7 +119,6 @@ impl Analysis<'_> {
             motion: std::mem::take(&mut solution.motion),
             sensitivities,
             slopes: StepValues::new(model, variables),
-            before: None,
         };
         self.make_room(&mut window.motion, rows);
         let mut margins = Margins::new(topology);
@@ -142,16 +141,22 @@ impl Analysis<'_> {
                         }
                     }
                     window.motion.coordinates.set(k, 0, one.coordinates());
-                    window.motion.passed.extend(one.passed.drain(..).map(|place| (k, place)));
+                    if let Some(turns) = &one.turns {
+                        window.motion.counted.extend_from_slice(&turns.values);
+                    }
                     if measures {
                         window.motion.margins.push(margins.at(&one.topology, &one.state));
                     }
                 }
-                SolvedSteps::Abreast(tape, lanes, loads) => {
+                SolvedSteps::Abreast(tape, lanes, loads, turns) => {
                     if let Some(loads) = loads {
                         loads.enter_recorded(tape.loads(), lanes.clone(), &mut window.slopes);
                     }
                     tape.coordinates(topology, window.motion.coordinates.block_mut(k));
+                    if let Some(turns) = turns {
+                        let of_lane = |lane: usize| &turns.lanes[lane * turns.len()..][..turns.len()];
+                        lanes.clone().for_each(|lane| window.motion.counted.extend_from_slice(of_lane(lane)));
+                    }
                     if measures {
                         window.motion.margins.extend(lanes.map(|lane| tape.margin(lane)));
                     }
@@ -186,8 +191,6 @@ struct Window {
     motion: Motion,
     sensitivities: Sensitivities,
     slopes: StepValues,
-    /// The end of the window before.
-    before: Option<PreviousStep>,
 }
 
 impl Sink for Window {
@@ -214,17 +217,12 @@ impl Window {
         self.motion.times.extend_from_slice(&analysis.model().times[self.first..self.done]);
         solution.motion = std::mem::take(&mut self.motion);
         solution.sensitivities = std::mem::take(&mut self.sensitivities);
-        analysis.measure(design, &self.slopes, self.before.as_ref(), solution);
+        analysis.measure(design, &self.slopes, solution);
     }
 
     /// Goes on behind a window that was handed over, in its memory.
     fn open(&mut self, analysis: &Analysis<'_>, rows: usize, solution: &mut Solution) {
-        let Solution { motion, sensitivities, measured, .. } = solution;
-        let last = motion.len() - 1;
-        self.before = Some(PreviousStep {
-            time: motion.times[last],
-            values: (0..measured.outputs.len()).map(|m| measured.value(last, m)).collect(),
-        });
+        let Solution { motion, sensitivities, .. } = solution;
         (self.motion, self.sensitivities) = (std::mem::take(motion), std::mem::take(sensitivities));
         analysis.make_room(&mut self.motion, rows);
         self.slopes.restart();
@@ -289,6 +287,7 @@ impl Kept {
         self.solution.sensitivities.variables = whole.sensitivities.variables;
         self.solution.measured.variables = whole.sensitivities.variables;
         self.solution.stop = whole.stop.clone();
+        self.solution.between = whole.between.clone();
         let cannot =
             |v: &usize| matches!(whole.sensitivities.admissibility[*v], Admissibility::CannotFollow { .. });
         self.solution.measured.forget((0..whole.sensitivities.variables).filter(cannot));

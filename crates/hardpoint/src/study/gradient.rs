@@ -118,7 +118,7 @@ impl Analysis<'_> {
 
     /// Those of outputs that only a whole run knows.
     fn gradients_of_run(&self, design: &[f64], indices: &[usize], outputs: Vec<Output>) -> Gradients {
-        let Solution { motion, sensitivities, measured, stop } = self.solve(Run::new().at(design));
+        let Solution { motion, sensitivities, measured, stop, .. } = self.solve(Run::new().at(design));
         let variables = self.model().variables.len();
         let of = |k: usize| {
             let measured = &measured;

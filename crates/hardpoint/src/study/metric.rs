@@ -74,7 +74,9 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
         let found = varied_curves(solution, metric, VariableId(v));
         found.and_then(|(y, x)| take(metric, &y, &x)).map_or(f64::NAN, |(value, _)| value.d)
     };
-    let error = interpolation_error(metric, &y, &x, value, time);
+    // Solved between output times, it is taken at a time that was solved.
+    let resolved = solution.between.is_some() && unresolved_times(solution_of(solution, metric), metric, true).is_empty();
+    let error = if resolved { None } else { interpolation_error(metric, &y, &x, value, time) };
     let finite = || y.values.iter().map(|v| v[0]).filter(|x| x.is_finite());
     let range = match metric.take {
         Reduction::Slope(_) => value.abs(),
@@ -89,10 +91,77 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
     }
 }
 
+/// An interpolation error below this part of the curve's range counts for nothing where the motion was solved between output times ...
+const RESOLVED: f64 = 1e-10;
+/// ... and where the output times show the curve by themselves: metrics are read to some digits, and many designs are solved for them.
+const RESOLVED_BY_OUTPUTS: f64 = 1e-7;
+
+/// The times at which a window of a metric over time ends.
+pub(crate) fn window_times(metric: &Metric) -> Vec<f64> {
+    let at = match metric.take {
+        Reduction::Value(at) | Reduction::Slope(at) => Some(at),
+        Reduction::Least
+        | Reduction::Greatest
+        | Reduction::Range
+        | Reduction::Mean
+        | Reduction::Integral
+        | Reduction::Rms(_) => None,
+    };
+    let ends = metric.window.into_iter().flatten().chain(at);
+    if metric.over.is_none() { ends.collect() } else { Vec::new() }
+}
+
+/// The times between those of a solution at which a metric is taken by interpolation that may be off; `finer` says that these are times
+/// between the output times.
+pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool) -> Vec<f64> {
+    let Some((y, x)) = curves_at(solution, metric) else { return Vec::new() };
+    let ends = match metric.take {
+        Reduction::Range => vec![Reduction::Greatest, Reduction::Least],
+        Reduction::Greatest | Reduction::Least | Reduction::Value(_) | Reduction::Slope(_) => {
+            vec![metric.take.clone()]
+        }
+        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => Vec::new(),
+    };
+    let finite = || y.values.iter().map(|v| v[0]).filter(|x| x.is_finite());
+    let range = finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min);
+    let part = if finer { RESOLVED } else { RESOLVED_BY_OUTPUTS };
+    let unresolved = |end: Reduction| {
+        let (_, time) = take(&Metric { take: end, ..metric.clone() }, &y, &x)?;
+        let time = time.filter(|t| !y.times.contains(t))?;
+        let k = y.times[..y.values.len()].partition_point(|end| *end <= time).clamp(1, y.values.len() - 1) - 1;
+        let off = |curve: &SampledCurve<'_, f64>| {
+            let wide = WidePolynomial::new(curve, k)?.at(time)[0];
+            Some((wide - curve.at(k, time)[0]).abs())
+        };
+        // Where too little is known to say, it may be off.
+        let late = x.as_ref().map_or(Some(0.0), |x| Some(off(x)? * (y.at(k, time)[1] / x.at(k, time)[1]).abs()));
+        let error = off(&y).zip(late).map_or(f64::INFINITY, |(y, late)| y + late);
+        (!(error <= part * range)).then_some(time)
+    };
+    ends.into_iter().filter_map(unresolved).collect()
+}
+
+/// The solution that a metric is taken of: that between output times, where there is one, for what is taken at certain times.
+fn solution_of<'s>(solution: &'s Solution, metric: &Metric) -> &'s Solution {
+    match metric.take {
+        Reduction::Least
+        | Reduction::Greatest
+        | Reduction::Range
+        | Reduction::Value(_)
+        | Reduction::Slope(_) => solution.between.as_deref().unwrap_or(solution),
+        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => solution,
+    }
+}
+
 /// The curve that a metric is taken of, and the one that it goes over where that is not time.
 type Curves<'t, T> = (SampledCurve<'t, T>, Option<SampledCurve<'t, T>>);
 
 fn curves<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f64>> {
+    curves_at(solution_of(solution, metric), metric)
+}
+
+/// The same at the times of a solution itself.
+fn curves_at<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f64>> {
     let (measured, times) = (&solution.measured, &solution.motion.times[..]);
     let now = |output: OutputSource| {
         let (m, orders) = column(measured, output)?;
@@ -108,7 +177,7 @@ fn varied_curves<'s>(
     metric: &Metric,
     variable: VariableId,
 ) -> Option<Curves<'s, Dual<f64>>> {
-    let Solution { motion, measured, sensitivities, .. } = solution;
+    let Solution { motion, measured, sensitivities, .. } = solution_of(solution, metric);
     if sensitivities.variables == 0 {
         return None;
     }
@@ -186,11 +255,12 @@ pub fn misfits(model: &Model, solution: &Solution, metric: &Metric) -> Option<Me
 /// The greatest value (for `sign` 1) or the least (for -1) of the curve of a metric in each interval between output times; in those beyond
 /// its window, the value of the metric's whole curve at the other end, which has no say, and no derivative.
 pub fn peaks(model: &Model, solution: &Solution, metric: &Metric, sign: f64) -> Option<MetricParts> {
-    fn parts<T: Real>((y, x): &Curves<'_, T>, metric: &Metric, sign: f64) -> Vec<T> {
+    fn parts<T: Real>((y, x): &Curves<'_, T>, ends: &[f64], metric: &Metric, sign: f64) -> Vec<T> {
         let values = y.values.iter().map(|v| v[0].value());
         let least = values.fold(f64::INFINITY, |least, v| least.min(sign * v));
         let inside = |k: usize| within_window(metric, abscissa_at(y, x, k).value());
-        let part = |k: usize| {
+        // Of one interval between the times that were solved
+        let peak = |k: usize| {
             if !(inside(k) && inside(k + 1)) {
                 return T::constant(sign * least);
             }
@@ -204,14 +274,22 @@ pub fn peaks(model: &Model, solution: &Solution, metric: &Metric, sign: f64) -> 
             }
             best
         };
-        (0..y.values.len().saturating_sub(1)).map(part).collect()
+        // As many parts for every design, at whatever times between the output times it was solved.
+        let part = |ends: &[f64]| {
+            let [first, last] = [ends[0], ends[1]].map(|end| y.times.partition_point(|t| *t < end));
+            let peaks = (first..usize::min(last, y.values.len().saturating_sub(1))).map(peak);
+            let higher = |best: T, other: T| if sign * other.value() > sign * best.value() { other } else { best };
+            peaks.reduce(higher).unwrap_or_else(|| T::constant(sign * least))
+        };
+        ends.windows(2).map(part).collect()
     }
+    let ends = &solution.motion.times[..];
     MetricParts::of(
         model,
         solution,
         metric,
-        |curves| parts(curves, metric, sign),
-        |curves| parts(curves, metric, sign),
+        |curves| parts(curves, ends, metric, sign),
+        |curves| parts(curves, ends, metric, sign),
     )
 }
 

@@ -10,7 +10,7 @@ mod grid;
 mod jerk;
 mod loads;
 mod magnitude;
-mod metric;
+pub(crate) mod metric;
 mod nearest;
 mod optimize;
 mod random;

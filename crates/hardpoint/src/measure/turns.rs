@@ -1,0 +1,140 @@
+//! Angles whose whole turns only the path tells.
+
+use crate::constraint::MarkerPair;
+use crate::design::{BodyFixed, DesignMap, Geometry};
+use crate::joint::Quantity;
+use crate::model::{ElementId, MeasureKind, Model};
+use crate::motion::BodyState;
+use crate::motion::turns::CountedAngles;
+use crate::number::{Jet, Rates};
+use crate::space::{Mat3, Pose};
+use crate::topology::Topology;
+
+use super::{Instant, Turns, outputs, turns, with_rates};
+
+/// An angle that is counted along the path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum PathAngle {
+    /// The coordinate of a cut joint that an element acts on.
+    Element(ElementId),
+    /// A measure.
+    Measure(usize),
+}
+
+/// All of them, in the order in which they are counted: those of elements, then those of measures, if these are wanted.
+pub(crate) fn path_angles(model: &Model, topology: &Topology, measures: bool) -> Vec<PathAngle> {
+    let mut angles: Vec<PathAngle> = (0..model.elements.len())
+        .map(ElementId)
+        .filter(|e| is_counted_of_element(model, topology, *e))
+        .map(PathAngle::Element)
+        .collect();
+    if measures {
+        let of_measures = turns(model, topology, &outputs(model));
+        let counted = of_measures.iter().enumerate().filter(|(_, turns)| matches!(turns, Some(Turns::Path(_))));
+        angles.extend(counted.map(|(m, _)| PathAngle::Measure(m)));
+    }
+    angles
+}
+
+/// Whether an element acts on the angle of a joint that the tree does not carry.
+pub(crate) fn is_counted_of_element(model: &Model, topology: &Topology, e: ElementId) -> bool {
+    let Some((joint, coordinate)) = model.elements[e.0].kind.coordinate(model) else { return false };
+    let coordinate = &model.joints[joint.0].kind.coordinates[coordinate];
+    let in_tree = coordinate.freedom.is_some() && topology.links.iter().any(|link| link.joint == Some(joint));
+    coordinate.quantity == Quantity::Angle && !in_tree
+}
+
+/// The angles of a design that are counted along the path.
+pub(crate) struct PathAngles<'m> {
+    model: &'m Model,
+    angles: Vec<PathAngle>,
+    origins: Vec<Option<f64>>,
+    bodies: Vec<usize>,
+    fixed: BodyFixed<Rates>,
+    geometry: Geometry<Rates>,
+    poses: Vec<Pose<Rates>>,
+}
+
+impl<'m> PathAngles<'m> {
+    /// Those of a design with these values; `None` where there is none.
+    pub fn of(
+        design_map: &'m DesignMap<'_>,
+        topology: &Topology,
+        values: &[f64],
+        measures: bool,
+    ) -> Option<Self> {
+        let model = design_map.model();
+        let angles = path_angles(model, topology, measures);
+        if angles.is_empty() {
+            return None;
+        }
+        let mut bodies = Vec::new();
+        let mut origins = Vec::new();
+        for angle in &angles {
+            let (on, origin) = match *angle {
+                PathAngle::Element(e) => {
+                    let joint = model.elements[e.0].kind.coordinate(model).map(|(joint, _)| joint);
+                    let on = joint.map_or_else(Vec::new, |joint| model.joints[joint.0].bodies.to_vec());
+                    (on, Some(0.0))
+                }
+                PathAngle::Measure(m) => {
+                    let measure = &model.measures[m];
+                    // That of a joint is zero in the design configuration.
+                    let of_joint = matches!(measure.kind, MeasureKind::Coordinate { .. });
+                    (model.bodies_of(measure), of_joint.then_some(0.0))
+                }
+            };
+            bodies.extend(on.into_iter().map(|b| b.0).filter(|b| *b > 0));
+            origins.push(origin);
+        }
+        bodies.sort_unstable();
+        bodies.dedup();
+        let rates: Vec<Rates> = values.iter().map(|v| Rates::constant(*v)).collect();
+        Some(Self {
+            model,
+            angles,
+            origins,
+            bodies,
+            fixed: design_map.fixed(values).map(Jet::constant),
+            geometry: design_map.geometry(&rates),
+            poses: vec![Pose::IDENTITY.spread(); model.bodies.len()],
+        })
+    }
+
+    /// The coordinate that an element acts on, within a turn, counted from the design configuration.
+    fn of_element(&self, e: ElementId) -> Rates {
+        let unknown = Rates::constant(f64::NAN);
+        let Some((joint, coordinate)) = self.model.elements[e.0].kind.coordinate(self.model) else { return unknown };
+        let j = &self.model.joints[joint.0];
+        let row = j.kind.coordinates[coordinate].row;
+        let [m_i, m_j] = self.geometry.markers[joint.0];
+        let [i, j] = j.bodies.map(|b| self.poses[b.0]);
+        let ends = MarkerPair { i: i.compose(m_i), j: j.compose(m_j), axes: Mat3::IDENTITY.spread() };
+        let kept = self.geometry.kept[joint.0].by(row);
+        row.value(&ends, kept) - kept
+    }
+}
+
+impl CountedAngles for PathAngles<'_> {
+    fn bodies(&self) -> &[usize] {
+        &self.bodies
+    }
+
+    fn origins(&self) -> &[Option<f64>] {
+        &self.origins
+    }
+
+    fn measure(&mut self, state: &dyn Fn(usize) -> BodyState, found: &mut [[f64; 3]]) {
+        for &b in &self.bodies {
+            self.poses[b] = with_rates(&state(b));
+        }
+        let instant = Instant::new(self.model, &self.fixed, &self.poses);
+        for (angle, found) in self.angles.iter().zip(found) {
+            let Jet(numbers) = match *angle {
+                PathAngle::Element(e) => self.of_element(e),
+                PathAngle::Measure(m) => instant.measure(m),
+            };
+            *found = numbers;
+        }
+    }
+}

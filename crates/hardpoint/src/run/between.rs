@@ -1,0 +1,176 @@
+//! The motion between output times, as far as metrics need it.
+//!
+//! A metric that is taken at a certain time (a greatest or least value, a value or a slope where something else has a value) is that of the
+//! curve, not of its output times. Where these are too few to show the curve, the same motion is solved once more at more times: so many
+//! that no driver goes far between two of them and that each law is the polynomial through its ends; and at last at the times that the
+//! metrics are taken at. There the value is exact, and so is its derivative: an extremum moves with the design, but its value does not
+//! change by that, `dm/db = dy/db` at `t*`.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use crate::law::Law;
+use crate::model::{Metric, Model, Reduction};
+use crate::motion::stepper::driver_units;
+use crate::run::Footprint;
+use crate::study::metric::{unresolved_times, window_times};
+
+use super::analysis::Analysis;
+use super::request::Progress;
+use super::solution::Solution;
+use super::walk::PreparedDesign;
+
+/// Between two times at which a metric is looked for no driver moves by more than this, rad or sizes of its loop: a polynomial of degree five
+/// misses a sine over it by `0.15^6 / 46080 = 2e-10`.
+const FINE: f64 = 0.15;
+/// ... and no law is off the polynomial through its ends by more than this part of its range.
+const LAW_RESOLVED: f64 = 1e-8;
+/// Parts of an interval in which that is looked at.
+const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
+/// An interval is halved so often at most.
+const MOST_HALVINGS: u32 = 40;
+/// The times that metrics are taken at are solved so often at most, each time nearer to where they are.
+const MOST_PASSES: usize = 4;
+/// Just before a jump of a law is this part of the run earlier: far more than times are told apart by, far less than anything moves in.
+const JUST_BEFORE: f64 = 1e-12;
+/// Memory for the motion between output times.
+const BYTES: usize = 128 << 20;
+
+/// Whether a metric is taken at certain times of the curve.
+fn is_located(metric: &Metric) -> bool {
+    match metric.take {
+        Reduction::Least
+        | Reduction::Greatest
+        | Reduction::Range
+        | Reduction::Value(_)
+        | Reduction::Slope(_) => true,
+        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => false,
+    }
+}
+
+impl Analysis<'_> {
+    /// Whether metrics ask for more times than there are output times.
+    pub(super) fn has_times_between(&self) -> bool {
+        self.times_between().len() > self.model().times.len()
+    }
+
+    /// The output times, and as many between them as metrics ask for; of the nominal design's laws.
+    fn times_between(&self) -> &[f64] {
+        self.between.get_or_init(|| {
+            let model = self.model();
+            if !model.metrics.iter().any(is_located) {
+                return model.times.clone();
+            }
+            let units = driver_units(model, self.topology());
+            let laws: Vec<(&Law, f64)> = model.drivers.iter().map(|d| &d.law).zip(units).collect();
+            // However long the motion is, what is kept of it must fit.
+            let most = Footprint::of(model, true).rows(BYTES);
+            (0..6)
+                .map(|k| f64::from(1 << k))
+                .find_map(|coarser| times_of(model, &laws, coarser, most))
+                .unwrap_or_else(|| model.times.clone())
+        })
+    }
+
+    /// Solves the motion of a design between its output times, where metrics ask for it; `solution` is that at the output times, all of them.
+    pub(super) fn solve_between(
+        &self,
+        design: &PreparedDesign,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+        solution: &mut Solution,
+    ) {
+        solution.between = None;
+        let model = self.model();
+        if !design.scope.measures || solution.stop.is_some() || !model.metrics.iter().any(is_located) {
+            return;
+        }
+        let mut times = self.times_between().to_vec();
+        let mut found: Option<Solution> = None;
+        if times.len() > model.times.len() {
+            times.extend(model.metrics.iter().flat_map(window_times));
+        }
+        // None of the output times is solved for the first time now.
+        let mut go_on = |_: Progress| progress(Progress { done: model.times.len() - 1, total: model.times.len() });
+        for _ in 0..MOST_PASSES {
+            if times.len() > model.times.len() {
+                let [start, end] = [model.times[0], model.times[model.times.len() - 1]];
+                times.retain(|t| start <= *t && *t <= end);
+                times.sort_by(f64::total_cmp);
+                times.dedup();
+                let finer = Arc::new(Model { times: times.clone(), ..model.clone() });
+                let Ok(finer) = Analysis::with(finer, self.topology().formulation) else { return };
+                let finer = finer.executed(self.execution());
+                let mut next = Solution::default();
+                let design = finer.prepare(&design.values, design.scope);
+                finer.walk(&design, times.len(), &mut go_on, &mut next, &mut |_, _| ());
+                if next.stop.is_some() {
+                    return;
+                }
+                found = Some(next);
+            }
+            let now = found.as_ref().unwrap_or(solution);
+            let located = model.metrics.iter().filter(|m| is_located(m));
+            let add: Vec<f64> = located.flat_map(|metric| unresolved_times(now, metric, found.is_some())).collect();
+            if add.is_empty() {
+                break;
+            }
+            times.extend(add);
+        }
+        solution.between = found.map(Arc::new);
+    }
+}
+
+/// The output times of a model, and as many between them as its laws ask for, steps so many times coarser than they might be; `None` where
+/// these are more than `most`.
+fn times_of(model: &Model, laws: &[(&Law, f64)], coarser: f64, most: usize) -> Option<Vec<f64>> {
+    let (start, end) = (*model.times.first()?, *model.times.last()?);
+    let ranges: Vec<f64> = laws.iter().map(|(law, unit)| law.over(start, end).value.reach_from(law.at(start).value()) / unit).collect();
+    let mut ends = model.times.clone();
+    for (law, _) in laws {
+        let jumps = law.jumps(start, end);
+        // The curve before a jump ends there with other rates than it goes on with.
+        let sharp = jumps.iter().filter(|jump| jump.order <= 1 && jump.time > start);
+        ends.extend(sharp.flat_map(|jump| [jump.time - JUST_BEFORE * (end - start), jump.time]));
+    }
+    ends.retain(|t| start <= *t && *t <= end);
+    ends.sort_by(f64::total_cmp);
+    ends.dedup();
+    let mut times = vec![start];
+    for pair in ends.windows(2) {
+        let mut stretches = vec![(pair[0], pair[1], 0)];
+        while let Some((from, to, halvings)) = stretches.pop() {
+            let middle = from + 0.5 * (to - from);
+            let fine = laws.iter().zip(&ranges).all(|((law, unit), range)| {
+                let travel = law.over(from, to).value.reach_from(law.at(from).value()) / unit;
+                travel <= FINE * coarser && is_resolved(law, [from, to], LAW_RESOLVED * range * unit)
+            });
+            if fine || halvings == MOST_HALVINGS || to - from <= 2.0 * JUST_BEFORE * (end - start) {
+                times.push(to);
+            } else {
+                stretches.extend([(middle, to, halvings + 1), (from, middle, halvings + 1)]);
+            }
+            if times.len() + stretches.len() > most {
+                return None;
+            }
+        }
+    }
+    Some(times)
+}
+
+/// Whether a law is, within so much, the polynomial of degree five that has its values, rates and accelerations at both ends.
+fn is_resolved(law: &Law, [from, to]: [f64; 2], within: f64) -> bool {
+    let h = to - from;
+    let [a, b] = [from, to].map(|t| law.at(t).derivatives());
+    // Newton's form, as of the curves of metrics
+    let [a0, a1, a2] = [a[0], a[1] * h, 0.5 * a[2] * h * h];
+    let [b0, b1, b2] = [b[0], b[1] * h, 0.5 * b[2] * h * h];
+    let (p, q, r) = (b0 - a0 - a1 - a2, b1 - a1 - 2.0 * a2, b2 - a2);
+    let [c3, c4, c5] = [10.0 * p - 4.0 * q + r, -15.0 * p + 7.0 * q - 2.0 * r, 6.0 * p - 3.0 * q + r];
+    // Round-off of the value is no bend of the law.
+    let within = within.max(8.0 * f64::EPSILON * a0.abs().max(b0.abs()));
+    PLACES.iter().all(|s| {
+        let there = a0 + s * (a1 + s * (a2 + s * (c3 + s * (c4 + s * c5))));
+        // A law without a number is no matter of resolution.
+        !((law.at(from + s * h).value() - there).abs() > within)
+    })
+}
