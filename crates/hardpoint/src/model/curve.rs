@@ -60,6 +60,22 @@ impl<T: Real> Contact<T> {
     /// follows, in the marker's frame: the foot of the perpendicular stays one, `(p - C) . C' = 0`.
     #[inline(always)]
     pub fn turning(&self, p: [Vec3<T>; 3]) -> [T; 2] {
+        let [_, d, dd, ddd] = self.c;
+        let two = T::constant(2.0);
+        let [u1, u2] = self.sliding(p);
+        // The tangent turns by k = C' x C'' / C'^2 per u.
+        let square = d.dot(d);
+        let cross = |a: Vec3<T>, b: Vec3<T>| a.x * b.y - a.y * b.x;
+        let k = cross(d, dd) / square;
+        // k' = C' x C''' / C'^2 - 2 k C' . C'' / C'^2
+        let k1 = cross(d, ddd) / square - two * k * d.dot(dd) / square;
+        // (k u.) and (k u.). = k' u.^2 + k u..
+        [k * u1, k1 * u1 * u1 + k * u2]
+    }
+
+    /// First two time derivatives of the parameter, for those of p as in [`turning`](Self::turning).
+    #[inline(always)]
+    pub fn sliding(&self, p: [Vec3<T>; 3]) -> [T; 2] {
         let [c, d, dd, ddd] = self.c;
         let two = T::constant(2.0);
         let e = p[0] - c;
@@ -71,14 +87,7 @@ impl<T: Real> Contact<T> {
         let g1 = two * d.dot(dd) * u1 - (p[1] - d * u1).dot(dd) - e.dot(ddd) * u1;
         // u.. = (p.. . C' + p. . C'' u. - g. u.) / g
         let u2 = (p[2].dot(d) + p[1].dot(dd) * u1 - g1 * u1) / g;
-        // The tangent turns by k = C' x C'' / C'^2 per u.
-        let square = d.dot(d);
-        let cross = |a: Vec3<T>, b: Vec3<T>| a.x * b.y - a.y * b.x;
-        let k = cross(d, dd) / square;
-        // k' = C' x C''' / C'^2 - 2 k C' . C'' / C'^2
-        let k1 = cross(d, ddd) / square - two * k * d.dot(dd) / square;
-        // (k u.) and (k u.). = k' u.^2 + k u..
-        [k * u1, k1 * u1 * u1 + k * u2]
+        [u1, u2]
     }
 }
 
@@ -122,6 +131,11 @@ impl Curve {
     /// Where the parameter ends, which begins at 0, m: the length of the chords between its points.
     pub fn length(&self) -> f64 {
         self.length
+    }
+
+    /// Length of the parameter over which the curve may bend anew, m: that between two of its points.
+    pub(crate) fn grain(&self) -> f64 {
+        self.length / self.points as f64
     }
 
     /// The parameter next to the follower in the design configuration.

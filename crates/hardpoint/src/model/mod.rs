@@ -343,6 +343,12 @@ impl Direction {
 }
 
 impl Joint {
+    /// The hardpoints that it follows: those that it is at, and those that its axes pass through.
+    pub(crate) fn hardpoints(&self) -> impl Iterator<Item = HardpointId> {
+        let axes = [self.axis, self.axis2].into_iter().flatten();
+        self.at.into_iter().chain(axes.flat_map(|axis| axis.hardpoints().into_iter().flatten()))
+    }
+
     /// The directions of z and x of marker e, as far as they are given.
     pub(crate) fn axes_of_marker(&self, e: usize) -> [Option<Direction>; 2] {
         match (self.kind.axis2, e) {

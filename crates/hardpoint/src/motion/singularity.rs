@@ -35,7 +35,9 @@ pub(super) struct Surroundings {
     pub bends: Vec<Vec<f64>>,
     /// Per direction and row of a coupler's term: the same of what it counts.
     pub turning: Vec<Vec<[f64; 2]>>,
-    /// Per direction: the fastest unknown coordinate, in its unit.
+    /// Per direction and curve: the same of the parameter where it is touched.
+    pub sliding: Vec<Vec<[f64; 2]>>,
+    /// Per direction: the fastest unknown coordinate, in its unit; of curves the parameter, in lengths between their points.
     pub fastest: Vec<f64>,
     /// How many of the directions are known.
     known: usize,
@@ -77,6 +79,7 @@ impl Surroundings {
             slopes: Vec::new(),
             bends: Vec::new(),
             turning: Vec::new(),
+            sliding: Vec::new(),
             fastest: Vec::new(),
             known: 0,
         }
@@ -94,6 +97,8 @@ impl Surroundings {
         self.bends.resize(directions, vec![zero; topology.coordinates.len()]);
         let rows = if topology.coupled_rows.is_empty() { 0 } else { topology.rows.len() };
         self.turning.resize(directions, vec![[zero; 2]; rows]);
+        let curves = topology.closures.iter().filter(|c| c.contact.is_some()).count();
+        self.sliding.resize(directions, vec![[zero; 2]; curves]);
         self.fastest.resize(directions, zero);
     }
 
@@ -187,6 +192,12 @@ impl Workspace {
             for c in topology.unknown_coordinates() {
                 let speed = state.motion.speeds[0][c.0] * topology[c].per_unit;
                 fastest = fastest.larger(speed.abs());
+            }
+            for (c, k) in topology.contacts() {
+                // u' and u'' of where a curve is touched
+                let [speed, rate] = state.sliding(topology, c, k);
+                found.sliding[direction][k] = [speed, rate];
+                fastest = fastest.larger((speed / parts.curves[k].grain()).abs());
             }
             found.fastest[direction] = fastest;
             for b in topology.block_ids() {

@@ -54,6 +54,9 @@ const RESELECT: f64 = 0.1;
 /// Where others did not serve better, they are tried again when the ratio has fallen by this factor once more.
 const LOOK_AGAIN: f64 = 0.3;
 
+/// From one output time to the next a curve may be followed by so many lengths between its points.
+const GRAINS: f64 = 2.0;
+
 /// A mechanism on its way through time.
 pub(crate) struct Stepper<'m> {
     pub(super) model: &'m Model,
@@ -98,6 +101,8 @@ pub(crate) struct Stepper<'m> {
     pub(super) on_laws: bool,
     /// Scratch of predictions.
     pub(super) predicted: Vec<f64>,
+    /// Per curve: the parameter that was predicted, and how far that is from the one before.
+    pub(super) touching: Vec<[f64; 2]>,
     /// Fastest driver on the present path (rad, or sizes, per unit of its parameter).
     /// max abs(f.) / unit.
     pub(super) fastest_driver: f64,
@@ -235,6 +240,7 @@ impl<'m> Stepper<'m> {
             travel_unit: 1.0,
             on_laws: false,
             predicted: vec![0.0; topology.coordinates.len()],
+            touching: vec![[0.0; 2]; saved.contacts.len()],
             fastest_driver: 0.0,
             residuals: Residuals::default(),
             effort: Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() },
@@ -311,6 +317,7 @@ impl<'m> Stepper<'m> {
         let selections = self.selections;
         if self.state.solve(&self.topology, &self.parts, &self.drivers, trust).is_err()
             || !self.speeds_are_smooth(h)
+            || !self.contacts_are_near()
             || self.examine_position().is_err()
         {
             return false;
@@ -523,6 +530,12 @@ impl<'m> Stepper<'m> {
         smooth(difference, fastest, self.fastest_driver)
     }
 
+    /// Whether curves are touched near to where they were: further on, their course between two positions would be a guess.
+    fn contacts_are_near(&self) -> bool {
+        let contacts = self.state.contacts.iter().zip(&self.saved.contacts);
+        contacts.zip(&self.parts.curves).all(|((now, before), c)| (now.u - before.u).abs() <= GRAINS * c.grain())
+    }
+
     /// Accepts the position at t, a step h after the one before (0 at the start of a path). What lies ahead is not known then.
     pub(super) fn save(&mut self, t: f64, h: f64) {
         let (s, saved) = (&self.state, &mut self.saved);
@@ -558,7 +571,7 @@ impl<'m> Stepper<'m> {
     }
 
     /// Chooses other independent rows for blocks whose present ones have become nearly dependent.
-    fn reselect(&mut self) -> Result<(), Refusal> {
+    pub(super) fn reselect(&mut self) -> Result<(), Refusal> {
         for b in self.topology.block_ids() {
             let ratio = self.state.pivots[b.0].0;
             // min / max of the pivots against a tenth of what it was when these rows were chosen

@@ -150,6 +150,10 @@ impl Stop {
                 "the loop has redundant constraints that agree at the design configuration only; check that its axes \
                  are exactly parallel (or meet in one point), or give a joint more freedom"
             }
+            StopKind::DoesNotAssemble if self.remains.is_empty() => {
+                "its joints can be closed only where the loop is stretched or folded, and no motion is defined there: change \
+                 a length or place a little, or draw the loop nearer to the assembly that you mean"
+            }
             StopKind::DoesNotAssemble => {
                 "change the lengths or places of these joints by at least what stays open, or give one of them more \
                  freedom"

@@ -5,7 +5,7 @@
 //! pulses between two output times is followed all the same. The position is predicted along the drivers, too, so kinks of laws
 //! need no care.
 
-use crate::model::{BodyId, DriverId};
+use crate::model::{BodyId, Contact, DriverId};
 use crate::space::Real;
 
 use super::kinematics::PositionFailure;
@@ -46,6 +46,9 @@ const FARTHEST: f64 = 1e5;
 /// A law that is not bounded over this part of a walk, however near by, and this large there, has a pole, 1e3 times what it is at
 /// the ends.
 const POLE: [f64; 2] = [1e-9, 1e3];
+
+/// A curve may be touched this far from where it was predicted, in lengths between its points, however short the predicted move.
+const CONTACT_FLOOR: f64 = 0.1;
 
 /// What the drivers follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -295,7 +298,23 @@ impl Stepper<'_> {
         self.drive(path, t)?;
         let moved = self.predict(path, h);
         self.solve_within((TRUST * moved).max(TRUST_FLOOR))?;
+        self.examine_contacts()?;
         self.examine_position()
+    }
+
+    /// Whether curves are touched about where it was predicted.
+    fn examine_contacts(&self) -> Result<(), Refusal> {
+        for (c, k) in self.topology.contacts() {
+            let ([predicted, moved], grain) = (self.touching[k], self.parts.curves[k].grain());
+            let error = (self.state.contacts[k].u - predicted).abs();
+            // abs(u - predicted) <= max(half of the predicted move, a tenth of the length between two points of the curve); NaN fails.
+            if !(error <= (TRUST * moved).max(CONTACT_FLOOR * grain))
+                && let Some(block) = self.topology[c].block
+            {
+                return Err(Refusal::Position(PositionFailure::NoConvergence { block }));
+            }
+        }
+        Ok(())
     }
 
     /// Predicts the position where the drivers stand now, `q + sum over the directions of q' du + q'' du^2 / 2`; returns how far the
@@ -321,6 +340,20 @@ impl Stepper<'_> {
                 let [slope, bend] = self.around.turning[k][r.0];
                 self.state.near[r.0] += slope * du + bend * half;
             }
+        }
+        for (k, contact) in self.state.contacts.iter_mut().enumerate() {
+            let mut u = contact.u;
+            for direction in 0..directions {
+                let du = match path {
+                    Path::Laws => self.drivers[direction][0] - self.saved.drivers[direction][0],
+                    Path::Assembly | Path::Line { .. } => h,
+                };
+                // u + u' Du + u'' Du^2 / 2
+                let [slope, bend] = self.around.sliding[direction][k];
+                u += slope * du + bend * (du * du * 0.5);
+            }
+            self.touching[k] = [u, (u - contact.u).abs()];
+            *contact = Contact::at(&self.parts.curves[k], u);
         }
         for c in self.topology.unknown_coordinates() {
             self.state.q[c.0] += moves[c.0];
