@@ -15,7 +15,7 @@ use super::forecast::Forecast;
 use super::kinematics::{PositionFailure, Residuals, State, factors_of};
 use super::parts::PlanGeometry;
 use super::singularity::{Surroundings, Workspace};
-use super::walk::{PART_OF_WAY, Path};
+use super::walk::{MOST_BEND, PART_OF_WAY, Path};
 use super::{Effort, PassedPlace, Stop};
 
 /// A first correction (rad, or sizes) up to this is accepted whatever the prediction's own length is.
@@ -53,9 +53,6 @@ pub(crate) const LOCKED: f64 = 1e-5;
 const RESELECT: f64 = 0.1;
 /// Where others did not serve better, they are tried again when the ratio has fallen by this factor once more.
 const LOOK_AGAIN: f64 = 0.3;
-
-/// From one output time to the next a curve may be followed by so many lengths between its points.
-const GRAINS: f64 = 2.0;
 
 /// A mechanism on its way through time.
 pub(crate) struct Stepper<'m> {
@@ -530,10 +527,10 @@ impl<'m> Stepper<'m> {
         smooth(difference, fastest, self.fastest_driver)
     }
 
-    /// Whether curves are touched near to where they were: further on, their course between two positions would be a guess.
+    /// Whether curves hardly bend from where they were touched to where they are now.
     fn contacts_are_near(&self) -> bool {
         let contacts = self.state.contacts.iter().zip(&self.saved.contacts);
-        contacts.zip(&self.parts.curves).all(|((now, before), c)| (now.u - before.u).abs() <= GRAINS * c.grain())
+        contacts.zip(&self.parts.curves).all(|((now, before), curve)| curve.bend(before.u, now.u) <= MOST_BEND)
     }
 
     /// Accepts the position at t, a step h after the one before (0 at the start of a path). What lies ahead is not known then.

@@ -49,6 +49,8 @@ const POLE: [f64; 2] = [1e-9, 1e3];
 
 /// A curve may be touched this far from where it was predicted, in lengths between its points, however short the predicted move.
 const CONTACT_FLOOR: f64 = 0.1;
+/// A curve may bend by this much over a step, rad: a groove that turns back within a step would be crossed unseen.
+pub(super) const MOST_BEND: f64 = 0.4;
 
 /// What the drivers follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -305,10 +307,11 @@ impl Stepper<'_> {
     /// Whether curves are touched about where it was predicted.
     fn examine_contacts(&self) -> Result<(), Refusal> {
         for (c, k) in self.topology.contacts() {
-            let ([predicted, moved], grain) = (self.touching[k], self.parts.curves[k].grain());
-            let error = (self.state.contacts[k].u - predicted).abs();
+            let ([predicted, moved], curve) = (self.touching[k], &self.parts.curves[k]);
+            let (before, now) = (self.saved.contacts[k].u, self.state.contacts[k].u);
             // abs(u - predicted) <= max(half of the predicted move, a tenth of the length between two points of the curve); NaN fails.
-            if !(error <= (TRUST * moved).max(CONTACT_FLOOR * grain))
+            let near = (now - predicted).abs() <= (TRUST * moved).max(CONTACT_FLOOR * curve.grain());
+            if !(near && curve.bend(before, now) <= MOST_BEND)
                 && let Some(block) = self.topology[c].block
             {
                 return Err(Refusal::Position(PositionFailure::NoConvergence { block }));
