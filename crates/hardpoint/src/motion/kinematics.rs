@@ -592,6 +592,40 @@ impl<T: Real> State<T> {
         }
     }
 
+    /// Places everything, with velocity and acceleration, where coordinates, speeds and accelerations are given: at a change point. What
+    /// is solved with the factors of the singular block has no number there.
+    pub(super) fn stand_with_rates(
+        &mut self,
+        topology: &Topology,
+        parts: &PlanGeometry<T>,
+        drivers: &[[T; 3]],
+        singular: BlockId,
+    ) {
+        for (c, d) in topology.driven_coordinates() {
+            [self.q[c.0], self.motion.speeds[0][c.0], self.motion.speeds[1][c.0]] = drivers[d.0];
+        }
+        self.stand(topology, parts);
+        for r in RowId::all(0..topology.rows.len()) {
+            self.l[0][r.0] = self.wrench_of(topology, r);
+        }
+        self.rates_of_driven(topology);
+        for b in topology.block_ids() {
+            self.linearise(topology, parts, drivers, b);
+            let links = topology[b].link_ids();
+            self.motion.follow::<0>(topology, links.clone(), &self.x);
+            self.rates_of_twists::<1>(topology, links.clone());
+            for &c in &topology[b].closures {
+                self.rates_of_wrenches(topology, c, 1);
+            }
+            self.motion.follow::<1>(topology, links, &self.x);
+        }
+        let nan = T::constant(f64::NAN);
+        for &r in &topology[singular].selected {
+            let none = Vec3::new(nan, nan, nan);
+            self.l[0][r.0] = Wrench { m: none, f: none };
+        }
+    }
+
     /// Third derivatives of all bodies where they stand with velocity and acceleration, for those of the drivers.
     pub(super) fn jerk(&mut self, topology: &Topology, demand: impl Fn(DriverId) -> T) {
         self.finish_rates(topology);

@@ -11,6 +11,7 @@ use crate::space::{Quat, Real};
 use crate::topology::{BlockId, RowId, SetBy, Topology};
 
 use super::assembly::Assembly;
+use super::change_point::Crossing;
 use super::forecast::Forecast;
 use super::kinematics::{PositionFailure, Residuals, State, factors_of};
 use super::parts::PlanGeometry;
@@ -110,6 +111,8 @@ pub(crate) struct Stepper<'m> {
     pub(super) selections: usize,
     /// How the mechanism was closed, if it was open as drawn.
     pub assembly: Option<Assembly>,
+    /// The change point that was crossed last.
+    pub(super) crossing: Option<Box<Crossing>>,
     /// The bodies that are watched between output times, and where they were since the last one.
     pub watched: Vec<bool>,
     pub passed: Vec<PassedPlace>,
@@ -243,6 +246,7 @@ impl<'m> Stepper<'m> {
             effort: Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() },
             selections: 0,
             assembly: None,
+            crossing: None,
             watched: Vec::new(),
             passed: Vec::new(),
             changes_ahead: vec![0.0; blocks],
@@ -257,6 +261,7 @@ impl<'m> Stepper<'m> {
     /// A changed design starts from the nominal design configuration and closes there first.
     pub fn start(&mut self, t: f64) -> Result<(), Box<Stop>> {
         self.passed.clear();
+        self.crossing = None;
         self.time = 0.0;
         self.assemble()?;
         // From there, where all drivers are zero, to their values at the first output time.
@@ -284,8 +289,10 @@ impl<'m> Stepper<'m> {
     /// Moves on to the output time t.
     pub fn advance(&mut self, t: f64) -> Result<(), Box<Stop>> {
         self.passed.clear();
-        if !self.glide(t) {
-            self.walk(Path::Laws, t)?;
+        match self.stand_within_crossing(t) {
+            Some(stood) => stood?,
+            None if self.glide(t) => {}
+            None => self.walk(Path::Laws, t)?,
         }
         self.count();
         Ok(())

@@ -144,7 +144,8 @@ impl Stop {
             }
             StopKind::BranchChange => {
                 "at a dead point the loop may continue on either of two branches and its velocities are not defined; \
-                 shorten the sweep, or drive another joint of the loop"
+                 write `at_change_points = \"continue\"` at the top of the model file where the motion goes on smoothly, as that of \
+                 a parallelogram does; or shorten the sweep, or drive another joint of the loop"
             }
             StopKind::Locked { .. } => {
                 "the loop has redundant constraints that agree at the design configuration only; check that its axes \

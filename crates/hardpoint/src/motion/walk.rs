@@ -78,6 +78,16 @@ impl Path {
 impl Stepper<'_> {
     /// Follows a path to where its parameter is `target`.
     pub(super) fn walk(&mut self, path: Path, target: f64) -> Result<(), Box<Stop>> {
+        while self.time < target {
+            let Err(stop) = self.walk_to(path, target) else { break };
+            self.cross(path, stop)?;
+        }
+        // An output time that was passed on the way over a change point is gone back to.
+        self.stand_within_crossing(target).unwrap_or(Ok(()))
+    }
+
+    /// The same up to the first change point.
+    fn walk_to(&mut self, path: Path, target: f64) -> Result<(), Box<Stop>> {
         let scale = f64::max(self.time.abs(), target.abs());
         let (mut steps, mut walked) = (0, 0.0);
         if self.ahead != Lookahead::Examined {
@@ -249,8 +259,19 @@ impl Stepper<'_> {
         self.on_laws = path == Path::Laws;
     }
 
+    /// How far each driver goes at most over a stretch of time, as [`measure_travel`](Self::measure_travel) notes it.
+    pub(super) fn travel_over(&mut self, from: f64, to: f64) {
+        for d in 0..self.drivers.len() {
+            let start = self.parts.law(d, from)[0];
+            let travel = self.parts.travel(d, from, to, start);
+            // Where a law has no value it goes too far.
+            self.travel[d] = if travel.is_nan() { f64::INFINITY } else { travel };
+        }
+        (self.travel_unit, self.on_laws) = (1.0, true);
+    }
+
     /// The largest travel measured last, rad or sizes.
-    fn travelled(&self) -> f64 {
+    pub(super) fn travelled(&self) -> f64 {
         if !self.on_laws {
             return self.travel[0] * self.travel_unit;
         }
@@ -296,9 +317,9 @@ impl Stepper<'_> {
     }
 
     /// Solves the position at t on a path, a step h beyond the saved one, from a prediction along the drivers.
-    fn solve_at(&mut self, path: Path, t: f64, h: f64) -> Result<(), Refusal> {
+    pub(super) fn solve_at(&mut self, path: Path, t: f64, h: f64) -> Result<(), Refusal> {
         self.drive(path, t)?;
-        let moved = self.predict(path, h);
+        let moved = self.predict_along(path, h);
         self.solve_within((TRUST * moved).max(TRUST_FLOOR))?;
         self.examine_contacts()?;
         self.examine_position()
@@ -322,7 +343,7 @@ impl Stepper<'_> {
 
     /// Predicts the position where the drivers stand now, `q + sum over the directions of q' du + q'' du^2 / 2`; returns how far the
     /// largest move goes, rad or sizes.
-    fn predict(&mut self, path: Path, h: f64) -> f64 {
+    pub(super) fn predict_along(&mut self, path: Path, h: f64) -> f64 {
         self.restore();
         let mut most = 0.0_f64;
         let directions = if path == Path::Laws { self.drivers.len() } else { 1 };
