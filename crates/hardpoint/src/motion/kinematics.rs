@@ -593,13 +593,13 @@ impl<T: Real> State<T> {
     }
 
     /// Places everything, with velocity and acceleration, where coordinates, speeds and accelerations are given: at a change point. What
-    /// is solved with the factors of the singular block has no number there.
+    /// is solved with the factors of singular blocks has no number there.
     pub(super) fn stand_with_rates(
         &mut self,
         topology: &Topology,
         parts: &PlanGeometry<T>,
         drivers: &[[T; 3]],
-        singular: BlockId,
+        singular: &[BlockId],
     ) {
         for (c, d) in topology.driven_coordinates() {
             [self.q[c.0], self.motion.speeds[0][c.0], self.motion.speeds[1][c.0]] = drivers[d.0];
@@ -620,7 +620,7 @@ impl<T: Real> State<T> {
             self.motion.follow::<1>(topology, links, &self.x);
         }
         let nan = T::constant(f64::NAN);
-        for &r in &topology[singular].selected {
+        for &r in singular.iter().flat_map(|b| &topology[*b].selected) {
             let none = Vec3::new(nan, nan, nan);
             self.l[0][r.0] = Wrench { m: none, f: none };
         }

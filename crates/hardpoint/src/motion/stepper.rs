@@ -113,6 +113,8 @@ pub(crate) struct Stepper<'m> {
     pub assembly: Option<Assembly>,
     /// The change point that was crossed last.
     pub(super) crossing: Option<Box<Crossing>>,
+    /// Whether the state stands at a change point, where J is singular and nothing can be solved with it.
+    pub at_change_point: bool,
     /// The bodies that are watched between output times, and where they were since the last one.
     pub watched: Vec<bool>,
     pub passed: Vec<PassedPlace>,
@@ -247,6 +249,7 @@ impl<'m> Stepper<'m> {
             selections: 0,
             assembly: None,
             crossing: None,
+            at_change_point: false,
             watched: Vec::new(),
             passed: Vec::new(),
             changes_ahead: vec![0.0; blocks],
@@ -261,7 +264,7 @@ impl<'m> Stepper<'m> {
     /// A changed design starts from the nominal design configuration and closes there first.
     pub fn start(&mut self, t: f64) -> Result<(), Box<Stop>> {
         self.passed.clear();
-        self.crossing = None;
+        (self.crossing, self.at_change_point) = (None, false);
         self.time = 0.0;
         self.assemble()?;
         // From there, where all drivers are zero, to their values at the first output time.
@@ -289,6 +292,7 @@ impl<'m> Stepper<'m> {
     /// Moves on to the output time t.
     pub fn advance(&mut self, t: f64) -> Result<(), Box<Stop>> {
         self.passed.clear();
+        self.at_change_point = false;
         match self.stand_within_crossing(t) {
             Some(stood) => stood?,
             None if self.glide(t) => {}

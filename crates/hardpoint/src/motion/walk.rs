@@ -259,15 +259,24 @@ impl Stepper<'_> {
         self.on_laws = path == Path::Laws;
     }
 
-    /// How far each driver goes at most over a stretch of time, as [`measure_travel`](Self::measure_travel) notes it.
-    pub(super) fn travel_over(&mut self, from: f64, to: f64) {
-        for d in 0..self.drivers.len() {
-            let start = self.parts.law(d, from)[0];
-            let travel = self.parts.travel(d, from, to, start);
-            // Where a law has no value it goes too far.
-            self.travel[d] = if travel.is_nan() { f64::INFINITY } else { travel };
+    /// How far each direction goes at most over a stretch of a path, as [`measure_travel`](Self::measure_travel) notes it.
+    pub(super) fn travel_over(&mut self, path: Path, from: f64, to: f64) {
+        self.measure_travel(path, to - from);
+        if path == Path::Laws {
+            for d in 0..self.drivers.len() {
+                let start = self.parts.law(d, from)[0];
+                let travel = self.parts.travel(d, from, to, start);
+                // Where a law has no value it goes too far.
+                self.travel[d] = if travel.is_nan() { f64::INFINITY } else { travel };
+            }
         }
-        (self.travel_unit, self.on_laws) = (1.0, true);
+    }
+
+    /// Where on its path the singular position lies that is nearest ahead of the saved one.
+    pub(super) fn nearest_ahead(&mut self, path: Path) -> Option<f64> {
+        self.stand(path).ok()?;
+        let ahead = self.ahead(path)?;
+        (ahead.distance > 0.0).then_some(self.time + ahead.distance)
     }
 
     /// The largest travel measured last, rad or sizes.
