@@ -28,7 +28,7 @@ use hardpoint::draft::{
 };
 use hardpoint::joint::{self, Freedom, JointType, Quantity};
 use hardpoint::law::Law;
-use hardpoint::model::LoadMode;
+use hardpoint::model::{AtChangePoints, LoadMode};
 use hardpoint::space::{Angles, Pose, Quat, Vec3};
 use toml::de::{DeTable, DeValue};
 
@@ -93,6 +93,8 @@ pub(crate) const MODEL: Table = table! {
     may "metrics": Shape::Entries("a metric", &Shape::Table(&results::METRIC)), "{}";
     /// The output times. Where every case has its own, they may be left out.
     may "time": Shape::Kinds(&results::TIME), "{ end = 1.0, steps = 100 }";
+    /// What happens at a change point, where two motions of the mechanism meet, as where a parallelogram lies in line.
+    or("\"stop\"") "at_change_points": CHANGE_POINTS, "\"continue\"";
     /// Several motions of the mechanism, in place of the one that the drivers' own laws make.
     may "cases": Shape::Entries("a case", &Shape::Table(&cases::CASE)), "{}";
     /// The plane that all of it lies in: points may have two coordinates, and pins need no axis.
@@ -117,6 +119,13 @@ pub(crate) const LOADS: Shape = Shape::Words(&[
     ),
 ]);
 pub(crate) const LOAD_MODES: [LoadMode; 2] = [LoadMode::Dynamic, LoadMode::Static];
+const CHANGE_POINTS: Shape = Shape::Words(&[
+    ("stop", "The motion ends there."),
+    (
+        "continue",
+        "It goes on smoothly; where it cannot, it ends. At the change point itself sensitivities and loads have no number.",
+    ),
+]);
 const UNITS: Table = table! {
     /// The units of all numbers in the file.
     "Units":
@@ -368,6 +377,8 @@ impl Reader<'_> {
         self.forces(&fields, &mut raw);
         self.metrics(&fields, &mut raw);
         self.time(&fields, &mut raw);
+        let word = self.word_of(&fields, "at_change_points");
+        raw.draft.at_change_points = word.map_or(AtChangePoints::default(), |k| AtChangePoints::WORDS[k].1);
         self.cases(&fields, &mut raw);
         self.optimize(&fields, &mut raw);
         self.tolerance(&fields, &mut raw);

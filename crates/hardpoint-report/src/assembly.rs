@@ -17,6 +17,9 @@ pub struct AssemblyFact {
     pub gaps: Vec<GapFact>,
     /// The bodies that moved.
     pub moved: Vec<MovedFact>,
+    /// Number of assemblies found around the drawing, where the path from it leads to none; the nearest was taken. 0 where the gaps were
+    /// closed along the path.
+    pub found_nearby: usize,
 }
 
 /// Something that is open.
@@ -80,6 +83,7 @@ impl AssemblyFact {
         Self {
             gaps: assembly.gaps.iter().map(|g| GapFact::new(model, units, g)).collect(),
             moved: moved.collect(),
+            found_nearby: assembly.found_nearby,
         }
     }
 
@@ -89,6 +93,14 @@ impl AssemblyFact {
         let moved = |m: &MovedFact| {
             vec![m.body.clone(), with_unit(m.distance, m.distance_unit), with_unit(m.angle, m.angle_unit)]
         };
+        let title = match self.found_nearby {
+            0 => "Moved by the assembly".to_owned(),
+            1 => "Moved by the assembly, the only one found near the drawing, which is a singular position"
+                .to_owned(),
+            n => format!(
+                "Moved by the assembly, the nearest of {n} found near the drawing, which is a singular position"
+            ),
+        };
         [
             table(
                 "Assembled",
@@ -97,7 +109,7 @@ impl AssemblyFact {
                 self.gaps.iter().map(gap),
             ),
             table(
-                "Moved by the assembly",
+                &title,
                 "From where the bodies were drawn.",
                 ["body", "origin moved by", "turned by"],
                 self.moved.iter().map(moved),

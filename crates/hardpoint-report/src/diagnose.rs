@@ -2,6 +2,7 @@
 //! the model file, in the user's names and units.
 
 use hardpoint::Analysis;
+use hardpoint::joint::Quantity;
 use hardpoint::motion::{Closing, Motion, Stop, StopKind};
 use hardpoint::topology::TopologyFault;
 use hardpoint::{
@@ -29,6 +30,7 @@ pub fn all(file: &ModelFile, summary: &Summary, course: &Course, outputs: Option
     if ended.as_ref().is_none_or(|s| s.kind == StopKind::Interrupted) {
         list.extend(summary.margin.as_ref().and_then(|m| margin(file, m)));
     }
+    list.extend(residual(file, summary.effort.worst_residual_si));
     list.extend(loads(file, course));
     list.extend(ended.as_ref().map(|s| stop(file, s, course.steps, outputs)));
     list
@@ -171,6 +173,34 @@ pub(crate) fn driver_values(file: &ModelFile, stop: &Stop) -> String {
         })
         .collect();
     if values.is_empty() { String::new() } else { format!(", with {}", some_of(&values, ", ")) }
+}
+
+/// A residual above this part of the shortest distance between joints is visible in the motion: no number is to be relied on.
+const VISIBLE: f64 = 1e-3;
+/// Residuals of directions count as closed up to this, rad: below it a residual says nothing about lengths.
+const LEAST_VISIBLE: f64 = 1e-5;
+
+/// A warning where constraints fail by more than the dimensions of the mechanism allow.
+fn residual(file: &ModelFile, residual: f64) -> Option<Diagnostic> {
+    let model = &file.model;
+    let (shortest, size) = (model.shortest(), model.size());
+    // Written so that NaN is too much.
+    if residual <= (VISIBLE * shortest).max(LEAST_VISIBLE) {
+        return None;
+    }
+    let length =
+        |x: f64| with_unit(file.units.from_si(Quantity::Length, x), symbol(file.units, Quantity::Length));
+    let message =
+        format!("the joints stay open by up to {}: the results are not to be relied on", length(residual));
+    Some(
+        file.diagnostic(Severity::Warning, "HP0410", message, None)
+            .note(format!(
+                "the shortest distance between joints is {}, the mechanism as a whole measures {}: 16 digits do not hold both",
+                length(shortest),
+                length(size)
+            ))
+            .help("draw the joints nearer together: a place along an axis may be moved along it"),
+    )
 }
 
 /// A warning for each load that has no number at some output time.

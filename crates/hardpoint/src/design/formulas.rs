@@ -20,6 +20,8 @@ pub(super) struct Formulas {
     /// The formulas that use a parameter, or a coordinate of a hardpoint.
     using_parameter: Vec<Vec<usize>>,
     using_hardpoint: Vec<Vec<usize>>,
+    /// ... and what a joint keeps, by itself; [`Self::using_hardpoint`] has those by its hardpoints.
+    using_joint: Vec<Vec<usize>>,
     /// Per variable, whether any formula follows it.
     pub is_used: Vec<bool>,
 }
@@ -38,6 +40,7 @@ impl Formulas {
             of_number: vec![None; model.numbers.len()],
             using_parameter: vec![Vec::new(); parameters],
             using_hardpoint: vec![Vec::new(); hardpoints],
+            using_joint: vec![Vec::new(); model.joints.len()],
             is_used: Vec::new(),
         };
         // Both ways of the graph: which formula gives a number, and which formulas use it. The model has them in an order in which
@@ -54,6 +57,10 @@ impl Formulas {
                 match source {
                     Source::Parameter(p) => f.using_parameter[p.0].push(k),
                     Source::Coordinate(h, _) => f.using_hardpoint[h.0].push(k),
+                    Source::Kept(j, _) => {
+                        f.using_joint[j.0].push(k);
+                        model.joints[j.0].hardpoints().for_each(|h| f.using_hardpoint[h.0].push(k));
+                    }
                 }
             }
         }
@@ -74,7 +81,8 @@ impl Formulas {
     fn using(&self, change: &Change) -> impl Iterator<Item = usize> {
         let parameter = change.parameter().map(|(p, _)| &self.using_parameter[p.0]);
         let hardpoint = change.hardpoint().map(|(h, _)| &self.using_hardpoint[h.0]);
-        parameter.into_iter().chain(hardpoint).flatten().copied()
+        let joint = change.joint().map(|j| &self.using_joint[j.0]);
+        parameter.into_iter().chain(hardpoint).chain(joint).flatten().copied()
     }
 
     /// The formulas that follow a variable, directly or through others, in order.
@@ -88,7 +96,8 @@ impl Formulas {
                 match model.formulas[k].of {
                     Target::Parameter(p) => waiting.extend(&self.using_parameter[p.0]),
                     Target::Coordinate(h, _) => waiting.extend(&self.using_hardpoint[h.0]),
-                    Target::Length(_) | Target::Law(..) | Target::Number(_) => {}
+                    Target::Length(j) => waiting.extend(&self.using_joint[j.0]),
+                    Target::Law(..) | Target::Number(_) => {}
                 }
             }
         }

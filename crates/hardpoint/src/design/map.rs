@@ -61,12 +61,8 @@ impl<'m> DesignMap<'m> {
                 }
             }
         }
-        // A joint follows the hardpoints that it is at, and those that its axes pass through.
         for (j, joint) in model.joints.iter().enumerate() {
-            joint.at.iter().for_each(|h| joints[h.0].push(j));
-            for axis in [joint.axis, joint.axis2].into_iter().flatten() {
-                axis.hardpoints().into_iter().flatten().for_each(|h| joints[h.0].push(j));
-            }
+            joint.hardpoints().for_each(|h| joints[h.0].push(j));
         }
         for (k, point) in model.points.iter().enumerate() {
             points[point.at.0].push(k);
@@ -303,8 +299,24 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
                 true => design.solved(f, &design.for_lengths.variables),
                 false => design.values.formulas.clone(),
             };
+            design.take_kept();
         }
         design
+    }
+
+    /// Sets the results of formulas over what joints keep, which follow from all others.
+    fn take_kept(&mut self) {
+        let model = self.design_map.model();
+        for (k, formula) in model.formulas.iter().enumerate() {
+            if formula.sources().any(|s| matches!(s, Source::Kept(..))) {
+                self.values.formulas[k] = formula.at(|source| match source {
+                    Source::Kept(j, coordinate) => {
+                        self.kept(j.0).by(model.joints[j.0].kind.coordinates[coordinate].row)
+                    }
+                    Source::Parameter(_) | Source::Coordinate(..) => T::constant(model.nominal(source)),
+                });
+            }
+        }
     }
 
     /// What all formulas give, one after the other.
@@ -321,6 +333,8 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
                         formulas.of_hardpoint[h.0][axis],
                         self.rates(&self.design_map.moves[h.0], move |v| v[axis]),
                     ),
+                    // Once all others are known: `take_kept`.
+                    Source::Kept(..) => (None, Vec::new()),
                 };
                 let given = given.map_or_else(|| T::constant(model.nominal(source)), |k| results[k]);
                 rates

@@ -207,6 +207,7 @@ impl<'a> Checker<'a> {
             metrics: Vec::new(),
             idle: Vec::new(),
             times: draft.times.clone(),
+            at_change_points: draft.at_change_points,
             cases: Vec::new(),
             grids: Vec::new(),
             optimization: None,

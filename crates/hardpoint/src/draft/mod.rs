@@ -23,8 +23,8 @@ use crate::expression::Expression;
 use crate::joint::{self, JointType, Quantity};
 use crate::law::Law;
 use crate::model::{
-    AllocationRule, Dimension, LoadMode, Reduction, Side, SweepMethod, Sweeping, Tolerancing, Transmission,
-    Vehicle, VehicleEnd,
+    AllocationRule, AtChangePoints, Dimension, LoadMode, Reduction, Side, SweepMethod, Sweeping, Tolerancing,
+    Transmission, Vehicle, VehicleEnd,
 };
 use crate::space::{Pose, Vec3};
 
@@ -72,6 +72,8 @@ pub struct Draft {
     pub metrics: Vec<MetricDraft>,
     /// Output times, s.
     pub times: Vec<f64>,
+    /// What happens where two motions meet.
+    pub at_change_points: AtChangePoints,
     /// Several motions, in place of the one that the drivers' own laws and these times make.
     pub cases: Vec<CaseDraft>,
     /// Cases that sweep two drivers over a grid.

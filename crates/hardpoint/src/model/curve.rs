@@ -7,8 +7,14 @@ use crate::space::{Mat3, Pose, Real, Vec3};
 const MAX_STEPS: usize = 50;
 /// A step below this part of the curve's length leaves an error of round-off.
 const CONVERGED: f64 = 1e-15;
+/// ... and the last step, where round-off keeps steps above that, may be this part: its square is round-off.
+const WANDERS: f64 = 1e-9;
 /// How many places between two points of the curve are tried for the start of the search.
 const TRIED: usize = 8;
+
+/// Tangents that are compared between two points of the curve, whose splines bend between them once or twice at most; and of a long way.
+const SAMPLES: f64 = 16.0;
+const MOST_SAMPLES: f64 = 1024.0;
 
 /// A planar curve through points, in the frame of the marker that carries it: the quintic spline over the length of the
 /// chords between the points, so that the acceleration of what follows it changes without kinks.
@@ -60,6 +66,22 @@ impl<T: Real> Contact<T> {
     /// follows, in the marker's frame: the foot of the perpendicular stays one, `(p - C) . C' = 0`.
     #[inline(always)]
     pub fn turning(&self, p: [Vec3<T>; 3]) -> [T; 2] {
+        let [_, d, dd, ddd] = self.c;
+        let two = T::constant(2.0);
+        let [u1, u2] = self.sliding(p);
+        // The tangent turns by k = C' x C'' / C'^2 per u.
+        let square = d.dot(d);
+        let cross = |a: Vec3<T>, b: Vec3<T>| a.x * b.y - a.y * b.x;
+        let k = cross(d, dd) / square;
+        // k' = C' x C''' / C'^2 - 2 k C' . C'' / C'^2
+        let k1 = cross(d, ddd) / square - two * k * d.dot(dd) / square;
+        // (k u.) and (k u.). = k' u.^2 + k u..
+        [k * u1, k1 * u1 * u1 + k * u2]
+    }
+
+    /// First two time derivatives of the parameter, for those of p as in [`turning`](Self::turning).
+    #[inline(always)]
+    pub fn sliding(&self, p: [Vec3<T>; 3]) -> [T; 2] {
         let [c, d, dd, ddd] = self.c;
         let two = T::constant(2.0);
         let e = p[0] - c;
@@ -71,14 +93,7 @@ impl<T: Real> Contact<T> {
         let g1 = two * d.dot(dd) * u1 - (p[1] - d * u1).dot(dd) - e.dot(ddd) * u1;
         // u.. = (p.. . C' + p. . C'' u. - g. u.) / g
         let u2 = (p[2].dot(d) + p[1].dot(dd) * u1 - g1 * u1) / g;
-        // The tangent turns by k = C' x C'' / C'^2 per u.
-        let square = d.dot(d);
-        let cross = |a: Vec3<T>, b: Vec3<T>| a.x * b.y - a.y * b.x;
-        let k = cross(d, dd) / square;
-        // k' = C' x C''' / C'^2 - 2 k C' . C'' / C'^2
-        let k1 = cross(d, ddd) / square - two * k * d.dot(dd) / square;
-        // (k u.) and (k u.). = k' u.^2 + k u..
-        [k * u1, k1 * u1 * u1 + k * u2]
+        [u1, u2]
     }
 }
 
@@ -124,6 +139,25 @@ impl Curve {
         self.length
     }
 
+    /// Length of the parameter over which the curve may bend anew, m: that between two of its points.
+    pub(crate) fn grain(&self) -> f64 {
+        self.length / self.points as f64
+    }
+
+    /// Angle by which the tangent turns, to and fro, from one parameter to another, rad; NaN beyond the ends of an open curve.
+    pub(crate) fn bend(&self, from: f64, to: f64) -> f64 {
+        let parts = (SAMPLES * (to - from).abs() / self.grain()).ceil().clamp(0.5 * SAMPLES, MOST_SAMPLES);
+        let tangent = |k: f64| self.at(from + (to - from) * (k / parts))[1];
+        let (mut before, mut sum, mut k) = (tangent(0.0), 0.0, 0.0);
+        while k < parts {
+            k += 1.0;
+            let now = tangent(k);
+            sum += (before[0] * now[1] - before[1] * now[0]).atan2(dot(before, now)).abs();
+            before = now;
+        }
+        sum
+    }
+
     /// The parameter next to the follower in the design configuration.
     pub fn start(&self) -> f64 {
         self.start
@@ -131,9 +165,10 @@ impl Curve {
 
     /// The parameter of the point of the curve that is next to p, from a near one.
     ///
-    /// The foot of the perpendicular, `(p - C) . C' = 0`; NaN where an open curve has none.
+    /// The foot of the perpendicular, `(p - C) . C' = 0`; NaN where an open curve has none, and where none is found from there, as at the
+    /// centre of a tight bend.
     pub fn nearest(&self, p: [f64; 2], near: f64) -> f64 {
-        let mut u = near;
+        let (mut u, mut last) = (near, f64::INFINITY);
         for _ in 0..MAX_STEPS {
             let [c, d, dd, _] = self.at(u);
             let e = [p[0] - c[0], p[1] - c[1]];
@@ -141,11 +176,13 @@ impl Curve {
             let slope = dot(d, d) - dot(e, dd);
             let step = dot(e, d) / slope;
             u += step;
-            if !(step.abs() > CONVERGED * self.length) {
+            last = step.abs();
+            if !(last > CONVERGED * self.length) {
                 break;
             }
         }
-        u
+        // Where it wanders about, u is no foot, and the tangent there would pass for the curve.
+        if last <= WANDERS * self.length { u } else { f64::NAN }
     }
 
     /// The parameter next to p, from anywhere.
@@ -156,7 +193,10 @@ impl Curve {
             (p[0] - c[0]).hypot(p[1] - c[1])
         };
         let k = (0..=n).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
-        self.nearest(p, self.length * k as f64 / n as f64)
+        let near = self.length * k as f64 / n as f64;
+        let u = self.nearest(p, near);
+        // A closed curve has a nearest point to every point; the first steps find it better from there.
+        if u.is_nan() && self.closed { near } else { u }
     }
 
     /// Distance of p from the curve, positive on its left.

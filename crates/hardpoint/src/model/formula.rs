@@ -1,5 +1,6 @@
 //! Named numbers, and formulas over them: what of the model follows the design other than in proportion.
 
+use crate::constraint::Row;
 use crate::expression::Expression;
 use crate::joint::Quantity;
 use crate::model::{DriverId, HardpointId, JointId, Model, NumberId, ParameterId};
@@ -23,6 +24,9 @@ pub enum Source {
     Parameter(ParameterId),
     /// A coordinate of a hardpoint: 0 for x, 1 for y, 2 for z.
     Coordinate(HardpointId, usize),
+    /// The design value of a coordinate of a joint, as the joint keeps it: the length of a rod or leg, given or drawn; a course. Only
+    /// laws that count from zero use it.
+    Kept(JointId, usize),
 }
 
 /// A number that a formula gives.
@@ -79,6 +83,25 @@ impl Model {
         match source {
             Source::Parameter(p) => self.parameters[p.0].value,
             Source::Coordinate(h, axis) => self.hardpoints[h.0].position[axis],
+            Source::Kept(j, coordinate) => self.nominal_coordinate(j, coordinate),
+        }
+    }
+
+    /// Design value of a joint's coordinate in the nominal design, as far as the joint keeps one; 0 for all others.
+    fn nominal_coordinate(&self, j: JointId, coordinate: usize) -> f64 {
+        let joint = &self.joints[j.0];
+        match joint.kind.coordinates[coordinate].row {
+            // L as given, or abs(P_j - P_i)
+            Row::Distance => {
+                let [from, to] = joint.at.map(|h| self.position(h));
+                joint.length.unwrap_or_else(|| (to - from).norm())
+            }
+            // atan2(y_i . z_j, x_i . z_j)
+            Row::Course => {
+                let ([x, y, _], e) = (joint.frames[0].cols, joint.frames[1].cols[2]);
+                y.dot(e).atan2(x.dot(e))
+            }
+            _ => 0.0,
         }
     }
 

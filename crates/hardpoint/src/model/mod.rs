@@ -133,6 +133,8 @@ pub struct Model {
     pub idle: Vec<Idle>,
     /// Output times, s, increasing.
     pub times: Vec<f64>,
+    /// What happens where two motions meet.
+    pub at_change_points: AtChangePoints,
     /// Its motions, in the order of the file; where there are none, that of the drivers' own laws at `times` is the only one.
     pub cases: Vec<Case>,
     /// Cases that sweep two drivers over a grid, in the order of the file.
@@ -259,6 +261,24 @@ pub struct BodyPoint {
     pub unnamed: bool,
 }
 
+/// Joints nearer to each other than this part of the mechanism's size are at one place.
+const ONE_PLACE: f64 = 1e-12;
+
+/// What happens at a change point, where two motions of a mechanism meet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AtChangePoints {
+    /// The motion ends there (HP0402).
+    #[default]
+    Stop,
+    /// It goes on as the one of the two motions that continues it smoothly; where neither does, it ends.
+    Continue,
+}
+
+impl AtChangePoints {
+    /// All of them, with the words of model files.
+    pub const WORDS: [(&'static str, Self); 2] = [("stop", Self::Stop), ("continue", Self::Continue)];
+}
+
 impl Model {
     /// Where a hardpoint is in the nominal design, m.
     pub(crate) fn position(&self, h: HardpointId) -> Vec3 {
@@ -306,6 +326,31 @@ impl Model {
         if size > 0.0 { size } else { Extent::of(self.hardpoints.iter().map(|h| h.position)).size() }
     }
 
+    /// The shortest distance between two joints of a body, m: what must be exact for the motion to be that of the mechanism. Places
+    /// that are one but for round-off have none. The mechanism's size where there is no such distance.
+    pub fn shortest(&self) -> f64 {
+        let size = self.size();
+        let mut shortest = size;
+        for body in 0..self.bodies.len() {
+            let of_body = |joint: &&Joint| joint.bodies.iter().any(|b| b.0 == body);
+            let places: Vec<Vec3> = self
+                .joints
+                .iter()
+                .filter(of_body)
+                .map(|joint| self.position(joint.at[usize::from(joint.bodies[0].0 != body)]))
+                .collect();
+            for (k, p) in places.iter().enumerate() {
+                for q in &places[..k] {
+                    let apart = (*p - *q).norm();
+                    if apart > ONE_PLACE * size && apart < shortest {
+                        shortest = apart;
+                    }
+                }
+            }
+        }
+        shortest
+    }
+
     /// How far the nearest joint is from the global origin, m; 0 where there is none.
     pub fn distance_from_origin(&self) -> f64 {
         let joints = self.joints.iter().flat_map(|j| j.at.map(|m| self.position(m).norm()));
@@ -345,6 +390,12 @@ impl Direction {
 }
 
 impl Joint {
+    /// The hardpoints that it follows: those that it is at, and those that its axes pass through.
+    pub(crate) fn hardpoints(&self) -> impl Iterator<Item = HardpointId> {
+        let axes = [self.axis, self.axis2].into_iter().flatten();
+        self.at.into_iter().chain(axes.flat_map(|axis| axis.hardpoints().into_iter().flatten()))
+    }
+
     /// The directions of z and x of marker e, as far as they are given.
     pub(crate) fn axes_of_marker(&self, e: usize) -> [Option<Direction>; 2] {
         match (self.kind.axis2, e) {

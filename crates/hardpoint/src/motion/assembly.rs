@@ -3,15 +3,19 @@
 //! Lengths and places that don't fit leave gaps in the configuration as drawn. The gaps are closed along a path: the part
 //! of them that is still open runs from 1 to 0 while every driver stays at zero, in steps that watch for limits and
 //! branches like those of any motion. So the mechanism closes on the branch that was drawn, and an assembled one stays as
-//! it is. Where the path ends before the gaps are closed, least squares say how near the joints can come.
+//! it is. Where the path ends before the gaps are closed, as it does from a drawing in a singular position (bars in line), the nominal
+//! design is also assembled from positions around the drawing, by least squares; of all assemblies found, the nearest is taken.
+//! Where there is none, least squares give the smallest gaps.
 
 use crate::joint::Quantity;
 use crate::linalg::Elimination;
-use crate::model::{BodyId, DriverId, JointId};
+use crate::model::{BodyId, Contact, DriverId, JointId};
+use crate::space::{Quat, Vec3};
 use crate::topology::{BlockId, CoordinateId, LoopLink, RowId, Term, Topology};
 
 use super::kinematics::State;
-use super::stepper::Stepper;
+use super::parts::PlanGeometry;
+use super::stepper::{AcceptedPosition, Stepper};
 use super::walk::Path;
 use super::{Stop, StopKind};
 
@@ -23,6 +27,15 @@ const WORTH_TELLING: f64 = 1e-7;
 const NO_BETTER: f64 = 1e-12;
 /// ... or after so many steps.
 const MAX_SEARCH: usize = 200;
+/// A search that leaves no scaled residual above this has found an assembly; Newton's method closes the rest.
+const FOUND: f64 = 1e-7;
+/// Assemblies that differ by less than this, rad or sizes, are one, and so are distances from the drawing.
+const ONE_ASSEMBLY: f64 = 1e-5;
+/// Starts of a search deviate from the drawing by up to this, rad or sizes; each is tried in [`DIRECTIONS`] directions and their opposites.
+const DEVIATIONS: [f64; 3] = [0.03, 0.2, 0.8];
+const DIRECTIONS: usize = 3;
+/// A search solves dense systems: larger ones are not tried, so that a failure is reported within seconds.
+const LARGEST_SEARCH: usize = 150;
 
 /// How a mechanism that did not close as drawn was closed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,6 +44,9 @@ pub struct Assembly {
     pub gaps: Vec<Gap>,
     /// The bodies that moved, as far as they did.
     pub moved: Vec<AssemblyShift>,
+    /// Number of assemblies found around the drawing, where the path from it leads to none; the nearest was taken. 0 where the path
+    /// closed the mechanism.
+    pub found_nearby: usize,
 }
 
 /// A constraint that is open.
@@ -66,6 +82,25 @@ pub struct AssemblyShift {
     pub angle: f64,
 }
 
+/// An assembly that was found around a drawing.
+struct FoundAssembly {
+    /// How far the bodies are from where they were drawn, in sizes and rad.
+    distance: f64,
+    /// To which side they went: it decides between assemblies that are equally near.
+    side: f64,
+    q: Vec<f64>,
+    balls: Vec<Quat<f64>>,
+    contacts: Vec<Contact<f64>>,
+}
+
+impl FoundAssembly {
+    /// Whether bodies are as far, and on the same side.
+    fn is_same(&self, other: &Self) -> bool {
+        (self.distance - other.distance).abs() <= ONE_ASSEMBLY
+            && (self.side - other.side).abs() <= ONE_ASSEMBLY
+    }
+}
+
 impl State<f64> {
     /// The largest gap of the drawing, in sizes or as a cosine.
     pub(super) fn largest_gap(&self, topology: &Topology) -> f64 {
@@ -83,6 +118,28 @@ impl Stepper<'_> {
         if !(self.state.largest_gap(&self.topology) > CLOSED) {
             self.state.gap.fill(0.0);
         }
+        let drawn = (self.saved.clone(), self.topology.clone());
+        let gaps = self.gaps(|s, r| s.state.gap[r.0], WORTH_TELLING);
+        let mut found_nearby = 0;
+        if let Err(stop) = self.assemble_along_path() {
+            found_nearby = match self.is_searched(&stop) {
+                true => self.assemble_nearby(&drawn),
+                false => 0,
+            };
+            if found_nearby == 0 {
+                return Err(stop);
+            }
+        }
+        if !gaps.is_empty() {
+            self.assembly = Some(Assembly { gaps, moved: self.moved(WORTH_TELLING), found_nearby });
+        }
+        self.state.gap.fill(0.0);
+        self.state.gap_left = [0.0; 2];
+        Ok(())
+    }
+
+    /// Closes the gaps along the path from the drawing.
+    fn assemble_along_path(&mut self) -> Result<(), Box<Stop>> {
         self.time = 0.0;
         // s = 0: phi - phi_0 = 0 holds where it is drawn, and the signs of the determinants there say which branch this is.
         let drawn = self.drive(Path::Assembly, 0.0).and_then(|()| {
@@ -96,20 +153,136 @@ impl Stepper<'_> {
             return Ok(());
         }
         // phi - (1 - s) phi_0 = 0 from s = 0 to 1
-        if let Err(stop) = self.walk(Path::Assembly, 1.0) {
-            if matches!(stop.kind, StopKind::Locked { .. }) {
-                return Err(stop);
+        self.walk(Path::Assembly, 1.0).map_err(|stop| match stop.kind {
+            StopKind::Locked { .. } => stop,
+            _ => Box::new(Stop { kind: StopKind::DoesNotAssemble, ..*stop }),
+        })
+    }
+
+    /// Whether an assembly is searched for around the drawing: where the nominal design has gaps that the path does not close. A
+    /// changed design is on the branch of the nominal one, or does not assemble.
+    fn is_searched(&self, stop: &Stop) -> bool {
+        if matches!(
+            stop.kind,
+            StopKind::LawNotFinite { .. } | StopKind::TooFar { .. } | StopKind::Interrupted
+        ) || self.state.largest_gap(&self.topology) == 0.0
+        {
+            return false;
+        }
+        let (design, laws) = (self.model.geometry(&[]), self.model.laws(&[]));
+        let parts = PlanGeometry::same(self.model, &self.topology, &design, &laws);
+        let mut nominal = Stepper::new(self.model, &self.topology, parts);
+        nominal.measure_gaps();
+        nominal.assemble_along_path().is_err()
+    }
+
+    /// Assembles the mechanism from positions around the drawing, and stands where the bodies are nearest to it. Returns the number of
+    /// assemblies found; 0 where there is none.
+    fn assemble_nearby(&mut self, drawn: &(AcceptedPosition, Topology)) -> usize {
+        let unknowns: Vec<CoordinateId> = self.topology.unknown_coordinates().collect();
+        if unknowns.len() > LARGEST_SEARCH {
+            return 0;
+        }
+        let blocks = self.topology.block_ids();
+        let rows: Vec<RowId> = blocks.flat_map(|b| self.topology.rows_of_block(b)).collect();
+        let mut found: Vec<FoundAssembly> = Vec::new();
+        for start in 0..DEVIATIONS.len() * DIRECTIONS * 2 {
+            self.deviate(drawn, &unknowns, start);
+            if !(self.search(&rows, &unknowns) <= FOUND) || !self.stand_assembled() {
+                continue;
             }
-            return Err(Box::new(Stop { kind: StopKind::DoesNotAssemble, ..*stop }));
+            let assembly = self.found_assembly();
+            if found.iter().all(|other| !other.is_same(&assembly)) {
+                found.push(assembly);
+            }
         }
-        let told = WORTH_TELLING;
-        let gaps = self.gaps(|s, r| s.state.gap[r.0], told);
-        if !gaps.is_empty() {
-            self.assembly = Some(Assembly { gaps, moved: self.moved(told) });
+        // The nearest; of equally near ones that on the positive side.
+        let nearest = found.iter().map(|a| a.distance).fold(f64::INFINITY, f64::min) + ONE_ASSEMBLY;
+        let near = found.iter().filter(|a| a.distance <= nearest);
+        let Some(taken) = near.max_by(|a, b| a.side.total_cmp(&b.side)) else {
+            self.set_drawn(drawn);
+            return 0;
+        };
+        self.state.q.copy_from_slice(&taken.q);
+        self.state.balls.copy_from_slice(&taken.balls);
+        self.state.contacts.copy_from_slice(&taken.contacts);
+        if self.stand_assembled() { found.len() } else { 0 }
+    }
+
+    /// Back to the drawing, with the rows that it is solved with.
+    fn set_drawn(&mut self, (drawn, topology): &(AcceptedPosition, Topology)) {
+        let blocks: Vec<BlockId> = self.topology.block_ids().collect();
+        let changed = blocks.into_iter().filter(|b| self.topology[*b].selected != topology[*b].selected);
+        let changed: Vec<BlockId> = changed.collect();
+        self.topology.clone_from(topology);
+        changed.into_iter().for_each(|b| self.renew_factors(b));
+        self.saved.clone_from(drawn);
+        self.restore();
+    }
+
+    /// Deviates from the drawing, in one of several directions that no symmetry hides.
+    fn deviate(&mut self, drawn: &(AcceptedPosition, Topology), unknowns: &[CoordinateId], start: usize) {
+        self.set_drawn(drawn);
+        let deviation =
+            DEVIATIONS[start / (2 * DIRECTIONS)] * if start.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let direction = start / 2 % DIRECTIONS;
+        for (k, &c) in unknowns.iter().enumerate() {
+            // Multiples of the golden ratio are spread evenly and never repeat.
+            let part = ((1 + k + direction * unknowns.len()) as f64 * 0.618_033_988_749_895).fract();
+            // The first direction moves all coordinates alike, the others each to its own side.
+            let part = if direction == 0 { 0.5 + 0.5 * part } else { 2.0 * part - 1.0 };
+            self.state.q[c.0] += deviation * part * self.topology[c].unit;
         }
-        self.state.gap.fill(0.0);
-        self.state.gap_left = [0.0; 2];
-        Ok(())
+        self.state.turn_balls(&self.topology, self.topology.link_ids());
+    }
+
+    /// Stands where a search ended, closed, with rows that are independent there; returns whether that is a regular position.
+    fn stand_assembled(&mut self) -> bool {
+        self.time = 1.0;
+        if self.drive(Path::Assembly, 1.0).is_err() {
+            return false;
+        }
+        self.state.stand(&self.topology, &self.parts);
+        for (r, _) in RowId::each(&self.topology.rows) {
+            self.state.l[0][r.0] = self.state.wrench_of(&self.topology, r);
+        }
+        self.try_others.fill(f64::INFINITY);
+        // Before rows are chosen, and after: the sign of each determinant is that of this branch.
+        if self.reselect().is_err() || self.solve_within(f64::INFINITY).is_err() {
+            return false;
+        }
+        self.settle_branch();
+        for r in self.topology.coupler_terms() {
+            self.state.near[r.0] = self.state.coordinate_of_row(&self.topology, r)[0];
+        }
+        // A pivot that vanishes to round-off of the search marks bars in line: no motion is defined there.
+        let regular = self.state.pivots.iter().all(|(ratio, _)| *ratio > FOUND);
+        if !regular || self.examine_position().is_err() {
+            return false;
+        }
+        self.save(1.0, 0.0);
+        true
+    }
+
+    /// The assembly where it stands, and how far that is from the drawing.
+    fn found_assembly(&self) -> FoundAssembly {
+        let size = self.model.size();
+        let (mut distance, mut side) = (0.0, 0.0);
+        for (body, pose) in self.model.bodies.iter().zip(&self.state.pose).skip(1) {
+            for at in Vec3::AXES {
+                // Three points of each body, a size from its origin, weighted so that no two sides weigh the same.
+                let moved = (pose.point(at * size) - body.frame.point(at * size)) * (1.0 / size);
+                distance += moved.dot(moved);
+                side += moved.x + 0.618_033_988_749_895 * moved.y + 0.381_966_011_250_105 * moved.z;
+            }
+        }
+        FoundAssembly {
+            distance: f64::sqrt(distance),
+            side,
+            q: self.state.q.clone(),
+            balls: self.state.balls.clone(),
+            contacts: self.state.contacts.clone(),
+        }
     }
 
     /// By how much every row fails where the tree's joints are closed as drawn.
@@ -172,15 +345,23 @@ impl Stepper<'_> {
 impl Stepper<'_> {
     /// How near the joints can come: least squares over the residuals of all rows of the block that
     /// could not be closed, from where the path ended.
-    ///
-    /// Levenberg's and Marquardt's method on the scaled rows; it need not be fast.
     pub fn least_gaps(&mut self, block: BlockId) -> Vec<Gap> {
         self.state.gap_left = [0.0; 2];
         self.restore();
         let (unknowns, rows) = (self.topology[block].unknowns.clone(), self.topology.rows_of_block(block));
+        self.search(&rows, &unknowns);
+        self.scaled_rows(&rows, &unknowns);
+        self.gaps(|s, r| s.state.residual_of(&s.topology, &s.parts, &s.drivers, r), WORTH_TELLING)
+    }
+
+    /// Moves these unknowns to where the residuals of these rows are smallest, by least squares; returns the largest scaled residual.
+    ///
+    /// Levenberg's and Marquardt's method on the scaled rows; it need not be fast.
+    fn search(&mut self, rows: &[RowId], unknowns: &[CoordinateId]) -> f64 {
+        self.state.gap_left = [0.0; 2];
         let n = unknowns.len();
         let mut damping = 1e-3;
-        let (mut residuals, mut jacobian) = self.scaled_rows(&rows, &unknowns);
+        let (mut residuals, mut jacobian) = self.scaled_rows(rows, unknowns);
         let squares = |r: &[f64]| r.iter().map(|x| x * x).sum::<f64>();
         for _ in 0..MAX_SEARCH {
             let mut normal = Elimination::new(n);
@@ -195,12 +376,12 @@ impl Stepper<'_> {
             }
             normal.factor();
             normal.solve(&mut step);
-            let before = (self.state.q.clone(), self.state.balls.clone());
+            let before = (self.state.q.clone(), self.state.balls.clone(), self.state.contacts.clone());
             for (k, &c) in unknowns.iter().enumerate() {
                 self.state.q[c.0] += step[k] * self.topology[c].unit;
             }
             self.state.turn_balls(&self.topology, self.topology.link_ids());
-            let (now, jacobian_now) = self.scaled_rows(&rows, &unknowns);
+            let (now, jacobian_now) = self.scaled_rows(rows, unknowns);
             let (old, new) = (squares(&residuals), squares(&now));
             // A step that helps makes the next one more like Newton's, one that does not more like a short one downhill.
             if new < old {
@@ -210,15 +391,14 @@ impl Stepper<'_> {
                     break;
                 }
             } else {
-                (self.state.q, self.state.balls) = before;
+                (self.state.q, self.state.balls, self.state.contacts) = before;
                 damping *= 4.0;
                 if damping > 1e12 {
                     break;
                 }
             }
         }
-        self.scaled_rows(&rows, &unknowns);
-        self.gaps(|s, r| s.state.residual_of(&s.topology, &s.parts, &s.drivers, r), WORTH_TELLING)
+        residuals.iter().fold(0.0, |most: f64, r| if r.abs() <= most { most } else { r.abs() })
     }
 
     /// Scaled residuals of constraint rows, and their derivatives by these coordinates.

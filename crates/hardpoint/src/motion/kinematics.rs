@@ -18,7 +18,7 @@ use crate::constraint::{MarkerPair, MarkerPairRates};
 use crate::joint::Freedom;
 use crate::linalg::{Factors, LARGEST_DENSE, Watched};
 use crate::model::{Contact, DriverId, GROUND, Model};
-use crate::space::{Pose, Quat, Real, Twist, Wrench};
+use crate::space::{Pose, Quat, Real, Twist, Vec3, Wrench};
 use crate::topology::{Block, BlockId, Closure, ClosureId, Entry, LinkId, RowId, Term, Topology};
 
 use super::level::{Flow, Linear, turn_twists};
@@ -242,6 +242,19 @@ impl<T: Real> State<T> {
     /// Rates of a marker i that walks along its curve: those of its body and its own turning.
     #[inline(never)]
     pub fn walk(&self, c: ClosureId, k: usize, rates: &MarkerPairRates<T>) -> MarkerPairRates<T> {
+        let (v, (z, p)) = (rates.v_i, self.follower(c, k, rates));
+        let [turn, turn_rate] = self.contacts[k].turning(p);
+        // omega of the walking marker = omega_i + (k u.) z,    its rate = alpha_i + (k u.). z + omega_i x z (k u.).
+        // The row is a Dot-2: of marker i it asks for an axis only, so the angular parts will do.
+        let mut walking = *rates;
+        walking.v_i.w += z * turn;
+        walking.a_i.w += z * turn_rate + v.w.cross(z) * turn;
+        walking
+    }
+
+    /// The z axis of the marker that carries curve k, and the point that follows it, seen from that marker, with its first two rates.
+    #[inline(always)]
+    fn follower(&self, c: ClosureId, k: usize, rates: &MarkerPairRates<T>) -> (Vec3<T>, [Vec3<T>; 3]) {
         let MarkerPair { i: foot, j, .. } = &self.ends[c.0];
         let (v, a, contact) = (rates.v_i, rates.a_i, &self.contacts[k]);
         // The marker that carries the curve, and the follower's motion seen from it.
@@ -253,14 +266,14 @@ impl<T: Real> State<T> {
         let coriolis = v.w.cross(relative) * T::constant(2.0);
         let second = acceleration(rates.v_j, rates.a_j) - acceleration(v, a) - coriolis;
         let p = [i.inverse().point(j.r), i.rot.transpose_mul(relative), i.rot.transpose_mul(second)];
-        let [turn, turn_rate] = contact.turning(p);
-        let z = i.rot.cols[2];
-        // omega of the walking marker = omega_i + (k u.) z,    its rate = alpha_i + (k u.). z + omega_i x z (k u.).
-        // The row is a Dot-2: of marker i it asks for an axis only, so the angular parts will do.
-        let mut walking = *rates;
-        walking.v_i.w += z * turn;
-        walking.a_i.w += z * turn_rate + v.w.cross(z) * turn;
-        walking
+        (i.rot.cols[2], p)
+    }
+
+    /// First two rates of the parameter of curve k, which closure c follows.
+    pub(super) fn sliding(&self, topology: &Topology, c: ClosureId, k: usize) -> [T; 2] {
+        let ([v, a, _], [i, j]) = (&self.motion.twists, topology[c].bodies);
+        let rates = MarkerPairRates { v_i: v[i.0], v_j: v[j.0], a_i: a[i.0], a_j: a[j.0] };
+        self.contacts[k].sliding(self.follower(c, k, &rates).1)
     }
 
     /// By how much constraint row r fails.
@@ -499,7 +512,7 @@ impl<T: Real> State<T> {
         for link in links {
             for step in topology[link].steps.iter().filter(|s| s.freedom == Freedom::Ball) {
                 let k = step.first.0;
-                let d = crate::space::Vec3::new(self.q[k], self.q[k + 1], self.q[k + 2]);
+                let d = Vec3::new(self.q[k], self.q[k + 1], self.q[k + 2]);
                 // quaternion <- (1, d/2) quaternion, normalised
                 self.balls[k] = self.balls[k].nudged(d);
                 self.q[k..k + 3].fill(zero);
@@ -576,6 +589,40 @@ impl<T: Real> State<T> {
         self.rates_of_twists::<2>(topology, topology.link_ids());
         for &c in topology.blocks.iter().flat_map(|b| &b.closures) {
             self.rates_of_wrenches(topology, c, 2);
+        }
+    }
+
+    /// Places everything, with velocity and acceleration, where coordinates, speeds and accelerations are given: at a change point. What
+    /// is solved with the factors of singular blocks has no number there.
+    pub(super) fn stand_with_rates(
+        &mut self,
+        topology: &Topology,
+        parts: &PlanGeometry<T>,
+        drivers: &[[T; 3]],
+        singular: &[BlockId],
+    ) {
+        for (c, d) in topology.driven_coordinates() {
+            [self.q[c.0], self.motion.speeds[0][c.0], self.motion.speeds[1][c.0]] = drivers[d.0];
+        }
+        self.stand(topology, parts);
+        for r in RowId::all(0..topology.rows.len()) {
+            self.l[0][r.0] = self.wrench_of(topology, r);
+        }
+        self.rates_of_driven(topology);
+        for b in topology.block_ids() {
+            self.linearise(topology, parts, drivers, b);
+            let links = topology[b].link_ids();
+            self.motion.follow::<0>(topology, links.clone(), &self.x);
+            self.rates_of_twists::<1>(topology, links.clone());
+            for &c in &topology[b].closures {
+                self.rates_of_wrenches(topology, c, 1);
+            }
+            self.motion.follow::<1>(topology, links, &self.x);
+        }
+        let nan = T::constant(f64::NAN);
+        for &r in singular.iter().flat_map(|b| &topology[*b].selected) {
+            let none = Vec3::new(nan, nan, nan);
+            self.l[0][r.0] = Wrench { m: none, f: none };
         }
     }
 

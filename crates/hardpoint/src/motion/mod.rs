@@ -6,6 +6,7 @@
 
 pub(crate) mod abreast;
 mod assembly;
+mod change_point;
 pub(crate) mod designs;
 pub(crate) mod execution;
 mod forecast;

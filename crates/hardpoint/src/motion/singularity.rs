@@ -38,7 +38,9 @@ pub(super) struct Surroundings {
     pub turning: Vec<Vec<[f64; 2]>>,
     /// Per direction and angle that is counted along the path: the same of the angle, where any is.
     pub angles: Vec<Vec<[f64; 2]>>,
-    /// Per direction: the fastest unknown coordinate, in its unit.
+    /// Per direction and curve: the same of the parameter where it is touched.
+    pub sliding: Vec<Vec<[f64; 2]>>,
+    /// Per direction: the fastest unknown coordinate, in its unit; of curves the parameter, in lengths between their points.
     pub fastest: Vec<f64>,
     /// How many of the directions are known.
     known: usize,
@@ -81,6 +83,7 @@ impl Surroundings {
             bends: Vec::new(),
             turning: Vec::new(),
             angles: Vec::new(),
+            sliding: Vec::new(),
             fastest: Vec::new(),
             known: 0,
         }
@@ -99,6 +102,8 @@ impl Surroundings {
         let rows = if topology.coupled_rows.is_empty() { 0 } else { topology.rows.len() };
         self.turning.resize(directions, vec![[zero; 2]; rows]);
         self.angles.resize(directions, Vec::new());
+        let curves = topology.closures.iter().filter(|c| c.contact.is_some()).count();
+        self.sliding.resize(directions, vec![[zero; 2]; curves]);
         self.fastest.resize(directions, zero);
     }
 
@@ -126,7 +131,11 @@ impl Surroundings {
     pub fn turn_of_fastest(&self, travel: &[f64]) -> f64 {
         let angles = self.angles.first().map_or(0, Vec::len);
         let of_angle = |i: usize| -> f64 {
-            travel[..self.known].iter().zip(&self.angles).map(|(du, angles)| part(*du, angles[i][0].abs())).sum()
+            travel[..self.known]
+                .iter()
+                .zip(&self.angles)
+                .map(|(du, angles)| part(*du, angles[i][0].abs()))
+                .sum()
         };
         // One that has no number here, or no bound, limits nothing.
         (0..angles).map(of_angle).filter(|turn| turn.is_finite()).fold(0.0, f64::max)
@@ -206,6 +215,12 @@ impl Workspace {
             for c in topology.unknown_coordinates() {
                 let speed = state.motion.speeds[0][c.0] * topology[c].per_unit;
                 fastest = fastest.larger(speed.abs());
+            }
+            for (c, k) in topology.contacts() {
+                // u' and u'' of where a curve is touched
+                let [speed, rate] = state.sliding(topology, c, k);
+                found.sliding[direction][k] = [speed, rate];
+                fastest = fastest.larger((speed / parts.curves[k].grain()).abs());
             }
             found.fastest[direction] = fastest;
             for b in topology.block_ids() {

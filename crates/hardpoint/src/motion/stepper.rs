@@ -11,12 +11,13 @@ use crate::space::{Quat, Real};
 use crate::topology::{BlockId, RowId, SetBy, Topology};
 
 use super::assembly::Assembly;
+use super::change_point::Crossing;
 use super::forecast::Forecast;
 use super::kinematics::{PositionFailure, Residuals, State, factors_of};
 use super::parts::PlanGeometry;
 use super::singularity::{Surroundings, Workspace};
-use super::walk::{PART_OF_WAY, Path};
 use super::turns::TurnCounter;
+use super::walk::{MOST_BEND, PART_OF_WAY, Path};
 use super::{Effort, Stop};
 
 /// A first correction (rad, or sizes) up to this is accepted whatever the prediction's own length is.
@@ -99,6 +100,8 @@ pub(crate) struct Stepper<'m> {
     pub(super) on_laws: bool,
     /// Scratch of predictions.
     pub(super) predicted: Vec<f64>,
+    /// Per curve: the parameter that was predicted, and how far that is from the one before.
+    pub(super) touching: Vec<[f64; 2]>,
     /// Fastest driver on the present path (rad, or sizes, per unit of its parameter).
     /// max abs(f.) / unit.
     pub(super) fastest_driver: f64,
@@ -111,6 +114,10 @@ pub(crate) struct Stepper<'m> {
     pub assembly: Option<Assembly>,
     /// Counts the angles whose turns only the path tells; `None` where there are none.
     pub turns: Option<TurnCounter<'m>>,
+    /// The change point that was crossed last.
+    pub(super) crossing: Option<Box<Crossing>>,
+    /// Whether the state stands at a change point, where J is singular and nothing can be solved with it.
+    pub at_change_point: bool,
     /// Room for the changes and moves over output times that are tried at once.
     pub(super) changes_ahead: Vec<f64>,
     pub(super) moves_ahead: Vec<f64>,
@@ -235,12 +242,15 @@ impl<'m> Stepper<'m> {
             travel_unit: 1.0,
             on_laws: false,
             predicted: vec![0.0; topology.coordinates.len()],
+            touching: vec![[0.0; 2]; saved.contacts.len()],
             fastest_driver: 0.0,
             residuals: Residuals::default(),
             effort: Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() },
             selections: 0,
             assembly: None,
             turns: None,
+            crossing: None,
+            at_change_point: false,
             changes_ahead: vec![0.0; blocks],
             moves_ahead: vec![0.0; drivers],
             drivers: saved.drivers.clone(),
@@ -252,6 +262,7 @@ impl<'m> Stepper<'m> {
     ///
     /// A changed design starts from the nominal design configuration and closes there first.
     pub fn start(&mut self, t: f64) -> Result<(), Box<Stop>> {
+        (self.crossing, self.at_change_point) = (None, false);
         self.time = 0.0;
         self.assemble()?;
         if let Some(turns) = &mut self.turns {
@@ -282,8 +293,11 @@ impl<'m> Stepper<'m> {
 
     /// Moves on to the output time t.
     pub fn advance(&mut self, t: f64) -> Result<(), Box<Stop>> {
-        if !self.glide(t) {
-            self.walk(Path::Laws, t)?;
+        self.at_change_point = false;
+        match self.stand_within_crossing(t) {
+            Some(stood) => stood?,
+            None if self.glide(t) => {}
+            None => self.walk(Path::Laws, t)?,
         }
         self.count();
         Ok(())
@@ -319,6 +333,7 @@ impl<'m> Stepper<'m> {
         let selections = self.selections;
         if self.state.solve(&self.topology, &self.parts, &self.drivers, trust).is_err()
             || !self.speeds_are_smooth(h)
+            || !self.contacts_are_near()
             || self.examine_position().is_err()
         {
             return false;
@@ -537,6 +552,14 @@ impl<'m> Stepper<'m> {
         smooth(difference, fastest, self.fastest_driver)
     }
 
+    /// Whether curves hardly bend from where they were touched to where they are now.
+    fn contacts_are_near(&self) -> bool {
+        let contacts = self.state.contacts.iter().zip(&self.saved.contacts);
+        contacts
+            .zip(&self.parts.curves)
+            .all(|((now, before), curve)| curve.bend(before.u, now.u) <= MOST_BEND)
+    }
+
     /// Accepts the position at t, a step h after the one before (0 at the start of a path). What lies ahead is not known then.
     pub(super) fn save(&mut self, t: f64, h: f64) {
         let (s, saved) = (&self.state, &mut self.saved);
@@ -572,7 +595,7 @@ impl<'m> Stepper<'m> {
     }
 
     /// Chooses other independent rows for blocks whose present ones have become nearly dependent.
-    fn reselect(&mut self) -> Result<(), Refusal> {
+    pub(super) fn reselect(&mut self) -> Result<(), Refusal> {
         for b in self.topology.block_ids() {
             let ratio = self.state.pivots[b.0].0;
             // min / max of the pivots against a tenth of what it was when these rows were chosen

@@ -144,11 +144,16 @@ impl Stop {
             }
             StopKind::BranchChange => {
                 "at a dead point the loop may continue on either of two branches and its velocities are not defined; \
-                 shorten the sweep, or drive another joint of the loop"
+                 write `at_change_points = \"continue\"` at the top of the model file where the motion goes on smoothly, as that of \
+                 a parallelogram does; or shorten the sweep, or drive another joint of the loop"
             }
             StopKind::Locked { .. } => {
                 "the loop has redundant constraints that agree at the design configuration only; check that its axes \
                  are exactly parallel (or meet in one point), or give a joint more freedom"
+            }
+            StopKind::DoesNotAssemble if self.remains.is_empty() => {
+                "its joints can be closed only where the loop is stretched or folded, and no motion is defined there: change \
+                 a length or place a little, or draw the loop nearer to the assembly that you mean"
             }
             StopKind::DoesNotAssemble => {
                 "change the lengths or places of these joints by at least what stays open, or give one of them more \

@@ -5,7 +5,7 @@
 //! pulses between two output times is followed all the same. The position is predicted along the drivers, too, so kinks of laws
 //! need no care.
 
-use crate::model::DriverId;
+use crate::model::{Contact, DriverId};
 use crate::space::Real;
 
 use super::kinematics::PositionFailure;
@@ -56,6 +56,11 @@ const MOST_IN_A_ROW: usize = 32;
 /// the ends.
 const POLE: [f64; 2] = [1e-9, 1e3];
 
+/// A curve may be touched this far from where it was predicted, in lengths between its points, however short the predicted move.
+const CONTACT_FLOOR: f64 = 0.1;
+/// A curve may bend by this much over a step, rad: a groove that turns back within a step would be crossed unseen.
+pub(super) const MOST_BEND: f64 = 0.4;
+
 /// What the drivers follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Path {
@@ -82,6 +87,16 @@ impl Path {
 impl Stepper<'_> {
     /// Follows a path to where its parameter is `target`.
     pub(super) fn walk(&mut self, path: Path, target: f64) -> Result<(), Box<Stop>> {
+        while self.time < target {
+            let Err(stop) = self.walk_to(path, target) else { break };
+            self.cross(path, stop)?;
+        }
+        // An output time that was passed on the way over a change point is gone back to.
+        self.stand_within_crossing(target).unwrap_or(Ok(()))
+    }
+
+    /// The same up to the first change point.
+    fn walk_to(&mut self, path: Path, target: f64) -> Result<(), Box<Stop>> {
         let scale = f64::max(self.time.abs(), target.abs());
         let (mut steps, mut walked) = (0, 0.0);
         if self.ahead != Lookahead::Examined {
@@ -244,8 +259,28 @@ impl Stepper<'_> {
         self.on_laws = path == Path::Laws;
     }
 
+    /// How far each direction goes at most over a stretch of a path, as [`measure_travel`](Self::measure_travel) notes it.
+    pub(super) fn travel_over(&mut self, path: Path, from: f64, to: f64) {
+        self.measure_travel(path, to - from);
+        if path == Path::Laws {
+            for d in 0..self.drivers.len() {
+                let start = self.parts.law(d, from)[0];
+                let travel = self.parts.travel(d, from, to, start);
+                // Where a law has no value it goes too far.
+                self.travel[d] = if travel.is_nan() { f64::INFINITY } else { travel };
+            }
+        }
+    }
+
+    /// Where on its path the singular position lies that is nearest ahead of the saved one.
+    pub(super) fn nearest_ahead(&mut self, path: Path) -> Option<f64> {
+        self.stand(path).ok()?;
+        let ahead = self.ahead(path)?;
+        (ahead.distance > 0.0).then_some(self.time + ahead.distance)
+    }
+
     /// The largest travel measured last, rad or sizes.
-    fn travelled(&self) -> f64 {
+    pub(super) fn travelled(&self) -> f64 {
         if !self.on_laws {
             return self.travel[0] * self.travel_unit;
         }
@@ -327,16 +362,33 @@ impl Stepper<'_> {
     }
 
     /// Solves the position at t on a path, a step h beyond the saved one, from a prediction along the drivers.
-    fn solve_at(&mut self, path: Path, t: f64, h: f64) -> Result<(), Refusal> {
+    pub(super) fn solve_at(&mut self, path: Path, t: f64, h: f64) -> Result<(), Refusal> {
         self.drive(path, t)?;
-        let moved = self.predict(path, h);
+        let moved = self.predict_along(path, h);
         self.solve_within((TRUST * moved).max(TRUST_FLOOR))?;
+        self.examine_contacts()?;
         self.examine_position()
+    }
+
+    /// Whether curves are touched about where it was predicted.
+    fn examine_contacts(&self) -> Result<(), Refusal> {
+        for (c, k) in self.topology.contacts() {
+            let ([predicted, moved], curve) = (self.touching[k], &self.parts.curves[k]);
+            let (before, now) = (self.saved.contacts[k].u, self.state.contacts[k].u);
+            // abs(u - predicted) <= max(half of the predicted move, a tenth of the length between two points of the curve); NaN fails.
+            let near = (now - predicted).abs() <= (TRUST * moved).max(CONTACT_FLOOR * curve.grain());
+            if !(near && curve.bend(before, now) <= MOST_BEND)
+                && let Some(block) = self.topology[c].block
+            {
+                return Err(Refusal::Position(PositionFailure::NoConvergence { block }));
+            }
+        }
+        Ok(())
     }
 
     /// Predicts the position where the drivers stand now, `q + sum over the directions of q' du + q'' du^2 / 2`; returns how far the
     /// largest move goes, rad or sizes.
-    fn predict(&mut self, path: Path, h: f64) -> f64 {
+    pub(super) fn predict_along(&mut self, path: Path, h: f64) -> f64 {
         self.restore();
         let mut most = 0.0_f64;
         let directions = if path == Path::Laws { self.drivers.len() } else { 1 };
@@ -357,6 +409,20 @@ impl Stepper<'_> {
                 let [slope, bend] = self.around.turning[k][r.0];
                 self.state.near[r.0] += slope * du + bend * half;
             }
+        }
+        for (k, contact) in self.state.contacts.iter_mut().enumerate() {
+            let mut u = contact.u;
+            for direction in 0..directions {
+                let du = match path {
+                    Path::Laws => self.drivers[direction][0] - self.saved.drivers[direction][0],
+                    Path::Assembly | Path::Line { .. } => h,
+                };
+                // u + u' Du + u'' Du^2 / 2
+                let [slope, bend] = self.around.sliding[direction][k];
+                u += slope * du + bend * (du * du * 0.5);
+            }
+            self.touching[k] = [u, (u - contact.u).abs()];
+            *contact = Contact::at(&self.parts.curves[k], u);
         }
         for c in self.topology.unknown_coordinates() {
             self.state.q[c.0] += moves[c.0];

@@ -72,6 +72,8 @@ impl SensitivitySolver {
         mut each: impl FnMut(Differentiated<'_>),
     ) {
         let Self { fields, direct, wanted, resisting, .. } = self;
+        // Where nothing can be solved a variable has no number, which says nothing about what resists it.
+        let solved = !one.at_change_point;
         // x., x.., l., l.. of all coordinates and rows once; then three right-hand sides for each variable: (11), (12), (13).
         let (topology, state, parts) = (&one.topology, &mut one.state, &one.parts);
         state.finish_rates(topology);
@@ -85,7 +87,7 @@ impl SensitivitySolver {
                 };
                 found(VariableId(v), BodyId(body), &derivatives);
             }
-            if let Some(defect) = direct.worst_defect(topology, state, field) {
+            if let Some(defect) = direct.worst_defect(topology, state, field).filter(|_| solved) {
                 note(&mut resisting[v], topology, defect, t);
             }
             each(Differentiated { variable: VariableId(v), topology, state, field, flow: &direct.flow });

@@ -75,7 +75,8 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
         found.and_then(|(y, x)| take(metric, &y, &x)).map_or(f64::NAN, |(value, _)| value.d)
     };
     // Solved between output times, it is taken at a time that was solved.
-    let resolved = solution.between.is_some() && unresolved_times(solution_of(solution, metric), metric, true).is_empty();
+    let resolved = solution.between.is_some()
+        && unresolved_times(solution_of(solution, metric), metric, true).is_empty();
     let error = if resolved { None } else { interpolation_error(metric, &y, &x, value, time) };
     let finite = || y.values.iter().map(|v| v[0]).filter(|x| x.is_finite());
     let range = match metric.take {
@@ -128,13 +129,15 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
     let unresolved = |end: Reduction| {
         let (_, time) = take(&Metric { take: end, ..metric.clone() }, &y, &x)?;
         let time = time.filter(|t| !y.times.contains(t))?;
-        let k = y.times[..y.values.len()].partition_point(|end| *end <= time).clamp(1, y.values.len() - 1) - 1;
+        let k =
+            y.times[..y.values.len()].partition_point(|end| *end <= time).clamp(1, y.values.len() - 1) - 1;
         let off = |curve: &SampledCurve<'_, f64>| {
             let wide = WidePolynomial::new(curve, k)?.at(time)[0];
             Some((wide - curve.at(k, time)[0]).abs())
         };
         // Where too little is known to say, it may be off.
-        let late = x.as_ref().map_or(Some(0.0), |x| Some(off(x)? * (y.at(k, time)[1] / x.at(k, time)[1]).abs()));
+        let late =
+            x.as_ref().map_or(Some(0.0), |x| Some(off(x)? * (y.at(k, time)[1] / x.at(k, time)[1]).abs()));
         let error = off(&y).zip(late).map_or(f64::INFINITY, |(y, late)| y + late);
         (!(error <= part * range)).then_some(time)
     };
@@ -278,7 +281,8 @@ pub fn peaks(model: &Model, solution: &Solution, metric: &Metric, sign: f64) -> 
         let part = |ends: &[f64]| {
             let [first, last] = [ends[0], ends[1]].map(|end| y.times.partition_point(|t| *t < end));
             let peaks = (first..usize::min(last, y.values.len().saturating_sub(1))).map(peak);
-            let higher = |best: T, other: T| if sign * other.value() > sign * best.value() { other } else { best };
+            let higher =
+                |best: T, other: T| if sign * other.value() > sign * best.value() { other } else { best };
             peaks.reduce(higher).unwrap_or_else(|| T::constant(sign * least))
         };
         ends.windows(2).map(part).collect()

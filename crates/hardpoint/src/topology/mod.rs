@@ -373,6 +373,11 @@ impl Topology {
         std::iter::once(Term { row: r, factor: 1.0 }).chain(self[r].terms.iter().copied())
     }
 
+    /// The closures that follow curves, with the number of the curve.
+    pub fn contacts(&self) -> impl Iterator<Item = (ClosureId, usize)> + '_ {
+        ClosureId::each(&self.closures).filter_map(|(c, closure)| Some((c, closure.contact?)))
+    }
+
     /// The rows that are terms of couplers, the first ones included.
     pub fn coupler_terms(&self) -> impl Iterator<Item = RowId> + '_ {
         self.coupled_rows.iter().flat_map(|&r| self.parts_of_row(r)).map(|term| term.row)

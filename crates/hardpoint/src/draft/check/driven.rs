@@ -30,12 +30,10 @@ enum Zero {
     None,
     /// Zero: what is measured is counted from the design configuration, like wheel travel.
     AsDrawn,
-    /// The distance of the joint's two hardpoints.
-    Distance,
+    /// What the joint keeps of its design configuration: the length of a rod or leg, the course of an axis.
+    Kept,
     /// Where the joint's hardpoint is along its axis.
     Position,
-    /// The course of the joint's second axis.
-    Course,
 }
 
 /// The axes of an unnamed joint.
@@ -50,7 +48,7 @@ const HEADLESS: f64 = 1e-6;
 /// The body that stands.
 const GROUND_NAME: &str = "ground";
 
-/// The value of a driver's coordinate as drawn, over hardpoints.
+/// The value of a driver's coordinate as drawn, over hardpoints, or as the joint keeps it.
 pub(super) struct AsDrawn {
     expression: Expression,
     sources: Vec<Source>,
@@ -114,7 +112,7 @@ impl Checker<'_> {
         let joint = self.joint(name, at[0].clone())?;
         let coordinate = self.coordinate_at(joint, coordinate, at.clone())?;
         let row = self.model.joints[joint.0].kind.coordinates[coordinate].row;
-        let zero = if row == Row::Distance { Zero::Distance } else { Zero::None };
+        let zero = if row == Row::Distance { Zero::Kept } else { Zero::None };
         self.drivable(d, name, joint, coordinate, at[0].clone()).then_some(Driven { joint, coordinate, zero })
     }
 
@@ -142,7 +140,7 @@ impl Checker<'_> {
             let message = format!("the two points of driver `{}` are at the same place", d.name);
             self.fault("HP0211", to, message).help("an actuator needs two points that lie apart");
         }
-        self.driven_joint(d, &joint::LEG, [i.body, j.body], [i.at, j.at], None, Zero::Distance)
+        self.driven_joint(d, &joint::LEG, [i.body, j.body], [i.at, j.at], None, Zero::Kept)
     }
 
     /// What has the value of a measure, in whole or counted from the design configuration as the measure is.
@@ -179,13 +177,13 @@ impl Checker<'_> {
                     .help("its `from` must not be along its `about`");
                     return None;
                 };
-                self.driven_course(d, body, place, [z, x], axis2, Zero::Course, &at)
+                self.driven_course(d, body, place, [z, x], axis2, Zero::Kept, &at)
             }
             MeasureKindDraft::Toe { body, spin_axis } => {
                 let body = self.body(body, at.clone())?;
                 let (axis2, _) = self.line_at(spin_axis, &d.name, at.clone())?;
                 let place = self.place_on(body)?;
-                self.driven_course(d, body, place, [-up, left], axis2, Zero::Course, &at)
+                self.driven_course(d, body, place, [-up, left], axis2, Zero::Kept, &at)
             }
             MeasureKindDraft::Wheel { wheel, what } => {
                 let names = draft.wheels.iter().map(|w| w.name.as_str());
@@ -213,7 +211,7 @@ impl Checker<'_> {
                     WheelMeasure::WheelRecession => travel(self, -forward),
                     // toe = atan2(e_x, s e_y): seen from where z is -s z, from s y
                     WheelMeasure::Toe => {
-                        self.driven_course(d, body, centre, [up * -s, left * s], axis2, Zero::Course, &at)
+                        self.driven_course(d, body, centre, [up * -s, left * s], axis2, Zero::Kept, &at)
                     }
                     WheelMeasure::SteerAngle => {
                         self.driven_course(d, body, centre, [up, left * s], axis2, Zero::AsDrawn, &at)
@@ -320,7 +318,7 @@ impl Checker<'_> {
             format!("(({:?})*{x} + ({:?})*{y} + ({:?})*{z})", v.x, v.y, v.z)
         };
         let between = |[a, b]: [&[String; 3]; 2]| [0, 1, 2].map(|k| format!("({} - {})", b[k], a[k]));
-        let text = match (driven.zero, joint.axis, joint.axis2) {
+        let text = match (driven.zero, joint.axis) {
             (Zero::None, ..) if d.from_zero => {
                 let message = format!("what driver `{}` prescribes has no zero of its own", d.name);
                 self.fault("HP0213", here.key("counted_from"), message)
@@ -329,30 +327,19 @@ impl Checker<'_> {
                 return None;
             }
             (Zero::None | Zero::AsDrawn, ..) => return None,
-            // abs(P_j - P_i)
-            (Zero::Distance, ..) => {
-                let [x, y, z] = between([&coordinates(joint.at[0]), &coordinates(joint.at[1])]);
-                format!("sqrt({x}^2 + {y}^2 + {z}^2)")
+            // What the joint keeps, which `length` and variables of the joint itself change as well as its hardpoints.
+            (Zero::Kept, ..) => {
+                sources.push(Source::Kept(driven.joint, driven.coordinate));
+                "n0".to_owned()
             }
             // n . P
-            (Zero::Position, Some(Direction::Through(a, b)), _) => {
+            (Zero::Position, Some(Direction::Through(a, b))) => {
                 let p = coordinates(joint.at[1]);
                 let n = between([&coordinates(a), &coordinates(b)]);
                 let [x, y, z] = &n;
                 format!("({x}*{} + {y}*{} + {z}*{})/sqrt({x}^2 + {y}^2 + {z}^2)", p[0], p[1], p[2])
             }
             (Zero::Position, ..) => along(joint.frames[0].cols[2], &coordinates(joint.at[1])),
-            // atan2(y_i . e, x_i . e)
-            (Zero::Course, _, Some(Direction::Through(a, b))) => {
-                let e = between([&coordinates(a), &coordinates(b)]);
-                let [x, y] = [0, 1].map(|k| along(joint.frames[0].cols[k], &e));
-                format!("atan2({y}, {x})")
-            }
-            (Zero::Course, ..) => {
-                let e = joint.frames[1].cols[2];
-                let [x, y] = [0, 1].map(|k| joint.frames[0].cols[k].dot(e));
-                format!("{:?}", y.atan2(x))
-            }
         };
         let expression = Expression::parse(&text).expect("a text that is written here");
         let sources = expression.names().iter().map(|n| {

@@ -199,7 +199,7 @@ impl<'a> Checker<'a> {
 
     /// Sets what a formula gives in the nominal design. HP0228 where that is no number.
     fn take(&mut self, w: Written) -> Option<f64> {
-        if w.formula.sources().any(|s| self.spoilt.contains(&s)) {
+        if w.formula.sources().any(|s| self.is_spoilt(s)) {
             self.spoil(w.formula.of);
             return None;
         }
@@ -230,6 +230,16 @@ impl<'a> Checker<'a> {
         }
         self.written.push(w);
         Some(value)
+    }
+
+    fn is_spoilt(&self, source: Source) -> bool {
+        match source {
+            Source::Parameter(_) | Source::Coordinate(..) => self.spoilt.contains(&source),
+            Source::Kept(j, _) => {
+                let coordinates = |h| (0..3).map(move |axis| Source::Coordinate(h, axis));
+                self.model.joints[j.0].hardpoints().flat_map(coordinates).any(|s| self.spoilt.contains(&s))
+            }
+        }
     }
 
     fn set(&mut self, h: HardpointId, axis: usize, value: f64) {
@@ -374,18 +384,29 @@ impl<'a> Checker<'a> {
                 varying.extend(moved.map(|axis| Source::Coordinate(hardpoint, axis)));
             }
         }
+        let changed: BTreeSet<JointId> =
+            self.model.variables.iter().flat_map(|v| &v.changes).filter_map(Effect::joint).collect();
+        let mut lengths: BTreeSet<JointId> = BTreeSet::new();
         for Written { mut formula, at, name, case } in std::mem::take(&mut self.written) {
             let model = &self.model;
+            let varies = |s: &Source| match *s {
+                Source::Parameter(_) | Source::Coordinate(..) => varying.contains(s),
+                Source::Kept(j, _) => {
+                    let coordinates = |h| (0..3).map(move |axis| Source::Coordinate(h, axis));
+                    let mut by = model.joints[j.0].hardpoints().flat_map(coordinates);
+                    changed.contains(&j) || lengths.contains(&j) || by.any(|s| varying.contains(&s))
+                }
+            };
             let fixed: Vec<Option<f64>> = formula
                 .inputs
                 .iter()
-                .map(|(s, per_unit)| (!varying.contains(s)).then(|| model.nominal(*s) * per_unit))
+                .map(|(s, per_unit)| (!varies(s)).then(|| model.nominal(*s) * per_unit))
                 .collect();
             if fixed.iter().all(Option::is_some) {
                 continue;
             }
             formula.expression = formula.expression.with_some(|k| fixed[k]);
-            formula.inputs.retain(|(s, _)| varying.contains(s));
+            formula.inputs.retain(|(s, _)| varies(s));
             // One derivative along all inputs at once is finite only if all are.
             let along = |s: Source| Dual { v: model.nominal(s), d: 1.0 };
             let slope = formula.at(along).d;
@@ -405,6 +426,9 @@ impl<'a> Checker<'a> {
                     .help(
                         "write `design = false` for the parameters in it, or the curve's points as numbers",
                     );
+            }
+            if let Target::Length(j) = formula.of {
+                lengths.insert(j);
             }
             varying.extend(formula.gives());
             match case {
@@ -473,6 +497,7 @@ impl Nominal {
                 let of = w.formula.sources().find_map(|s| match s {
                     Source::Parameter(q) => follows[q.0].clone(),
                     Source::Coordinate(h, _) => Some(format!("hardpoint `{}`", c.model.hardpoints[h.0].name)),
+                    Source::Kept(j, _) => Some(format!("joint `{}`", c.model.joints[j.0].name)),
                 });
                 follows[p.0] = follows[p.0].take().or(of);
             }

@@ -1,0 +1,245 @@
+//! Passing a change point: the position where two motions meet, as where a parallelogram lies in line.
+//!
+//! There J is singular, and each of two motions goes on smoothly. With [`AtChangePoints::Continue`] the one is followed that continues the
+//! path: from a position b before the change point that of f behind it is predicted by q' and q'', and accepted where its own q' is the
+//! predicted one. Positions between b and f are found from the polynomials through both ends; at the change point itself, where nothing
+//! can be solved, position, velocity and acceleration are those of the polynomials, and what is solved with J has no number.
+
+use crate::model::AtChangePoints;
+use crate::topology::BlockId;
+
+use super::forecast::Channel;
+use super::stepper::{AcceptedPosition, Lookahead, Refusal, Stepper};
+use super::walk::Path;
+use super::{Stop, StopKind};
+
+/// The stretch that is crossed at once reaches this far to both sides, rad or sizes of driver travel: near enough that the predicted
+/// position is nearer to its own motion than to the other, far enough that accelerations keep ten digits.
+const REACH: f64 = 1e-2;
+/// A stretch that takes more halvings than this is left alone.
+const HALVINGS: usize = 60;
+/// Slopes q' behind the change point may differ from the predicted ones by this part of the largest, or of the drivers' own: on the other
+/// motion they differ by as much as they are.
+const SAME_MOTION: f64 = 0.05;
+/// Output times nearer to the change point than this part of the stretch are at it: nearer by, solutions lose more digits than the
+/// polynomials.
+const AT_IT: f64 = 0.2;
+
+/// A stretch around a change point.
+#[derive(Clone)]
+pub(super) struct Crossing {
+    /// When it begins and ends, and when the change point is passed.
+    times: [f64; 2],
+    at: f64,
+    /// The block that is singular there.
+    path: Path,
+    /// The blocks that are singular there.
+    blocks: Vec<BlockId>,
+    /// Positions at both ends, and per channel their values and derivatives.
+    ends: [AcceptedPosition; 2],
+    values: [Vec<[f64; 3]>; 2],
+}
+
+impl Stepper<'_> {
+    /// Crosses the change point that stopped the walk, where the model asks for it and the motion goes on smoothly; the stepper stands
+    /// behind it then. Returns the stop where it does not.
+    pub(super) fn cross(&mut self, path: Path, stop: Box<Stop>) -> Result<(), Box<Stop>> {
+        let asked = self.model.at_change_points == AtChangePoints::Continue && path != Path::Assembly;
+        let (StopKind::BranchChange, true, Some(block)) = (stop.kind, asked, stop.block) else {
+            return Err(stop);
+        };
+        let here = (self.saved.clone(), self.time, self.branch.clone());
+        // On a straight path the stop tells the time of all of it; the parameter is that of the position where it ended.
+        let at =
+            if path == Path::Laws { stop.failed_time } else { self.nearest_ahead(path).unwrap_or(self.time) };
+        match self.cross_at(path, at, block) {
+            Some(crossing) => {
+                self.crossing = Some(Box::new(crossing));
+                Ok(())
+            }
+            None => {
+                (self.saved, self.time, self.branch) = here;
+                self.ahead = Lookahead::Unknown;
+                Err(stop)
+            }
+        }
+    }
+
+    fn cross_at(&mut self, path: Path, at: f64, block: BlockId) -> Option<Crossing> {
+        let start = if path == Path::Laws { self.model.times[0] } else { 0.0 };
+        let mut h = f64::max(at - self.time, 1e-3 * at.abs().max(1e-3)) * 1024.0;
+        for _ in 0..HALVINGS {
+            self.travel_over(path, at - h, at + h);
+            if self.travelled() <= 2.0 * REACH && at - h >= start {
+                break;
+            }
+            h *= 0.5;
+        }
+        let [from, to] = [at - h, at + h];
+        if !(from < at && at < to) {
+            return None;
+        }
+        // Back to b, then over to f.
+        self.solve_at(path, from, from - self.time).ok()?;
+        self.polish().ok()?;
+        self.save(from, 0.0);
+        // The drivers move by a hundredth of a radian: an angle is in the nearest turn.
+        self.renew_turns();
+        self.examine_here(path);
+        let before = self.end_of_stretch();
+        let was = self.around.clone();
+        self.drive(path, to).ok()?;
+        let travel: Vec<f64> =
+            self.drivers.iter().zip(&before.0.drivers).map(|(now, before)| now[0] - before[0]).collect();
+        self.predict_along(path, 2.0 * h);
+        self.solve_within(REACH).ok()?;
+        self.polish().ok()?;
+        let signs: Vec<bool> = self.branch.iter().map(|b| b.0).collect();
+        for (b, branch) in self.branch.iter_mut().enumerate() {
+            branch.0 = self.state.pivots[b].1;
+        }
+        // The determinants that change their sign are those that vanish on the way; several loops may lie in line at once.
+        let mut blocks: Vec<BlockId> = self.topology.block_ids().collect();
+        blocks.retain(|b| *b == block || signs[b.0] != self.branch[b.0].0);
+        let selections = self.selections;
+        if self.examine_position().is_err() || self.selections != selections {
+            return None;
+        }
+        self.save(to, 0.0);
+        self.renew_turns();
+        self.examine_here(path);
+        let directions = if path == Path::Laws { travel.len() } else { 1 };
+        for d in 0..directions {
+            let (travel, unit) = match path {
+                Path::Laws => (travel[d], self.driver_units[d]),
+                Path::Assembly | Path::Line { .. } => (2.0 * h, 1.0 / self.travel_unit),
+            };
+            let (mut fastest, mut difference) = (1.0_f64, 0.0_f64);
+            for c in self.topology.unknown_coordinates() {
+                let per_unit = self.topology[c].per_unit * unit;
+                // q'_f against q'_b + sum of q''_b Du, of each driver alone
+                let predicted = was.slopes[d][c.0] + was.bends[d][c.0] * travel;
+                fastest = fastest.max(predicted.abs() * per_unit);
+                difference = difference.max((self.around.slopes[d][c.0] - predicted).abs() * per_unit);
+            }
+            if !(difference <= SAME_MOTION * fastest) {
+                return None;
+            }
+        }
+        let after = self.end_of_stretch();
+        let (ends, values) = ([before.0, after.0], [before.1, after.1]);
+        Some(Crossing { times: [from, to], at, path, blocks, ends, values })
+    }
+
+    /// Solves where it stands once more: near a singular position what Newton leaves, a square, is magnified.
+    fn polish(&mut self) -> Result<(), Refusal> {
+        self.solve_within(f64::INFINITY)
+    }
+
+    fn end_of_stretch(&self) -> (AcceptedPosition, Vec<[f64; 3]>) {
+        let channels = Channel::all(&self.topology);
+        (self.saved.clone(), channels.iter().map(|c| c.of(&self.state)).collect())
+    }
+
+    /// Stands at an output time within the stretch that was crossed last, if it is there.
+    pub(super) fn stand_within_crossing(&mut self, t: f64) -> Option<Result<(), Box<Stop>>> {
+        let crossing = self.crossing.take()?;
+        if !(t < crossing.times[1]) {
+            return None;
+        }
+        let stood = self.stand_between(&crossing, t);
+        // The walk goes on from behind it.
+        self.saved.clone_from(&crossing.ends[1]);
+        self.time = crossing.times[1];
+        self.ahead = Lookahead::Unknown;
+        self.forecast.forget();
+        self.crossing = Some(crossing);
+        let path = self.crossing.as_ref().map_or(Path::Laws, |c| c.path);
+        Some(stood.map_err(|refusal| self.stop(path, t, refusal, true)))
+    }
+
+    fn stand_between(&mut self, crossing: &Crossing, t: f64) -> Result<(), Refusal> {
+        let [from, to] = crossing.times;
+        self.drive(crossing.path, t)?;
+        let h = to - from;
+        let s = (t - from) / h;
+        self.state.contacts.copy_from_slice(&crossing.ends[usize::from(s > 0.5)].contacts);
+        let channels = Channel::all(&self.topology);
+        for (k, channel) in channels.iter().enumerate() {
+            let [a, b] = [crossing.values[0][k], crossing.values[1][k]];
+            channel.put(quintic(a, b, h, s)[0], &mut self.state);
+        }
+        for r in self.topology.coupler_terms() {
+            let [a, b] = [crossing.ends[0].coupled[r.0], crossing.ends[1].coupled[r.0]];
+            self.state.near[r.0] = quintic(a, b, h, s)[0];
+        }
+        if (t - crossing.at).abs() > AT_IT * h {
+            self.solve_within(f64::INFINITY)?;
+            self.polish()?;
+            self.residuals = self.state.residuals(&self.topology, &self.parts, &self.drivers);
+            self.renew_turns();
+            return Ok(());
+        }
+        for c in self.topology.unknown_coordinates() {
+            let of = |end: &AcceptedPosition| [end.qd[c.0], end.qdd[c.0]];
+            let [speed, acceleration] = cubic(of(&crossing.ends[0]), of(&crossing.ends[1]), h, s);
+            self.state.motion.speeds[0][c.0] = speed;
+            self.state.motion.speeds[1][c.0] = acceleration;
+        }
+        for (k, channel) in channels.iter().enumerate() {
+            // Of all but balls, whose speeds are no rates of their components, the polynomials of degree five know more.
+            if let Channel::Coordinate(c) = channel {
+                let [a, b] = [crossing.values[0][k], crossing.values[1][k]];
+                let [_, speed, acceleration] = quintic(a, b, h, s);
+                self.state.motion.speeds[0][c.0] = speed;
+                self.state.motion.speeds[1][c.0] = acceleration;
+            }
+        }
+        self.state.stand_with_rates(&self.topology, &self.parts, &self.drivers, &crossing.blocks);
+        self.renew_turns();
+        self.at_change_point = true;
+        Ok(())
+    }
+}
+
+/// The polynomial of degree five through value, first and second derivative at both ends of a stretch h, with its own two
+/// derivatives, at its part s.
+fn quintic(a: [f64; 3], b: [f64; 3], h: f64, s: f64) -> [f64; 3] {
+    let [a0, a1, a2] = [a[0], a[1] * h, a[2] * h * h];
+    let [b0, b1, b2] = [b[0], b[1] * h, b[2] * h * h];
+    // a0 + a1 s + a2 s^2 / 2 + c3 s^3 + c4 s^4 + c5 s^5 with the three conditions at s = 1
+    let (d0, d1, d2) = (b0 - a0 - a1 - 0.5 * a2, b1 - a1 - a2, b2 - a2);
+    let c3 = 10.0 * d0 - 4.0 * d1 + 0.5 * d2;
+    let c4 = -15.0 * d0 + 7.0 * d1 - d2;
+    let c5 = 6.0 * d0 - 3.0 * d1 + 0.5 * d2;
+    let value = a0 + s * (a1 + s * (0.5 * a2 + s * (c3 + s * (c4 + s * c5))));
+    let first = a1 + s * (a2 + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)));
+    let second = a2 + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5));
+    [value, first / h, second / (h * h)]
+}
+
+/// The polynomial of degree three through value and first derivative at both ends of a stretch h, and its derivative, at its part s.
+fn cubic(a: [f64; 2], b: [f64; 2], h: f64, s: f64) -> [f64; 2] {
+    let ([a0, a1], [b0, b1]) = ([a[0], a[1] * h], [b[0], b[1] * h]);
+    let (d0, d1) = (b0 - a0 - a1, b1 - a1);
+    let (c2, c3) = (3.0 * d0 - d1, d1 - 2.0 * d0);
+    [a0 + s * (a1 + s * (c2 + s * c3)), (a1 + s * (2.0 * c2 + s * 3.0 * c3)) / h]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polynomials_of_their_degree_are_reproduced() {
+        let p = |t: f64| [t.powi(5) - 2.0 * t * t, 5.0 * t.powi(4) - 4.0 * t, 20.0 * t.powi(3) - 4.0];
+        let q = |t: f64| [t.powi(3) - t, 3.0 * t * t - 1.0];
+        for s in [0.0, 0.3, 0.5, 1.0] {
+            let t = 0.4 + 0.7 * s;
+            let found = quintic(p(0.4), p(1.1), 0.7, s);
+            assert!((0..3).all(|n| (found[n] - p(t)[n]).abs() < 1e-12), "{found:?}");
+            let found = cubic(q(0.4), q(1.1), 0.7, s);
+            assert!((found[0] - q(t)[0]).abs() < 1e-14 && (found[1] - q(t)[1]).abs() < 1e-13);
+        }
+    }
+}
