@@ -30,7 +30,8 @@ pub(crate) fn path_angles(model: &Model, topology: &Topology, measures: bool) ->
         .collect();
     if measures {
         let of_measures = turns(model, topology, &outputs(model));
-        let counted = of_measures.iter().enumerate().filter(|(_, turns)| matches!(turns, Some(Turns::Path(_))));
+        let counted =
+            of_measures.iter().enumerate().filter(|(_, turns)| matches!(turns, Some(Turns::Path(_))));
         angles.extend(counted.map(|(m, _)| PathAngle::Measure(m)));
     }
     angles
@@ -104,7 +105,9 @@ impl<'m> PathAngles<'m> {
     /// The coordinate that an element acts on, within a turn, counted from the design configuration.
     fn of_element(&self, e: ElementId) -> Rates {
         let unknown = Rates::constant(f64::NAN);
-        let Some((joint, coordinate)) = self.model.elements[e.0].kind.coordinate(self.model) else { return unknown };
+        let Some((joint, coordinate)) = self.model.elements[e.0].kind.coordinate(self.model) else {
+            return unknown;
+        };
         let j = &self.model.joints[joint.0];
         let row = j.kind.coordinates[coordinate].row;
         let [m_i, m_j] = self.geometry.markers[joint.0];

@@ -184,7 +184,8 @@ impl<'p> TimesAbreast<'p> {
         let change_step = determinants_are_even(tape, one, times, [first, last]);
         let change_step = change_step.filter(|_| tape.speeds_are_smooth(one.fastest_driver));
         let moved = one.moves_ahead.iter().sum();
-        let turns = |turns: &mut TurnCounter<'_>| turns.are_even(states, (times, one.time), [first, last], moved);
+        let turns =
+            |turns: &mut TurnCounter<'_>| turns.are_even(states, (times, one.time), [first, last], moved);
         match change_step.filter(|_| one.turns.as_mut().is_none_or(turns)) {
             Some(step) => {
                 one.continue_from(tape, times, [first, last], solved, step);

@@ -126,7 +126,11 @@ impl Surroundings {
     pub fn turn_of_fastest(&self, travel: &[f64]) -> f64 {
         let angles = self.angles.first().map_or(0, Vec::len);
         let of_angle = |i: usize| -> f64 {
-            travel[..self.known].iter().zip(&self.angles).map(|(du, angles)| part(*du, angles[i][0].abs())).sum()
+            travel[..self.known]
+                .iter()
+                .zip(&self.angles)
+                .map(|(du, angles)| part(*du, angles[i][0].abs()))
+                .sum()
         };
         // One that has no number here, or no bound, limits nothing.
         (0..angles).map(of_angle).filter(|turn| turn.is_finite()).fold(0.0, f64::max)

@@ -15,8 +15,8 @@ use super::forecast::Forecast;
 use super::kinematics::{PositionFailure, Residuals, State, factors_of};
 use super::parts::PlanGeometry;
 use super::singularity::{Surroundings, Workspace};
-use super::walk::{PART_OF_WAY, Path};
 use super::turns::TurnCounter;
+use super::walk::{PART_OF_WAY, Path};
 use super::{Effort, Stop};
 
 /// A first correction (rad, or sizes) up to this is accepted whatever the prediction's own length is.

@@ -79,7 +79,8 @@ impl<'m> TurnCounter<'m> {
     /// Counts from the design configuration, where the state stands.
     pub fn begin(&mut self, state: &State<f64>) {
         self.look(&|b| BodyState::of(state, b));
-        for ((value, [now, ..]), origin) in self.values.iter_mut().zip(&self.found).zip(self.angles.origins()) {
+        for ((value, [now, ..]), origin) in self.values.iter_mut().zip(&self.found).zip(self.angles.origins())
+        {
             *value = turned(*now, origin.unwrap_or(*now));
         }
         self.spin = self.spin_ahead;

@@ -255,12 +255,7 @@ impl<'m> Analysis<'m> {
     }
 
     /// Evaluates the measures of a motion.
-    pub(super) fn measure(
-        &self,
-        design: &PreparedDesign,
-        slopes: &StepValues,
-        solution: &mut Solution,
-    ) {
+    pub(super) fn measure(&self, design: &PreparedDesign, slopes: &StepValues, solution: &mut Solution) {
         let Solution { motion, sensitivities, measured, .. } = solution;
         if !design.scope.measures {
             *measured = Measured::default();

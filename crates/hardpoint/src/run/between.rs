@@ -90,7 +90,8 @@ impl Analysis<'_> {
             times.extend(model.metrics.iter().flat_map(window_times));
         }
         // None of the output times is solved for the first time now.
-        let mut go_on = |_: Progress| progress(Progress { done: model.times.len() - 1, total: model.times.len() });
+        let mut go_on =
+            |_: Progress| progress(Progress { done: model.times.len() - 1, total: model.times.len() });
         for _ in 0..MOST_PASSES {
             if times.len() > model.times.len() {
                 let [start, end] = [model.times[0], model.times[model.times.len() - 1]];
@@ -110,7 +111,8 @@ impl Analysis<'_> {
             }
             let now = found.as_ref().unwrap_or(solution);
             let located = model.metrics.iter().filter(|m| is_located(m));
-            let add: Vec<f64> = located.flat_map(|metric| unresolved_times(now, metric, found.is_some())).collect();
+            let add: Vec<f64> =
+                located.flat_map(|metric| unresolved_times(now, metric, found.is_some())).collect();
             if add.is_empty() {
                 break;
             }
@@ -124,7 +126,10 @@ impl Analysis<'_> {
 /// these are more than `most`.
 fn times_of(model: &Model, laws: &[(&Law, f64)], coarser: f64, most: usize) -> Option<Vec<f64>> {
     let (start, end) = (*model.times.first()?, *model.times.last()?);
-    let ranges: Vec<f64> = laws.iter().map(|(law, unit)| law.over(start, end).value.reach_from(law.at(start).value()) / unit).collect();
+    let ranges: Vec<f64> = laws
+        .iter()
+        .map(|(law, unit)| law.over(start, end).value.reach_from(law.at(start).value()) / unit)
+        .collect();
     let mut ends = model.times.clone();
     for (law, _) in laws {
         let jumps = law.jumps(start, end);

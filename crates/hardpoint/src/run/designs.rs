@@ -36,7 +36,8 @@ impl Analysis<'_> {
         visit: impl FnMut(usize, &mut Solution) + Send,
     ) {
         let scope = Scope { of_many: designs.len(), ..run.scope };
-        let alone = scope.sensitivities || scope.measures && (self.goes_by_step() || self.has_times_between());
+        let alone =
+            scope.sensitivities || scope.measures && (self.goes_by_step() || self.has_times_between());
         let (next, visit) = (AtomicUsize::new(0), Mutex::new(visit));
         let work = || {
             let mut solutions: [Solution; LANES] = std::array::from_fn(|_| Solution::default());

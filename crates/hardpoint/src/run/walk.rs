@@ -76,8 +76,7 @@ impl<'a> Walk<'a> {
         let (model, topology) = (analysis.model(), analysis.topology());
         let PreparedDesign { geometry, laws, fields, .. } = design;
         let mut one = Stepper::new(model, topology, PlanGeometry::same(model, topology, geometry, laws));
-        let angles =
-            PathAngles::of(analysis.design_map(), topology, &design.values, design.scope.measures);
+        let angles = PathAngles::of(analysis.design_map(), topology, &design.values, design.scope.measures);
         one.turns = angles.map(|angles| TurnCounter::new(Box::new(angles)));
         Self {
             analysis,
@@ -149,7 +148,12 @@ impl<'a> Walk<'a> {
             } else {
                 (count, stop) = self.tell(at_once, progress);
                 let lanes = self.give_abreast(k, count, sink);
-                SolvedSteps::Abreast(self.abreast.solved(), lanes, self.loads.as_ref(), self.one.turns.as_ref())
+                SolvedSteps::Abreast(
+                    self.abreast.solved(),
+                    lanes,
+                    self.loads.as_ref(),
+                    self.one.turns.as_ref(),
+                )
             };
             then(sink, solved, count, self.solver.as_ref());
             self.done += count;

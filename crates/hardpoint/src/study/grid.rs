@@ -236,7 +236,8 @@ fn row_model(model: &Model, grid: &Grid, ways: [f64; 2], places: impl Iterator<I
     let mut times = vec![begin];
     times.extend(places.map(|place| time_of(place, ways[0])));
     let case = Case { name: grid.name.clone(), laws, formulas, times };
-    Model { cases: vec![case], ..model.clone() }.in_case(CaseId(0))
+    // A map has no metrics.
+    Model { cases: vec![case], metrics: Vec::new(), ..model.clone() }.in_case(CaseId(0))
 }
 
 /// A law written here. Where the driver's laws count from zero and the drawing follows the design, the driver has gone back by what the
