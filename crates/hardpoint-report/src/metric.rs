@@ -125,10 +125,10 @@ impl MetricFact {
             Table {
                 title: "Metrics".into(),
                 note: match facts.iter().any(|m| m.coarse) {
-                    true => "Between output times curves are interpolated; more output times make \"off by up to\" smaller.".into(),
+                    true => "Between output times these curves are interpolated; the error is an estimate, and more output times make it smaller.".into(),
                     false => String::new(),
                 },
-                header: ["metric", "is", "value", "at t", "off by up to", "strongest variables"].map(String::from).to_vec(),
+                header: ["metric", "is", "value", "at t", "estimated error", "strongest variables"].map(String::from).to_vec(),
                 rows: facts.iter().map(row).collect(),
             }
             .without_empty_columns()

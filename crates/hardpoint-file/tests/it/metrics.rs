@@ -160,9 +160,8 @@ fn derivatives_are_those_of_designs_solved_anew() {
 
 /// The greatest height of a crank's end is its radius, at a quarter of a turn; the curve is a sine.
 #[test]
-fn interpolation_errors_of_coarse_curves_are_told() {
-    let mut coarse = Vec::new();
-    for steps in [2, 3, 5, 8, 12, 20, 40] {
+fn metrics_of_coarse_curves_are_those_of_the_curve() {
+    for steps in [1, 2, 3, 5, 8, 12, 20, 40, 400] {
         let text = CRANK.replace("end = 3.0, steps = 120", &format!("end = 6.0, steps = {steps}"));
         let file = parsed(&text);
         let solution = Analysis::new(&file.model).unwrap().run();
@@ -170,23 +169,17 @@ fn interpolation_errors_of_coarse_curves_are_told() {
         let a = 0.1;
         for (name, exact) in [("top", a), ("left", -a), ("span", 2.0 * a), ("at_one", a * 1.0_f64.sin())] {
             let m = &found[file.model.metrics.iter().position(|m| m.name == name).unwrap()];
-            let (off, told) = ((m.value.unwrap() - exact).abs(), m.error.unwrap());
-            println!("{steps:3} steps, {name}: off by {off:.1e}, told {told:.1e}");
-            // Told to a factor of three, down to round-off.
-            assert!(off <= 3.0 * told + 1e-14, "{steps} steps, {name}: {off:e} {told:e}");
-            assert!(told <= 3.0 * off + 1e-14, "{steps} steps, {name}: {off:e} {told:e}");
-            if told > 1e-3 * m.range {
-                coarse.push((steps, name));
+            let off = (m.value.unwrap() - exact).abs();
+            // Curves that the output times show well enough are interpolated to 1e-7 of their range.
+            assert!(off <= 1e-7 * 2.0 * a, "{steps} steps, {name}: off by {off:e}");
+            // Where the motion was solved at the metric's own time there is no error to speak of, else about what it is.
+            if let Some(told) = m.error {
+                assert!(off <= 3.0 * told + 1e-14, "{steps} steps, {name}: {off:e} {told:e}");
             }
         }
         let mean = file.model.metrics.iter().position(|m| m.name == "mean").unwrap();
         assert_eq!(found[mean].error, None);
     }
-    assert!(coarse.contains(&(2, "top")) && coarse.iter().all(|(steps, _)| *steps < 8), "{coarse:?}");
-    // Two output times alone say nothing about how well they are joined.
-    let file = parsed(&CRANK.replace("end = 3.0, steps = 120", "end = 2.0, steps = 1"));
-    let found = metrics(&file.model, &Analysis::new(&file.model).unwrap().run());
-    assert_eq!(found[0].error, None);
 }
 
 /// The end of a crank goes with its radius in proportion; that of a rod between a crank and a slide does not.

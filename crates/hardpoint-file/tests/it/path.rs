@@ -5,6 +5,8 @@ use std::path::Path;
 use hardpoint::model::Model;
 use hardpoint::motion::StopKind;
 use hardpoint::space::Vec3;
+use hardpoint::study::{MetricValue, metrics};
+use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{parse, read};
 
@@ -524,5 +526,191 @@ fn a_lock_is_judged_in_the_size_of_its_loop() {
     let far = text.replace("[bodies]", "far = [1e4, 0, 0]\n[bodies]");
     for text in [text, far] {
         assert!(matches!(outcome(&text).0, Some((_, StopKind::Locked { .. }))), "{:?}", outcome(&text).0);
+    }
+}
+
+/// Numbers of steps in which turns and metrics are asked for.
+const FEW_COUNTS: [usize; 8] = [1, 2, 3, 5, 8, 49, 499, 5_000];
+/// Laws that hurry, rest, jump, pulse or turn round between output times, whatever these are; deg.
+const LAWS: [&str; 11] = [
+    "720*if(t < 1, 0, 1)",
+    "-2000*if(t < 0.5, 0, 1)",
+    "1000*exp(-((t - 0.333)/0.0001)^2) + 360*t",
+    "step(t, 0.45, 0, 0.55, 1080)",
+    "44*sin(6*pi*t)",
+    "900*abs(t - 0.3) - 270",
+    "500*min(t, 0.4) - 2000*max(0, t - 0.7)",
+    "1000 + 360*t",
+    "-725 + 1440*step(t, 0.2, 0, 0.3, 1)",
+    "3600*sin(2*pi*t)",
+    "sqrt(t + 1e-9)*3000",
+];
+/// Angles that are counted through turns agree with the law to this, rad.
+const SAME_ANGLE: f64 = 1e-9;
+
+/// A crank-rocker with angles that only the path counts, and a torsion spring on its pin, which is cut.
+fn turning(law: &str) -> Model {
+    model(&format!(
+        r#"name = "turns"
+        units = {{ length = "mm", angle = "deg" }}
+        [hardpoints]
+        O = [0, 0, 0]
+        A = [40, 0, 0]
+        B = [190, 60, 0]
+        D = [180, 0, 0]
+        [bodies]
+        crank = {{}}
+        coupler = {{}}
+        rocker = {{}}
+        [joints]
+        O = {{ type = "revolute", bodies = ["ground", "crank"], at = "O", axis = "z" }}
+        A = {{ type = "revolute", bodies = ["crank", "coupler"], at = "A", axis = "z", cut = true }}
+        B = {{ type = "revolute", bodies = ["coupler", "rocker"], at = "B", axis = "z" }}
+        D = {{ type = "revolute", bodies = ["ground", "rocker"], at = "D", axis = "z" }}
+        [drivers]
+        motor = {{ joint = "O", law = "{law}" }}
+        [forces]
+        s = {{ type = "torsion_spring", joint = "A", stiffness = 0.01 }}
+        [points]
+        tip = {{ body = "crank", at = "A" }}
+        centre = {{ body = "ground", at = "O" }}
+        [measures]
+        crank = {{ type = "coordinate", joint = "O" }}
+        angle = {{ type = "angle", from = [1, 0, 0], to = ["centre", "tip"], about = "z" }}
+        yaw = {{ type = "orientation", body = "crank", angle = "yaw" }}
+        pin = {{ type = "coordinate", joint = "A" }}
+        rocker = {{ type = "coordinate", joint = "D" }}
+        formula = {{ type = "expression", expression = "3*angle - 2*yaw" }}
+        moment = {{ type = "spring_force", force = "s" }}
+        [time]
+        end = 1
+        steps = 10"#
+    ))
+}
+
+#[test]
+fn turns_are_those_of_the_path_in_any_number_of_steps() {
+    for law in LAWS {
+        let model = turning(law);
+        for (n, formulation) in FEW_COUNTS
+            .into_iter()
+            .flat_map(|n| [Formulation::Relative, Formulation::Absolute].map(|formulation| (n, formulation)))
+        {
+            // Solved step by step, these are slow.
+            if formulation == Formulation::Absolute && n > 499 {
+                continue;
+            }
+            let model = Model { times: spaced(&model, n), ..model.clone() };
+            let analysis = Analysis::with(&model, formulation).unwrap();
+            let solution = analysis.solve(Run::new().without_sensitivities());
+            let name = format!("{law} in {n} steps, {formulation:?}");
+            assert!(solution.stop.is_none(), "{name}: {:?}", solution.stop);
+            let value = |k: usize, what: &str| {
+                let m = solution.measured.index(what).unwrap();
+                solution.measured.value(k, m)[0]
+            };
+            for (k, t) in solution.motion.times.iter().enumerate() {
+                let turned = model.drivers[0].law.at(*t).value();
+                for what in ["crank", "angle", "yaw", "formula"] {
+                    let found = value(k, what);
+                    assert!(
+                        (found - turned).abs() < SAME_ANGLE * (1.0 + turned.abs()),
+                        "{name}: {what} {found}, not {turned} at {t}"
+                    );
+                }
+                // 0.01 N m/deg, in the unit of the drawing
+                let (pin, moment) = (value(k, "pin"), value(k, "moment"));
+                let stiffness = 0.01 * 180.0 / std::f64::consts::PI;
+                assert!(
+                    (moment + stiffness * pin).abs() < 1e-7 * (1.0 + pin.abs()),
+                    "{name}: {moment} of {pin} at {t}"
+                );
+                // The coupler of a crank-rocker swings by less than half a turn: the pin turns back by what the crank turns.
+                assert!((pin + turned).abs() < std::f64::consts::PI, "{name}: {pin} of {turned} at {t}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_jump_at_an_output_time_is_followed_as_between_them() {
+    let jump = four_bar([0.3, 1.1, 0.9, 1.2], 60.0, "2*if(t < 0.5, 0, 1) + 0.1*t", 1.0);
+    assert_eq!(same_in_any_number_of_steps("a jump", &jump), None);
+}
+
+#[test]
+fn laws_without_end_are_refused_in_time() {
+    for law in
+        ["50*sin(1e15*t)", "50*sin(1e18*t)", "50*sin(1e9*sin(1e12*t))", "if(sin(1e7*t) > 0, 1, 0)", "1e16*t"]
+    {
+        let endless = four_bar([0.3, 1.1, 0.9, 1.2], 60.0, law, 1.0);
+        let solution = run(&endless, spaced(&endless, 10));
+        let stop = solution.stop.unwrap_or_else(|| panic!("{law} was followed"));
+        assert!(matches!(stop.kind, StopKind::TooFar { .. }), "{law}: {:?}", stop.kind);
+    }
+}
+
+#[test]
+fn a_law_may_turn_back_next_to_a_limit() {
+    // The crank reaches a limit; a law turns back before it, or just beyond.
+    let limit = |law: &str| four_bar([1.0, 1.3, 1.0, 2.5], 40.0, law, 2.0);
+    let (at, kind) = same_in_any_number_of_steps("to the limit", &limit("t")).expect("a limit");
+    assert_eq!(kind, StopKind::Limit);
+    for (short, stops) in [(1e-3, false), (4e-6, false), (2e-6, false), (-4e-6, true), (-1e-3, true)] {
+        let law = format!("{:?}*(1 - (t - 1)^2)", at - short);
+        let verdict = same_in_any_number_of_steps(&format!("{short} before the limit"), &limit(&law));
+        assert_eq!(verdict.is_some(), stops, "{short} before the limit: {verdict:?}");
+    }
+}
+
+/// Metrics of a crank-rocker in so many steps.
+fn crank_rocker_metrics(law: &str, n: usize, formulation: Formulation, moved: f64) -> Vec<MetricValue> {
+    let text = four_bar_text([0.5, 1.2, 0.8, 1.0], 60.0, law, 1.0);
+    let text = text.replace("steps = 10", &format!("steps = {n}"));
+    let text = text.replace("[drivers]", "[design]\nlength = { move = \"C\", along = \"x\" }\n[drivers]");
+    let text = format!(
+        r#"{text}
+        [metrics]
+        most = {{ of = "rocker", take = "max" }}
+        least = {{ of = "rocker", take = "min" }}
+        range = {{ of = "rocker", take = "range" }}
+        inside = {{ of = "rocker", take = "max", window = [0.2, 0.3] }}
+        there = {{ of = "rocker", over = "crank", take = "value", at = 0.7 }}
+        slope = {{ of = "rocker", over = "crank", take = "slope", at = 0.7 }}"#
+    );
+    let model = model(&text);
+    let solution = Analysis::with(&model, formulation).unwrap().solve(Run::new().at(&[moved]));
+    assert!(solution.stop.is_none(), "{law}: {:?}", solution.stop);
+    metrics(&model, &solution)
+}
+
+#[test]
+fn metrics_are_those_of_the_curve_in_any_number_of_steps() {
+    for law in ["2*pi*t", "1.2*sin(2*pi*t) + t", "2*abs(t - 0.3)", "step(t, 0.4, 0, 0.5, 20)"] {
+        let find = |n, formulation, moved| crank_rocker_metrics(law, n, formulation, moved);
+        let expected = find(1_000, Formulation::Relative, 0.0);
+        // Of what is solved again, the derivative is that of the value.
+        let step = 1e-5;
+        let [more, less] = [step, -step].map(|by| find(2, Formulation::Relative, by));
+        for (n, formulation) in [1, 2, 3, 5, 8, 50]
+            .into_iter()
+            .flat_map(|n| [Formulation::Relative, Formulation::Absolute].map(|formulation| (n, formulation)))
+        {
+            let found = find(n, formulation, 0.0);
+            for (m, (found, expected)) in found.iter().zip(&expected).enumerate() {
+                let name = format!("{law}: metric {m} in {n} steps, {formulation:?}");
+                let [value, known] = [found, expected].map(|metric| metric.value.unwrap_or(f64::NAN));
+                let same = (value - known).abs() < 1e-7 || value.is_nan() && known.is_nan();
+                assert!(same, "{name}: {value}, not {known}");
+                if let (Some(more), Some(less)) = (more[m].value, less[m].value) {
+                    let d = (more - less) / (2.0 * step);
+                    assert!(
+                        (found.d[0] - d).abs() < 1e-5 * (1.0 + d.abs()),
+                        "{name}: {}, not {d}",
+                        found.d[0]
+                    );
+                }
+            }
+        }
     }
 }

@@ -238,7 +238,8 @@ fn row_model(model: &Model, grid: &Grid, ways: [f64; 2], places: impl Iterator<I
     // A position of a grid is no moment of a motion: loads are those of the mechanism at rest there.
     let load_mode = Some(LoadMode::Static);
     let case = Case { name: grid.name.clone(), laws, formulas, times, load_mode };
-    Model { cases: vec![case], ..model.clone() }.in_case(CaseId(0))
+    // A map has no metrics.
+    Model { cases: vec![case], metrics: Vec::new(), ..model.clone() }.in_case(CaseId(0))
 }
 
 /// A law written here. Where the driver's laws count from zero and the drawing follows the design, the driver has gone back by what the

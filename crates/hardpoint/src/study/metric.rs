@@ -92,6 +92,8 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
     }
 }
 
+/// A turn of a curve within this part of its range of the farthest one may be the farthest where the curve was not solved at either.
+const ALIKE: f64 = 1e-4;
 /// An interpolation error below this part of the curve's range counts for nothing where the motion was solved between output times ...
 const RESOLVED: f64 = 1e-10;
 /// ... and where the output times show the curve by themselves: metrics are read to some digits, and many designs are solved for them.
@@ -126,9 +128,34 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
     let finite = || y.values.iter().map(|v| v[0]).filter(|x| x.is_finite());
     let range = finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min);
     let part = if finer { RESOLVED } else { RESOLVED_BY_OUTPUTS };
-    let unresolved = |end: Reduction| {
-        let (_, time) = take(&Metric { take: end, ..metric.clone() }, &y, &x)?;
-        let time = time.filter(|t| !y.times.contains(t))?;
+    let times_of = |end: Reduction| -> Vec<f64> {
+        let sign = match end {
+            Reduction::Greatest => 1.0,
+            Reduction::Least => -1.0,
+            Reduction::Range
+            | Reduction::Value(_)
+            | Reduction::Slope(_)
+            | Reduction::Mean
+            | Reduction::Integral
+            | Reduction::Rms(_) => 0.0,
+        };
+        let found = take(&Metric { take: end, ..metric.clone() }, &y, &x);
+        let Some((value, Some(time))) = found else { return Vec::new() };
+        let mut times = vec![time];
+        if sign != 0.0 && finer && y.orders > 1 {
+            // Of turns that are about as far out as the farthest, as of a motion that repeats itself, any may be the one.
+            let far_out = sign * value - ALIKE * range;
+            let near = (0..y.values.len() - 1).filter(|k| y.bound(*k, sign) >= far_out);
+            let turns = near.flat_map(|k| y.turns(k).into_iter().map(move |t| (k, t)));
+            let alike = turns.filter(|(k, t)| {
+                sign * y.number(*k, *t) >= far_out && within_window(metric, along(&x, *k, *t))
+            });
+            times.extend(alike.map(|(_, t)| t));
+        }
+        times
+    };
+    let unresolved = |time: f64| {
+        let time = Some(time).filter(|t| !y.times.contains(t))?;
         let k =
             y.times[..y.values.len()].partition_point(|end| *end <= time).clamp(1, y.values.len() - 1) - 1;
         let off = |curve: &SampledCurve<'_, f64>| {
@@ -141,7 +168,7 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
         let error = off(&y).zip(late).map_or(f64::INFINITY, |(y, late)| y + late);
         (!(error <= part * range)).then_some(time)
     };
-    ends.into_iter().filter_map(unresolved).collect()
+    ends.into_iter().flat_map(times_of).filter_map(unresolved).collect()
 }
 
 /// The solution that a metric is taken of: that between output times, where there is one, for what is taken at certain times.
