@@ -28,6 +28,7 @@ mod published;
 mod robustness;
 mod searches;
 mod shapes;
+mod singular;
 mod studies;
 mod sweeps;
 mod synthesis;

@@ -1,0 +1,300 @@
+//! Singular places: drawings that are open where bars lie in line, grooves that turn back, change points; and laws that count from zero
+//! where the drawing does not have the length that is given.
+
+use hardpoint::model::{Model, VariableId};
+use hardpoint::motion::StopKind;
+use hardpoint::topology::Formulation;
+use hardpoint::{Analysis, Solution};
+use hardpoint_file::parse;
+
+const BOTH: [Formulation; 2] = [Formulation::Relative, Formulation::Absolute];
+
+fn model(text: &str) -> Model {
+    parse(text, "singular.toml").unwrap_or_else(|e| panic!("{}", e.render(false))).model
+}
+
+fn run(model: &Model, formulation: Formulation) -> Solution {
+    Analysis::with(model, formulation).unwrap().run()
+}
+
+fn value(solution: &Solution, k: usize, name: &str) -> f64 {
+    solution.measured.value(k, solution.measured.index(name).unwrap())[0]
+}
+
+/// A leg in a guide, drawn at 100 mm, with the keys of the leg and of its driver.
+fn leg(keys: &str, driver: &str) -> String {
+    format!(
+        r#"
+name = "leg"
+units = {{ length = "mm", angle = "deg" }}
+parameters = {{ given = 110 }}
+[hardpoints]
+A = [0, 0, 0]
+B = [100, 0, 0]
+[bodies]
+slide = {{}}
+[joints]
+guide = {{ type = "translational", bodies = ["ground", "slide"], at = "B", axis = "x" }}
+leg = {{ type = "leg", bodies = ["ground", "slide"], at = ["A", "B"] {keys} }}
+[drivers]
+q = {{ joint = "leg", {driver} }}
+[design]
+B_x = {{ move = "B", along = "x" }}
+B_kept = {{ move = "B", along = "x", fixed_length = true }}
+[points]
+B = {{ body = "slide", at = "B" }}
+[measures]
+real = {{ type = "distance", from = {{ body = "ground", at = "A" }}, to = {{ body = "slide", at = "B" }} }}
+[time]
+end = 1
+steps = 1
+"#
+    )
+}
+
+#[test]
+fn a_law_that_counts_from_zero_gives_the_whole_length_whatever_is_drawn() {
+    let zero = r#"counted_from = "zero", law = "120 + t""#;
+    let drawing = r#"law = "20 + t""#;
+    // Keys of the leg, the driver, the length at t = 0 and its derivatives by the end of the leg, made anew or kept.
+    let cases = [
+        ("", zero, 120.0, [0.0, 0.0]),
+        (", length = 110", zero, 120.0, [0.0, 0.0]),
+        (", length = \"given + 5\"", zero, 120.0, [0.0, 0.0]),
+        ("", drawing, 120.0, [1.0, 0.0]),
+        (", length = 110", drawing, 130.0, [0.0, 0.0]),
+        (", length = \"given + 5\"", drawing, 135.0, [0.0, 0.0]),
+    ];
+    for (keys, driver, length, derivatives) in cases {
+        let model = model(&leg(keys, driver));
+        for formulation in BOTH {
+            let solution = run(&model, formulation);
+            assert!(solution.stop.is_none(), "{keys} {driver}: {:?}", solution.stop);
+            for (k, more) in [0.0, 1.0].into_iter().enumerate() {
+                let found = 1e3 * value(&solution, k, "real");
+                assert!((found - length - more).abs() < 1e-9, "{keys} {driver}: {found}");
+            }
+            let m = solution.measured.index("real").unwrap();
+            for (v, expected) in derivatives.into_iter().enumerate() {
+                let found = solution.measured.d(1, VariableId(v), m)[0];
+                assert!((found - expected).abs() < 1e-9, "{keys} {driver}, variable {v}: {found}");
+            }
+        }
+        // Moved designs, solved anew, agree: 1 mm.
+        let analysis = Analysis::new(&model).unwrap();
+        for (v, derivative) in derivatives.into_iter().enumerate() {
+            let mut design = [0.0; 2];
+            design[v] = 1e-3;
+            let moved = analysis.solve(hardpoint::Run::new().at(&design).without_sensitivities());
+            let found = 1e3 * value(&moved, 0, "real");
+            assert!((found - length - derivative).abs() < 1e-9, "{keys} {driver}, moved {v}: {found}");
+        }
+    }
+}
+
+/// Two bars on pivots at x = 0 and x = 0.3 that are to be pinned together, drawn with these tips.
+fn two_bars(a: [f64; 2], b: [f64; 2]) -> String {
+    format!(
+        r#"
+name = "two bars"
+units = {{ length = "m", angle = "deg" }}
+planar = "xy"
+hardpoints = {{ L = [0, 0], R = [0.3, 0], a = {a:?}, b = {b:?} }}
+[bodies]
+left = {{}}
+right = {{}}
+[joints]
+l = {{ type = "revolute", bodies = ["ground", "left"], at = "L" }}
+r = {{ type = "revolute", bodies = ["ground", "right"], at = "R" }}
+tip = {{ type = "revolute", bodies = ["left", "right"], at = ["a", "b"] }}
+[points]
+tip = {{ body = "left", at = "a" }}
+other = {{ body = "right", at = "b" }}
+[measures]
+apart = {{ type = "distance", from = "tip", to = "other" }}
+"#
+    )
+}
+
+#[test]
+fn bars_drawn_in_line_or_parallel_assemble_where_they_can() {
+    let cases = [
+        ([0.0, -0.46], [0.3, -0.46]),
+        ([0.0, 0.46], [0.3, 0.46]),
+        ([0.46, 0.0], [0.76, 0.0]),
+        ([-0.46, 0.0], [0.76, 0.0]),
+        ([0.2, 0.0], [0.1, 0.0]),
+        ([0.0, 0.2], [0.3, -0.2]),
+    ];
+    for (a, b) in cases {
+        let model = model(&two_bars(a, b));
+        let mut taken = Vec::new();
+        for formulation in BOTH {
+            let Ok(analysis) = Analysis::with(&model, formulation) else {
+                panic!("{a:?} {b:?}: {:?}", Analysis::with(&model, formulation).err())
+            };
+            let solution = analysis.run();
+            assert!(solution.stop.is_none(), "{a:?} {b:?}: {:?}", solution.stop);
+            assert!(value(&solution, 0, "apart") < 1e-12, "{a:?} {b:?}");
+            let assembly = solution.motion.assembly.as_ref().unwrap();
+            taken.push((assembly.found_nearby, value(&solution, 0, "tip.x"), value(&solution, 0, "tip.y")));
+        }
+        let ([first, second], true) = (&taken[..], taken.len() == 2) else { panic!() };
+        // Both formulations take the nearest.
+        assert!((first.1 - second.1).abs() < 1e-9 && (first.2 - second.2).abs() < 1e-9, "{a:?} {b:?}: {taken:?}");
+    }
+}
+
+#[test]
+fn bars_that_are_too_short_do_not_assemble_and_stay_open_by_what_they_lack() {
+    let model = model(&two_bars([0.0, -0.1], [0.3, -0.1]));
+    for formulation in BOTH {
+        let stop = run(&model, formulation).stop.unwrap();
+        assert_eq!(stop.kind, StopKind::DoesNotAssemble);
+        let open = stop.remains.first().unwrap_or_else(|| panic!("{stop:?}"));
+        if formulation == Formulation::Relative {
+            assert!((open.size - 0.1).abs() < 1e-6, "{open:?}");
+        }
+    }
+}
+
+/// A pin in a groove of a disc, led along y: its angle is s + b/n sin(n s), which turns back where 1 + b cos(n s) = 0.
+fn groove(b: f64, n: f64, side: f64, steps: usize) -> String {
+    let points: Vec<[f64; 3]> = (0..180)
+        .map(|k| {
+            let s = std::f64::consts::TAU * f64::from(k) / 180.0;
+            let r = 50.0 + 6.0 * (2.0 * s).sin();
+            let angle = std::f64::consts::FRAC_PI_2 + side * (s + b / n * (n * s).sin());
+            [r * angle.cos(), r * angle.sin(), 0.0]
+        })
+        .collect();
+    format!(
+        r#"
+name = "groove"
+units = {{ length = "mm", angle = "deg" }}
+[hardpoints]
+O = [0, 0, 0]
+P = {:?}
+[bodies]
+cam = {{}}
+slide = {{}}
+[joints]
+b = {{ type = "revolute", bodies = ["ground", "cam"], at = "O", axis = "z" }}
+c = {{ type = "point_on_curve", bodies = ["cam", "slide"], at = ["O", "P"], axis = "z", curve = {{ points = {points:?}, closed = true }} }}
+g = {{ type = "translational", bodies = ["ground", "slide"], at = "P", axis = "y" }}
+[drivers]
+m = {{ joint = "b", law = "{}*t" }}
+[time]
+end = 1.0
+steps = {steps}
+"#,
+        points[0],
+        -360.0 * side
+    )
+}
+
+#[test]
+fn a_groove_that_turns_back_ends_the_motion_there_whatever_the_output_times() {
+    for (b, n) in [(1.5, 6.0), (3.0, 12.0), (1.05, 3.0)] {
+        for side in [1.0, -1.0] {
+            let s = f64::acos(-1.0 / b) / n;
+            let turns = (s + b / n * f64::sin(n * s)) / std::f64::consts::TAU;
+            let mut times = Vec::new();
+            for steps in [1, 3, 5, 10, 36, 200] {
+                let stop = run(&model(&groove(b, n, side, steps)), Formulation::Relative).stop;
+                let stop = stop.unwrap_or_else(|| panic!("{b} {n} {side}: {steps} steps cross the groove"));
+                assert_eq!(stop.kind, StopKind::Limit);
+                // The spline through the points deviates from the groove a little.
+                assert!((stop.failed_time - turns).abs() < 2e-3, "{b} {n} {side} in {steps}: {}", stop.failed_time);
+                times.push(stop.failed_time);
+            }
+            assert!(times.iter().all(|t| (t - times[0]).abs() < 1e-6), "{b} {n} {side}: {times:?}");
+        }
+    }
+    // A groove that does not turn back is followed all around.
+    assert!(run(&model(&groove(0.9, 6.0, 1.0, 7)), Formulation::Relative).stop.is_none());
+}
+
+/// A four-bar with its crank at A, driven by 360 deg/s, and what happens at its change points.
+fn four_bar([b, c, d]: [[f64; 2]; 3], end: f64, steps: usize, at: &str) -> String {
+    format!(
+        r#"
+name = "four-bar"
+units = {{ length = "m", angle = "rad" }}
+planar = "xy"
+at_change_points = "{at}"
+hardpoints = {{ A = [0, 0], B = {b:?}, C = {c:?}, D = {d:?} }}
+bodies = {{ ground = ["A", "D"], crank = ["A", "B"], coupler = ["B", "C"], rocker = ["C", "D"] }}
+drivers.motor = {{ joint = "A", law = "2*pi*t" }}
+time = {{ end = {end:?}, steps = {steps} }}
+measures.rocker = {{ type = "coordinate", joint = "D" }}
+design.longer = {{ move = "C", along = "x" }}
+"#
+    )
+}
+
+#[test]
+fn change_points_are_passed_where_the_file_says_so() {
+    let parallelogram = [[0.0, 1.0], [3.0, 1.0], [3.0, 0.0]];
+    // The same lengths, crossed: B and C on opposite sides of the ground.
+    let crossed = {
+        // tan(rocker / 2) tan(crank / 2) is constant: C is B mirrored at the perpendicular of BD, by lengths 3 and 1.
+        let (dx, dy) = (3.0, -1.0);
+        let (length, along) = (f64::hypot(dx, dy), 18.0 / (2.0 * f64::hypot(dx, dy)));
+        let across = f64::sqrt(9.0 - along * along);
+        [[0.0, 1.0], [(dx * along + dy * across) / length, 1.0 + (dy * along - dx * across) / length], [3.0, 0.0]]
+    };
+    for formulation in BOTH {
+        for steps in [1, 4, 7, 72, 500] {
+            let stopped = run(&model(&four_bar(parallelogram, 1.0, steps, "stop")), formulation).stop.unwrap();
+            assert_eq!(stopped.kind, StopKind::BranchChange);
+            assert!(stopped.help().unwrap().contains("at_change_points = \"continue\""));
+            let solution = run(&model(&four_bar(parallelogram, 1.0, steps, "continue")), formulation);
+            assert!(solution.stop.is_none(), "{steps}: {:?}", solution.stop);
+            for k in 0..solution.motion.len() {
+                // The rocker turns like the crank.
+                let ([angle, rate, acceleration], turn) = (
+                    {
+                        let m = solution.measured.index("rocker").unwrap();
+                        solution.measured.value(k, m)
+                    },
+                    std::f64::consts::TAU,
+                );
+                assert!((angle - turn * solution.motion.times[k]).abs() < 1e-10, "{steps} at {k}: {angle}");
+                assert!((rate - turn).abs() < 1e-8 * turn, "{steps} at {k}: {rate}");
+                assert!(acceleration.abs() < 1e-7 * turn * turn, "{steps} at {k}: {acceleration}");
+            }
+            let solution = run(&model(&four_bar(crossed, 1.0, steps, "continue")), formulation);
+            assert!(solution.stop.is_none(), "{steps}: {:?}", solution.stop);
+            for k in 0..solution.motion.len() {
+                // tan(crank / 2) tan(rocker / 2) = (3 - 1)/(3 + 1) of a crossed linkage, angles from the ground's direction.
+                let crank = std::f64::consts::FRAC_PI_2 + std::f64::consts::TAU * solution.motion.times[k];
+                let drawn = f64::atan2(crossed[1][1], crossed[1][0] - 3.0);
+                let rocker = drawn + value(&solution, k, "rocker");
+                let [sine, cosine] = [f64::sin, f64::cos].map(|f| [f(0.5 * crank), f(0.5 * rocker)]);
+                let first = sine[0] * sine[1] * 2.0 + cosine[0] * cosine[1];
+                let second = sine[0] * cosine[1] * 2.0 + cosine[0] * sine[1];
+                let third = sine[0] * cosine[1] + 2.0 * cosine[0] * sine[1];
+                let fourth = sine[0] * sine[1] + 2.0 * cosine[0] * cosine[1];
+                let least = [first, second, third, fourth].map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
+                assert!(least < 1e-8, "{steps} at {k}: {least}");
+            }
+        }
+        // At the change point itself there is no sensitivity; on both sides there is one, and the variable can be followed.
+        let solution = run(&model(&four_bar(parallelogram, 1.0, 72, "continue")), formulation);
+        let m = solution.measured.index("rocker").unwrap();
+        let derivative = |k: usize| solution.measured.d(k, VariableId(0), m)[0];
+        assert!(derivative(18).is_nan(), "{}", derivative(18));
+        assert!([0, 16, 20, 30, 72].into_iter().all(|k| derivative(k).is_finite()));
+        // After a whole turn the mechanism is as drawn, and so is what the variable does.
+        assert!((derivative(72) - derivative(0)).abs() < 1e-8 * derivative(0).abs().max(1.0));
+    }
+}
+
+#[test]
+fn a_dead_point_is_no_change_point() {
+    // A crank-rocker driven at its rocker reaches a limit, whatever the file says of change points.
+    let rocker = [[0.0, 2.5], [3.0, 3.5], [3.0, 0.0]];
+    let stop = run(&model(&four_bar(rocker, 1.0, 50, "continue")), Formulation::Relative).stop;
+    assert_eq!(stop.map(|s| s.kind), Some(StopKind::Limit));
+}
