@@ -214,6 +214,9 @@ const JOINT: Table = table! {
     may "axis": LINE, "\"z\"";
     /// The second axis: square to the first, or the axis on body j, as the joint type has it.
     may "axis2": LINE, "\"x\"";
+    /// The global axis across which the joint is the mirror image of another one, as [`[mirror]`](#mirror) writes it: where `axis2` is left
+    /// out, its default is the image of that joint's default.
+    may "mirror": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
     /// Length of a rod or leg, or distance of a point from its curve, in the length unit. Default: as drawn. Where it differs from
     /// that, the mechanism is assembled to it.
     may "length": LENGTH, "250";
@@ -733,6 +736,7 @@ impl Reader<'_> {
             let bodies = self.names_of::<2>(&fields, "bodies");
             let at = self.given(&fields, "at", |r, f| r.joint_places(&fields, f, &mut place, raw));
             let [axis, axis2] = ["axis", "axis2"].map(|key| self.line_of(&fields, key, &mut place));
+            let mirror = self.word_of(&fields, "mirror");
             let length = self.given(&fields, "length", |r, f| r.rod_length_of(&fields, f, &entry.0, raw));
             let lead = self.number_of(&fields, "lead");
             let curve = self.given(&fields, "curve", |r, f| r.curve(&fields, f, &mut place));
@@ -749,6 +753,7 @@ impl Reader<'_> {
                 at: at.unwrap_or_default(),
                 axis,
                 axis2,
+                mirror,
                 length,
                 lead,
                 curve,

@@ -80,21 +80,20 @@ struct Rule<'n> {
 }
 
 impl<'n> Rule<'n> {
-    /// The name with its words exchanged, if it has any of them; `back` exchanges them either way.
-    fn exchanged(&self, name: &str, back: bool) -> Option<String> {
-        let there = self.words.iter().map(|(one, other)| (one, other));
-        exchanged(name, there.chain(self.words.iter().filter(|_| back).map(|(one, other)| (other, one))))
+    /// The name with its words exchanged, if it has any of them.
+    fn exchanged(&self, name: &str) -> Option<String> {
+        exchanged(name, &self.words)
     }
 
     /// The name of what is made of something with this name.
     fn twin(&self, name: &str) -> Option<String> {
-        if self.kept.contains(name) { None } else { self.exchanged(name, false) }
+        if self.kept.contains(name) { None } else { image(name, &self.words) }
     }
 
     /// What a name, or a measure's like `left.toe`, is on the other side.
     fn said(&self, name: &str) -> Option<String> {
         let base = name.split('.').next().unwrap_or(name);
-        if self.kept.contains(base) || self.kept.contains(name) { None } else { self.exchanged(name, true) }
+        if self.kept.contains(base) || self.kept.contains(name) { None } else { self.exchanged(name) }
     }
 
     /// The names and vectors of a value on the other side; `turns` says under which keys a vector is a turn. Says whether there was any name.
@@ -148,25 +147,43 @@ fn turned_about(key: &str, k: usize) -> usize {
     }
 }
 
-/// A name with the second of each pair of words in place of the first, if it has any of them.
-fn exchanged<'w>(
-    name: &str,
-    words: impl Iterator<Item = (&'w String, &'w String)> + Clone,
-) -> Option<String> {
-    let is_word = |c: char| c.is_alphanumeric();
-    let (mut out, mut rest, mut changed) = (String::new(), name, false);
-    while let Some(first) = rest.chars().next() {
-        let end = match is_word(first) {
-            true => rest.find(|c| !is_word(c)).unwrap_or(rest.len()),
+/// The pieces of a name: words, and what is between them.
+fn pieces(name: &str) -> impl Iterator<Item = &str> {
+    let mut rest = name;
+    std::iter::from_fn(move || {
+        let first = rest.chars().next()?;
+        let end = match first.is_alphanumeric() {
+            true => rest.find(|c: char| !c.is_alphanumeric()).unwrap_or(rest.len()),
             false => first.len_utf8(),
         };
-        let (word, after) = rest.split_at(end);
-        let said = words.clone().find(|(from, _)| *from == word).map(|w| w.1);
-        changed |= said.is_some();
-        out += said.map_or(word, String::as_str);
+        let (piece, after) = rest.split_at(end);
         rest = after;
-    }
-    changed.then_some(out)
+        Some(piece)
+    })
+}
+
+/// A name with every word of a side exchanged for its counterpart, if it has any. Done twice it gives the name back, so that two names
+/// never become the same one, unless two words have one counterpart.
+fn exchanged(name: &str, words: &[(String, String)]) -> Option<String> {
+    let counterpart = |piece: &str| {
+        let there = words.iter().find(|(one, _)| one == piece).map(|w| &w.1);
+        there.or_else(|| words.iter().find(|(_, other)| other == piece).map(|w| &w.0))
+    };
+    let is_sided = pieces(name).any(|piece| counterpart(piece).is_some());
+    is_sided.then(|| pieces(name).map(|piece| counterpart(piece).map_or(piece, String::as_str)).collect())
+}
+
+/// Whether a name belongs to the side that is written: the first word of a side in it decides. None if it has no such word.
+fn is_original(name: &str, words: &[(String, String)]) -> Option<bool> {
+    pieces(name).find_map(|piece| {
+        let is_one = words.iter().any(|(one, _)| one == piece);
+        (is_one || words.iter().any(|(_, other)| other == piece)).then_some(is_one)
+    })
+}
+
+/// The name of the image of something on the side that is written.
+fn image(name: &str, words: &[(String, String)]) -> Option<String> {
+    if is_original(name, words)? { exchanged(name, words) } else { None }
 }
 
 /// What the mirror of a model calls the images of names, for those who say more of the one side before there is another. Mistakes are
@@ -186,7 +203,7 @@ pub(super) fn images(model: &DeTable<'_>) -> impl Fn(&str) -> Option<String> + u
     let except: HashSet<String> = except.filter_map(text).collect();
     move |name| match except.contains(name) {
         true => None,
-        false => exchanged(name, words.iter().map(|(one, other)| (one, other))),
+        false => image(name, &words),
     }
 }
 
@@ -286,8 +303,7 @@ impl Reader<'_> {
         rule.kept.extend(except.into_iter().map(|e| e.0));
         // A parameter is the same on both sides, unless it has a counterpart there.
         if let (Some(parameters), false) = (entries("parameters"), each_its_own) {
-            let alone =
-                |name: &&str| rule.exchanged(name, true).is_none_or(|n| !parameters.contains_key(&*n));
+            let alone = |name: &&str| rule.exchanged(name).is_none_or(|n| !parameters.contains_key(&*n));
             let names = parameters.iter().map(|(name, _)| &**name.get_ref());
             let kept: Vec<String> = names.filter(alone).map(str::to_owned).collect();
             rule.shared.extend(kept);

@@ -45,8 +45,6 @@ const PLANES: [Plane; 4] = [
     Plane { axes: [0, 2], word: "xz", normal: "-y" },
 ];
 const AXES: [&str; 3] = ["x", "y", "z"];
-/// Joint types whose axis is square to the plane where none is given.
-const PINS: [&str; 5] = ["revolute", "planar", "pin_in_slot", "point_on_curve", "revolute_spherical"];
 
 impl Plane {
     /// That of a model.
@@ -106,8 +104,8 @@ impl Reader<'_> {
             }
         };
         sections(model, "joints", &mut |joint| {
-            let kind = word(joint, "type").and_then(|kind| joint::named(&kind)).map_or("", |kind| kind.name);
-            if PINS.contains(&kind) {
+            let kind = word(joint, "type").and_then(|kind| joint::named(&kind));
+            if kind.is_some_and(|kind| kind.normal_in_plane) {
                 square(joint, "axis");
             }
         });

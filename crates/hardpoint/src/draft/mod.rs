@@ -228,6 +228,9 @@ pub struct JointDraft {
     pub axis: Option<LineDraft>,
     /// Direction of the markers' x axis.
     pub axis2: Option<LineDraft>,
+    /// The global axis (0, 1 or 2) across which it is the mirror image of another joint: where `axis2` is not given, its default is the
+    /// image of that joint's default.
+    pub mirror: Option<usize>,
     /// Length of a rod, or a follower's distance from its curve, m; else it is measured between its places.
     pub length: Option<f64>,
     /// Advance of a screw, m per turn.

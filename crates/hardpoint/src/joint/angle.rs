@@ -2,7 +2,7 @@
 
 use crate::constraint::Row;
 
-use super::{JointType, Need};
+use super::{JointType, Need, VectorKind};
 
 /// z_i . z_j keeps its design value: one constraint.
 pub static ANGLE: JointType = JointType {
@@ -12,6 +12,8 @@ pub static ANGLE: JointType = JointType {
     places: 0,
     axis: Need::Required,
     axis2: Need::OnBodyJ,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: false,
     freedoms: None,
     tree_rows: &[],
     rows: &[Row::Cosine],

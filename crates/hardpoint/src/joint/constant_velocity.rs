@@ -2,7 +2,7 @@
 
 use crate::constraint::{COINCIDE, Row};
 
-use super::{Freedom, JointType, Need};
+use super::{Freedom, JointType, Need, VectorKind};
 
 /// d = 0 and no turn about the line that halves the shafts' angle: four constraints. `axis` is the shaft on body i,
 /// `axis2` the shaft on body j, both pointing the same way along the train.
@@ -13,6 +13,8 @@ pub static CONSTANT_VELOCITY: JointType = JointType {
     places: 1,
     axis: Need::Required,
     axis2: Need::OnBodyJ,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: false,
     freedoms: Some(&[Freedom::Ball]),
     tree_rows: &[Row::ConstantVelocity],
     rows: &[COINCIDE[0], COINCIDE[1], COINCIDE[2], Row::ConstantVelocity],

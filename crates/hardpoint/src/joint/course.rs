@@ -3,7 +3,7 @@
 use crate::constraint::Row;
 use crate::joint::Quantity;
 
-use super::{CoordinateType, JointType, Need};
+use super::{CoordinateType, JointType, Need, VectorKind};
 
 /// No constraint of its own, and none of the [types of model files](super::ALL): the coordinate of a driver that prescribes an angle that
 /// is measured, like a wheel's toe. The angle of `axis2` on body j is counted from its course in the design configuration.
@@ -14,6 +14,8 @@ pub static COURSE: JointType = JointType {
     places: 0,
     axis: Need::Required,
     axis2: Need::OnBodyJ,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: false,
     freedoms: None,
     tree_rows: &[],
     rows: &[],

@@ -2,7 +2,7 @@
 
 use crate::constraint::{ON_LINE, PARALLEL_Z};
 
-use super::{Freedom, JointType, Need, angle, displacement};
+use super::{Freedom, JointType, Need, VectorKind, angle, displacement};
 
 /// z_j parallel to z_i and d parallel to z_i: four constraints, a displacement and an angle.
 pub static CYLINDRICAL: JointType = JointType {
@@ -12,6 +12,8 @@ pub static CYLINDRICAL: JointType = JointType {
     places: 1,
     axis: Need::Required,
     axis2: Need::Unused,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: false,
     freedoms: Some(&[Freedom::Slide(2), Freedom::Turn(2)]),
     tree_rows: &[],
     rows: &[ON_LINE[0], ON_LINE[1], PARALLEL_Z[0], PARALLEL_Z[1]],

@@ -2,7 +2,7 @@
 
 use crate::constraint::Row;
 
-use super::{JointType, LENGTH, Need};
+use super::{JointType, LENGTH, Need, VectorKind};
 
 /// |d| = design length: one constraint.
 pub static DISTANCE: JointType = JointType {
@@ -12,6 +12,8 @@ pub static DISTANCE: JointType = JointType {
     places: 2,
     axis: Need::Unused,
     axis2: Need::Unused,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: false,
     freedoms: None,
     tree_rows: &[],
     rows: &[Row::Distance],

@@ -2,7 +2,7 @@
 
 use crate::constraint::Row;
 
-use super::{Freedom, JointType, Need};
+use super::{Freedom, JointType, Need, VectorKind};
 
 /// z_i . x_j = 0: one constraint (paper Eq. 4.1).
 pub static DOT1: JointType = JointType {
@@ -12,6 +12,8 @@ pub static DOT1: JointType = JointType {
     places: 0,
     axis: Need::Required,
     axis2: Need::Required,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: false,
     freedoms: Some(&[
         Freedom::Slide(0),
         Freedom::Slide(1),

@@ -2,7 +2,7 @@
 
 use crate::constraint::Row;
 
-use super::{JointType, Need};
+use super::{JointType, Need, VectorKind};
 
 /// z_i . d = 0: one constraint (paper Eq. 4.4).
 pub static DOT2: JointType = JointType {
@@ -12,6 +12,8 @@ pub static DOT2: JointType = JointType {
     places: 2,
     axis: Need::Required,
     axis2: Need::Unused,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: false,
     freedoms: None,
     tree_rows: &[],
     rows: &[Row::Dot2(2)],

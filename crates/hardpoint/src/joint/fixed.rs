@@ -2,7 +2,7 @@
 
 use crate::constraint::{COINCIDE, PARALLEL_FRAMES, Row};
 
-use super::{JointType, Need};
+use super::{JointType, Need, VectorKind};
 
 /// d = 0 and no relative rotation: six constraints.
 pub static FIXED: JointType = JointType {
@@ -12,6 +12,8 @@ pub static FIXED: JointType = JointType {
     places: 1,
     axis: Need::Unused,
     axis2: Need::Unused,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: false,
     freedoms: Some(&[]),
     tree_rows: &[],
     rows: &{

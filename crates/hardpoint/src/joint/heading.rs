@@ -3,7 +3,7 @@
 use crate::constraint::Row;
 use crate::joint::Quantity;
 
-use super::{CoordinateType, JointType, Need};
+use super::{CoordinateType, JointType, Need, VectorKind};
 
 /// No constraint of its own; a driver prescribes the angle (a platform's roll), or a measure reads it. `axis2` is the
 /// direction on body j whose angle it is.
@@ -14,6 +14,8 @@ pub static HEADING: JointType = JointType {
     places: 0,
     axis: Need::Required,
     axis2: Need::Optional,
+    vector_kinds: [VectorKind::Axial, VectorKind::Polar],
+    normal_in_plane: false,
     freedoms: None,
     tree_rows: &[],
     rows: &[],

@@ -2,7 +2,7 @@
 
 use crate::constraint::ON_LINE;
 
-use super::{Freedom, JointType, Need, displacement};
+use super::{Freedom, JointType, Need, VectorKind, displacement};
 
 /// Body j's point on the line along z_i: two constraints.
 pub static INLINE: JointType = JointType {
@@ -12,6 +12,8 @@ pub static INLINE: JointType = JointType {
     places: 1,
     axis: Need::Required,
     axis2: Need::Unused,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: false,
     freedoms: Some(&[Freedom::Slide(2), Freedom::Ball]),
     tree_rows: &[],
     rows: &ON_LINE,

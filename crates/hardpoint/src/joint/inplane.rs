@@ -2,7 +2,7 @@
 
 use crate::constraint::Row;
 
-use super::{Freedom, JointType, Need, displacement_along};
+use super::{Freedom, JointType, Need, VectorKind, displacement_along};
 
 /// Body j's point on the plane normal to z_i: one constraint.
 pub static INPLANE: JointType = JointType {
@@ -12,6 +12,8 @@ pub static INPLANE: JointType = JointType {
     places: 1,
     axis: Need::Required,
     axis2: Need::Optional,
+    vector_kinds: [VectorKind::Axial, VectorKind::Polar],
+    normal_in_plane: false,
     freedoms: Some(&[Freedom::Slide(0), Freedom::Slide(1), Freedom::Ball]),
     tree_rows: &[],
     rows: &[Row::Dot2(2)],

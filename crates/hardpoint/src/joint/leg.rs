@@ -1,6 +1,6 @@
 //! Leg: a rod whose length a driver prescribes (an actuator, a spring), or only a measure reads.
 
-use super::{JointType, LENGTH, Need};
+use super::{JointType, LENGTH, Need, VectorKind};
 
 /// No constraint of its own; its length is a coordinate.
 pub static LEG: JointType = JointType {
@@ -10,6 +10,8 @@ pub static LEG: JointType = JointType {
     places: 2,
     axis: Need::Unused,
     axis2: Need::Unused,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: false,
     freedoms: None,
     tree_rows: &[],
     rows: &[],

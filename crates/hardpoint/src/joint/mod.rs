@@ -87,6 +87,10 @@ pub struct JointType {
     pub axis: Need,
     /// Whether it needs a second axis, square to the first.
     pub axis2: Need,
+    /// How a mirror makes the images of `axis` and of `axis2`.
+    pub vector_kinds: [VectorKind; 2],
+    /// Whether `axis` is perpendicular to the plane of a planar model, unless the file gives it.
+    pub normal_in_plane: bool,
     /// Motions of body j relative to body i, in order from i to j; `None` if it is always cut.
     pub freedoms: Option<&'static [Freedom]>,
     /// Elementary constraints that its freedoms in the tree do not keep by themselves.
@@ -108,6 +112,36 @@ pub enum Need {
     OnBodyJ,
     /// Has no meaning for this joint.
     Unused,
+}
+
+/// How a mirror makes the image of a direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VectorKind {
+    /// As of an arrow: a direction to move along.
+    Polar,
+    /// As of a turn: a direction to turn about, or the normal of a plane. It is the opposite of the image of an arrow.
+    Axial,
+}
+
+impl VectorKind {
+    /// The sign of a direction of this kind relative to the image of an arrow.
+    const fn sign(self) -> i8 {
+        match self {
+            Self::Polar => 1,
+            Self::Axial => -1,
+        }
+    }
+}
+
+/// The part of its joint's axes in a coordinate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CoordinateAxis {
+    /// A displacement along axis 0, 1 or 2 of a marker (x, y, z).
+    Along(usize),
+    /// A turn about one of them.
+    About(usize),
+    /// None: a distance.
+    Scalar,
 }
 
 /// One step of a tree joint's chain, in the axes of the frame reached so far.
@@ -142,6 +176,25 @@ pub struct CoordinateType {
     pub freedom: Option<usize>,
     /// The constraint that a driver on a cut joint adds.
     pub row: Row,
+}
+
+impl CoordinateType {
+    /// The axis of a marker that it is along or about.
+    pub const fn axis(&self) -> CoordinateAxis {
+        match self.row {
+            Row::Dot2(k) => CoordinateAxis::Along(k),
+            Row::Angle | Row::Heading | Row::Course => CoordinateAxis::About(2),
+            Row::AngleOnJ => CoordinateAxis::About(0),
+            Row::Distance
+            | Row::Point(_)
+            | Row::PointOnBase(_)
+            | Row::Dot1(..)
+            | Row::Cosine
+            | Row::Offset
+            | Row::Contact
+            | Row::ConstantVelocity => CoordinateAxis::Scalar,
+        }
+    }
 }
 
 /// Angle of body j relative to body i about z_i, counter-clockwise, rad.
@@ -201,6 +254,23 @@ impl JointType {
         Some(coordinate?.quantity)
     }
 
+    /// Whether a coordinate of the image of a joint is the opposite of the joint's own while both move as mirror images.
+    pub fn is_reversed_in_mirror(&self, coordinate: &CoordinateType) -> bool {
+        let [z, axis2] = self.vector_kinds.map(VectorKind::sign);
+        let x = match self.axis2 {
+            Need::Required | Need::Optional => axis2,
+            // Any direction, mirrored as an arrow.
+            Need::OnBodyJ | Need::Unused => VectorKind::Polar.sign(),
+        };
+        // y = z x x, and the image of a product of arrows is the opposite of the product of their images.
+        let signs = [x, -z * x, z];
+        match coordinate.axis() {
+            CoordinateAxis::Along(k) => signs[k] < 0,
+            CoordinateAxis::About(k) => signs[k] > 0,
+            CoordinateAxis::Scalar => false,
+        }
+    }
+
     /// Whether it is a ball and nothing else.
     pub fn is_ball(&self) -> bool {
         self.freedoms == Some(&[Freedom::Ball]) && self.tree_rows.is_empty()
@@ -255,6 +325,15 @@ mod tests {
         assert_eq!(those(JointType::is_rod), ["distance", "revolute_spherical", "leg"]);
         assert_eq!(those(JointType::follows_curve), ["point_on_curve"]);
         assert_eq!(those(JointType::has_lead), ["screw"]);
+    }
+
+    #[test]
+    fn a_mirror_reverses_turns_about_what_a_joint_slides_along_and_nothing_else() {
+        let reversed = ALL.iter().flat_map(|t| {
+            let of = |c: &&CoordinateType| t.is_reversed_in_mirror(c);
+            t.coordinates.iter().filter(of).map(|c| (t.name, c.name)).collect::<Vec<_>>()
+        });
+        assert_eq!(reversed.collect::<Vec<_>>(), [("cylindrical", "angle"), ("screw", "angle")]);
     }
 
     #[test]

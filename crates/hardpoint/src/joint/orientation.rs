@@ -2,7 +2,7 @@
 
 use crate::constraint::PARALLEL_FRAMES;
 
-use super::{Freedom, JointType, Need};
+use super::{Freedom, JointType, Need, VectorKind};
 
 /// No relative rotation: three constraints.
 pub static ORIENTATION: JointType = JointType {
@@ -12,6 +12,8 @@ pub static ORIENTATION: JointType = JointType {
     places: 0,
     axis: Need::Unused,
     axis2: Need::Unused,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: false,
     freedoms: Some(&[Freedom::Slide(0), Freedom::Slide(1), Freedom::Slide(2)]),
     tree_rows: &[],
     rows: &PARALLEL_FRAMES,

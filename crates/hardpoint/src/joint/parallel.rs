@@ -2,7 +2,7 @@
 
 use crate::constraint::PARALLEL_Z;
 
-use super::{Freedom, JointType, Need, angle};
+use super::{Freedom, JointType, Need, VectorKind, angle};
 
 /// z_j parallel to z_i: two constraints.
 pub static PARALLEL: JointType = JointType {
@@ -12,6 +12,8 @@ pub static PARALLEL: JointType = JointType {
     places: 0,
     axis: Need::Required,
     axis2: Need::Unused,
+    vector_kinds: [VectorKind::Axial, VectorKind::Polar],
+    normal_in_plane: false,
     freedoms: Some(&[Freedom::Slide(0), Freedom::Slide(1), Freedom::Slide(2), Freedom::Turn(2)]),
     tree_rows: &[],
     rows: &PARALLEL_Z,

@@ -2,7 +2,7 @@
 
 use crate::constraint::{PARALLEL_Z, Row};
 
-use super::{Freedom, JointType, Need, angle, displacement_along};
+use super::{Freedom, JointType, Need, VectorKind, angle, displacement_along};
 
 /// d along x_i, the slot, and z_j, the pin, parallel to z_i: four constraints, a displacement and an angle. What a block with a hinge
 /// and a slide would be, without the block.
@@ -13,6 +13,8 @@ pub static PIN_IN_SLOT: JointType = JointType {
     places: 1,
     axis: Need::Required,
     axis2: Need::Required,
+    vector_kinds: [VectorKind::Axial, VectorKind::Polar],
+    normal_in_plane: true,
     freedoms: Some(&[Freedom::Slide(0), Freedom::Turn(2)]),
     tree_rows: &[],
     rows: &[PARALLEL_Z[0], PARALLEL_Z[1], Row::Dot2(1), Row::Dot2(2)],

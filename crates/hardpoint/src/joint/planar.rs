@@ -2,7 +2,7 @@
 
 use crate::constraint::{PARALLEL_Z, Row};
 
-use super::{Freedom, JointType, Need, angle, displacement_along};
+use super::{Freedom, JointType, Need, VectorKind, angle, displacement_along};
 
 /// z_j parallel to z_i and the point on the plane: three constraints. x and y are along and across `axis2`.
 pub static PLANAR: JointType = JointType {
@@ -12,6 +12,8 @@ pub static PLANAR: JointType = JointType {
     places: 1,
     axis: Need::Required,
     axis2: Need::Optional,
+    vector_kinds: [VectorKind::Axial, VectorKind::Polar],
+    normal_in_plane: true,
     freedoms: Some(&[Freedom::Slide(0), Freedom::Slide(1), Freedom::Turn(2)]),
     tree_rows: &[],
     rows: &[PARALLEL_Z[0], PARALLEL_Z[1], Row::Dot2(2)],

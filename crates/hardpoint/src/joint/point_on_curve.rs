@@ -2,7 +2,7 @@
 
 use crate::constraint::Row;
 
-use super::{JointType, Need};
+use super::{JointType, Need, VectorKind};
 
 /// Seen along z_i, body j's point keeps its distance from a curve of body i: zero for a pin in a slot, a roller's radius for a
 /// cam. One constraint. The first place carries the curve, the second is the point.
@@ -13,6 +13,8 @@ pub static POINT_ON_CURVE: JointType = JointType {
     places: 2,
     axis: Need::Required,
     axis2: Need::Unused,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: true,
     freedoms: None,
     tree_rows: &[],
     rows: &[Row::Contact],

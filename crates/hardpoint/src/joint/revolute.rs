@@ -2,7 +2,7 @@
 
 use crate::constraint::{COINCIDE, PARALLEL_Z};
 
-use super::{Freedom, JointType, Need, angle};
+use super::{Freedom, JointType, Need, VectorKind, angle};
 
 /// d = 0 and z_j parallel to z_i: five constraints, one angle.
 pub static REVOLUTE: JointType = JointType {
@@ -12,6 +12,8 @@ pub static REVOLUTE: JointType = JointType {
     places: 1,
     axis: Need::Required,
     axis2: Need::Unused,
+    vector_kinds: [VectorKind::Axial, VectorKind::Polar],
+    normal_in_plane: true,
     freedoms: Some(&[Freedom::Turn(2)]),
     tree_rows: &[],
     rows: &[COINCIDE[0], COINCIDE[1], COINCIDE[2], PARALLEL_Z[0], PARALLEL_Z[1]],

@@ -2,7 +2,7 @@
 
 use crate::constraint::Row;
 
-use super::{JointType, LENGTH, Need};
+use super::{JointType, LENGTH, Need, VectorKind};
 
 /// |d| and z_i . d keep their design values: the ball stays on a circle about the hinge's axis. Two constraints.
 pub static REVOLUTE_SPHERICAL: JointType = JointType {
@@ -12,6 +12,8 @@ pub static REVOLUTE_SPHERICAL: JointType = JointType {
     places: 2,
     axis: Need::Required,
     axis2: Need::Unused,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: true,
     freedoms: None,
     tree_rows: &[],
     rows: &[Row::Distance, Row::Offset],

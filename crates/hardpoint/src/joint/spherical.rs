@@ -2,7 +2,7 @@
 
 use crate::constraint::COINCIDE;
 
-use super::{Freedom, JointType, Need};
+use super::{Freedom, JointType, Need, VectorKind};
 
 /// d = 0: three constraints.
 pub static SPHERICAL: JointType = JointType {
@@ -12,6 +12,8 @@ pub static SPHERICAL: JointType = JointType {
     places: 1,
     axis: Need::Unused,
     axis2: Need::Unused,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: false,
     freedoms: Some(&[Freedom::Ball]),
     tree_rows: &[],
     rows: &COINCIDE,

@@ -2,7 +2,7 @@
 
 use crate::constraint::{ON_LINE, PARALLEL_FRAMES};
 
-use super::{Freedom, JointType, Need, displacement};
+use super::{Freedom, JointType, Need, VectorKind, displacement};
 
 /// P_j on the line through P_i along z_i, and no relative rotation: five constraints, one displacement.
 pub static TRANSLATIONAL: JointType = JointType {
@@ -12,6 +12,8 @@ pub static TRANSLATIONAL: JointType = JointType {
     places: 1,
     axis: Need::Required,
     axis2: Need::Unused,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: false,
     freedoms: Some(&[Freedom::Slide(2)]),
     tree_rows: &[],
     rows: &[ON_LINE[0], ON_LINE[1], PARALLEL_FRAMES[0], PARALLEL_FRAMES[1], PARALLEL_FRAMES[2]],

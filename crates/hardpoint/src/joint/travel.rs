@@ -3,7 +3,7 @@
 use crate::constraint::Row;
 use crate::joint::Quantity;
 
-use super::{CoordinateType, JointType, Need};
+use super::{CoordinateType, JointType, Need, VectorKind};
 
 /// No constraint of its own; a driver prescribes the point's coordinate (wheel travel), or a measure reads it.
 pub static TRAVEL: JointType = JointType {
@@ -13,6 +13,8 @@ pub static TRAVEL: JointType = JointType {
     places: 1,
     axis: Need::Required,
     axis2: Need::Unused,
+    vector_kinds: [VectorKind::Polar; 2],
+    normal_in_plane: false,
     freedoms: None,
     tree_rows: &[],
     rows: &[],

@@ -2,7 +2,7 @@
 
 use crate::constraint::{COINCIDE, Row};
 
-use super::{CoordinateType, Freedom, JointType, Need, Quantity, angle};
+use super::{CoordinateType, Freedom, JointType, Need, Quantity, VectorKind, angle};
 
 /// d = 0 and z_i square to x_j: four constraints. `axis` is the pin on body i, `axis2` that on body j;
 /// `angle` is the turn about the first, `angle2` about the second.
@@ -13,6 +13,8 @@ pub static UNIVERSAL: JointType = JointType {
     places: 1,
     axis: Need::Required,
     axis2: Need::Required,
+    vector_kinds: [VectorKind::Axial; 2],
+    normal_in_plane: false,
     freedoms: Some(&[Freedom::Turn(2), Freedom::Turn(0)]),
     tree_rows: &[],
     rows: &[COINCIDE[0], COINCIDE[1], COINCIDE[2], Row::Dot1(2, 0)],

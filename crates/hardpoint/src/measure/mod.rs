@@ -34,7 +34,7 @@ use crate::design::{BodyFixed, DesignMap};
 use crate::law::Law;
 use crate::model::{
     ArmPlane, AxleMeasure, BodyId, Dimension, DriverId, JointId, KnownOrders, MeasureKind, Model,
-    OutputSource, PointId, Ray, Side, VariableId, WheelId,
+    OutputSource, PointId, Ray, VariableId, WheelId,
 };
 use crate::motion::Motion;
 use crate::motion::turns::turned;
@@ -732,10 +732,10 @@ impl<'a, T: Real> Instant<'a, T> {
             }
             MeasureKind::Rate { of } => self.output(*of).rate(),
             MeasureKind::Combination { expression } => expression.at(|source| self.output(source)),
-            MeasureKind::Toe { body, .. } => {
-                // atan2(e_x, e_y) and -asin(e_z), as of a left wheel
-                let e = self.direction(k, 0, *body);
-                toe(e, T::constant(Side::Left.sign()))
+            MeasureKind::Toe { body, spin_axis } => {
+                // atan2(e_x, s e_y) and -asin(e_z)
+                let side = self.model.side_of_axis(*spin_axis);
+                toe(self.direction(k, 0, *body), T::constant(side.sign()))
             }
             MeasureKind::Camber { body, .. } => camber(self.direction(k, 0, *body)),
             MeasureKind::Wheel { wheel, what } => {

@@ -4,7 +4,7 @@ use crate::expression::Expression;
 use crate::joint::Quantity;
 use crate::model::{
     Axes, AxleId, AxleMeasure, BodyId, Direction, Driver, DriverId, ElementId, HardpointId, JointId, Model,
-    PointId, WheelId, WheelMeasure,
+    PointId, Side, WheelId, WheelMeasure,
 };
 use crate::space::{Angles, Real, Vec3};
 
@@ -176,7 +176,7 @@ macro_rules! measures {
         }),
         expression.text().into();
 
-    /// Toe of a left wheel, positive for toe-in.
+    /// Toe of a wheel, positive for toe-in. It is a left wheel where its spin axis points to +y in the design configuration, else a right one.
     Toe "toe" {
         /// The body that the wheel turns on.
         body: String => BodyId,
@@ -184,7 +184,7 @@ macro_rules! measures {
         spin_axis: LineDraft => Direction,
     } |_, w| Dimension::ANGLE, POSITIONS, w.of_axis("toe", *body, spin_axis);
 
-    /// Camber of a left wheel, positive where its top leans outboard.
+    /// Camber of a wheel, positive where its top leans outboard.
     Camber "camber" {
         /// The body that the wheel turns on.
         body: String => BodyId,
@@ -804,6 +804,15 @@ impl Model {
     pub fn is_known_at_rest(&self, output: OutputSource) -> bool {
         let by_driver = matches!(output, OutputSource::Measure(k) if self.goes_by_driver(k));
         by_driver || self.known(output).by_position
+    }
+
+    /// The side of the vehicle that a spin axis points to in the design configuration.
+    pub(crate) fn side_of_axis(&self, spin_axis: Direction) -> Side {
+        let e = match spin_axis {
+            Direction::Along(e) => e,
+            Direction::Through(a, b) => self.position(b) - self.position(a),
+        };
+        if e.y < 0.0 { Side::Right } else { Side::Left }
     }
 
     /// The directions fixed in bodies that a measure goes by.

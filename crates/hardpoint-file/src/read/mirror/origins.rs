@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashSet};
 
 use crate::diagnostic::Diagnostic;
 
-use super::exchanged;
+use super::{exchanged, is_original};
 
 /// Where a mirror's images come from.
 #[derive(Clone, Debug, Default)]
@@ -61,8 +61,8 @@ fn in_original_names(message: &str, origins: &Origins) -> (String, Option<String
     let mut made = None;
     let parts = message.split('`').enumerate().map(|(k, part)| {
         let base = part.split('.').next().unwrap_or(part);
-        let back = origins.words.iter().map(|(one, other)| (other, one));
-        match exchanged(part, back).filter(|_| k % 2 == 1) {
+        let is_image = k % 2 == 1 && is_original(part, &origins.words) == Some(false);
+        match exchanged(part, &origins.words).filter(|_| is_image) {
             Some(original) => {
                 made = made.take().or(Some(base.to_owned()));
                 original

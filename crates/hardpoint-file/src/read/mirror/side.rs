@@ -4,7 +4,11 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
+use hardpoint::draft::{ElementType, FieldKind};
 use hardpoint::joint;
+use hardpoint::joint::{CoordinateAxis, CoordinateType, JointType, VectorKind};
+use hardpoint::model::{ElementUnit, WheelMeasure};
+use hardpoint::space::Vec3;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
@@ -17,11 +21,8 @@ use crate::walk::{list_of, table_of};
 
 use super::{Opposites, Rule, each, turn_sign};
 
-/// Joint types whose `axis` says what they turn about, or which side of a plane is up, so that it is mirrored as a turn. A cylindrical
-/// joint and a screw turn about what they slide along: their displacement stays, and their angle changes its sign.
-const TURNED: [&str; 7] =
-    ["revolute", "universal", "planar", "pin_in_slot", "inplane", "parallel", "heading"];
-const HANDED: [&str; 2] = ["cylindrical", "screw"];
+/// Measures whose `along` is a direction to turn about.
+const TURNING_MEASURES: [&str; 2] = ["angular_velocity", "shaking_moment"];
 
 /// The other side while it is made.
 pub(super) struct Side<'m, 'a> {
@@ -51,6 +52,9 @@ impl<'a> Side<'_, 'a> {
             })
             .collect();
         for (name, twin, at, mut value) in originals {
+            if self.is_taken(section, &twin, &name, &at) {
+                continue;
+            }
             self.mirror(section, *of, &name, &mut value);
             let (key, at) = (Cow::Owned(twin.clone()), at);
             if !lay_under(*of, entries, Spanned::new(at, key), value) {
@@ -60,18 +64,30 @@ impl<'a> Side<'_, 'a> {
         }
     }
 
+    /// Whether something else has an image of that name, which is refused.
+    fn is_taken(&mut self, section: &'static str, twin: &str, name: &str, at: &Range<usize>) -> bool {
+        let Some(other) = self.made.get(&(section, twin.to_owned())) else { return false };
+        let message = format!(
+            "`{}` and `{}` have the same image `{}`: two words of `names` have one counterpart",
+            shown(other),
+            shown(name),
+            shown(twin)
+        );
+        let help = "rename one of them, or put it under `except` and write its other side by hand".to_owned();
+        self.refused.push((at.clone(), message, help));
+        true
+    }
+
     /// One entry on the other side.
     fn mirror(&mut self, section: &str, of: Shape, name: &str, value: &mut Value<'a>) -> bool {
-        let kind = value.get_ref().as_table().map_or("", |table| match section {
-            "joints" => type_of(table),
-            _ if ["angular_velocity", "shaking_moment"].map(Some).contains(&word(table, "type")) => "about",
-            _ => "",
-        });
+        let entry = value.get_ref().as_table();
+        let joint = entry.filter(|_| section == "joints").and_then(type_of);
+        let is_turning = entry.and_then(|t| word(t, "type")).is_some_and(|t| TURNING_MEASURES.contains(&t));
         let turns = move |key: &str| match (section, key) {
             (_, "about" | "rotate" | "turn") => true,
-            ("joints", "axis") => TURNED.contains(&kind),
-            ("joints", "axis2") => kind == "universal",
-            ("measures", "along") => kind == "about",
+            ("joints", "axis") => joint.is_some_and(|t| t.vector_kinds[0] == VectorKind::Axial),
+            ("joints", "axis2") => joint.is_some_and(|t| t.vector_kinds[1] == VectorKind::Axial),
+            ("measures", "along") => is_turning,
             _ => false,
         };
         let first = |value: &Value<'a>| {
@@ -103,7 +119,12 @@ impl<'a> Side<'_, 'a> {
                 {
                     put(table, "at", at);
                 }
+                if !table.contains_key("axis2") {
+                    let axis = DeValue::String(Cow::Borrowed(["x", "y", "z"][self.rule.across]));
+                    put(table, "mirror", Spanned::new(span, axis));
+                }
             }
+            "forces" => self.coordinate_values(name, table),
             "bodies" => {
                 let by_points = table.get("frame").is_some_and(|f| is_by_points(f.get_ref().as_table()));
                 self.mesh(table, by_points);
@@ -159,6 +180,34 @@ impl<'a> Side<'_, 'a> {
         named
     }
 
+    /// The values of a coordinate that is reversed in the mirror change their signs: numbers of an element on it that measure what it does.
+    fn coordinate_values(&self, name: &str, table: &mut DeTable<'a>) {
+        let Some(original) = self.entry("forces", name) else { return };
+        let kind = word(original, "type").and_then(|t| ElementType::ALL.iter().find(|e| e.name == t));
+        let Some(fields) =
+            kind.map(|e| e.fields).filter(|f| f.iter().any(|f| f.kind == FieldKind::Coordinate))
+        else {
+            return;
+        };
+        if !word(original, "joint").is_some_and(|joint| self.is_reversed(joint, word(original, "coordinate")))
+        {
+            return;
+        }
+        for field in fields {
+            if let FieldKind::Number(ElementUnit::Length | ElementUnit::Angle) = field.kind {
+                table.get_mut(field.key).into_iter().for_each(|v| turn_sign(v, self.rule.numbers));
+            }
+        }
+    }
+
+    /// Whether a coordinate of a mirrored joint is the opposite on the other side.
+    fn is_reversed(&self, joint: &str, coordinate: Option<&str>) -> bool {
+        let kind = self.entry("joints", joint).and_then(type_of);
+        kind.is_some_and(|kind| {
+            coordinate_of(kind, coordinate).is_some_and(|c| kind.is_reversed_in_mirror(c))
+        })
+    }
+
     /// Whether a driver's law has the other sign on the other side while the first does what it does.
     fn is_turned(&self, driver: &str) -> bool {
         self.opposite.contains(driver) != self.is_handed(driver)
@@ -166,11 +215,24 @@ impl<'a> Side<'_, 'a> {
 
     /// Whether a driver's coordinate changes its sign in the mirror.
     fn is_handed(&self, driver: &str) -> bool {
-        let drives = self.entry("drivers", driver);
-        let joint = drives.and_then(|d| word(d, "joint").zip(word(d, "coordinate")));
-        joint.is_some_and(|(joint, coordinate)| {
-            coordinate == "angle" && self.entry("joints", joint).is_some_and(|j| HANDED.contains(&type_of(j)))
-        })
+        let Some(drives) = self.entry("drivers", driver) else { return false };
+        match (word(drives, "joint"), word(drives, "measure")) {
+            (Some(joint), _) => self.is_reversed(joint, word(drives, "coordinate")),
+            (None, Some(measure)) => self.is_opposite_measure(measure),
+            (None, None) => false,
+        }
+    }
+
+    /// Whether a measure that a driver may prescribe is the opposite on the other side.
+    fn is_opposite_measure(&self, name: &str) -> bool {
+        if let Some(measure) = self.entry("measures", name) {
+            let is_coordinate = word(measure, "type") == Some("coordinate");
+            let joint = word(measure, "joint").filter(|_| is_coordinate);
+            return joint.is_some_and(|joint| self.is_reversed(joint, word(measure, "coordinate")));
+        }
+        // Of a wheel it is counted about z on either side.
+        let of_wheel = name.split_once('.').filter(|(wheel, _)| self.entry("wheels", wheel).is_some());
+        of_wheel.is_some_and(|(_, what)| what == WheelMeasure::SteerAngle.name()) && self.rule.across != 2
     }
 
     fn no_law(&mut self, at: Range<usize>, driver: &str) {
@@ -266,38 +328,58 @@ impl<'a> Side<'_, 'a> {
     fn sign(&self, joint: &str, coordinate: &str) -> Option<bool> {
         // What is not known is told when it is read.
         let Some(table) = self.entry("joints", joint) else { return Some(false) };
-        let kind = word(table, "type").and_then(joint::named);
-        let Some(kind) = kind else { return Some(false) };
-        let angle = coordinate.starts_with("angle")
-            || coordinate.is_empty() && kind.coordinates.iter().any(|c| c.name == "angle");
+        let Some(kind) = type_of(table) else { return Some(false) };
+        let coordinate = Some(coordinate).filter(|c| !c.is_empty());
+        let Some(coordinate) = coordinate_of(kind, coordinate) else { return Some(false) };
         if self.rule.twin(joint).is_some() {
-            return Some(angle && HANDED.contains(&kind.name));
+            return Some(kind.is_reversed_in_mirror(coordinate));
         }
-        // It is shared: its axis has to be its own image, or the opposite of that.
+        // It is shared: its axis has to be its own image, or the opposite of that. Where its bodies are images of each other, its
+        // coordinate is that of the first relative to the second.
+        let bodies = table.get("bodies").and_then(|v| v.get_ref().as_array());
+        let bodies: Vec<_> = bodies.into_iter().flatten().filter_map(|v| v.get_ref().as_str()).collect();
+        let swapped = matches!(bodies[..], [i, j] if self.rule.said(i).as_deref() == Some(j));
         let at = |name: &str| -> Option<[f64; 3]> {
             let list = self.model.get("hardpoints")?.get_ref().as_table()?.get(name)?.get_ref().as_array()?;
             numbers(list)
         };
-        let axis = table.get(if coordinate == "angle2" { "axis2" } else { "axis" });
-        let Some(axis) = axis else { return Some(false) };
-        let direction = match axis.get_ref() {
-            DeValue::String(word) => axis_named(word).map(|v| [v.x, v.y, v.z]),
-            DeValue::Array(list) => numbers(list),
-            DeValue::Table(table) => {
-                let ends = table.get("through").and_then(|v| v.get_ref().as_array());
-                let ends: Vec<_> =
-                    ends.into_iter().flatten().filter_map(|v| at(v.get_ref().as_str()?)).collect();
-                match ends.as_slice() {
-                    [a, b] => Some([b[0] - a[0], b[1] - a[1], b[2] - a[2]]),
-                    _ => None,
+        let line = |key: &str| -> Option<Vec3> {
+            let direction = match table.get(key)?.get_ref() {
+                DeValue::String(word) => return axis_named(word),
+                DeValue::Array(list) => numbers(list),
+                DeValue::Table(table) => {
+                    let ends = table.get("through").and_then(|v| v.get_ref().as_array());
+                    let ends: Vec<_> =
+                        ends.into_iter().flatten().filter_map(|v| at(v.get_ref().as_str()?)).collect();
+                    match ends.as_slice() {
+                        [a, b] => Some([b[0] - a[0], b[1] - a[1], b[2] - a[2]]),
+                        _ => None,
+                    }
                 }
-            }
-            _ => return Some(false),
-        }?;
+                _ => None,
+            };
+            direction.map(|[x, y, z]| Vec3::new(x, y, z))
+        };
+        let (along, angle) = match coordinate.axis() {
+            CoordinateAxis::Scalar => return Some(false),
+            CoordinateAxis::Along(k) => (k, false),
+            CoordinateAxis::About(k) => (k, true),
+        };
+        let z = line("axis")?;
+        let x = || match table.contains_key("axis2") {
+            true => line("axis2"),
+            false => z.unit().map(Vec3::any_square),
+        };
+        let direction = match along {
+            0 => x()?,
+            1 => z.cross(x()?),
+            _ => z,
+        };
+        let direction = [direction.x, direction.y, direction.z];
         let out = direction[self.rule.across] != 0.0;
         let in_plane = (0..3).any(|k| k != self.rule.across && direction[k] != 0.0);
         // An arrow square to the mirror is turned round; a turn is where the arrow is not.
-        if out && in_plane { None } else { Some(out != angle) }
+        if out && in_plane { None } else { Some((out != angle) != swapped) }
     }
 
     /// Velocity fields count in the frames of bodies, which have another axis in the mirror where points give them.
@@ -329,7 +411,7 @@ impl<'a> Side<'_, 'a> {
         for (name, case) in cases.iter_mut() {
             if self
                 .rule
-                .exchanged(name.get_ref(), true)
+                .exchanged(name.get_ref())
                 .is_some_and(|_| !self.rule.kept.contains(&**name.get_ref()))
             {
                 continue;
@@ -357,7 +439,7 @@ impl<'a> Side<'_, 'a> {
             })
             .collect();
         for (name, twin, at, mut case) in originals {
-            if self.entry("cases", &twin).is_some() {
+            if self.entry("cases", &twin).is_some() || self.is_taken("cases", &twin, &name, &at) {
                 continue;
             }
             self.rule.mirror(Shape::Table(&cases::CASE), &mut case, &|_| false);
@@ -471,8 +553,17 @@ fn word<'t>(table: &'t DeTable<'_>, key: &str) -> Option<&'t str> {
 }
 
 /// A joint's type, whatever it is called in the file.
-fn type_of(joint: &DeTable<'_>) -> &'static str {
-    word(joint, "type").and_then(joint::named).map_or("", |kind| kind.name)
+fn type_of(joint: &DeTable<'_>) -> Option<&'static JointType> {
+    word(joint, "type").and_then(joint::named)
+}
+
+/// The coordinate of that name, or the only one where none is named.
+fn coordinate_of(kind: &'static JointType, name: Option<&str>) -> Option<&'static CoordinateType> {
+    match (name, kind.coordinates) {
+        (Some(name), _) => kind.coordinate(name).map(|c| c.1),
+        (None, [only]) => Some(only),
+        (None, _) => None,
+    }
 }
 
 /// Lines through two points that are turned about go from the second to the first.

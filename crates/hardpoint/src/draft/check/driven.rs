@@ -183,7 +183,8 @@ impl Checker<'_> {
                 let body = self.body(body, at.clone())?;
                 let (axis2, _) = self.line_at(spin_axis, &d.name, at.clone())?;
                 let place = self.place_on(body)?;
-                self.driven_course(d, body, place, [-up, left], axis2, Zero::Kept, &at)
+                let s = self.model.side_of_axis(axis2).sign();
+                self.driven_course(d, body, place, [up * -s, left * s], axis2, Zero::Kept, &at)
             }
             MeasureKindDraft::Wheel { wheel, what } => {
                 let names = draft.wheels.iter().map(|w| w.name.as_str());

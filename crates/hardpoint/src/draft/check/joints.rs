@@ -9,6 +9,12 @@ use crate::space::{Mat3, Pose, Vec3};
 
 use super::{Checker, Here, SAME_POINT, SQUARE_TOLERANCE, UNPLACED, degrees_between, frame_along};
 
+/// Direction of the markers' x axis where none is given; of an image across a global axis, the image of the original's default.
+fn default_x(z: Vec3, mirror: Option<usize>) -> Vec3 {
+    let reflected = |v: Vec3| mirror.map_or(v, |k| v - Vec3::AXES[k] * (2.0 * v.dot(Vec3::AXES[k])));
+    reflected(reflected(z).any_square())
+}
+
 impl Checker<'_> {
     pub(super) fn joints(&mut self) {
         let draft = self.draft;
@@ -85,7 +91,7 @@ impl Checker<'_> {
                         ))
                         .help("let both point the same way along the train, less than 90 deg apart");
                 }
-                let i = frame_along(z, z.any_square());
+                let i = frame_along(z, default_x(z, j.mirror));
                 [i, Mat3::between(z, z_j) * i]
             }
             (Some((_, z)), Some((_, x))) => {
@@ -98,7 +104,7 @@ impl Checker<'_> {
                 }
                 [frame_along(z, (x - z * z.dot(x)).unit()?); 2]
             }
-            (Some((_, z)), None) => [frame_along(z, z.any_square()); 2],
+            (Some((_, z)), None) => [frame_along(z, default_x(z, j.mirror)); 2],
             _ => [Mat3::IDENTITY; 2],
         };
         let length = self.rod_length(j, kind, here);
