@@ -338,9 +338,9 @@ wheel_measures! {
     Track "track" LENGTH false;
     /// Sum of both toe angles.
     TotalToe "total_toe" ANGLE false;
-    /// Steer angle of the right wheel beyond what Ackermann's condition makes of the left one's.
+    /// Steer angle of the outer wheel into the turn beyond what Ackermann's condition makes of the inner one's.
     AckermannError "ackermann_error" ANGLE false;
-    /// Difference of both steer angles as a part of Ackermann's.
+    /// Difference of both steer angles as a part of Ackermann's, by the inner wheel; none below a mean heading of 1 degree.
     Ackermann "ackermann" NUMBER false;
     /// Radius of the path of the outer wheel's contact point, with the other axle straight ahead.
     TurningRadius "turning_radius" LENGTH false;
