@@ -7,7 +7,7 @@ use hardpoint::motion::{Closing, Motion, Stop, StopKind};
 use hardpoint::topology::TopologyFault;
 use hardpoint::{
     draft::Section,
-    model::{DesignVariable, ElementKind, JointId, MeasureKind, Model, OutputSource},
+    model::{DesignVariable, ENDS_MEET, ElementKind, JointId, MeasureKind, Model, OutputSource},
 };
 use hardpoint_file::{Diagnostic, ModelFile, Severity};
 
@@ -241,9 +241,15 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
         } else {
             let shared = shared.get_or_insert_with(|| {
                 let analysis = Analysis::new(model);
-                analysis.map_or_else(|_| Vec::new(), |analysis| analysis.loads(&[]).shared_friction)
+                let loads = analysis.map(|analysis| analysis.loads(&[])).unwrap_or_default();
+                [loads.shared_friction, loads.ambiguous_friction]
             });
-            if shared.is_empty() {
+            let [shared, ambiguous] = &*shared;
+            if !ambiguous.is_empty() {
+                let of = names(&|e| ambiguous.iter().any(|s| s.0 == e));
+                d.note(format!("the friction of {} has two solutions there: it is so large that it makes the forces that it needs", names_of(&of)))
+                    .help("give less friction, thinner pins or longer guides")
+            } else if shared.is_empty() {
                 d.note(format!("{} jams there: so much friction stands against the motion that no forces move it", names_of(&names(&|_| true))))
                     .help("give less friction, thinner pins or longer guides")
             } else {
@@ -266,11 +272,8 @@ fn has_no_length(model: &Model, motion: &Motion, k: usize, kind: &ElementKind) -
         let state = motion.at(k).body(point.body.0);
         state.r + state.rotation * in_body
     });
-    (q - p).norm() <= COINCIDE * model.size()
+    (q - p).norm() <= ENDS_MEET * model.size()
 }
-
-/// Places nearer to each other than this part of the mechanism's size are one.
-const COINCIDE: f64 = 1e-12;
 
 /// Names in quotes.
 fn names_of(list: &[String]) -> String {

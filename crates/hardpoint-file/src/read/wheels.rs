@@ -4,7 +4,7 @@ use hardpoint::draft::{
     AxleDraft, LineDraft, MeasureDraft, MeasureKindDraft, PlaceDraft, PointRef, Section, WheelDraft,
     WheelSpinDraft,
 };
-use hardpoint::model::{AxleMeasure, Side, Vehicle, VehicleEnd, WheelMeasure, WheelNeed};
+use hardpoint::model::{AxleMeasure, Side, TorqueReaction, Vehicle, VehicleEnd, WheelMeasure, WheelNeed};
 use hardpoint::space::Vec3;
 
 use crate::diagnostic::Severity;
@@ -48,9 +48,18 @@ pub(crate) const WHEEL: Table = table! {
     may "spring": Shape::exactly(2, &POINT_REF), "[{ body = \"ground\", at = \"spring_top\" }, { body = \"lca\", at = \"spring_bottom\" }]";
     /// At which end of the vehicle it is, for anti-dive and the like.
     may "end": Shape::Words(&[("front", ""), ("rear", "")]), "\"front\"";
+    /// Where the torque that drives it is reacted, for anti-squat and anti-rise. Default: `"outboard"` where its body carries wheels of both
+    /// sides (a live axle), else `"inboard"`.
+    may "drive": REACTION, "\"inboard\"";
+    /// Where the torque of its brake is reacted, for anti-dive and anti-lift. Default: `"outboard"`.
+    may "brakes": REACTION, "\"outboard\"";
     /// What to measure, as NAME.toe and so on: `"all"` that is possible, or a list.
     may "measures": Shape::Any("WheelMeasures", "", &[ALL, Shape::list(&WHEEL_MEASURE)]), "[\"toe\", \"camber\"]";
 };
+const REACTION: Shape = Shape::Words(&[
+    ("inboard", "by the vehicle's body, through shafts"),
+    ("outboard", "by the body that the wheel turns on"),
+]);
 const ARM_PLANE_SHAPE: Shape = Shape::Table(&ARM_PLANE);
 const ARM_PLANE: Table = table! {
     /// The plane of an arm or a strut.
@@ -148,6 +157,8 @@ impl Reader<'_> {
             let radius = self.number_of(&fields, "radius");
             let side = self.word_of(&fields, "side").map(|k| SIDES[k]);
             let end = self.word_of(&fields, "end").map(|k| ENDS[k]);
+            let [drive, brakes] =
+                ["drive", "brakes"].map(|key| self.word_of(&fields, key).map(|k| TorqueReaction::ALL[k]));
             let bump = self.name_of(&fields, "bump");
             let kingpin = self.given(&fields, "kingpin", |r, f| {
                 r.two_points(&fields, f, "a list of a lower and an upper point")
@@ -174,6 +185,8 @@ impl Reader<'_> {
                 planes,
                 spring,
                 end,
+                drive,
+                brakes,
             });
         }
     }

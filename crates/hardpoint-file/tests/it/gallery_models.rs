@@ -579,9 +579,11 @@ fn front_axle_is_steered_and_moves_as_its_wheels_do(m: &Solved) {
             continue;
         }
         let cot = |x: f64| 1.0 / x.tan();
-        let ideal = (1.0 / (cot(left) + (l.y - r.y) / 2.7)).atan();
-        m.close("error", of(k, "front.ackermann_error"), right - ideal, EXACT);
-        m.close("part", of(k, "front.ackermann"), (left - right) / (left - ideal), 1e-9);
+        // Into the turn: of a left one the left wheel is the inner one.
+        let [inner, outer] = if left + right > 0.0 { [left, right] } else { [-right, -left] };
+        let ideal = (1.0 / (cot(inner) + (l.y - r.y) / 2.7)).atan();
+        m.close("error", of(k, "front.ackermann_error"), outer - ideal, EXACT);
+        m.close("part", of(k, "front.ackermann"), (inner - outer) / (inner - ideal), 1e-9);
         let outer = if left.abs() < right.abs() { left } else { right };
         m.close("radius", of(k, "front.turning_radius"), 2.7 / outer.sin().abs(), 1e-9);
         let knuckle = m.file.model.body("left_knuckle").unwrap();

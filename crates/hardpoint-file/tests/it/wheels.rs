@@ -420,7 +420,8 @@ fn slopes_are_those_of_runs_whose_driver_is_shifted() {
         let at_infinity = w.y.abs() < 1e-2 * w.norm();
         assert!(at_infinity || still.x.abs().max(still.z.abs()) < 1e-4, "step {k}: {still:?}");
         let axis = ["x", "y", "z"].map(|c| value(&format!("w.instant_axis_{c}")));
-        let along = w * (w.x.signum() / w.norm());
+        // A left wheel, w per unit of its rise.
+        let along = w * (1.0 / w.norm());
         assert!((Vec3::from(axis) - along).norm() < 1e-6, "step {k}");
         close("w.swing_arm_front", contact.y - value("w.instant_centre_front_y"));
         close("w.swing_arm_side", value("w.instant_centre_side_x") - contact.x);

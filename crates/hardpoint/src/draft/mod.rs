@@ -24,7 +24,7 @@ use crate::joint::{self, JointType, Quantity};
 use crate::law::Law;
 use crate::model::{
     AllocationRule, AtChangePoints, Dimension, LoadMode, Reduction, Side, SweepMethod, Sweeping, Tolerancing,
-    Transmission, Vehicle, VehicleEnd,
+    TorqueReaction, Transmission, Vehicle, VehicleEnd,
 };
 use crate::space::{Pose, Vec3};
 
@@ -440,6 +440,11 @@ pub struct WheelDraft {
     pub spring: Option<[PointRef; 2]>,
     /// At which end of the vehicle it is.
     pub end: Option<VehicleEnd>,
+    /// Where the torque that drives it is reacted; where it is left out, outboard on a body that carries wheels of both sides (a live axle),
+    /// else inboard.
+    pub drive: Option<TorqueReaction>,
+    /// Where the torque of its brake is reacted; where it is left out, outboard.
+    pub brakes: Option<TorqueReaction>,
 }
 
 /// Two wheels side by side; see [`Axle`](crate::model::Axle).

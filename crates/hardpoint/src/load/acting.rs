@@ -6,7 +6,7 @@ use crate::constraint::MarkerPair;
 use crate::design::Geometry;
 use crate::measure::WheelAt;
 use crate::model::{
-    Axes, BodyId, ElementId, ElementKind, Inertia, Joint, JointId, Length, LoadMode, Model, NumberId,
+    Axes, BodyId, ENDS_MEET, ElementId, ElementKind, Inertia, Joint, JointId, Length, LoadMode, Model, NumberId,
     PointId, Stiffness, TorsionalStiffness, Wheel, WheelId, about_centre,
 };
 use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
@@ -117,6 +117,13 @@ impl<T: Real> Acting<'_, T> {
         }
     }
 
+    /// Length of the line between the ends of a spring, for its direction; NaN where they meet, for then it has none.
+    fn apart(&self, d: Vec3<T>) -> T {
+        let length = d.norm();
+        let limit = T::constant(ENDS_MEET * self.model.size());
+        if length.exceeds(limit) { length } else { T::constant(f64::NAN) }
+    }
+
     /// Where it is drawn, in this design.
     fn as_drawn(&self, point: PointId) -> Vec3<T> {
         let frame: Pose<T> = self.model.bodies[self.body(point)].frame.spread();
@@ -206,7 +213,7 @@ impl<T: Real> Acting<'_, T> {
                 let (p, q) = (self.point(*from), self.point(*to));
                 let d = q - p;
                 // s pulls both ends along the line between them                                                 (44)
-                let pull = d * (self.size(e) / d.norm());
+                let pull = d * (self.size(e) / self.apart(d));
                 out[self.body(*to)] += Wrench::force(pull, q);
                 out[self.body(*from)] -= Wrench::force(pull, q);
             }
@@ -274,14 +281,12 @@ impl<T: Real> Acting<'_, T> {
             ElementKind::Spring { from, to, preload, damping, .. } => {
                 let (p, q) = (self.point(*from), self.point(*to));
                 let d = q - p;
-                let length = d.norm();
-                let velocity =
-                    self.bodies[self.body(*to)].velocity(q) - self.bodies[self.body(*from)].velocity(p);
-                let rate = d.dot(velocity) / length;
                 // s = p + k (L - L_o) + k_3 (L - L_o)^3 + f T(L - L_o) + c L.
-                let mut tension = self.pull(kind, length)[0] + self.or_zero(preload.map(|n| n.0));
+                let mut tension = self.pull(kind, d.norm())[0] + self.or_zero(preload.map(|n| n.0));
                 if let Some(damping) = damping {
-                    tension += self.number(damping.0) * rate;
+                    let velocity =
+                        self.bodies[self.body(*to)].velocity(q) - self.bodies[self.body(*from)].velocity(p);
+                    tension += self.number(damping.0) * (d.dot(velocity) / self.apart(d));
                 }
                 tension
             }
@@ -462,7 +467,7 @@ impl<T: Real> Acting<'_, T> {
         let kind = &self.model.elements[e.0].kind;
         match kind {
             ElementKind::Spring { from, to, .. } => {
-                let length = (self.point(*to) - self.point(*from)).norm();
+                let length = self.apart(self.point(*to) - self.point(*from));
                 each(length, self.pull(kind, length)[1]);
             }
             ElementKind::JointSpring { stiffness: Stiffness(n), .. }

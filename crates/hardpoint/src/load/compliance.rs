@@ -14,7 +14,7 @@ use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{PairDirection, Seconds};
 use crate::space::{Mat3, Pose, Twist, Vec3};
-use crate::topology::Topology;
+use crate::topology::{RowId, Topology};
 
 use super::acting::{Acting, Moving};
 
@@ -46,6 +46,8 @@ pub(crate) struct Compliances<'a> {
     /// Per variable; the last is that of no change.
     changed: Vec<Changed>,
     bodies: Vec<usize>,
+    /// Per way: how redundant constraints resist it; none where the mechanism follows.
+    resistance: Vec<Vec<(RowId, f64)>>,
     /// Per way.
     poses: Vec<Vec<Pose<Number>>>,
     moving: Vec<Moving<Number>>,
@@ -117,6 +119,7 @@ impl<'a> Compliances<'a> {
             laws: vec![Dual::one(); model.elements.len()],
             near: Vec::new(),
             friction: vec![Dual::zero(); model.elements.len()],
+            resistance: vec![Vec::new(); ways.len()],
             ways,
             variables,
             bodies,
@@ -126,6 +129,9 @@ impl<'a> Compliances<'a> {
     /// Enters what is found at time t; `near` is about what the coordinates are that elements act on.
     pub fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, near: &[f64], out: &mut StepValues) {
         self.seconds.solve(stepper, t);
+        for (way, resistance) in self.resistance.iter_mut().enumerate() {
+            *resistance = self.seconds.resistance(stepper, way);
+        }
         self.near.clear();
         self.near.extend(near.iter().map(|x| Number::constant(Dual::constant(*x))));
         for by in 0..=self.variables {
@@ -169,7 +175,12 @@ impl<'a> Compliances<'a> {
                 Way::Opening(_) => true,
                 Way::Released(driver) => Some(*driver) == released,
             };
-            let chosen: Vec<usize> = (0..self.ways.len()).filter(|w| counts(&self.ways[*w])).collect();
+            let chosen = (0..self.ways.len()).filter(|w| counts(&self.ways[*w]));
+            let (chosen, resisted): (Vec<usize>, Vec<usize>) =
+                chosen.partition(|w| self.resistance[*w].is_empty());
+            // Sum over the ways y_a r_a = 0, r_a how the redundant constraints resist: where all r_a are independent, no such joint
+            // opens at all, for the others are rigid. Else some may open together, by forces that nobody knows.
+            let is_known = are_independent(resisted.iter().map(|w| &self.resistance[*w][..]));
             // L . Y of the output, and what a unit of force works
             let mut gives: Vec<Dual> = Vec::new();
             let mut works: Vec<Dual> = Vec::new();
@@ -198,7 +209,11 @@ impl<'a> Compliances<'a> {
                 }
             }
             // Without any stiffness against a released driver there is no end to it.
-            let x = if stiffness.factor().pivot_ratio > SINGULAR {
+            let x = if !is_known {
+                Dual::constant(f64::NAN)
+            } else if chosen.is_empty() {
+                Dual::zero()
+            } else if stiffness.factor().pivot_ratio > SINGULAR {
                 stiffness.solve(&mut works);
                 gives.iter().zip(&works).fold(Dual::zero(), |sum, (l, p)| sum + *l * *p)
             } else {
@@ -225,6 +240,37 @@ impl Compliances<'_> {
         poses[body].point(bodies[body].pose.inverse().point(contact))
     }
 }
+
+/// Whether no sum of these vectors, each by its own factor, is zero; of each its entries that are not zero, in the order of the rows.
+fn are_independent<'a>(vectors: impl Iterator<Item = &'a [(RowId, f64)]>) -> bool {
+    let norm = |v: &[(RowId, f64)]| v.iter().map(|(_, x)| x * x).sum::<f64>().sqrt();
+    let mut basis: Vec<Vec<(RowId, f64)>> = Vec::new();
+    for vector in vectors {
+        let (mut rest, whole) = (vector.to_vec(), norm(vector));
+        // Twice, so that the basis stays orthogonal to round-off.
+        for unit in basis.iter().chain(&basis) {
+            let entry = |v: &[(RowId, f64)], row: RowId| v.iter().find(|(r, _)| *r == row).map_or(0.0, |x| x.1);
+            let along: f64 = unit.iter().map(|(row, x)| x * entry(&rest, *row)).sum();
+            for (row, x) in unit {
+                match rest.iter_mut().find(|(r, _)| r == row) {
+                    Some((_, y)) => *y -= along * x,
+                    None => rest.push((*row, -along * x)),
+                }
+            }
+        }
+        let left = norm(&rest);
+        if !(left > DEPENDENT * whole) {
+            return false;
+        }
+        rest.iter_mut().for_each(|(_, x)| *x /= left);
+        basis.push(rest);
+    }
+    true
+}
+
+/// Ways that differ by less than this part from a sum of others depend on them: what a mechanism's redundant constraints resist is found
+/// to some 1e-9, and typed coordinates are off by 1e-6.
+const DEPENDENT: f64 = 1e-5;
 
 /// Stiffnesses whose pivots differ by more hold some way by nothing.
 const SINGULAR: f64 = 1e-14;

@@ -18,6 +18,10 @@ use super::solver::LoadSolver;
 const MOST_STEPS: usize = 40;
 /// Moments and forces are solved to this part of the largest term.
 const SOLVED: f64 = 1e-13;
+/// Other solutions are looked for from this many times the largest friction without the forces that friction itself makes.
+const FAR: f64 = 1e3;
+/// Solutions that differ by more than this part of the friction are two: the same one is found to 1e-13.
+const ANOTHER: f64 = 1e-6;
 
 /// The joints that rub.
 pub(super) struct Friction {
@@ -40,6 +44,8 @@ struct Rub {
     per_moment: Vec<[Vec3; 2]>,
     /// Whether redundant constraints share what presses.
     is_shared: bool,
+    /// Whether the friction has another solution besides the one that was found.
+    is_ambiguous: bool,
 }
 
 impl Rub {
@@ -50,7 +56,7 @@ impl Rub {
             return None;
         };
         let (presses, per_moment) = (([Vec3::ZERO; 2], 0), Vec::new());
-        Some(Self { element, joint, grip: 0.0, viscous: 0.0, presses, per_moment, is_shared: false })
+        Some(Self { element, joint, grip: 0.0, viscous: 0.0, presses, per_moment, is_shared: false, is_ambiguous: false })
     }
 }
 
@@ -87,9 +93,50 @@ impl Friction {
             rub.is_shared = !stresses.iter().all(leaves);
         }
         let known = self.shared().next().is_none();
+        self.rubs.iter_mut().for_each(|rub| rub.is_ambiguous = false);
         if !(known && (0..MOST_STEPS).any(|_| self.newton())) {
             self.moments.fill(f64::NAN);
+        } else if self.look_for_others() {
+            self.moments.fill(f64::NAN);
         }
+    }
+
+    /// Searches for other solutions, and notes which friction differs between them.
+    ///
+    /// `M -> -c N(T_0 + B M) - d` contracts where the sum of `abs(c B)` is below 1 in every row, and has one solution then. Elsewhere
+    /// Newton starts far out, where what presses is as large as what it is by friction alone.
+    fn look_for_others(&mut self) -> bool {
+        let gain = |rub: &Rub| {
+            let (_, count) = rub.presses;
+            let all = rub.per_moment.iter().map(|b| b.iter().take(count).map(|f| f.norm()).sum::<f64>());
+            rub.grip.abs() * all.sum::<f64>()
+        };
+        if self.rubs.iter().all(|rub| gain(rub) < 1.0) {
+            return false;
+        }
+        let (found, n) = (self.moments.clone(), self.rubs.len());
+        let size = |rub: &Rub| rub.presses.0.iter().map(|f| f.norm()).sum::<f64>() * rub.grip.abs();
+        let scale = self.rubs.iter().map(size).chain(found.iter().map(|m| m.abs())).fold(0.0, f64::max);
+        let (mut others, far) = (false, FAR * scale);
+        // One far out either way, the others as they are; then all.
+        for (one, sign) in (0..=n).flat_map(|one| [(one, 1.0), (one, -1.0)]) {
+            self.moments.copy_from_slice(&found);
+            for (k, m) in self.moments.iter_mut().enumerate().filter(|(k, _)| one == n || *k == one) {
+                *m = sign * far * if self.rubs[k].grip < 0.0 { -1.0 } else { 1.0 };
+            }
+            if !(0..MOST_STEPS).any(|_| self.newton()) {
+                continue;
+            }
+            for ((m, first), rub) in self.moments.iter().zip(&found).zip(&mut self.rubs) {
+                if (m - first).abs() > ANOTHER * scale {
+                    (rub.is_ambiguous, others) = (true, true);
+                }
+            }
+        }
+        // The matrix of the one that was found.
+        self.moments.copy_from_slice(&found);
+        self.newton();
+        others
     }
 
     /// One step; whether the moments were solved before it.
@@ -139,6 +186,11 @@ impl Friction {
         self.rubs.iter().filter(|rub| rub.is_shared).map(|rub| rub.element)
     }
 
+    /// Those that have more than one solution: grip so high that the friction itself makes the forces that it needs.
+    pub fn ambiguous(&self) -> impl Iterator<Item = ElementId> {
+        self.rubs.iter().filter(|rub| rub.is_ambiguous).map(|rub| rub.element)
+    }
+
     /// The elements that rub, and their joints.
     pub fn elements(&self) -> impl Iterator<Item = ElementId> {
         self.rubs.iter().map(|h| h.element)
@@ -180,6 +232,11 @@ impl LoadSolver<'_> {
     /// Friction that nobody knows at the step that was solved, because redundant constraints share what presses there.
     pub fn shared_friction(&self) -> impl Iterator<Item = ElementId> {
         self.friction.shared()
+    }
+
+    /// Friction that has more than one solution at the step that was solved.
+    pub fn ambiguous_friction(&self) -> impl Iterator<Item = ElementId> {
+        self.friction.ambiguous()
     }
 }
 

@@ -775,29 +775,36 @@ impl<'a, T: Real> Instant<'a, T> {
     fn axle(&self, k: usize, wheels: [WheelId; 2], what: AxleMeasure) -> T {
         let [left, right] = [0, 1].map(|side| self.wheel(k, side, wheels[side]));
         let toe = |wheel: &WheelAt<T>| toe(wheel.spin_axis, wheel.side);
-        // Headings to the left: toe-in of a right wheel is one, of a left wheel the opposite.
-        let headings = || [-toe(&left), toe(&right)];
+        let half = T::constant(0.5);
         let wheelbase = || T::constant(self.model.vehicle.wheelbase.unwrap_or(f64::NAN));
-        // track = C_y,L - C_y,R;  a = -toe_L, b = toe_R to the left;  cot r = cot a + track / wheelbase
         let track = left.contact().y - right.contact().y;
+        // Headings to the left are a = -toe_L and b = toe_R, the mean one (a + b) / 2. Into the turn the inner wheel heads by
+        // i = (abs(a + b) + a - b) / 2 and the outer one by o = (abs(a + b) - a + b) / 2, whichever way the axle turns.
+        let turning = || {
+            let (a, b) = (-toe(&left), toe(&right));
+            let (mean, apart) = ((a + b).abs() * half, (a - b) * half);
+            (mean, mean + apart, mean - apart)
+        };
         match what {
             AxleMeasure::Track => track,
             AxleMeasure::TotalToe => toe(&left) + toe(&right),
             AxleMeasure::AckermannError => {
-                let [l, r] = headings();
-                // b - r
-                r - right_by_ackermann(l, track / wheelbase())
+                let (_, inner, outer) = turning();
+                // o - r
+                outer - outer_by_ackermann(inner, track / wheelbase())
             }
             AxleMeasure::Ackermann => {
-                let [l, r] = headings();
-                // (a - b) / (a - r)
-                (l - r) / steering(l - right_by_ackermann(l, track / wheelbase()), [l, r])
+                let (mean, inner, outer) = turning();
+                // (i - o) / (i - r)
+                let full = inner - outer_by_ackermann(inner, track / wheelbase());
+                (inner - outer) / beyond(full, mean, STEERS)
             }
             AxleMeasure::TurningRadius => {
-                let least = headings().map(|x| x.sin_cos().0.abs());
-                // The outer wheel steers less.
+                let (_, inner, outer) = turning();
+                // The outer wheel steers less, or against Ackermann the inner one.
+                let least = -(-inner).larger(-outer);
                 // wheelbase / sin(the lesser heading)
-                wheelbase() / steering(-(-least[0]).larger(-least[1]), headings())
+                wheelbase() / beyond(least.sin_cos().0, least, STRAIGHT)
             }
             AxleMeasure::RollCentreY | AxleMeasure::RollCentreHeight => T::constant(f64::NAN),
         }
@@ -882,21 +889,24 @@ fn component<T: Real>(v: Vec3<T>, along: Option<Vec3>) -> T {
 /// and its path has no curvature there.
 const RESTS: f64 = 1e-12;
 
-/// A wheel that heads less aside than this, rad, drives straight ahead: the turning radius would be some 30 km, and
-/// Ackermann's part a quotient of round-off.
+/// A wheel that heads less into the turn than this, rad, drives straight ahead: the turning radius would be some 30 km.
 const STRAIGHT: f64 = 1e-4;
 
-/// A number for division; NaN where one of the headings is straight ahead.
-fn steering<T: Real>(x: T, headings: [T; 2]) -> T {
-    let steers = headings.into_iter().all(|heading| heading.abs().exceeds(T::constant(STRAIGHT)));
-    if steers { x } else { T::constant(f64::NAN) }
+/// An axle whose wheels head less aside than this in the mean, 1 degree in rad, is not steered: static toe and bump steer are of that size,
+/// while Ackermann's difference of the two headings falls with the square of the angle (0.01 degrees here), so that its part would be
+/// a quotient of toe by next to nothing.
+const STEERS: f64 = std::f64::consts::PI / 180.0;
+
+/// A number for division; NaN where an angle does not exceed a limit.
+fn beyond<T: Real>(x: T, angle: T, limit: f64) -> T {
+    if angle.exceeds(T::constant(limit)) { x } else { T::constant(f64::NAN) }
 }
 
-/// The heading of the right wheel that turns about the same point of the other axle's line as the left one with heading l:
-/// `cot r = cot l + track / wheelbase`, without the poles.
-fn right_by_ackermann<T: Real>(l: T, track_by_wheelbase: T) -> T {
-    let (sin, cos) = l.sin_cos();
-    // r = atan2(sin l, cos l + sin l track / wheelbase)
+/// The heading into the turn of the outer wheel that turns about the same point of the other axle's line as the inner one with heading i:
+/// `cot r = cot i + track / wheelbase`, without the poles.
+fn outer_by_ackermann<T: Real>(i: T, track_by_wheelbase: T) -> T {
+    let (sin, cos) = i.sin_cos();
+    // r = atan2(sin i, cos i + sin i track / wheelbase)
     sin.atan2(cos + sin * track_by_wheelbase)
 }
 

@@ -135,6 +135,8 @@ impl<T: Real> DriverAlone<'_, T> {
             wheel: instant.wheel(k, d, wheel),
             // The twist w, v per unit of q, which is what a pose with `d` along q splits into
             carrier: instant.poses[model.wheels[wheel.0].body.0].split().1,
+            drive: model.wheels[wheel.0].drive,
+            brakes: model.wheels[wheel.0].brakes,
         };
         match model.measures[k].kind {
             // (d of/dq) / (d over/dq), each with its derivative by the variable; the quotient rule is the dual's

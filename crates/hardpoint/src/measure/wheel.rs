@@ -10,7 +10,7 @@
 //! | `off_kingpin(P)` | d(P) | |
 //! | `.d` of a number of [`TravellingWheel`], `carrier` | X', w and v | per unit of the driver q, (11) of `docs/theory.md` with `L_u = 1` |
 
-use crate::model::{Vehicle, VehicleEnd, WheelMeasure};
+use crate::model::{TorqueReaction, Vehicle, VehicleEnd, WheelMeasure, WheelNeed};
 use crate::number::{Dual, Real};
 use crate::space::{Twist, Vec3};
 
@@ -218,6 +218,9 @@ pub(super) struct TravellingWheel<T> {
     pub wheel: WheelAt<Dual<T>>,
     /// The motion of the body that it turns on.
     pub carrier: Twist<T>,
+    /// Where the torques of its drive and its brakes are reacted.
+    pub drive: TorqueReaction,
+    pub brakes: TorqueReaction,
 }
 
 impl<T: Real> TravellingWheel<T> {
@@ -259,21 +262,41 @@ impl<T: Real> TravellingWheel<T> {
                 let spring = wheel.spring.expect("a motion ratio is of a wheel that has a spring");
                 -(spring.d / rise)
             }
-            // w / abs(w), times the sign of w_x
-            WheelMeasure::InstantAxisX => w.x.abs() / w.norm(),
-            WheelMeasure::InstantAxisY => w.y * w.x / (w.x.abs() * w.norm()),
-            WheelMeasure::InstantAxisZ => w.z * w.x / (w.x.abs() * w.norm()),
-            // (+-v_x / v_z) p l / h with brakes at the wheel,  (+-W_x' / W_z') d l / h with the differential on the body
-            WheelMeasure::AntiDive => v.x / v.z * support::<T>(what, vehicle),
-            WheelMeasure::AntiLift => -(v.x / v.z) * support::<T>(what, vehicle),
-            WheelMeasure::AntiSquat => -(wheel.centre.x.d / rise) * support::<T>(what, vehicle),
-            WheelMeasure::AntiRise => wheel.centre.x.d / rise * support::<T>(what, vehicle),
+            // s w / abs(w) of a rising wheel
+            WheelMeasure::InstantAxisX => self.about(w.x),
+            WheelMeasure::InstantAxisY => self.about(w.y),
+            WheelMeasure::InstantAxisZ => self.about(w.z),
+            // (+-X_x' / X_z') p l / h of braking, (+-X_x' / X_z') d l / h of driving
+            WheelMeasure::AntiDive | WheelMeasure::AntiRise => self.reacting(what, v) * support::<T>(what, vehicle),
+            WheelMeasure::AntiLift | WheelMeasure::AntiSquat => {
+                -(self.reacting(what, v) * support::<T>(what, vehicle))
+            }
             _ => T::constant(f64::NAN),
         }
     }
 }
 
 impl<T: Real> TravellingWheel<T> {
+    /// A component of the unit vector along the axis that the carrier turns about as the wheel rises: of a right wheel the opposite, so that
+    /// both sides are images of each other. It goes through zero with the component, and never turns around on the way.
+    fn about(&self, component: T) -> T {
+        let WheelAt { centre, side, .. } = &self.wheel;
+        component * (side.v * centre.z.d.sign() / self.carrier.w.norm())
+    }
+
+    /// `X_x' / X_z'` of the point X at which the tyre's force acts on the carrier while it is held, v the velocity of the carrier's point at C:
+    /// C where the carrier reacts the torque, for the wheel is locked to it; W where the body does, for the wheel turns freely on it.
+    fn reacting(&self, what: WheelMeasure, v: Vec3<T>) -> T {
+        let reacted = match what.needs() {
+            WheelNeed::Braking(_) => self.brakes,
+            _ => self.drive,
+        };
+        match reacted {
+            TorqueReaction::Outboard => v.x / v.z,
+            TorqueReaction::Inboard => self.wheel.centre.x.d / self.wheel.centre.z.d,
+        }
+    }
+
     /// The wheel where it is, with the axis of the screw that its carrier moves about as its kingpin: the carrier turns by w, and v is the
     /// velocity of its point that is at c.
     fn about_its_screw(&self, w: Vec3<T>, v: Vec3<T>, c: Vec3<T>) -> WheelAt<T> {

@@ -111,6 +111,10 @@ numbers! {
     Plain
 }
 
+/// The ends of a spring that are closer than this part of the mechanism's size meet: positions are solved to 1e-12 of it, so that the
+/// line between the ends would have lost three of its digits or all.
+pub const ENDS_MEET: f64 = 1e-9;
+
 /// The types of elements: their fields, as written and as they mean in a model. With a formula in `load/element.rs` a type is complete.
 macro_rules! elements {
     ($declare:ident) => {

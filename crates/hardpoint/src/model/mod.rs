@@ -25,7 +25,7 @@ pub use coupler::{Coupler, CouplerTerm, Transmission};
 pub(crate) use curve::Contact;
 pub use curve::{Curve, CurvePoint};
 pub use element::{
-    Angle, Axes, CubicStiffness, Damping, Density, Element, ElementId, ElementKind, ElementNumber,
+    Angle, Axes, CubicStiffness, Damping, Density, ENDS_MEET, Element, ElementId, ElementKind, ElementNumber,
     ElementUnit, Force, Inertia, Length, Mass, Moment, NumberId, Plain, Stiffness, TorsionalDamping,
     TorsionalStiffness,
 };
@@ -45,7 +45,9 @@ pub use solid::{OpenSurface, Solid};
 pub use spring_table::SpringTable;
 pub use sweeping::{SweepMethod, SweepRange, Sweeping};
 pub use tolerancing::{Allocating, AllocationRule, Correlation, Scatter, Tolerance, Tolerancing};
-pub use wheel::{ArmPlane, Axle, AxleMeasure, Side, Vehicle, VehicleEnd, Wheel, WheelMeasure, WheelNeed};
+pub use wheel::{
+    ArmPlane, Axle, AxleMeasure, Side, TorqueReaction, Vehicle, VehicleEnd, Wheel, WheelMeasure, WheelNeed,
+};
 
 use crate::constraint::MarkerPair;
 use crate::joint::{CoordinateType, JointType, Need, Quantity};

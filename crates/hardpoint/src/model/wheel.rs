@@ -29,6 +29,24 @@ pub struct Wheel {
     pub spring: Option<[PointId; 2]>,
     /// At which end of the vehicle it is.
     pub end: Option<VehicleEnd>,
+    /// Where the torque that drives it is reacted.
+    pub drive: TorqueReaction,
+    /// Where the torque of its brake is reacted.
+    pub brakes: TorqueReaction,
+}
+
+/// The part that reacts the torque of a drive or a brake.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TorqueReaction {
+    /// The vehicle's body, through shafts: a differential or a brake on the body.
+    Inboard,
+    /// The body that the wheel turns on: a brake at the wheel, a motor in the hub, the differential of a live axle.
+    Outboard,
+}
+
+impl TorqueReaction {
+    /// Both, in the order of the format's words.
+    pub const ALL: [Self; 2] = [Self::Inboard, Self::Outboard];
 }
 
 impl Wheel {
@@ -285,11 +303,11 @@ wheel_measures! {
     SideCentreX "instant_centre_side_x" LENGTH WheelNeed::Bump;
     /// Global z of the instant centre in side view, at the contact point's y.
     SideCentreZ "instant_centre_side_z" LENGTH WheelNeed::Bump;
-    /// x component of the unit vector along the instant axis of the wheel carrier, which points forward.
+    /// x component of the unit vector along the instant axis of the wheel carrier, about which a left wheel rises and a right one falls.
     InstantAxisX "instant_axis_x" NUMBER WheelNeed::Bump;
-    /// y component of the unit vector along the instant axis of the wheel carrier, which points forward.
+    /// y component of the unit vector along the instant axis of the wheel carrier, about which a left wheel rises and a right one falls.
     InstantAxisY "instant_axis_y" NUMBER WheelNeed::Bump;
-    /// z component of the unit vector along the instant axis of the wheel carrier, which points forward.
+    /// z component of the unit vector along the instant axis of the wheel carrier, about which a left wheel rises and a right one falls.
     InstantAxisZ "instant_axis_z" NUMBER WheelNeed::Bump;
     /// How far inboard of the contact point the instant centre in front view is.
     SwingArmFront "swing_arm_front" LENGTH WheelNeed::Bump;
@@ -321,13 +339,13 @@ wheel_measures! {
     VirtualMechanicalTrail "virtual_mechanical_trail" LENGTH WheelNeed::Steer;
     /// How far in front of the virtual steering axis the wheel centre is, at its height.
     VirtualHubTrail "virtual_hub_trail" LENGTH WheelNeed::Steer;
-    /// Part of the braking dive that the front suspension's geometry takes, 1 for all of it; brakes at the wheel.
+    /// Part of the braking dive that the front suspension's geometry takes, 1 for all of it.
     AntiDive "anti_dive" NUMBER WheelNeed::Braking(VehicleEnd::Front);
-    /// Part of the braking lift that the rear suspension's geometry takes, 1 for all of it; brakes at the wheel.
+    /// Part of the braking lift that the rear suspension's geometry takes, 1 for all of it.
     AntiLift "anti_lift" NUMBER WheelNeed::Braking(VehicleEnd::Rear);
-    /// Part of the driving squat that the rear suspension's geometry takes, 1 for all of it; differential on the body.
+    /// Part of the driving squat that the rear suspension's geometry takes, 1 for all of it.
     AntiSquat "anti_squat" NUMBER WheelNeed::Driving(VehicleEnd::Rear);
-    /// Part of the driving lift that the front suspension's geometry takes, 1 for all of it; differential on the body.
+    /// Part of the driving lift that the front suspension's geometry takes, 1 for all of it.
     AntiRise "anti_rise" NUMBER WheelNeed::Driving(VehicleEnd::Front);
 }
 
@@ -338,9 +356,9 @@ wheel_measures! {
     Track "track" LENGTH false;
     /// Sum of both toe angles.
     TotalToe "total_toe" ANGLE false;
-    /// Steer angle of the right wheel beyond what Ackermann's condition makes of the left one's.
+    /// Steer angle of the outer wheel into the turn beyond what Ackermann's condition makes of the inner one's.
     AckermannError "ackermann_error" ANGLE false;
-    /// Difference of both steer angles as a part of Ackermann's.
+    /// Difference of both steer angles as a part of Ackermann's, by the inner wheel; none below a mean heading of 1 degree.
     Ackermann "ackermann" NUMBER false;
     /// Radius of the path of the outer wheel's contact point, with the other axle straight ahead.
     TurningRadius "turning_radius" LENGTH false;

@@ -21,7 +21,7 @@ use crate::motion::level::turn_twists;
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
-use crate::topology::{ClosureId, LinkId, SetBy, Topology};
+use crate::topology::{ClosureId, LinkId, RowId, SetBy, Topology};
 
 use super::direct::{DirectDifferentiation, MovingMarker, PlanVelocity};
 
@@ -213,6 +213,17 @@ impl Seconds {
         }
         std::mem::swap(&mut self.x, &mut state.x[1]);
         std::mem::swap(&mut self.l, &mut state.l[1]);
+    }
+
+    /// Defects of the redundant rows under a direction alone, where [`solve`](Self::solve) was called last; none where the mechanism
+    /// follows it.
+    pub fn resistance(&self, stepper: &Stepper<'_>, direction: usize) -> Vec<(RowId, f64)> {
+        let (topology, state) = (&stepper.topology, &stepper.state);
+        let FirstOrder { field, direct, .. } = &self.firsts[direction];
+        match direct.worst_defect(topology, state, field) {
+            Some(_) => direct.defects(topology, state, field).collect(),
+            None => Vec::new(),
+        }
     }
 
     /// How many pairs there are.

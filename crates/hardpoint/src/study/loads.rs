@@ -50,6 +50,8 @@ pub struct Loads {
     pub pushes: Vec<Vec3>,
     /// Friction that nobody knows at some time, because redundant constraints share what presses there: then no load is known.
     pub shared_friction: Vec<ElementId>,
+    /// Friction that has more than one solution at some time: then no load is known either.
+    pub ambiguous_friction: Vec<ElementId>,
     /// Why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
 }
@@ -87,11 +89,8 @@ impl Analysis<'_> {
             let Some(&t) = times.next() else { return };
             solver.step(one, t);
             result.times.push(t);
-            for element in solver.shared_friction() {
-                if !result.shared_friction.contains(&element) {
-                    result.shared_friction.push(element);
-                }
-            }
+            note(&mut result.shared_friction, solver.shared_friction());
+            note(&mut result.ambiguous_friction, solver.ambiguous_friction());
             for joint in (0..model.joints.len()).map(JointId) {
                 let [(force, f), (moment, m)] = solver.reaction(joint, Axes::Global);
                 let in_body = solver.reaction(joint, Axes::Body);
@@ -113,5 +112,14 @@ impl Analysis<'_> {
             result.drivers.extend(drivers.map(|(&force, &speed)| DriverLoad { force, speed }));
         });
         result
+    }
+}
+
+/// Enters elements that are not there yet.
+fn note(list: &mut Vec<ElementId>, elements: impl Iterator<Item = ElementId>) {
+    for element in elements {
+        if !list.contains(&element) {
+            list.push(element);
+        }
     }
 }

@@ -126,6 +126,8 @@ fn all_measures_of_a_wheel_have_the_same_gradients_where_variables_move_its_own_
         ]),
         spring: None,
         end: None,
+        drive: None,
+        brakes: None,
     });
     let of_wheel = |&what: &WheelMeasure| {
         MeasureDraft::new(

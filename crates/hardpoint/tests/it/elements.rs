@@ -309,6 +309,8 @@ fn strut_on_its_wheel(push: [Option<NumberDraft>; 3]) -> Draft {
         planes: None,
         spring: None,
         end: None,
+        drive: None,
+        brakes: None,
     });
     let [outboard, forward, up] = push;
     let kind = ElementKindDraft::WheelForce { wheel: "fl".into(), outboard, forward, up, law: None };

@@ -3,7 +3,7 @@
 use crate::draft::{AxleDraft, PointRef, Section, WheelDraft, WheelSpinDraft};
 use crate::model::{
     ArmPlane, Axle, AxleId, AxleMeasure, BodyId, BodyPoint, Direction, DriverId, HardpointId, MeasureKind,
-    PointId, Side, VehicleEnd, Wheel, WheelId, WheelMeasure, WheelNeed,
+    PointId, Side, TorqueReaction, VehicleEnd, Wheel, WheelId, WheelMeasure, WheelNeed,
 };
 use crate::space::Vec3;
 
@@ -117,6 +117,15 @@ impl Checker<'_> {
             self.wheel_ids.push(wheel.as_ref().map(|_| WheelId(self.model.wheels.len())));
             self.model.wheels.extend(wheel);
         }
+        // A body that carries wheels of both sides is a live axle, with its differential on it.
+        let carried: Vec<(BodyId, Side)> = self.model.wheels.iter().map(|w| (w.body, w.side)).collect();
+        for (id, given) in self.wheel_ids.iter().zip(&draft.wheels) {
+            let Some(id) = id.filter(|_| given.drive.is_none()) else { continue };
+            let wheel = &mut self.model.wheels[id.0];
+            if carried.iter().any(|(body, side)| *body == wheel.body && *side != wheel.side) {
+                wheel.drive = TorqueReaction::Outboard;
+            }
+        }
     }
 
     /// A wheel, as long as nothing is wrong with it.
@@ -174,8 +183,24 @@ impl Checker<'_> {
         self.model.points.push(BodyPoint { name: w.name.clone(), body, at, unnamed: true });
         let centre = PointId(self.model.points.len() - 1);
         let (name, radius, end) = (w.name.clone(), w.radius, w.end);
-        let wheel =
-            Wheel { name, body, centre, spin_axis, radius, side, kingpin, bump, steer, planes, spring, end };
+        let brakes = w.brakes.unwrap_or(TorqueReaction::Outboard);
+        let drive = w.drive.unwrap_or(TorqueReaction::Inboard);
+        let wheel = Wheel {
+            name,
+            body,
+            centre,
+            spin_axis,
+            radius,
+            side,
+            kingpin,
+            bump,
+            steer,
+            planes,
+            spring,
+            end,
+            drive,
+            brakes,
+        };
         (self.faults.len() == faults && !self.draft.unread.any(here.section, here.index)).then_some(wheel)
     }
 
