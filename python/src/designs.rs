@@ -121,10 +121,7 @@ impl Model {
         found.set_item("values", array(py, values, [n, count, steps])?)?;
         found.set_item("sensitivities", array(py, d, [n, count, d_count, steps])?)?;
         found.set_item("metrics", array(py, metrics, [n, metric_count])?)?;
-        found.set_item(
-            "metric_sensitivities",
-            array(py, metrics_d, [n, metric_count, d_count])?,
-        )?;
+        found.set_item("metric_sensitivities", array(py, metrics_d, [n, metric_count, d_count])?)?;
         found.set_item("stops", stops)?;
         Ok(found)
     }
@@ -168,10 +165,7 @@ impl Model {
         let followed = found.admissibility.iter().map(|a| !matches!(a, Admissibility::CannotFollow { .. }));
         let answer = PyDict::new(py);
         answer.set_item("times", array1(py, found.times))?;
-        answer.set_item(
-            "gradients",
-            array(py, d, [steps, outputs.len(), variables, 3])?,
-        )?;
+        answer.set_item("gradients", array(py, d, [steps, outputs.len(), variables, 3])?)?;
         answer.set_item("followed", followed.collect::<Vec<bool>>())?;
         answer.set_item("method", format!("{:?}", found.method).to_lowercase())?;
         Ok(answer)
