@@ -1,11 +1,8 @@
+import { availableParallelism } from 'node:os'
 import { defineConfig } from 'vitest/config'
 import { packed } from './packed'
+import { TEST, WAIT } from './test/limits'
 
-/**
- * Milliseconds after which a test counts as hung: a quarter of an hour, where the slowest takes seconds. No result may depend on
- * how fast or how busy the machine is, so a limit is there only so that a hang ends, and soon enough for the rest to be told.
- */
-const HANG = 900_000
 
 // The built files are committed in the Rust crate that embeds them, so their names are fixed
 // and nothing in them depends on the folder or on the time of the build.
@@ -25,9 +22,11 @@ export default defineConfig({
   test: {
     include: ['test/**/*.test.ts'],
     globalSetup: 'test/samples.ts',
-    testTimeout: HANG,
-    hookTimeout: HANG,
-    teardownTimeout: HANG,
-    expect: { poll: { timeout: HANG } },
+    // On two cores Vitest would by itself run one file after the other, each of which waits for its browser most of the time.
+    maxWorkers: Math.max(2, availableParallelism()),
+    testTimeout: TEST,
+    hookTimeout: TEST,
+    teardownTimeout: TEST,
+    expect: { poll: { timeout: WAIT } },
   },
 })

@@ -18,6 +18,7 @@ import os
 import re
 import tempfile
 import threading
+import time
 import uuid
 from asyncio import CancelledError
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -25,6 +26,7 @@ from contextlib import closing
 from functools import lru_cache
 from itertools import islice
 from pathlib import Path
+from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 try:
@@ -32,7 +34,7 @@ try:
     import pyarrow
     import pyarrow.dataset
     import pyarrow.parquet
-    from distributed import Client, KilledWorker, as_completed
+    from distributed import Client, Future, KilledWorker, TimeoutError
 except ImportError as missing:
     raise ImportError(f"hardpoint.dask needs distributed, fsspec and pyarrow ({missing}): pip install 'hardpoint[dask]'") from missing
 
@@ -57,6 +59,16 @@ BLOCK = 512
 """Designs are solved in blocks of so many; parts begin with one, so that their last bits do not depend on how they are cut."""
 AHEAD = 3
 """So many tasks are under way for each thread of the workers: one is solved, the others wait beside it."""
+PATIENCE = 600.0
+"""After so many seconds in which no task ends, and no worker is at one, a sweep ends with an error."""
+LOOK = 1.0
+"""The states of futures are looked at every so many seconds."""
+ASK = 10.0
+"""The scheduler is asked who works every so many seconds, while nothing ends."""
+ANSWER = 30.0
+"""The scheduler answers within so many seconds, or is asked again."""
+ENDED = ("finished", "error", "cancelled")
+"""States of futures that have ended. The data of one that is `lost` is made anew."""
 RECORD = "sweep.json"
 NAME = re.compile(r"(?P<table>designs|curves)-(?P<first>\d{8,})\.parquet")
 PARTIAL = re.compile(r"\.(designs|curves)-\d{8,}\.parquet\.[0-9a-f]{32}\.partial")
@@ -70,6 +82,7 @@ def sweep(
     part: int = PART,
     overwrite: bool = False,
     progress: Progress = None,
+    patience: float = PATIENCE,
     storage_options: Mapping[str, Any] | None = None,
     **asked,
 ) -> Stored:
@@ -78,13 +91,14 @@ def sweep(
     those of `model.sweep`, bit for bit.
 
     Called again after an interruption it goes on: parts that are there and whole are not solved again. A store that holds anything
-    else is refused; `overwrite` empties it first. `progress` is told designs.
+    else is refused; `overwrite` empties it first. `progress` is told designs. Raises `StudyError` when for `patience` seconds no part has
+    ended and no worker was at work; `math.inf` waits for workers however long they take to come.
     """
     listed = asked.pop("designs", None)
     asked = json.loads(json.dumps({name: value for name, value in asked.items() if value is not None}, default=_plain))
     count = model.sweep_plan(**asked, **({} if listed is None else {"designs": listed})).count
     listed = None if listed is None else (Path(listed).name, Path(listed).read_bytes())
-    return _stored(_Sweep(model, count, part, asked, listed), client, store, overwrite, progress, storage_options)
+    return _stored(_Sweep(model, count, part, asked, listed), client, store, overwrite, progress, patience, storage_options)
 
 
 def monte_carlo(
@@ -97,6 +111,7 @@ def monte_carlo(
     part: int = PART,
     overwrite: bool = False,
     progress: Progress = None,
+    patience: float = PATIENCE,
     storage_options: Mapping[str, Any] | None = None,
 ) -> Stored:
     """Solves designs that are drawn within the tolerances, those of `model.tolerance(samples=samples, seed=seed)`, in every case, and
@@ -105,7 +120,7 @@ def monte_carlo(
     if samples < 1:
         raise UsageError.saying("there is no design to be solved; give at least one sample")
     _drawn(model, [0], seed)
-    return _stored(_Drawn(model, int(samples), part, seed), client, store, overwrite, progress, storage_options)
+    return _stored(_Drawn(model, int(samples), part, seed), client, store, overwrite, progress, patience, storage_options)
 
 
 class Searches(NamedTuple):
@@ -118,13 +133,21 @@ class Searches(NamedTuple):
     """All of them, in order of starts; that of number 0 starts from the design as drawn."""
 
 
-def multi_start(model: Model, client: Client, starts: int, iterations: int | None = None, *, progress: Progress = None) -> Searches:
+def multi_start(
+    model: Model,
+    client: Client,
+    starts: int,
+    iterations: int | None = None,
+    *,
+    progress: Progress = None,
+    patience: float = PATIENCE,
+) -> Searches:
     """Searches for the best design (`model.optimize`) from several starts, each on a worker. `progress` is told searches."""
     if starts < 1:
         raise UsageError.saying("there is nothing to start from; give at least one start")
     _check(client)
     told, found = listener(progress), {}
-    with closing(_each(client, _search, _Search(model, iterations), range(starts), lambda first: f"start {first}")) as searches:
+    with closing(_each(client, _search, _Search(model, iterations), range(starts), lambda first: f"start {first}", patience)) as searches:
         for first, search in searches:
             found[first] = outcome(model, *search)
             if told:
@@ -366,50 +389,124 @@ def _itself(shared: Any) -> Any:
 
 
 def _each(
-    client: Client, work: Callable[[Any, int], Any], shared: Any, numbers: Iterable[int], named: Callable[[int], str]
+    client: Client,
+    work: Callable[[Any, int], Any],
+    shared: Any,
+    numbers: Iterable[int],
+    named: Callable[[int], str],
+    patience: float = PATIENCE,
 ) -> Iterator[tuple[int, Any]]:
     """`work(shared, number)` of each number, as they end.
 
     What is shared is the outcome of a task: it goes to each worker once, from another that has it, and is made anew if all that had
     it are lost. As many tasks are under way as the workers that there are can have beside them.
+
+    A task that has ended is announced by a callback on the event loop of this client; `distributed.as_completed` would by default
+    wait on that of the client that was made last, whose thread misses wake-ups of this one. The states of futures are looked at
+    every so often all the same, so that no announcement has to arrive.
     """
     name = f"hardpoint-{uuid.uuid4().hex}"
     here = client.submit(_itself, shared, key=f"{name}-model")
-    waiting, under_way, ended = iter(numbers), {}, as_completed(with_results=True, raise_errors=False)
+    waiting, under_way = iter(numbers), {}
+    ended: SimpleQueue[Future] = SimpleQueue()
+    watch = _Watch(client, patience)
     room = since = 0
     try:
         while True:
             # Workers come and go.
             if since >= room:
-                room, since = AHEAD * max(1, sum(client.nthreads().values())), 0
+                room, since = AHEAD * max(1, watch.threads()), 0
             for number in islice(waiting, max(0, room - len(under_way))):
                 future = client.submit(work, here, number, key=f"{name}-{number}")
                 under_way[future] = number
-                ended.add(future)
+                future.add_done_callback(ended.put)
             if not under_way:
                 return
-            future, result = next(ended)
-            number, since = under_way.pop(future), since + 1
-            if future.status != "finished":
-                _raise(result, named(number))
-            yield number, result
+            future = _next(ended, under_way)
+            found = None if future is None else _result(future, named(under_way[future]))
+            if found is None:
+                watch.nothing_ended(named(min(under_way.values())))
+                continue
+            since += 1
+            yield under_way.pop(future), found[0]
+            # What the caller has done meanwhile does not count.
+            watch.one_ended()
     finally:
         # What has not begun is dropped.
         for future in [*under_way, here]:
             future.release()
 
 
-def _raise(result: Any, named: str) -> None:
-    """What went wrong with a task."""
-    error = result[1] if isinstance(result, tuple) else result
-    if isinstance(error, KilledWorker):
+def _next(ended: SimpleQueue[Future], under_way: Mapping[Future, int]) -> Future | None:
+    """A task that has ended; nothing if none does for a while."""
+    try:
+        future = ended.get(timeout=LOOK)
+        return future if future in under_way else None
+    except Empty:
+        return next((future for future in under_way if future.status in ENDED), None)
+
+
+def _result(future: Future, named: str) -> tuple[Any] | None:
+    """What a task has found; nothing if it cannot be had now: its worker was lost meanwhile, or the scheduler does not answer."""
+    try:
+        return (future.result(timeout=ANSWER),)
+    except KilledWorker as error:
         raise StudyError.saying(
             f"{named}: {error.allowed_failures + 1} workers were lost over it, the last at {error.last_worker.address}; perhaps they have too "
             "little memory: give smaller parts or fewer threads to each, then call it again"
         ) from error
-    if isinstance(error, CancelledError):
+    except CancelledError as error:
         raise StudyError.saying(f"{named}: the cluster has dropped it ({error}); call it again, it goes on from what is done") from error
-    raise error
+    except (OSError, TimeoutError):
+        # That of the task itself is an answer.
+        if future.status == "error":
+            raise
+        return None
+
+
+class _Watch:
+    """Ends the wait for tasks that nobody works at."""
+
+    def __init__(self, client: Client, patience: float):
+        self._client = client
+        self._patience = patience
+        self._since = self._asked = time.monotonic()
+
+    def threads(self) -> int:
+        """The threads of all workers; none if the scheduler does not answer."""
+        try:
+            return sum(self._client.nthreads(callback_timeout=ANSWER).values())
+        except (OSError, TimeoutError):
+            return 0
+
+    def one_ended(self) -> None:
+        """A task has ended."""
+        self._since = time.monotonic()
+
+    def nothing_ended(self, named: str) -> None:
+        """No task has ended for a while. Raises when none has for so long, with no worker at any task meanwhile."""
+        now = time.monotonic()
+        if now - self._asked < min(ASK, self._patience):
+            return
+        self._asked = now
+        workers, busy = self._at_work()
+        if busy:
+            self._since = now
+        elif now - self._since >= self._patience:
+            has = "does not answer" if workers is None else "has no workers" if workers == 0 else f"has {workers} workers, and none works at a task"
+            raise StudyError.saying(
+                f"{named}: no task has ended for {self._patience:g} s, and the cluster {has}; see whether its scheduler and workers run, "
+                "then call it again, it goes on from what is done; `patience` is how many seconds it waits"
+            )
+
+    def _at_work(self) -> tuple[int | None, bool]:
+        """How many workers there are, if the scheduler answers, and whether any of them works at a task, as they last said."""
+        try:
+            known = self._client.sync(self._client.scheduler.identity, callback_timeout=ANSWER)
+        except (OSError, TimeoutError):
+            return None, False
+        workers = known["workers"].values()
+        return len(workers), any(worker["metrics"].get("task_counts", {}).get("executing", 0) > 0 for worker in workers)
 
 
 class _Part(NamedTuple):
@@ -438,14 +535,20 @@ def _solve(asked: _Part, first: int) -> int:
 
 
 def _stored(
-    work: _Work, client: Client, store: Store, overwrite: bool, progress: Progress, storage_options: Mapping[str, Any] | None
+    work: _Work,
+    client: Client,
+    store: Store,
+    overwrite: bool,
+    progress: Progress,
+    patience: float,
+    storage_options: Mapping[str, Any] | None,
 ) -> Stored:
     _check(client)
     fs, root = _at(store, storage_options)
     record = _begun(fs, root, work, overwrite)
     told, done, failed = listener(progress), 0, 0
     named = lambda first: f"designs {first} to {work.last(first) - 1}"  # noqa: E731
-    with closing(_each(client, _solve, _Part(work, fs, root), range(0, work.count, work.part), named)) as parts:
+    with closing(_each(client, _solve, _Part(work, fs, root), range(0, work.count, work.part), named, patience)) as parts:
         for first, more in parts:
             done, failed = done + work.last(first) - first, failed + more
             if told:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .arrays import frozen
 from .errors import Diagnostic, UsageError, diagnostics, unknown
 
 if TYPE_CHECKING:
@@ -14,18 +15,18 @@ if TYPE_CHECKING:
 
 class Designs:
     """What was kept of many designs. Where a design cannot be moved to its end (`stops`), and by variables that the mechanism cannot
-    follow, numbers are NaN."""
+    follow, numbers are NaN. Arrays are read-only: to change numbers, copy them."""
 
     def __init__(self, model: Model, case: int, rows: np.ndarray, outputs: list[str], order: int, at: np.ndarray, found: dict, with_d: bool):
         self.model = model
         self._with_d = with_d
         self.variables: tuple[str, ...] = tuple(model.variables)
         drawn = np.array([v.drawn for v in model.variables.values()])
-        self.designs: np.ndarray = np.where(np.isnan(rows), drawn, rows)
+        self.designs: np.ndarray = frozen(np.where(np.isnan(rows), drawn, rows))
         """`[design, variable]`: the value of every design variable."""
         self.outputs: tuple[str, ...] = tuple(outputs)
         self.order = order
-        self.times: np.ndarray = np.array(model._info["motions"][case]["times"])[at]
+        self.times: np.ndarray = frozen(np.array(model._info["motions"][case]["times"], dtype=float)[at])
         """The output times that were kept, s."""
         self.values: np.ndarray = found["values"]
         """`[design, output, time]`."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 
 from . import _native, display, files
+from .arrays import frozen
 from .designs import Designs
 from .errors import Diagnostic, HardpointWarning, MotionStopped, UsageError, unknown
 from .run import Run
@@ -83,7 +84,7 @@ class Model:
         self.bodies: tuple[str, ...] = tuple(info["bodies"])
         self.joints: tuple[dict, ...] = tuple(info["joints"])
         self.drivers: tuple[dict, ...] = tuple(info["drivers"])
-        self.hardpoints: dict[str, np.ndarray] = {h["name"]: np.array(h["place"]) for h in info["hardpoints"]}
+        self.hardpoints: dict[str, np.ndarray] = {h["name"]: frozen(np.array(h["place"], dtype=float)) for h in info["hardpoints"]}
         self.variables: dict[str, Variable] = {
             v["name"]: Variable(**{**v, "bounds": v["bounds"] and tuple(v["bounds"])}) for v in info["variables"]
         }
@@ -115,7 +116,7 @@ class Model:
 
     def times(self, case: str | None = None) -> np.ndarray:
         """The output times of a case, s."""
-        return np.array(self._info["motions"][self._index(case)]["times"])
+        return frozen(np.array(self._info["motions"][self._index(case)]["times"], dtype=float))
 
     def metrics(self, case: str | None = None) -> dict[str, str]:
         """The metrics of a case, with their units."""
@@ -207,9 +208,8 @@ class Model:
         names = [outputs] if isinstance(outputs, str) else list(outputs)
         order = self._order(order, names)
         found = self._native.gradients(self._index(case), self._values(design), [self._output(name) for name in names], method)
-        gradients = found["gradients"][..., order]
-        gradients[:, :, ~np.array(found["followed"], dtype=bool)] = np.nan
-        return gradients
+        followed = np.array(found["followed"], dtype=bool)
+        return frozen(np.where(followed, found["gradients"][..., order], np.nan))
 
     def second_derivatives(
         self, outputs: str | Iterable[str], variables: str | Iterable[str] | None = None, design: Design = None, *, case: str | None = None

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from . import _native, display
+from .arrays import frozen
 from .errors import CannotFollow, Diagnostic, UsageError, diagnostics, unknown
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ class BodySensitivity:
 
 class Run:
     """The motion of one design in one case. Arrays go over the output times that were solved; they are made once, when first asked
-    for, and slices of them are views."""
+    for, and slices of them are views. They are read-only: to change numbers, copy them."""
 
     def __init__(self, model: Model, case: int, native: _native.Run):
         self.model = model
@@ -148,7 +149,7 @@ class Run:
         order = self.model._order(order, [name] if name else [])
         found = self._derivatives(order)
         # Where all are followed, nothing is copied.
-        found = found if by == list(range(found.shape[1])) else found[:, by]
+        found = found if by == list(range(found.shape[1])) else frozen(found[:, by])
         return found if name is None else found[self.model._output(name)]
 
     # Bodies

@@ -10,14 +10,15 @@ use hardpoint::model::Dimension;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::study::{BLOCK, Method, metric_numbers, metrics};
 use hardpoint_report::diagnose;
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::array::{array, array1};
 use crate::failure::{Failure, Kind, told};
 use crate::model::Model;
 use crate::run::derivatives;
-use crate::watch::{Quick, patiently};
+use crate::watch::patiently;
 
 /// So many threads as are asked for, or one for each core.
 pub(crate) fn threads(asked: Option<usize>) -> NonZero<usize> {
@@ -98,9 +99,9 @@ impl Model {
             metrics_d: room(n * metric_count * d_count),
             stops: Vec::new(),
         };
-        let (kept, _) = patiently(py, progress, |watch| {
+        let kept = patiently(py, progress, |watch| {
+            let analysis = &watch.over(analysis);
             let mut done = 0;
-            // In blocks, so that an interruption is soon heard.
             for (block, designs) in asked.chunks(BLOCK).enumerate() {
                 let run = Asked::new().threads(threads(workers));
                 let run = if sensitivities { run } else { run.without_sensitivities() };
@@ -112,18 +113,15 @@ impl Model {
                     break;
                 }
             }
-            (kept, done)
+            kept
         })?;
         let Kept { values, d, metrics, metrics_d, mut stops, .. } = kept;
         stops.sort_by_key(|(n, _)| *n);
         let found = PyDict::new(py);
-        found.set_item("values", PyArray1::from_vec(py, values).reshape([n, count, steps])?)?;
-        found.set_item("sensitivities", PyArray1::from_vec(py, d).reshape([n, count, d_count, steps])?)?;
-        found.set_item("metrics", PyArray1::from_vec(py, metrics).reshape([n, metric_count])?)?;
-        found.set_item(
-            "metric_sensitivities",
-            PyArray1::from_vec(py, metrics_d).reshape([n, metric_count, d_count])?,
-        )?;
+        found.set_item("values", array(py, values, [n, count, steps])?)?;
+        found.set_item("sensitivities", array(py, d, [n, count, d_count, steps])?)?;
+        found.set_item("metrics", array(py, metrics, [n, metric_count])?)?;
+        found.set_item("metric_sensitivities", array(py, metrics_d, [n, metric_count, d_count])?)?;
         found.set_item("stops", stops)?;
         Ok(found)
     }
@@ -149,7 +147,7 @@ impl Model {
                 .into());
             }
         };
-        let found = py.detach(|| analysis.gradients(&changes, &outputs, method));
+        let found = patiently(py, None, |watch| watch.over(analysis).gradients(&changes, &outputs, method))?;
         if let Some(stop) = &found.stop {
             let told = diagnose::stop(file, stop, found.times.len(), None);
             return Err(Failure::of_model(Kind::Stopped, file, &told).into());
@@ -166,11 +164,8 @@ impl Model {
         }
         let followed = found.admissibility.iter().map(|a| !matches!(a, Admissibility::CannotFollow { .. }));
         let answer = PyDict::new(py);
-        answer.set_item("times", PyArray1::from_vec(py, found.times))?;
-        answer.set_item(
-            "gradients",
-            PyArray1::from_vec(py, d).reshape([steps, outputs.len(), variables, 3])?,
-        )?;
+        answer.set_item("times", array1(py, found.times))?;
+        answer.set_item("gradients", array(py, d, [steps, outputs.len(), variables, 3])?)?;
         answer.set_item("followed", followed.collect::<Vec<bool>>())?;
         answer.set_item("method", format!("{:?}", found.method).to_lowercase())?;
         Ok(answer)
@@ -184,7 +179,7 @@ impl Model {
         design: Vec<f64>,
         outputs: Vec<usize>,
         variables: Vec<usize>,
-    ) -> PyResult<Bound<'py, numpy::PyArray4<f64>>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         let (file, analysis, changes) = (&self.cases[case], self.analysis(case)?, self.changes(&design)?);
         let model = &file.model;
         let direction = |b: &usize| {
@@ -193,7 +188,7 @@ impl Model {
         let directions: Vec<Vec<f64>> = variables.iter().map(direction).collect();
         let n = variables.len();
         let pairs: Vec<[usize; 2]> = (0..n).flat_map(|i| (0..=i).map(move |j| [i, j])).collect();
-        let found = py.detach(|| analysis.second(&changes, &directions, &pairs));
+        let found = patiently(py, None, |watch| watch.over(analysis).second(&changes, &directions, &pairs))?;
         if let Some(stop) = &found.stop {
             let told = diagnose::stop(file, stop, found.times.len(), None);
             return Err(Failure::of_model(Kind::Stopped, file, &told).into());
@@ -212,17 +207,14 @@ impl Model {
                 }
             }
         }
-        PyArray1::from_vec(py, all).reshape([steps, count, n, n])
+        array(py, all, [steps, count, n, n])
     }
 
     /// Third time derivatives of all bodies: times and `[time, body, 6]`.
     fn jerk<'py>(&self, py: Python<'py>, case: usize, design: Vec<f64>) -> PyResult<Bound<'py, PyDict>> {
         use hardpoint::joint::Quantity::{Angle, Length};
         let (file, analysis, changes) = (&self.cases[case], self.analysis(case)?, self.changes(&design)?);
-        let mut quick = Quick::new();
-        let _ = quick.go_on();
-        let found = py.detach(|| analysis.jerks(&changes));
-        quick.end()?;
+        let found = patiently(py, None, |watch| watch.over(analysis).jerks(&changes))?;
         let (steps, bodies) = (found.times.len(), file.model.bodies.len() - 1);
         let mut numbers = Vec::with_capacity(steps * bodies * 6);
         for k in 0..steps {
@@ -232,8 +224,8 @@ impl Model {
             }
         }
         let answer = PyDict::new(py);
-        answer.set_item("times", PyArray1::from_slice(py, &found.times))?;
-        answer.set_item("jerk", PyArray1::from_vec(py, numbers).reshape([steps, bodies, 6])?)?;
+        answer.set_item("times", array1(py, found.times))?;
+        answer.set_item("jerk", array(py, numbers, [steps, bodies, 6])?)?;
         Ok(answer)
     }
 }

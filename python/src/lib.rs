@@ -4,6 +4,7 @@
 //! Numbers are in the units of the model file. Designs are values of all design variables, NaN for what stays as drawn: of a parameter
 //! its own value, of all others a change.
 
+mod array;
 mod design;
 mod designs;
 mod failure;
@@ -24,6 +25,8 @@ mod _native {
     use crate::run::Run;
     #[pymodule_export]
     use crate::sweep::Sweep;
+    #[pymodule_export]
+    use crate::watch::{set_patience, wake_ups};
 
     #[pymodule_init]
     fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {

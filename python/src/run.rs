@@ -15,10 +15,11 @@ use hardpoint_report::diagnose;
 use hardpoint_report::facts::Facts;
 use hardpoint_report::payload::{Changed, Request, report};
 use hardpoint_report::summary::Summary;
-use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use serde_json::Value;
 
+use crate::array::{array, array1};
 use crate::design::shown;
 use crate::failure::{Failure, Kind, told};
 use crate::model::Model;
@@ -31,24 +32,6 @@ pub(crate) struct Run {
     case: usize,
     changes: Vec<f64>,
     solution: Arc<Solution>,
-}
-
-/// A vector of numbers as an array, without a copy.
-pub(crate) fn array2(
-    py: Python<'_>,
-    numbers: Vec<f64>,
-    shape: [usize; 2],
-) -> PyResult<Bound<'_, PyArray2<f64>>> {
-    PyArray1::from_vec(py, numbers).reshape(shape)
-}
-
-/// The same with three dimensions.
-pub(crate) fn array3(
-    py: Python<'_>,
-    numbers: Vec<f64>,
-    shape: [usize; 3],
-) -> PyResult<Bound<'_, PyArray3<f64>>> {
-    PyArray1::from_vec(py, numbers).reshape(shape)
 }
 
 impl Model {
@@ -112,7 +95,7 @@ impl Run {
     /// Output times that were solved, s.
     #[getter]
     fn times<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.solution.motion.times)
+        array1(py, self.solution.motion.times.clone())
     }
 
     /// The values of all design variables.
@@ -156,7 +139,7 @@ impl Run {
     }
 
     /// All outputs: `[output, order, time]`, NaN where there is no number.
-    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let (measured, units) = (&self.solution.measured, self.units());
         let (outputs, steps) = (measured.outputs.len(), measured.len());
         let mut numbers = vec![f64::NAN; outputs * 3 * steps];
@@ -170,11 +153,11 @@ impl Run {
                 }
             }
         });
-        array3(py, numbers, [outputs, 3, steps])
+        array(py, numbers, [outputs, 3, steps])
     }
 
     /// Derivatives of an order of all outputs: `[output, variable, time]`; NaN by variables that the mechanism cannot follow.
-    fn sensitivities<'py>(&self, py: Python<'py>, order: usize) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    fn sensitivities<'py>(&self, py: Python<'py>, order: usize) -> PyResult<Bound<'py, PyAny>> {
         let measured = &self.solution.measured;
         let (outputs, steps, file) = (measured.outputs.len(), measured.len(), self.file());
         let variables = file.model.variables.len();
@@ -185,11 +168,11 @@ impl Run {
                 derivatives(measured, file, m, order, |b| self.follows(b), 0..steps, rows);
             }
         });
-        array3(py, numbers, [outputs, variables, steps])
+        array(py, numbers, [outputs, variables, steps])
     }
 
     /// The motion of a body: `[time, 19]`, position, quaternion, velocity, angular velocity, acceleration, angular acceleration.
-    fn body<'py>(&self, py: Python<'py>, body: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn body<'py>(&self, py: Python<'py>, body: usize) -> PyResult<Bound<'py, PyAny>> {
         let (units, steps) = (self.units(), self.solution.motion.len());
         let mut numbers = Vec::with_capacity(19 * steps);
         let mut push = |of, v: Vec3| numbers.extend(v.to_array().map(|x| units.from_si(of, x)));
@@ -205,7 +188,7 @@ impl Run {
         }
         let rows = numbers.chunks_exact(15).zip(all);
         let whole: Vec<f64> = rows.flat_map(|(n, q)| [&n[..3], &q[..], &n[3..]].concat()).collect();
-        array2(py, whole, [steps, 19])
+        array(py, whole, [steps, 19])
     }
 
     /// Its derivatives by a variable: `[time, 18]`, position, rotation vector, velocity, angular velocity, acceleration, angular
@@ -215,7 +198,7 @@ impl Run {
         py: Python<'py>,
         body: usize,
         variable: usize,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         let (units, steps) = (self.units(), self.solution.motion.len());
         let by = self.file().model.variables[variable].quantity;
         let mut numbers = Vec::with_capacity(18 * steps);
@@ -235,11 +218,11 @@ impl Run {
             }
         }
         numbers.resize(18 * steps, f64::NAN);
-        array2(py, numbers, [steps, 18])
+        array(py, numbers, [steps, 18])
     }
 
     /// The metrics: value, time and error each, `NaN` where there is none, and their derivatives `[metric, variable]`.
-    fn metrics<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
+    fn metrics<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyAny>; 2]> {
         let (model, units) = (&self.file().model, self.units());
         let mut values = Vec::new();
         let mut d = Vec::new();
@@ -252,7 +235,7 @@ impl Run {
             d.extend(by.map(|(v, x)| units.derivative_from_si(dimension, v.quantity, *x)));
         }
         let (metrics, variables) = (found.len(), model.variables.len());
-        Ok([array2(py, values, [metrics, 3])?, array2(py, d, [metrics, variables])?])
+        Ok([array(py, values, [metrics, 3])?, array(py, d, [metrics, variables])?])
     }
 
     /// The summary that the command line writes, as JSON.

@@ -21,16 +21,15 @@ use hardpoint_report::tolerance::{Studied, ToleranceFacts};
 use hardpoint_report::validity::ValidityFact;
 use hardpoint_report::verdict::Verdict;
 use hardpoint_report::whatif::WhatIfFacts;
-use numpy::PyArray2;
 use pyo3::prelude::*;
 use serde::Serialize;
 use serde_json::json;
 
+use crate::array::array;
 use crate::design::shown;
 use crate::designs::{flow, threads};
 use crate::failure::{Failure, Kind};
 use crate::model::Model;
-use crate::run::array2;
 use crate::watch::patiently;
 
 /// What a study came to.
@@ -172,7 +171,7 @@ impl Model {
         py: Python<'py>,
         numbers: Vec<usize>,
         seed: Option<u64>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         let (file, motions) = (&self.whole, self.motions()?);
         let asked = file.model.tolerancing.clone().or_else(|| Tolerancing::of_variables(&file.model));
         let Some(mut asked) = asked else {
@@ -190,7 +189,7 @@ impl Model {
         });
         let design = toleranced_designs(&file.model, &asked, &left_out);
         let rows: Vec<f64> = numbers.iter().flat_map(|n| self.values_of(&design(*n))).collect();
-        array2(py, rows, [numbers.len(), file.model.variables.len()])
+        array(py, rows, [numbers.len(), file.model.variables.len()])
     }
 
     /// Finds the design that explains what was measured: the outcome, and that design.
@@ -252,7 +251,8 @@ impl Model {
     /// What a changed design does, exactly and as foreseen.
     fn what_if(&self, py: Python<'_>, case: usize, design: Vec<f64>) -> PyResult<String> {
         let (file, analysis, changes) = (&self.cases[case], self.analysis(case)?, self.changes(&design)?);
-        let facts = py.detach(|| {
+        let facts = patiently(py, None, |watch| {
+            let analysis = &watch.over(analysis);
             let today = analysis.run();
             if let Some(stop) = &today.stop {
                 return Err(Failure::of_model(
@@ -271,7 +271,7 @@ impl Model {
                 return Err(Failure::of_model(Kind::Stopped, file, &told));
             }
             Ok(facts.changed(file, analysis.topology(), &changed))
-        })?;
+        })??;
         let tables = [facts.table(&|_| true)];
         Ok(outcome(&facts, &tables))
     }
@@ -281,6 +281,7 @@ impl Model {
     fn verify(&self, py: Python<'_>, case: usize, progress: Option<Py<PyAny>>) -> PyResult<String> {
         let (file, analysis) = (&self.cases[case], self.analysis(case)?);
         let found = patiently(py, progress, |watch| {
+            let analysis = &watch.over(analysis);
             let solution = analysis.run();
             if let Some(stop) = &solution.stop {
                 return Err(Failure::of_model(
@@ -300,6 +301,7 @@ impl Model {
     fn validity(&self, py: Python<'_>, case: usize) -> PyResult<String> {
         let (file, analysis): (_, &Analysis<'_>) = (&self.cases[case], self.analysis(case)?);
         let found = patiently(py, None, |watch| {
+            let analysis = &watch.over(analysis);
             let solution = analysis.run();
             if let Some(stop) = &solution.stop {
                 return Err(Failure::of_model(

@@ -9,12 +9,12 @@ use hardpoint::model::{SweepMethod, SweepRange, Sweeping, VariableId};
 use hardpoint::study::{BLOCK, NoPlan, Sweep as Designs, SweptBlock};
 use hardpoint_report::cells::Cells;
 use hardpoint_report::sweep::{Swept, Tally};
-use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use serde::Deserialize;
 use serde_json::json;
 
+use crate::array::array1;
 use crate::design::drawn;
 use crate::designs::threads;
 use crate::failure::Failure;
@@ -167,8 +167,8 @@ fn table<'py>(
     }
     let array = |(name, cells)| {
         let cells = match cells {
-            Cells::Whole(cells) => PyArray1::from_vec(py, cells).into_any(),
-            Cells::Numbers(cells) => PyArray1::from_vec(py, cells).into_any(),
+            Cells::Whole(cells) => array1(py, cells).into_any(),
+            Cells::Numbers(cells) => array1(py, cells).into_any(),
             Cells::Texts(cells) => PyList::new(py, cells)?.into_any(),
         };
         Ok((name, cells))

@@ -1,39 +1,73 @@
-//! Long work: the interpreter stays free, progress is told, Ctrl-C is heard.
+//! Long work: the interpreter stays free, progress is reported, Ctrl-C is heard.
 
+use std::convert::Infallible;
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use hardpoint::Analysis;
 use pyo3::prelude::*;
 
 use crate::failure::Failure;
 
-/// So often Python is asked whether to go on.
-const PATIENCE: Duration = Duration::from_millis(50);
+/// Milliseconds after which Python is asked again whether to go on.
+static PATIENCE: AtomicU64 = AtomicU64::new(50);
 
-/// How far work is, and whether it is still wanted.
+/// Number of times that a listener has woken up since the module was loaded.
+static WAKE_UPS: AtomicUsize = AtomicUsize::new(0);
+
+fn patience() -> Duration {
+    Duration::from_millis(PATIENCE.load(Ordering::Relaxed))
+}
+
+/// Sets the time after which long work looks for Ctrl-C and reports its progress, ms; returns the one before.
+#[pyfunction]
+pub(crate) fn set_patience(milliseconds: u64) -> u64 {
+    PATIENCE.swap(milliseconds, Ordering::Relaxed)
+}
+
+/// Number of times that long work has woken up the thread that waits for it: once at its end, and once for each time that
+/// patience ran out before.
+#[pyfunction]
+pub(crate) fn wake_ups() -> usize {
+    WAKE_UPS.load(Ordering::Relaxed)
+}
+
+/// Progress of the work, and the request to end it.
 #[derive(Debug, Default)]
 pub(crate) struct Watch {
-    ended: AtomicBool,
+    ended: Arc<AtomicBool>,
     done: AtomicUsize,
     total: AtomicUsize,
 }
 
 impl Watch {
-    /// Whether it is still wanted.
+    /// Returns whether the work is still wanted.
     pub fn more(&self) -> bool {
         !self.ended.load(Ordering::Relaxed)
     }
 
-    /// So much is done of so much.
-    pub fn tell(&self, done: usize, total: usize) -> ControlFlow<()> {
-        self.done.store(done, Ordering::Relaxed);
-        self.total.store(total, Ordering::Relaxed);
+    /// The same analysis, which ends at its next output time when the work is not wanted any more.
+    pub fn over<'m>(&self, analysis: &Analysis<'m>) -> Analysis<'m> {
+        analysis.clone().ended_by(Arc::clone(&self.ended))
+    }
+
+    /// The same for callbacks that continue or break.
+    pub fn flow(&self) -> ControlFlow<()> {
         if self.more() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 
-    /// What Python has to say: a signal, or an exception of the callback.
+    /// Reports the progress: `done` of `total`.
+    pub fn tell(&self, done: usize, total: usize) -> ControlFlow<()> {
+        self.done.store(done, Ordering::Relaxed);
+        self.total.store(total, Ordering::Relaxed);
+        self.flow()
+    }
+
+    /// Asks Python: returns a signal that has arrived, or an exception of the callback.
     fn ask(&self, py: Python<'_>, callback: Option<&Py<PyAny>>) -> PyResult<()> {
         py.check_signals()?;
         let (done, total) = (self.done.load(Ordering::Relaxed), self.total.load(Ordering::Relaxed));
@@ -44,30 +78,35 @@ impl Watch {
     }
 }
 
-/// Does work on a thread of its own, with the interpreter free, while this one listens. What is raised meanwhile ends the work, and is
-/// the outcome.
+/// Does work on a thread of its own, with the interpreter free, while this one listens. An exception that is raised meanwhile ends
+/// the work and is the outcome.
 pub(crate) fn patiently<T: Send>(
     py: Python<'_>,
     callback: Option<Py<PyAny>>,
     work: impl FnOnce(&Watch) -> T + Send,
 ) -> Result<T, Failure> {
     let watch = Watch::default();
-    let listener = thread::current();
-    let (outcome, raised) = py.detach(|| {
+    // Nothing is sent: the channel closes when the work ends, by whatever way, and that wakes the listener at once.
+    let (working, end) = mpsc::channel::<Infallible>();
+    let (listened, callback) = (&watch, callback.as_ref());
+    let (outcome, raised) = py.detach(move || {
         thread::scope(|scope| {
-            let worker = scope.spawn(|| {
-                let outcome = work(&watch);
-                listener.unpark();
-                outcome
+            let worker = scope.spawn(move || {
+                let _working = working;
+                work(listened)
             });
             let mut raised = None;
-            let mut asked = Instant::now();
-            while !worker.is_finished() {
-                thread::park_timeout(PATIENCE);
-                if raised.is_none() && asked.elapsed() >= PATIENCE {
-                    asked = Instant::now();
-                    raised = Python::attach(|py| watch.ask(py, callback.as_ref())).err();
-                    watch.ended.fetch_or(raised.is_some(), Ordering::Relaxed);
+            loop {
+                let woken = end.recv_timeout(patience());
+                WAKE_UPS.fetch_add(1, Ordering::Relaxed);
+                match woken {
+                    Err(RecvTimeoutError::Disconnected) => break,
+                    Err(RecvTimeoutError::Timeout) if raised.is_none() => {
+                        raised = Python::attach(|py| listened.ask(py, callback)).err();
+                        listened.ended.fetch_or(raised.is_some(), Ordering::Relaxed);
+                    }
+                    Err(RecvTimeoutError::Timeout) => {}
+                    Ok(never) => match never {},
                 }
             }
             (worker.join(), raised)
@@ -77,8 +116,8 @@ pub(crate) fn patiently<T: Send>(
         return Err(error.into());
     }
     let outcome = outcome.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-    // The end is told too.
-    watch.ask(py, callback.as_ref())?;
+    // The end is reported too.
+    watch.ask(py, callback)?;
     Ok(outcome)
 }
 
@@ -93,9 +132,12 @@ impl Quick {
         Self { asked: Instant::now(), raised: None }
     }
 
-    /// Whether to go on.
+    /// Returns whether to go on.
     pub fn go_on(&mut self) -> ControlFlow<()> {
-        if self.asked.elapsed() < PATIENCE {
+        if self.raised.is_some() {
+            return ControlFlow::Break(());
+        }
+        if self.asked.elapsed() < patience() {
             return ControlFlow::Continue(());
         }
         self.asked = Instant::now();
@@ -108,7 +150,7 @@ impl Quick {
         }
     }
 
-    /// What was raised.
+    /// Returns the exception that was raised, if any.
     pub fn end(self) -> Result<(), Failure> {
         self.raised.map_or(Ok(()), |error| Err(error.into()))
     }

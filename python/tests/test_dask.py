@@ -4,6 +4,10 @@ import json
 import os
 import shutil
 import signal
+import subprocess
+import sys
+import threading
+import time
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +18,9 @@ import hardpoint
 
 pytest.importorskip("distributed")
 
+import dask  # noqa: E402
 import hardpoint.dask  # noqa: E402
-from distributed import Client, LocalCluster  # noqa: E402
+from distributed import Client, Future, LocalCluster  # noqa: E402
 
 MODELS = Path(__file__).resolve().parents[2] / "models"
 PART = 512
@@ -198,6 +203,121 @@ def test_a_part_that_kills_its_workers_is_told(model, tmp_path):
             hardpoint.dask.sweep(model, client, tmp_path / "store", part=PART, samples=PART)
     record = json.loads((tmp_path / "store/sweep.json").read_text())
     assert not record["complete"]
+
+
+# Wake-ups
+
+
+def doubled(shared, number):
+    """So much work that tasks of several workers are under way at once."""
+    until = time.perf_counter() + 0.005
+    while time.perf_counter() < until:
+        pass
+    return shared * number
+
+
+STRESS = int(os.environ.get("HARDPOINT_STRESS", "1"))
+"""So many times as many sweeps as usual, on a machine whose cores are all busy."""
+TASKS = 5
+
+
+@pytest.fixture
+def load():
+    """Processes that keep every core busy, where stress is asked for."""
+    burning = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(STRESS > 1 and os.cpu_count() or 0)]
+    yield
+    for process in burning:
+        process.kill()
+        process.wait()
+
+
+def killing(cluster, enough, killed):
+    """Kills one worker after the other, when all of them are at work: one that dies while it starts is not started again."""
+    while not enough.wait(0.2):
+        workers = list(cluster.workers.values())
+        known = cluster.scheduler.workers
+        if not workers or not all(worker.status.name == "running" and worker.worker_address in known and worker.pid not in killed for worker in workers):
+            continue
+        killed.append(workers[len(killed) % len(workers)].pid)
+        os.kill(killed[-1], signal.SIGKILL)
+
+
+def sweeps(client, count):
+    """So many small sweeps, some of them given up: each finds all of its numbers, once."""
+    for sweep in range(count * STRESS):
+        found = []
+        tasks = hardpoint.dask._each(client, doubled, 2, range(TASKS), str)
+        for number, twice in tasks:
+            assert twice == 2 * number
+            found.append(number)
+            if sweep % 10 == 9 and len(found) == 2:
+                break
+        else:
+            assert sorted(found) == list(range(TASKS)), sweep
+        tasks.close()
+
+
+@pytest.mark.timeout(300 * STRESS)
+def test_hundreds_of_sweeps_beside_another_client(client, here, load):
+    """Each client has an event loop of its own, and what waits for its tasks must wait there: elsewhere, wake-ups are lost.
+    Clients that are made later are where tasks are waited for if nothing else is said."""
+    with Client(here.cluster) as last:
+        assert last.loop is not client.loop
+        sweeps(client, 200)
+
+
+@pytest.mark.timeout(300 * STRESS)
+def test_hundreds_of_sweeps_while_workers_are_killed(here, load, tmp_path):
+    # A local cluster gives up workers that it finds missing twice so far apart.
+    kept = dask.config.set({"distributed.deploy.lost-worker-timeout": "1 hour"})
+    with kept, LocalCluster(
+        n_workers=3, threads_per_worker=1, dashboard_address=":0", host="127.0.0.1", memory_limit=None, local_directory=str(tmp_path)
+    ) as cluster, Client(cluster) as client, Client(here.cluster):
+        cluster.scheduler.allowed_failures = 1_000_000
+        enough, killed = threading.Event(), []
+        killer = threading.Thread(target=killing, args=(cluster, enough, killed))
+        killer.start()
+        try:
+            sweeps(client, 100)
+        finally:
+            enough.set()
+            killer.join()
+        assert len(killed) > 1
+
+
+def test_no_announcement_has_to_arrive(model, alone, here, monkeypatch, tmp_path):
+    """The end of a task is noticed even if nobody says so."""
+    monkeypatch.setattr(Future, "add_done_callback", lambda self, callback: None)
+    done = hardpoint.dask.sweep(model, here, tmp_path, part=PART, samples=SAMPLES)
+    same(done.read(), alone.columns)
+
+
+def test_a_cluster_without_workers_is_told(model, tmp_path):
+    with LocalCluster(n_workers=0, dashboard_address=":0", host="127.0.0.1", local_directory=str(tmp_path / "space")) as cluster, Client(
+        cluster
+    ) as client:
+        with pytest.raises(hardpoint.StudyError, match="designs 0 to 511: no task has ended for 1 s, and the cluster has no workers"):
+            hardpoint.dask.sweep(model, client, tmp_path / "store", part=PART, samples=PART, patience=1.0)
+
+
+def test_what_takes_longer_than_patience_is_waited_for(here):
+    """A worker that is at work is no reason to end."""
+
+    def slow(shared, number):
+        time.sleep(8)
+        return number
+
+    assert list(hardpoint.dask._each(here, slow, None, [7], str, patience=2.0)) == [(7, 7)]
+
+
+def test_what_a_task_raises_is_not_taken_for_a_silent_cluster(here):
+    for error in (OSError, TimeoutError):
+
+        def raises(shared, number):
+            raise error("of the task")
+
+        with pytest.raises(error, match="of the task"):
+            list(hardpoint.dask._each(here, raises, None, [1], str))
 
 
 class Enough(Exception):

@@ -1,9 +1,8 @@
 import { existsSync } from 'node:fs'
 import { delimiter, join } from 'node:path'
 import { type Browser, type BrowserContext, type BrowserContextOptions, chromium, type LaunchOptions } from 'playwright-core'
+import { WAIT } from './limits'
 
-/** Playwright's word for no time limit of its own: that of the test ends what hangs. */
-const NO_LIMIT = 0
 /** Draws WebGL in software, so that the tests need neither a graphics card nor a screen. */
 const SOFTWARE_3D = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader']
 const QUIET = [
@@ -26,7 +25,7 @@ function chromiumPath(): string {
 
 export function launch(graphics: string[] = SOFTWARE_3D, options: LaunchOptions = {}): Promise<Browser> {
   const args = [...QUIET, ...graphics]
-  return chromium.launch({ executablePath: chromiumPath(), headless: true, args, timeout: NO_LIMIT, ...options })
+  return chromium.launch({ executablePath: chromiumPath(), headless: true, args, timeout: WAIT, ...options })
 }
 
 export interface Visit {
@@ -39,7 +38,7 @@ export interface Visit {
 export async function visit(browser: Browser, url: string, { engine = true, ...options }: BrowserContextOptions & { engine?: boolean } = {}): Promise<Visit> {
   const page = await browser.newPage({ viewport: { width: 1400, height: 900 }, ...options })
   if (!engine) await page.addInitScript(() => Reflect.deleteProperty(globalThis, 'WebAssembly'))
-  page.setDefaultTimeout(NO_LIMIT)
+  page.setDefaultTimeout(WAIT)
   const complaints: string[] = []
   page.on('console', (message) => complaints.push(`console: ${message.text()}`))
   page.on('pageerror', (error) => complaints.push(`exception: ${error.message}`))

@@ -1,9 +1,11 @@
-import { type StdioOptions, execFileSync } from 'node:child_process'
+import { type StdioOptions, execFile, execFileSync } from 'node:child_process'
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
-import { tmpdir } from 'node:os'
+import { availableParallelism, tmpdir } from 'node:os'
 import { basename, join } from 'node:path'
 import { pathToFileURL } from 'node:url'
+import { promisify } from 'node:util'
 import type { TestProject } from 'vitest/node'
+import { TEST } from './limits'
 
 /** Addresses of pages made before the first test. */
 export interface Samples {
@@ -40,33 +42,29 @@ const MODELS = join(ROOT, 'models')
  * Builds and writes the sample pages once, before any test. A global set-up has no time limit, so that compiling may
  * take as long as the machine needs.
  */
-export default function setup(project: TestProject): () => void {
+export default async function setup(project: TestProject): Promise<() => void> {
   const folder = mkdtempSync(join(tmpdir(), 'hardpoint-page-'))
   const page = (...names: string[]) => pathToFileURL(join(folder, ...names)).href
   const { hardpoint, sample_page: sample, rockers, answers } = build()
-  execFileSync(sample, [join(folder, 'sample.html')])
-  execFileSync(sample, [join(folder, 'partial.html'), '--partial'])
-
-  const quietly: { stdio: StdioOptions } = { stdio: ['ignore', 'ignore', 'inherit'] }
   const files = readdirSync(MODELS).filter((file) => file.endsWith('.toml')).sort()
-  const models = files.map((file) => {
-    const name = basename(file, '.toml')
-    execFileSync(hardpoint, ['run', join(MODELS, file), '-o', join(folder, name)], quietly)
-    return [name, page(name, 'report.html')]
-  })
-  const change = ['--set', 'tie_rod_outer.z=+6mm', '-o', join(folder, 'changed')]
-  execFileSync(hardpoint, ['whatif', join(MODELS, 'macpherson.toml'), ...change], quietly)
-
+  const models = files.map((file) => [basename(file, '.toml'), page(basename(file, '.toml'), 'report.html')])
   const ride = join(folder, 'ride.toml')
   writeFileSync(ride, ridden(readFileSync(join(MODELS, 'macpherson.toml'), 'utf8')))
-  const higher = ['--set', 'tie_rod_inner.z=+32mm', '--measure', 'toe', '--measure', 'camber', '--measure', 'half_track']
-  execFileSync(hardpoint, ['whatif', ride, ...higher, '--over', 'wheel_travel', '-o', join(folder, 'tutorial')], quietly)
-
-  execFileSync(hardpoint, ['run', join(MODELS, 'studies', 'strut_map.toml'), '-o', join(folder, 'map')], quietly)
-
   const large = join(folder, 'rockers.toml')
-  execFileSync(rockers, [large])
-  execFileSync(hardpoint, ['run', large, '-o', join(folder, 'large')], quietly)
+  const change = ['--set', 'tie_rod_outer.z=+6mm', '-o', join(folder, 'changed')]
+  const higher = ['--set', 'tie_rod_inner.z=+32mm', '--measure', 'toe', '--measure', 'camber', '--measure', 'half_track']
+  await sideBySide([
+    async () => {
+      await command(rockers, [large])
+      await command(hardpoint, ['run', large, '-o', join(folder, 'large')])
+    },
+    () => command(sample, [join(folder, 'sample.html')]),
+    () => command(sample, [join(folder, 'partial.html'), '--partial']),
+    () => command(hardpoint, ['whatif', join(MODELS, 'macpherson.toml'), ...change]),
+    () => command(hardpoint, ['whatif', ride, ...higher, '--over', 'wheel_travel', '-o', join(folder, 'tutorial')]),
+    () => command(hardpoint, ['run', join(MODELS, 'studies', 'strut_map.toml'), '-o', join(folder, 'map')]),
+    ...files.map((file) => () => command(hardpoint, ['run', join(MODELS, file), '-o', join(folder, basename(file, '.toml'))])),
+  ])
 
   project.provide('samples', {
     answers,
@@ -80,6 +78,20 @@ export default function setup(project: TestProject): () => void {
     hardpoint,
   })
   return () => rmSync(folder, { recursive: true })
+}
+
+/** Runs a command to its end. */
+async function command(program: string, words: string[]): Promise<void> {
+  await promisify(execFile)(program, words, { timeout: TEST, killSignal: 'SIGKILL', maxBuffer: Infinity })
+}
+
+/** Does all of this, as much at once as there are cores. */
+async function sideBySide(work: (() => Promise<void>)[]): Promise<void> {
+  const left = work[Symbol.iterator]()
+  const one = async () => {
+    for (const next of left) await next()
+  }
+  await Promise.all(Array.from({ length: availableParallelism() }, one))
 }
 
 /** The strut as the tutorial has it: its rack is held. */

@@ -5,6 +5,7 @@ import { join } from 'node:path'
 import type { Browser, Page } from 'playwright-core'
 import { afterAll, afterEach, beforeAll, beforeEach, expect, inject, test } from 'vitest'
 import { launch, visit } from './browser'
+import { WAIT } from './limits'
 import { drawn } from './person'
 
 const { hardpoint, models } = inject('samples')
@@ -34,7 +35,7 @@ function stop(): Promise<void> {
 /** The page behind an address, and what has gone wrong in it besides requests that nobody answered. */
 async function open(address: string): Promise<Page> {
   const page = await browser.newPage({ viewport: { width: 1400, height: 900 } })
-  page.setDefaultTimeout(0)
+  page.setDefaultTimeout(WAIT)
   page.on('pageerror', (error) => faults.push(error.message))
   page.on('request', (request) => new URL(request.url()).hostname === '127.0.0.1' || /^(data|blob):/.test(request.url()) || faults.push(request.url()))
   await page.goto(address)

@@ -3,7 +3,7 @@
 //! They start from where the nominal design does, and every check of a single design's step is made in every lane. Where one
 //! fails, nobody knows which design goes another way: each is then solved alone.
 
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
 use hardpoint_tape::{LANES, Lanes};
@@ -129,12 +129,12 @@ impl<'m> DesignsAbreast<'m> {
         self.tape().moved().to_vec()
     }
 
-    /// These designs at all output times, one per lane; `each(k, ...)` sees the results of output time k. None where a step does not go
-    /// as expected in some lane.
+    /// These designs at all output times, one per lane; `each(k, ...)` sees the results of output time k, and may end it. None where a
+    /// step does not go as expected in some lane, and where `each` ends it before the last output time.
     pub fn run(
         &mut self,
         designs: &[Vec<f64>],
-        mut each: impl FnMut(usize, &FoundAbreast<'_>),
+        mut each: impl FnMut(usize, &FoundAbreast<'_>) -> ControlFlow<()>,
     ) -> Option<Effort> {
         let model = self.nominal.model;
         for (_, knows) in self.tapes.iter_mut().flatten() {
@@ -161,7 +161,10 @@ impl<'m> DesignsAbreast<'m> {
             }
             let states = &self.states[self.states_at(k)];
             let [states, derivatives] = [states, &self.derivatives].map(bytemuck::cast_slice);
-            each(k, &FoundAbreast { tape: self.tape(), block: ResultBlock { states, derivatives } });
+            let found = FoundAbreast { tape: self.tape(), block: ResultBlock { states, derivatives } };
+            if each(k, &found).is_break() && k + 1 < model.times.len() {
+                return None;
+            }
             effort.steps += 1;
             effort.by_program += 1;
             effort.iterations += self.tape().passes();

@@ -1,6 +1,7 @@
 //! A model with its plan, and the ways to run it.
 
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use crate::design::DesignMap;
@@ -47,13 +48,15 @@ pub struct Analysis<'m> {
     /// With the model.
     design_map: DesignMap<'m>,
     /// Per variable, the joints that it opens in the nominal design: worked out when first asked for.
-    opens: OnceLock<Vec<Vec<JointDefect>>>,
+    opens: Arc<OnceLock<Vec<Vec<JointDefect>>>>,
     /// The output times and those between them that metrics ask for: worked out when first asked for.
-    pub(super) between: OnceLock<Vec<f64>>,
+    pub(super) between: Arc<OnceLock<Vec<f64>>>,
     /// Steps as straight-line programs, recorded when they pay.
     programs: Arc<Programs>,
     /// The same of measures.
     formulas: Arc<Cache<measure::ProgramKey, measure::MeasureProgram>>,
+    /// Once set, whatever is being solved ends at its next output time.
+    end: Option<Arc<AtomicBool>>,
 }
 
 impl<'m> Analysis<'m> {
@@ -76,16 +79,28 @@ impl<'m> Analysis<'m> {
         Ok(Self {
             topology,
             design_map: DesignMap::of(model),
-            opens: OnceLock::new(),
-            between: OnceLock::new(),
+            opens: Arc::default(),
+            between: Arc::default(),
             programs,
             formulas: Arc::default(),
+            end: None,
         })
     }
 
     /// The same analysis, its steps solved in this way.
     pub fn executed(self, execution: Execution) -> Self {
         Self { programs: Arc::new(Programs::new(execution)), formulas: Arc::default(), ..self }
+    }
+
+    /// The same analysis, interruptible: once the flag is set, whatever is being solved with it, on whatever thread, ends at its next
+    /// output time. Its stop is then [`Interrupted`](StopKind::Interrupted).
+    pub fn ended_by(self, flag: Arc<AtomicBool>) -> Self {
+        Self { end: Some(flag), ..self }
+    }
+
+    /// Returns whether its flag asks it to end.
+    pub(crate) fn is_ended(&self) -> bool {
+        self.end.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
     /// The model.
@@ -225,11 +240,13 @@ impl<'m> Analysis<'m> {
         (0..self.model().bodies.len()).map(|b| sinks.iter().any(|s| s.wants(BodyId(b)))).collect()
     }
 
-    /// The stop of a run that was told to end after time t.
-    pub(super) fn interrupted(&self, t: f64) -> Stop {
+    /// The stop of a run that was told to end after so many output times.
+    pub(super) fn interrupted(&self, done: usize) -> Stop {
+        let last_time = done.checked_sub(1).map(|k| self.model().times[k]);
+        let t = last_time.or(self.model().times.first().copied()).unwrap_or(0.0);
         Stop {
             kind: StopKind::Interrupted,
-            last_time: Some(t),
+            last_time,
             failed_time: t,
             drivers: self.model().drivers.iter().map(|d| d.law.at(t).value()).collect(),
             block: None,

@@ -1,5 +1,6 @@
 //! Many designs of one mechanism: eight side by side, on as many threads as are asked for.
 
+use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -93,9 +94,14 @@ impl Analysis<'_> {
     ) -> Option<Effort> {
         let abreast = abreast.as_mut().filter(|_| designs.len() > 1)?;
         solutions.iter_mut().for_each(|s| self.make_room(&mut s.motion, 0));
-        let effort = abreast.run(&self.whole(designs), |_, _| ())?;
+        let effort = abreast.run(&self.whole(designs), |_, _| self.flow())?;
         solutions.iter_mut().enumerate().for_each(|(lane, s)| abreast.hand_over(lane, &mut s.motion));
         Some(effort)
+    }
+
+    /// Breaks once the analysis is asked to end: each design is then left to itself, and stops as interrupted.
+    fn flow(&self) -> ControlFlow<()> {
+        if self.is_ended() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     /// A value for every variable of every design.
@@ -160,6 +166,7 @@ impl Analysis<'_> {
             hand_over(&found.block, &wanted, moved.iter().copied(), sinks, 0..designs.len(), |lane| {
                 (lane, k)
             });
+            self.flow()
         })?;
         Some((effort, resisting))
     }

@@ -133,6 +133,9 @@ impl<'a> Walk<'a> {
         let mut stop = None;
         while self.done < times.len() && stop.is_none() {
             let k = self.done;
+            if self.analysis.is_ended() {
+                return Some(self.analysis.interrupted(k));
+            }
             let at_once = match k {
                 0 => 0,
                 _ => self.abreast.advance(&mut self.one, k, times, || sink.room(k)),
@@ -179,12 +182,11 @@ impl<'a> Walk<'a> {
         solved: usize,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> (usize, Option<Stop>) {
-        let times = &self.analysis.model().times;
-        let total = times.len();
+        let total = self.analysis.model().times.len();
         for count in 1..=solved {
             let done = self.done + count;
             if progress(Progress { done, total }).is_break() && done < total {
-                return (count, Some(self.analysis.interrupted(times[done - 1])));
+                return (count, Some(self.analysis.interrupted(done)));
             }
         }
         (solved, None)

@@ -108,7 +108,8 @@ impl Verification {
 }
 
 /// Compares the sensitivities of a complete solution with re-solved designs, variable by variable.
-/// `progress` is called with the number of variables done, and may end the study.
+/// `progress` is called with the number of variables done, and may end the study; an analysis that is
+/// [asked to end](Analysis::ended_by) ends it within a variable, which is then left out.
 pub fn verify(
     analysis: &Analysis<'_>,
     solution: &Solution,
@@ -120,8 +121,10 @@ pub fn verify(
     let variables = analysis.model().variables.len();
     for k in 0..variables {
         let variable = VariableId(k);
-        checks.push(check_variable(analysis, solution, options, variable));
-        if progress(k + 1).is_break() && k + 1 < variables {
+        let check = check_variable(analysis, solution, options, variable);
+        let is_whole = check.is_some();
+        checks.extend(check);
+        if !is_whole || progress(k + 1).is_break() && k + 1 < variables {
             interrupted = true;
             break;
         }
@@ -129,21 +132,26 @@ pub fn verify(
     Verification { scheme: options.scheme, checks, interrupted }
 }
 
+/// The check of one variable; nothing where the analysis was asked to end meanwhile.
 fn check_variable(
     analysis: &Analysis<'_>,
     solution: &Solution,
     options: &VerifyOptions,
     variable: VariableId,
-) -> VerifiedValue {
+) -> Option<VerifiedValue> {
     if matches!(solution.sensitivities.admissibility[variable.0], Admissibility::CannotFollow { .. }) {
         let (quantities, sweep) = Default::default();
-        return VerifiedValue { variable, outcome: CheckOutcome::CannotFollow, quantities, sweep };
+        return Some(VerifiedValue { variable, outcome: CheckOutcome::CannotFollow, quantities, sweep });
     }
     let natural = analysis.model().natural_step(variable);
     let steps: Vec<(VariableId, f64)> = options.steps.iter().map(|part| (variable, part * natural)).collect();
     let mut quantities = Comparison::default();
     let mut sweep = Vec::new();
-    for d in finite_differences(analysis, solution, options.scheme, &steps).into_iter().flatten() {
+    let differences = finite_differences(analysis, solution, options.scheme, &steps);
+    if analysis.is_ended() {
+        return None;
+    }
+    for d in differences.into_iter().flatten() {
         let comparison = Comparison::of(analysis.model(), solution, &d);
         sweep.push(comparison.worst().cloned().unwrap_or_else(|| StepError {
             step: d.step,
@@ -159,5 +167,5 @@ fn check_variable(
         (_, true) => CheckOutcome::Passed,
         (_, false) => CheckOutcome::Failed,
     };
-    VerifiedValue { variable, outcome, quantities, sweep }
+    Some(VerifiedValue { variable, outcome, quantities, sweep })
 }

@@ -1,13 +1,16 @@
 //! Sensitivities against re-solved designs, on every reference mechanism.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
+use hardpoint::motion::{Stop, StopKind};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 use hardpoint::study::{
-    CheckOutcome, Comparison, Scheme, Verification, VerifyOptions, finite_differences, verify,
+    CheckOutcome, Comparison, Method, Scheme, Verification, VerifyOptions, finite_differences, verify,
 };
-use hardpoint::{Analysis, Solution};
+use hardpoint::{Analysis, Run, Solution};
 use hardpoint::{
     draft::PlaceDraft,
     model::{BodyId, Model, VariableId},
@@ -158,4 +161,56 @@ fn errors_are_found_by_body_and_by_output() {
     }
     assert_eq!(comparison.errors().len(), told);
     assert!(comparison.worst().unwrap().error > 0.0);
+}
+
+/// Everything that goes over the output times ends at the next one when the analysis is asked to end, and says so.
+#[test]
+fn whatever_an_analysis_solves_ends_at_the_next_output_time() {
+    let mut draft = reference_draft("macpherson");
+    let last = draft.times.last().copied().unwrap();
+    draft.times = (0..=100).map(|k| last * f64::from(k) / 100.0).collect();
+    let model = Model::from_draft(&draft).unwrap();
+    let variables = model.variables.len();
+    assert!(variables > 0);
+    let along: Vec<f64> = (0..variables).map(|k| if k == 0 { 1.0 } else { 0.0 }).collect();
+    let flag = Arc::new(AtomicBool::new(false));
+    let whole = Analysis::new(&model).unwrap();
+    let nominal = whole.run();
+    assert!(nominal.stop.is_none());
+    let analysis = whole.ended_by(Arc::clone(&flag));
+
+    // Asked to end after ten output times: at most what programs solve at once is solved besides.
+    let solution = analysis.solve(Run::new().progress(|p| {
+        flag.store(p.done >= 10, Ordering::Relaxed);
+        ControlFlow::Continue(())
+    }));
+    assert!((10..30).contains(&solution.motion.len()), "{}", solution.motion.len());
+    assert_eq!(solution.stop.unwrap().kind, StopKind::Interrupted);
+
+    // Asked before: nothing is solved.
+    flag.store(true, Ordering::Relaxed);
+    let interrupted = |stop: Option<Stop>| assert_eq!(stop.map(|s| s.kind), Some(StopKind::Interrupted));
+    let solution = analysis.run();
+    assert_eq!(solution.motion.len(), 0);
+    interrupted(solution.stop);
+    for run in [Run::new(), Run::new().without_sensitivities()] {
+        let mut seen = 0;
+        analysis.solve_designs(run, &vec![vec![0.0; variables]; 20], |_, solution| {
+            seen += 1;
+            interrupted(solution.stop.take());
+        });
+        assert_eq!(seen, 20);
+    }
+    interrupted(analysis.jerks(&[]).stop);
+    interrupted(analysis.second(&[], std::slice::from_ref(&along), &[[0, 0]]).stop);
+    for method in [Method::Direct, Method::Adjoint] {
+        interrupted(analysis.gradients(&[], &[0], method).stop);
+    }
+    let found = verify(&analysis, &nominal, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+    assert!(found.interrupted && !found.passed() && found.checks.is_empty());
+
+    // And not asked any more, it solves everything.
+    flag.store(false, Ordering::Relaxed);
+    let found = verify(&analysis, &nominal, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+    assert!(!found.interrupted && found.checks.len() == variables);
 }

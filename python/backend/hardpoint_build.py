@@ -1,0 +1,41 @@
+"""The build backend: that of maturin, once it is known that there is a Rust toolchain."""
+
+from __future__ import annotations
+
+import os
+import shutil
+
+import maturin
+
+MISSING = (
+    "error: hardpoint is built from its sources, and that takes a Rust toolchain, but there is no `cargo` on the path: "
+    "install Rust from https://rustup.rs, open a new shell, and run the same command again"
+)
+
+
+def _need_cargo() -> None:
+    """Ends the build with one sentence where there is no Rust, in place of a download or a page of output."""
+    if shutil.which(os.environ.get("CARGO", "cargo")) is None:
+        raise SystemExit(MISSING)
+
+
+def get_requires_for_build_wheel(config_settings=None):
+    _need_cargo()
+    return maturin.get_requires_for_build_wheel(config_settings)
+
+
+def get_requires_for_build_editable(config_settings=None):
+    _need_cargo()
+    return maturin.get_requires_for_build_editable(config_settings)
+
+
+def get_requires_for_build_sdist(config_settings=None):
+    _need_cargo()
+    return maturin.get_requires_for_build_sdist(config_settings)
+
+
+prepare_metadata_for_build_wheel = maturin.prepare_metadata_for_build_wheel
+prepare_metadata_for_build_editable = maturin.prepare_metadata_for_build_editable
+build_wheel = maturin.build_wheel
+build_editable = maturin.build_editable
+build_sdist = maturin.build_sdist
