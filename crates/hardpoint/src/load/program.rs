@@ -37,8 +37,8 @@ pub(crate) fn hindrance(model: &Model, topology: &Topology) -> Option<&'static s
     if !kinds().all(ElementKind::is_arithmetic) {
         return Some("a spring has a table, or a bushing a stiffness against turning");
     }
-    let counted =
-        (0..model.elements.len()).any(|e| matches!(Turns::of(model, topology, ElementId(e)), Turns::Path(_)));
+    let counted = (0..model.elements.len())
+        .any(|e| matches!(Turns::of(model, topology, ElementId(e)), Turns::Path(_) | Turns::Length));
     counted.then_some("a force acts on an angle that is counted along the path")
 }
 

@@ -190,7 +190,7 @@ impl<'a> LoadSolver<'a> {
     fn follow_turns(&mut self, q: &[f64], counted: &[f64]) {
         for (near, turns) in self.bodies.now.near.iter_mut().zip(&self.turns) {
             match *turns {
-                Turns::None => {}
+                Turns::None | Turns::Length => {}
                 Turns::Coordinate(c) => *near = q[c.0],
                 Turns::Path(place) => *near = counted[place],
             }

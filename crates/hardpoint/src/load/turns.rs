@@ -9,6 +9,8 @@ use crate::topology::{CoordinateId, Topology};
 pub(super) enum Turns {
     /// It acts on none.
     None,
+    /// A length of a joint that the tree does not carry, which has no turns.
+    Length,
     /// The coordinate of the tree, which is the angle itself.
     Coordinate(CoordinateId),
     /// The path, where the angle is counted in this place.
@@ -23,7 +25,7 @@ impl Turns {
         // Angles of elements are counted before all others, one after the other.
         let on_path = turns.iter_mut().filter_map(|turns| match turns {
             Self::Path(place) => Some(place),
-            Self::None | Self::Coordinate(_) => None,
+            Self::None | Self::Length | Self::Coordinate(_) => None,
         });
         on_path.enumerate().for_each(|(k, place)| *place = k);
         turns
@@ -39,7 +41,7 @@ impl Turns {
                 Self::Coordinate(link.steps[step].first)
             }
             None if is_counted_of_element(model, topology, e) => Self::Path(0),
-            None => Self::None,
+            None => Self::Length,
         }
     }
 }

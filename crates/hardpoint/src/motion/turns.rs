@@ -53,6 +53,7 @@ pub(crate) struct TurnCounter<'m> {
     spin_ahead: f64,
     ahead: Vec<f64>,
     /// Scratch.
+    kept: Vec<f64>,
     found: Vec<[f64; 3]>,
 }
 
@@ -66,6 +67,7 @@ impl<'m> TurnCounter<'m> {
             spin: 0.0,
             spin_ahead: 0.0,
             ahead: vec![0.0; count],
+            kept: vec![0.0; count],
             found: vec![[0.0; 3]; count],
             angles,
         }
@@ -135,7 +137,8 @@ impl<'m> TurnCounter<'m> {
         [first, last]: [usize; 2],
         moved: f64,
     ) -> bool {
-        let saved = (self.values.clone(), self.spin);
+        self.kept.copy_from_slice(&self.values);
+        let spin = self.spin;
         let count = self.len();
         self.lanes.resize(count * times.len(), 0.0);
         let mut before = before;
@@ -143,7 +146,8 @@ impl<'m> TurnCounter<'m> {
             self.look(&|b| BodyState::from(|k| states[BodyState::NUMBERS * (b - 1) + k][lane]));
             self.nearest();
             if !self.is_slow(times[lane] - before, moved) {
-                (self.values, self.spin) = saved;
+                self.values.copy_from_slice(&self.kept);
+                self.spin = spin;
                 return false;
             }
             self.accept();

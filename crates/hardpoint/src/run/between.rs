@@ -12,13 +12,13 @@ use std::sync::Arc;
 use crate::law::Law;
 use crate::model::{Metric, Model, Reduction};
 use crate::motion::stepper::driver_units;
-use crate::run::Footprint;
-use crate::study::metric::{unresolved_times, window_times};
 
 use super::analysis::Analysis;
+use super::metric::{unresolved_times, window_times};
 use super::request::Progress;
 use super::solution::Solution;
 use super::walk::PreparedDesign;
+use super::window::Footprint;
 
 /// Between two times at which a metric is looked for no driver moves by more than this, rad or sizes of its loop: a polynomial of degree five
 /// misses a sine over it by `0.15^6 / 46080 = 2e-10`.

@@ -5,6 +5,7 @@
 mod analysis;
 mod between;
 mod designs;
+pub(crate) mod metric;
 mod request;
 mod sink;
 mod solution;

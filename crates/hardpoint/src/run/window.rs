@@ -93,6 +93,7 @@ impl Analysis<'_> {
     ) -> usize {
         let (model, topology, measures) = (self.model(), self.topology(), design.scope.measures);
         let sensitive = !design.fields.is_empty();
+        solution.between = None;
         let variables = if sensitive { model.variables.len() } else { 0 };
         let slopes = || Slopes::new(self.design_map(), topology, &design.values, sensitive);
         let mut slopes = measures.then(slopes).flatten();

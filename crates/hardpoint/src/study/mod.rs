@@ -10,7 +10,6 @@ mod grid;
 mod jerk;
 mod loads;
 mod magnitude;
-pub(crate) mod metric;
 mod nearest;
 mod optimize;
 mod random;
@@ -22,6 +21,8 @@ mod trust_region;
 mod validity;
 mod verify;
 mod whatif;
+
+pub(crate) use crate::run::metric;
 
 pub use alone::DriverRates;
 pub use calibrate::{

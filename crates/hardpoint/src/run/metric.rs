@@ -3,10 +3,10 @@
 //! A metric is written once over any number; its derivatives are the same lines run on duals. Between output times, curves
 //! are the polynomials that have their values, rates and accelerations at both ends.
 
+use super::solution::Solution;
 use crate::measure::Measured;
 use crate::model::{Metric, Model, OutputSource, Reduction, VariableId, on_target};
 use crate::number::{Dual, Real};
-use crate::run::Solution;
 
 /// The value of a metric.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,13 +48,13 @@ pub fn metric_numbers<'m>(
 }
 
 /// The same of one metric.
-pub(super) fn metric_number(metric: &Metric, solution: &Solution) -> Option<f64> {
+pub(crate) fn metric_number(metric: &Metric, solution: &Solution) -> Option<f64> {
     let (y, x) = curves(solution, metric)?;
     take(metric, &y, &x).map(|(value, _)| value)
 }
 
 /// The place that a metric of the whole model has among those of the motion of a number, if it is taken of that.
-pub(super) fn place_of(model: &Model, metric: usize, number: usize) -> Option<usize> {
+pub(crate) fn place_of(model: &Model, metric: usize, number: usize) -> Option<usize> {
     let counts =
         |m: &usize| model.metrics[*m].case.is_none_or(|case| model.cases.is_empty() || case.0 == number);
     counts(&metric).then(|| (0..metric).filter(counts).count())
