@@ -110,7 +110,10 @@ pub(crate) const MODEL: Table = table! {
 };
 const CHANGE_POINTS: Shape = Shape::Words(&[
     ("stop", "The motion ends there."),
-    ("continue", "It goes on smoothly; where it cannot, it ends. At the change point itself sensitivities and loads have no number."),
+    (
+        "continue",
+        "It goes on smoothly; where it cannot, it ends. At the change point itself sensitivities and loads have no number.",
+    ),
 ]);
 const UNITS: Table = table! {
     /// The units of all numbers in the file.

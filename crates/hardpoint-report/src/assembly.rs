@@ -95,8 +95,11 @@ impl AssemblyFact {
         };
         let title = match self.found_nearby {
             0 => "Moved by the assembly".to_owned(),
-            1 => "Moved by the assembly, the only one found near the drawing, which is a singular position".to_owned(),
-            n => format!("Moved by the assembly, the nearest of {n} found near the drawing, which is a singular position"),
+            1 => "Moved by the assembly, the only one found near the drawing, which is a singular position"
+                .to_owned(),
+            n => format!(
+                "Moved by the assembly, the nearest of {n} found near the drawing, which is a singular position"
+            ),
         };
         [
             table(

@@ -188,8 +188,10 @@ fn residual(file: &ModelFile, residual: f64) -> Option<Diagnostic> {
     if residual <= (VISIBLE * shortest).max(LEAST_VISIBLE) {
         return None;
     }
-    let length = |x: f64| with_unit(file.units.from_si(Quantity::Length, x), symbol(file.units, Quantity::Length));
-    let message = format!("the joints stay open by up to {}: the results are not to be relied on", length(residual));
+    let length =
+        |x: f64| with_unit(file.units.from_si(Quantity::Length, x), symbol(file.units, Quantity::Length));
+    let message =
+        format!("the joints stay open by up to {}: the results are not to be relied on", length(residual));
     Some(
         file.diagnostic(Severity::Warning, "HP0410", message, None)
             .note(format!(

@@ -23,8 +23,8 @@ use crate::expression::Expression;
 use crate::joint::{self, JointType, Quantity};
 use crate::law::Law;
 use crate::model::{
-    AllocationRule, AtChangePoints, Dimension, Reduction, Side, SweepMethod, Sweeping, Tolerancing, Transmission, Vehicle,
-    VehicleEnd,
+    AllocationRule, AtChangePoints, Dimension, Reduction, Side, SweepMethod, Sweeping, Tolerancing,
+    Transmission, Vehicle, VehicleEnd,
 };
 use crate::space::{Pose, Vec3};
 

@@ -96,7 +96,8 @@ struct FoundAssembly {
 impl FoundAssembly {
     /// Whether bodies are as far, and on the same side.
     fn is_same(&self, other: &Self) -> bool {
-        (self.distance - other.distance).abs() <= ONE_ASSEMBLY && (self.side - other.side).abs() <= ONE_ASSEMBLY
+        (self.distance - other.distance).abs() <= ONE_ASSEMBLY
+            && (self.side - other.side).abs() <= ONE_ASSEMBLY
     }
 }
 
@@ -161,8 +162,10 @@ impl Stepper<'_> {
     /// Whether an assembly is searched for around the drawing: where the nominal design has gaps that the path does not close. A
     /// changed design is on the branch of the nominal one, or does not assemble.
     fn is_searched(&self, stop: &Stop) -> bool {
-        if matches!(stop.kind, StopKind::LawNotFinite { .. } | StopKind::TooFar { .. } | StopKind::Interrupted)
-            || self.state.largest_gap(&self.topology) == 0.0
+        if matches!(
+            stop.kind,
+            StopKind::LawNotFinite { .. } | StopKind::TooFar { .. } | StopKind::Interrupted
+        ) || self.state.largest_gap(&self.topology) == 0.0
         {
             return false;
         }
@@ -220,7 +223,8 @@ impl Stepper<'_> {
     /// Deviates from the drawing, in one of several directions that no symmetry hides.
     fn deviate(&mut self, drawn: &(AcceptedPosition, Topology), unknowns: &[CoordinateId], start: usize) {
         self.set_drawn(drawn);
-        let deviation = DEVIATIONS[start / (2 * DIRECTIONS)] * if start.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let deviation =
+            DEVIATIONS[start / (2 * DIRECTIONS)] * if start.is_multiple_of(2) { 1.0 } else { -1.0 };
         let direction = start / 2 % DIRECTIONS;
         for (k, &c) in unknowns.iter().enumerate() {
             // Multiples of the golden ratio are spread evenly and never repeat.

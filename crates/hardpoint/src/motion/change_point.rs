@@ -50,7 +50,8 @@ impl Stepper<'_> {
         };
         let here = (self.saved.clone(), self.time, self.branch.clone());
         // On a straight path the stop tells the time of all of it; the parameter is that of the position where it ended.
-        let at = if path == Path::Laws { stop.failed_time } else { self.nearest_ahead(path).unwrap_or(self.time) };
+        let at =
+            if path == Path::Laws { stop.failed_time } else { self.nearest_ahead(path).unwrap_or(self.time) };
         match self.cross_at(path, at, block) {
             Some(crossing) => {
                 self.crossing = Some(Box::new(crossing));

@@ -541,7 +541,9 @@ impl<'m> Stepper<'m> {
     /// Whether curves hardly bend from where they were touched to where they are now.
     fn contacts_are_near(&self) -> bool {
         let contacts = self.state.contacts.iter().zip(&self.saved.contacts);
-        contacts.zip(&self.parts.curves).all(|((now, before), curve)| curve.bend(before.u, now.u) <= MOST_BEND)
+        contacts
+            .zip(&self.parts.curves)
+            .all(|((now, before), curve)| curve.bend(before.u, now.u) <= MOST_BEND)
     }
 
     /// Accepts the position at t, a step h after the one before (0 at the start of a path). What lies ahead is not known then.
