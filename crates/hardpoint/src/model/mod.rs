@@ -328,6 +328,19 @@ impl Model {
         if size > 0.0 { size } else { Extent::of(self.hardpoints.iter().map(|h| h.position)).size() }
     }
 
+    /// Whether a joint is drawn open: its two places lie apart, or its rod is given another length than that between them.
+    pub fn is_drawn_open(&self) -> bool {
+        let near = ONE_PLACE * self.size();
+        self.joints.iter().filter(|joint| joint.curve.is_none()).any(|joint| {
+            let [p, q] = joint.at.map(|h| self.position(h));
+            let apart = (q - p).norm();
+            match joint.length {
+                Some(length) => (length - apart).abs() > near,
+                None => !joint.kind.is_rod() && apart > near,
+            }
+        })
+    }
+
     /// The shortest distance between two joints of a body, m: what must be exact for the motion to be that of the mechanism. Places
     /// that are one but for round-off have none. The mechanism's size where there is no such distance.
     pub fn shortest(&self) -> f64 {

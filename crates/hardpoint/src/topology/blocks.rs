@@ -82,20 +82,36 @@ fn jacobian_of_parts(model: &Model, topology: &Topology) -> Vec<SparseRow> {
 /// Splits unknowns and rows into blocks, and orders the links by them.
 pub(super) fn split(model: &Model, topology: &mut Topology) -> Result<(), TopologyFault> {
     let jacobian = design_jacobian(model, topology);
-    let groups = match independent_groups(topology, &jacobian) {
-        Some(groups) if assign(topology, &jacobian, &groups).is_ok() => groups,
-        // Loops that depend on each other in a way that no single loop shows: solve all together.
-        _ => {
-            let all: Vec<CoordinateId> = topology.unknown_coordinates().collect();
-            let groups = if all.is_empty() { Vec::new() } else { vec![all] };
-            assign(topology, &jacobian, &groups).map_err(|free| {
-                fault::free_motions(model, topology, &free, freedoms_nearby(model, topology))
-            })?;
-            groups
+    let groups = match groups_of(topology, &jacobian) {
+        Ok(groups) => groups,
+        Err(free) => {
+            let nearby = freedoms_nearby(model, topology);
+            // A drawing that is open and singular by chance, like bars in line, is assembled elsewhere: what holds nearby holds there.
+            let elsewhere = (model.is_drawn_open() && nearby < free.len())
+                .then(|| design_jacobian(&shifted(model), topology))
+                .and_then(|jacobian| groups_of(topology, &jacobian).ok());
+            elsewhere.ok_or_else(|| fault::free_motions(model, topology, &free, nearby))?
         }
     };
     order_links(topology, groups.len());
     Ok(())
+}
+
+/// Splits the unknowns into groups, makes blocks of these, and selects their rows. The error is that of [`assign`].
+fn groups_of(
+    topology: &mut Topology,
+    jacobian: &[SparseRow],
+) -> Result<Vec<Vec<CoordinateId>>, Vec<SparseRow>> {
+    if let Some(groups) = independent_groups(topology, jacobian)
+        && assign(topology, jacobian, &groups).is_ok()
+    {
+        return Ok(groups);
+    }
+    // Loops that depend on each other in a way that no single loop shows: solve all together.
+    let all: Vec<CoordinateId> = topology.unknown_coordinates().collect();
+    let groups = if all.is_empty() { Vec::new() } else { vec![all] };
+    assign(topology, jacobian, &groups)?;
+    Ok(groups)
 }
 
 /// Strongly connected groups of unknowns, in order of solution; `None` where loops alone do not decide.
@@ -154,6 +170,15 @@ fn independent_groups(topology: &Topology, jacobian: &[SparseRow]) -> Option<Vec
 /// Fewer than in the drawing mean that the drawing is a singular position, not that a driver is missing. Planar mechanisms keep their
 /// redundancy under such a shift.
 fn freedoms_nearby(model: &Model, topology: &Topology) -> usize {
+    let unknowns: Vec<CoordinateId> = topology.unknown_coordinates().collect();
+    let column_of = columns(topology, &unknowns);
+    let rows = design_jacobian(&shifted(model), topology).into_iter();
+    let rows = rows.map(|row| row.into_iter().filter_map(|(c, x)| Some((column_of[c.0]?, x))).collect());
+    FullPivot::of_sparse(rows.collect(), unknowns.len(), RANK_TOLERANCE).free.len()
+}
+
+/// The model with every hardpoint shifted by up to 3 % of its size.
+fn shifted(model: &Model) -> Model {
     const SHIFT: f64 = 0.03;
     let mut shifted = model.clone();
     let size = model.size();
@@ -163,11 +188,7 @@ fn freedoms_nearby(model: &Model, topology: &Topology) -> usize {
         let mut next = || SHIFT * size * parts.next().expect("there is always another");
         hardpoint.position += crate::space::Vec3::new(next(), next(), next());
     }
-    let unknowns: Vec<CoordinateId> = topology.unknown_coordinates().collect();
-    let column_of = columns(topology, &unknowns);
-    let rows = design_jacobian(&shifted, topology).into_iter();
-    let rows = rows.map(|row| row.into_iter().filter_map(|(c, x)| Some((column_of[c.0]?, x))).collect());
-    FullPivot::of_sparse(rows.collect(), unknowns.len(), RANK_TOLERANCE).free.len()
+    shifted
 }
 
 /// Per coordinate: its column, if these have one each.
