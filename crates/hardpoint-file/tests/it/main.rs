@@ -5,6 +5,7 @@ mod calibrations;
 mod cases;
 mod diagnostics;
 mod docs;
+mod domain;
 mod edit;
 mod elements;
 mod gallery;

@@ -23,8 +23,8 @@ use crate::expression::Expression;
 use crate::joint::{self, JointType, Quantity};
 use crate::law::Law;
 use crate::model::{
-    AllocationRule, Dimension, Reduction, Side, SweepMethod, Sweeping, Tolerancing, Transmission, Vehicle,
-    TorqueReaction, VehicleEnd,
+    AllocationRule, Dimension, Reduction, Side, SweepMethod, Sweeping, Tolerancing, TorqueReaction,
+    Transmission, Vehicle, VehicleEnd,
 };
 use crate::space::{Pose, Vec3};
 

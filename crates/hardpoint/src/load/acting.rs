@@ -6,8 +6,8 @@ use crate::constraint::MarkerPair;
 use crate::design::Geometry;
 use crate::measure::WheelAt;
 use crate::model::{
-    Axes, BodyId, ENDS_MEET, ElementId, ElementKind, Inertia, Joint, JointId, Length, Model, NumberId, PointId,
-    Stiffness, TorsionalStiffness, Wheel, WheelId, about_centre,
+    Axes, BodyId, ENDS_MEET, ElementId, ElementKind, Inertia, Joint, JointId, Length, Model, NumberId,
+    PointId, Stiffness, TorsionalStiffness, Wheel, WheelId, about_centre,
 };
 use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 
@@ -294,10 +294,11 @@ impl<T: Real> Acting<'_, T> {
                 Some((_, turn)) => self.friction[e.0] * magnitude(self.heading(kind, turn), STILL),
                 None => self.friction[e.0],
             },
-            ElementKind::WheelForce { wheel, .. } => pressing(self.road(e, *wheel).1),
+            // Of no force there is no derivative.
+            ElementKind::WheelForce { wheel, .. } => self.road(e, *wheel).1.norm(),
             ElementKind::PointForce { force, .. } => self.number(force.0) * self.laws[e.0],
             ElementKind::BodyMoment { moment, .. } => self.number(moment.0) * self.laws[e.0],
-            ElementKind::Bushing { .. } => pressing(self.bushing(kind).f),
+            ElementKind::Bushing { .. } => self.bushing(kind).f.norm(),
             ElementKind::Rigid { .. }
             | ElementKind::Bar { .. }
             | ElementKind::Block { .. }
