@@ -232,3 +232,52 @@ fn kinks_are_no_errors_and_wrong_derivatives_of_outputs_are() {
     let failed = report.checks.iter().filter(|c| c.outcome == CheckOutcome::Failed).count();
     assert!(failed >= 7, "{failed} of {}", report.checks.len());
 }
+
+/// A rod pushes a block along its guide at an angle: what presses is the weight and the push aside, which friction itself makes larger.
+/// With `mu tan(angle)` above 1 friction has two solutions.
+#[test]
+fn friction_with_two_solutions_has_no_number() {
+    for mu in [0.3, 1.0, 1.5, 2.5] {
+        let text = format!(
+            r#"
+name = "crank pushes a rubbing block"
+units = {{ length = "m", angle = "deg" }}
+[hardpoints]
+O = [0, 0, 0]
+A = [0.2, 0, 0]
+B = [0.45, 0, 0]
+[bodies]
+crank = {{}}
+block = {{}}
+[joints]
+O = {{ type = "revolute", bodies = ["ground", "crank"], at = "O", axis = "z" }}
+R = {{ type = "rod", bodies = ["crank", "block"], at = ["A", "B"] }}
+G = {{ type = "translational", bodies = ["ground", "block"], at = "B", axis = "x" }}
+[drivers]
+m = {{ joint = "O", law = "10 + 60*t" }}
+[gravity]
+along = "-y"
+[masses]
+b = {{ type = "rigid", centre = {{ body = "block", at = "B" }}, mass = 10, ixx = 0.1, iyy = 0.1, izz = 0.1 }}
+[forces]
+f = {{ type = "slide_friction", joint = "G", coefficient = {mu} }}
+[measures]
+T = {{ type = "driver_force", driver = "m" }}
+F = {{ type = "spring_force", force = "f" }}
+[time]
+end = 1
+steps = 20
+"#
+        );
+        let solution = solved(&text, Formulation::Relative);
+        for (k, (torque, friction)) in
+            values(&solution, "T").into_iter().zip(values(&solution, "F")).enumerate()
+        {
+            let crank = (10.0 + 3.0 * k as f64).to_radians();
+            let rod = (0.2 / 0.25 * crank.sin()).asin();
+            let has_one = mu * rod.tan() < 1.0;
+            assert_eq!(torque.is_nan(), !has_one, "{mu} {k}");
+            assert_eq!(friction.is_nan(), !has_one, "{mu} {k}");
+        }
+    }
+}
