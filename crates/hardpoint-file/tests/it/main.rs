@@ -6,6 +6,7 @@ mod cases;
 mod couplers;
 mod diagnostics;
 mod docs;
+mod domain;
 mod edit;
 mod elements;
 mod gallery;

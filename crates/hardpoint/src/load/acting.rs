@@ -300,10 +300,11 @@ impl<T: Real> Acting<'_, T> {
                 Some((_, turn)) => self.friction[e.0] * magnitude(self.heading(kind, turn), STILL),
                 None => self.friction[e.0],
             },
-            ElementKind::WheelForce { wheel, .. } => pressing(self.road(e, *wheel).1),
+            // Of no force there is no derivative.
+            ElementKind::WheelForce { wheel, .. } => self.road(e, *wheel).1.norm(),
             ElementKind::PointForce { force, .. } => self.number(force.0) * self.laws[e.0],
             ElementKind::BodyMoment { moment, .. } => self.number(moment.0) * self.laws[e.0],
-            ElementKind::Bushing { .. } => pressing(self.bushing(kind).f),
+            ElementKind::Bushing { .. } => self.bushing(kind).f.norm(),
             ElementKind::Rigid { .. }
             | ElementKind::Bar { .. }
             | ElementKind::Block { .. }

@@ -129,6 +129,8 @@ impl<'a> Compliances<'a> {
     /// Enters what is found at time t; `near` is about what the coordinates are that elements act on.
     pub fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, near: &[f64], out: &mut StepValues) {
         self.seconds.solve(stepper, t);
+        // Of the rows as well that the motion is not solved with.
+        stepper.state.finish_wrenches(&stepper.topology);
         for (way, resistance) in self.resistance.iter_mut().enumerate() {
             *resistance = self.seconds.resistance(stepper, way);
         }
@@ -249,7 +251,8 @@ fn are_independent<'a>(vectors: impl Iterator<Item = &'a [(RowId, f64)]>) -> boo
         let (mut rest, whole) = (vector.to_vec(), norm(vector));
         // Twice, so that the basis stays orthogonal to round-off.
         for unit in basis.iter().chain(&basis) {
-            let entry = |v: &[(RowId, f64)], row: RowId| v.iter().find(|(r, _)| *r == row).map_or(0.0, |x| x.1);
+            let entry =
+                |v: &[(RowId, f64)], row: RowId| v.iter().find(|(r, _)| *r == row).map_or(0.0, |x| x.1);
             let along: f64 = unit.iter().map(|(row, x)| x * entry(&rest, *row)).sum();
             for (row, x) in unit {
                 match rest.iter_mut().find(|(r, _)| r == row) {

@@ -56,7 +56,16 @@ impl Rub {
             return None;
         };
         let (presses, per_moment) = (([Vec3::ZERO; 2], 0), Vec::new());
-        Some(Self { element, joint, grip: 0.0, viscous: 0.0, presses, per_moment, is_shared: false, is_ambiguous: false })
+        Some(Self {
+            element,
+            joint,
+            grip: 0.0,
+            viscous: 0.0,
+            presses,
+            per_moment,
+            is_shared: false,
+            is_ambiguous: false,
+        })
     }
 }
 

@@ -267,7 +267,9 @@ impl<T: Real> TravellingWheel<T> {
             WheelMeasure::InstantAxisY => self.about(w.y),
             WheelMeasure::InstantAxisZ => self.about(w.z),
             // (+-X_x' / X_z') p l / h of braking, (+-X_x' / X_z') d l / h of driving
-            WheelMeasure::AntiDive | WheelMeasure::AntiRise => self.reacting(what, v) * support::<T>(what, vehicle),
+            WheelMeasure::AntiDive | WheelMeasure::AntiRise => {
+                self.reacting(what, v) * support::<T>(what, vehicle)
+            }
             WheelMeasure::AntiLift | WheelMeasure::AntiSquat => {
                 -(self.reacting(what, v) * support::<T>(what, vehicle))
             }

@@ -518,6 +518,34 @@ pub enum Ray {
 }
 
 impl MeasureKind {
+    /// How far a value is from where the measure has no derivative because the vector that it is the magnitude of is zero, or two directions
+    /// are parallel or perpendicular; `None` for measures that are no magnitudes.
+    pub(crate) fn from_kink(&self, value: f64) -> Option<f64> {
+        use std::f64::consts::{FRAC_PI_2, PI};
+        match self {
+            Self::Angle { about: None, .. } => Some(value.min(PI - value)),
+            Self::TransmissionAngle { .. } => Some(value.min(FRAC_PI_2 - value)),
+            Self::Distance { .. }
+            | Self::SpringForce { .. }
+            | Self::Velocity { along: None, .. }
+            | Self::AngularVelocity { along: None, .. }
+            | Self::Acceleration { along: None, .. }
+            | Self::Curvature { about: None, .. }
+            | Self::ShakingForce { along: None }
+            | Self::ShakingMoment { along: None, .. } => Some(value.abs()),
+            Self::Reaction { part, .. } => match part {
+                ReactionPart::Force | ReactionPart::Radial | ReactionPart::Moment | ReactionPart::Bending => {
+                    Some(value.abs())
+                }
+                ReactionPart::ForceAlong(_)
+                | ReactionPart::Axial
+                | ReactionPart::MomentAbout(_)
+                | ReactionPart::Torque => None,
+            },
+            _ => None,
+        }
+    }
+
     /// Whether it is a load: what drives the mechanism, or what its parts carry.
     pub fn is_load(&self) -> bool {
         matches!(

@@ -1,6 +1,6 @@
 //! How far exact sensitivities are from differences of re-solved designs, quantity by quantity.
 
-use crate::model::{BodyId, Dimension, Model};
+use crate::model::{BodyId, Dimension, MeasureKind, Model, OutputSource};
 use crate::run::Solution;
 use crate::sensitivity::BodySensitivity;
 use crate::space::Vec3;
@@ -69,10 +69,20 @@ impl Comparison {
     /// the design hardly matters, to what one natural step would have to change for one part in a thousand of
     /// the motion itself.
     pub fn of(model: &Model, solution: &Solution, d: &Difference) -> Self {
+        Self::where_decided(model, solution, d, &Undecided::default())
+    }
+
+    /// The same but for outputs at times at which differences decide nothing.
+    pub(super) fn where_decided(
+        model: &Model,
+        solution: &Solution,
+        d: &Difference,
+        undecided: &Undecided,
+    ) -> Self {
         let mut comparing = Comparing::new(model, solution, d);
         if !solution.motion.is_empty() {
             comparing.bodies();
-            comparing.outputs();
+            comparing.outputs(undecided);
         }
         let orders = solution.measured.outputs.iter().map(|o| o.known.orders).collect();
         Self { errors: comparing.errors, bodies: model.bodies.len() - 1, orders }
@@ -100,6 +110,59 @@ impl Comparison {
         [0, 1, 2].map(|order| if order < self.orders[m] { self.errors[first + order].error } else { 0.0 })
     }
 
+    /// Of outputs that agree at no step, takes off the error what the differences leave open themselves, time by time.
+    ///
+    /// Of three steps in a row that differ least, their spread s bounds what truncation or round-off does there: truncation falls by a factor of
+    /// 10 (one-sided of 3) from each to the next. A derivative that is wrong by more than s stays wrong by the rest.
+    pub(super) fn allow_for_spread(
+        &mut self,
+        model: &Model,
+        solution: &Solution,
+        differences: &[Difference],
+        undecided: &Undecided,
+        tolerance: f64,
+    ) {
+        let Some(finest) = differences.last() else { return };
+        let comparing = Comparing::new(model, solution, finest);
+        let (measured, steps) = (&solution.measured, solution.motion.len());
+        let columns = measured.outputs.len();
+        let mut place = KINDS.len() * self.bodies;
+        for (m, output) in measured.outputs.iter().enumerate() {
+            for order in 0..output.known.orders {
+                let (index, variable) = (place, finest.variable);
+                place += 1;
+                if self.errors.get(index).is_none_or(|e| e.error <= tolerance) {
+                    continue;
+                }
+                let scale = comparing.scale_of(m, order);
+                let (mut worst, mut time) = (0.0, 0.0);
+                for k in (0..steps).filter(|k| comparing.is_defined(*k, m) && !undecided.at(*k, m)) {
+                    let exact = measured.d(k, variable, m)[order];
+                    let of = |d: &Difference| d.outputs[k * columns + m][order];
+                    let rest = |w: &[Difference]| {
+                        let [a, b, c] = [of(&w[0]), of(&w[1]), of(&w[2])];
+                        let spread = (a - b).abs().max((b - c).abs());
+                        let apart = (exact - a).abs().min((exact - b).abs()).min((exact - c).abs());
+                        (spread, apart)
+                    };
+                    let known =
+                        differences.windows(3).map(rest).filter(|(s, a)| s.is_finite() && a.is_finite());
+                    let least = known.min_by(|a, b| a.0.total_cmp(&b.0));
+                    // A derivative that is no number is an error, and so is one that nothing can be compared with.
+                    let error =
+                        least.map_or(f64::INFINITY, |(spread, apart)| (apart - spread).max(0.0) / scale);
+                    if error > worst {
+                        (worst, time) = (error, solution.motion.times[k]);
+                    }
+                }
+                if worst < self.errors[index].error {
+                    let (quantity, step) = (self.errors[index].quantity.clone(), finest.step);
+                    self.errors[index] = StepError { step, error: worst, quantity, time };
+                }
+            }
+        }
+    }
+
     /// Keeps of every quantity the better of two steps.
     pub fn keep_better(&mut self, other: Self) {
         if self.errors.is_empty() {
@@ -109,6 +172,65 @@ impl Comparison {
         let better = self.errors.iter_mut().zip(other.errors).filter(|(best, e)| e.error < best.error);
         better.for_each(|(best, e)| *best = e);
     }
+}
+
+/// Outputs at times at which differences decide nothing about their derivatives, whatever these are.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Undecided {
+    /// `[k * columns + m]`; empty where all are decided.
+    places: Vec<bool>,
+    columns: usize,
+}
+
+/// A second difference above this part of a magnitude itself has the zero of its vector about as near as the step.
+const KINK: f64 = 1e-4;
+
+impl Undecided {
+    /// By the difference with the finest step: magnitudes that come to zero within the step, where `abs(v)` has a kink and no derivative
+    /// at v = 0; and outputs that the moved designs have no number for. `None` where nothing was solved.
+    pub fn by(model: &Model, solution: &Solution, finest: Option<&Difference>) -> Self {
+        let Some(d) = finest else { return Self::default() };
+        let measured = &solution.measured;
+        let columns = measured.outputs.len();
+        let kinked = |k: usize, m: usize| {
+            let y = measured.value(k, m)[0];
+            let Some(far) = model.measures[m].kind.from_kink(y) else { return false };
+            let (bend, change) = (d.bends[k * columns + m], d.outputs[k * columns + m][0] * d.step);
+            // Of one-sided differences the change over the step alone is known.
+            let near = if bend.is_nan() { change } else { bend };
+            near.abs() > KINK * far || far == 0.0
+        };
+        let sources: Vec<Vec<usize>> =
+            (0..columns).map(|m| measures_of(model, measured.outputs[m].source)).collect();
+        let undecided = |place: usize| {
+            let (k, m) = (place / columns, place % columns);
+            d.outputs[place][0].is_nan() || sources[m].iter().any(|m| kinked(k, *m))
+        };
+        Self { places: (0..columns * solution.motion.len()).map(undecided).collect(), columns }
+    }
+
+    fn at(&self, k: usize, m: usize) -> bool {
+        self.places.get(k * self.columns + m).copied().unwrap_or(false)
+    }
+}
+
+/// The measures that an output is, or is made of.
+fn measures_of(model: &Model, output: OutputSource) -> Vec<usize> {
+    let OutputSource::Measure(m) = output else { return Vec::new() };
+    let mut found = vec![m];
+    match &model.measures[m].kind {
+        MeasureKind::Rate { of } => found.extend(measures_of(model, *of)),
+        MeasureKind::Slope { of, over, .. } => {
+            found.extend(measures_of(model, *of));
+            found.extend(measures_of(model, *over));
+        }
+        MeasureKind::Compliance { of, .. } => found.extend(measures_of(model, *of)),
+        MeasureKind::Combination { expression } => {
+            found.extend(expression.sources().flat_map(|source| measures_of(model, source)));
+        }
+        _ => {}
+    }
+    found
 }
 
 struct Comparing<'a> {
@@ -150,23 +272,35 @@ impl<'a> Comparing<'a> {
         }
     }
 
-    fn outputs(&mut self) {
+    fn outputs(&mut self, undecided: &Undecided) {
         let (measured, d, steps) = (&self.solution.measured, self.d, self.solution.motion.len());
         let columns = measured.outputs.len();
         for (m, output) in measured.outputs.iter().enumerate() {
+            let compared: Vec<bool> =
+                (0..steps).map(|k| self.is_defined(k, m) && !undecided.at(k, m)).collect();
             for order in 0..output.known.orders {
                 let analytic = |k: usize| measured.d(k, d.variable, m)[order];
-                let largest = (0..steps).map(|k| analytic(k).abs()).fold(0.0, f64::max);
-                let scale = largest.max(self.negligible(output.dimension, order));
-                // Next to a time without a number the neighbours' may be anything.
-                let defined =
-                    |k: &usize| measured.value(*k, m)[..output.known.orders].iter().all(|x| x.is_finite());
+                let scale = self.scale_of(m, order);
                 let deviation = |k: usize| (analytic(k) - d.outputs[k * columns + m][order]).abs();
                 let name = output.order_name(order);
                 let name = if order == 0 { format!("{name} value") } else { name };
-                self.push(name, scale, (0..steps).map(|k| if defined(&k) { deviation(k) } else { 0.0 }));
+                self.push(name, scale, (0..steps).map(|k| if compared[k] { deviation(k) } else { 0.0 }));
             }
         }
+    }
+
+    /// What deviations of output m's time derivative of that order are relative to.
+    fn scale_of(&self, m: usize, order: usize) -> f64 {
+        let measured = &self.solution.measured;
+        let sizes = (0..self.solution.motion.len()).map(|k| measured.d(k, self.d.variable, m)[order].abs());
+        sizes.fold(0.0, f64::max).max(self.negligible(measured.outputs[m].dimension, order))
+    }
+
+    /// Whether output m has its numbers at time k. Next to a time without them the neighbours' may be anything.
+    fn is_defined(&self, k: usize, m: usize) -> bool {
+        let measured = &self.solution.measured;
+        let orders = measured.outputs[m].known.orders;
+        measured.value(k, m)[..orders].iter().all(|x| x.is_finite())
     }
 
     /// A sensitivity below which there is none to speak of.

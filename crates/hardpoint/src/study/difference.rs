@@ -40,6 +40,9 @@ pub struct Difference {
     pub bodies: Vec<BodySensitivity>,
     /// `outputs[k * m + j]`: of value, rate and acceleration of output j at time k.
     pub outputs: Vec<[f64; 3]>,
+    /// `bends[k * m + j]`: of the value of output j at time k `y(b + h) - 2 y(b) + y(b - h)`, which is far above h^2 where it has a kink
+    /// between the moved designs; NaN of one-sided differences.
+    pub bends: Vec<f64>,
 }
 
 /// Re-solves the designs that a scheme asks for, for each variable and step, eight at a time, and divides. `nominal` is the
@@ -73,7 +76,13 @@ pub fn finite_differences(
             };
             out.push(match stop {
                 Some(stop) => Err(stop),
-                None => Ok(quotient(variable, step, plus, minus, moves.len() as f64 * step)),
+                None => {
+                    let mut d = quotient(variable, step, plus, minus, moves.len() as f64 * step);
+                    if let Scheme::Central = scheme {
+                        bend(&mut d.bends, [plus, nominal, minus]);
+                    }
+                    Ok(d)
+                }
             });
         }
     }
@@ -86,7 +95,7 @@ fn quotient(variable: VariableId, step: f64, plus: &Solution, minus: &Solution, 
     let k = 1.0 / apart;
     let bodies =
         plus.motion.states().zip(minus.motion.states()).map(|(p, m)| body_quotient(&p, &m, k)).collect();
-    let outputs = (0..plus.measured.len())
+    let outputs: Vec<[f64; 3]> = (0..plus.measured.len())
         .flat_map(|t| (0..plus.measured.outputs.len()).map(move |m| (t, m)))
         .map(|(t, m)| {
             let (p, q) = (plus.measured.value(t, m), minus.measured.value(t, m));
@@ -99,7 +108,18 @@ fn quotient(variable: VariableId, step: f64, plus: &Solution, minus: &Solution, 
             d.map(|x| k * x)
         })
         .collect();
-    Difference { variable, step, bodies, outputs }
+    let bends = vec![f64::NAN; outputs.len()];
+    Difference { variable, step, bodies, outputs, bends }
+}
+
+/// Second differences of all outputs' values.
+fn bend(bends: &mut [f64], [plus, nominal, minus]: [&Solution; 3]) {
+    let columns = nominal.measured.outputs.len();
+    for (place, bend) in bends.iter_mut().enumerate() {
+        let (k, m) = (place / columns, place % columns);
+        let [p, y, q] = [plus, nominal, minus].map(|s| s.measured.value(k, m)[0]);
+        *bend = p - 2.0 * y + q;
+    }
 }
 
 fn body_quotient(p: &BodyState, m: &BodyState, k: f64) -> BodySensitivity {
