@@ -85,7 +85,9 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
         }
         text::print(&out);
         text::print(&written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display())));
-        text::print(&saved.ok().flatten().map_or(String::new(), |path| format!("saved: {}\n", path.display())));
+        text::print(
+            &saved.ok().flatten().map_or(String::new(), |path| format!("saved: {}\n", path.display())),
+        );
     }
     saved?;
     Ok(match found.status {

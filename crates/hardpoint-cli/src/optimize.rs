@@ -72,7 +72,9 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
         let written = written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display()));
         text::print(&written);
         session.tell(&file, &facts.diagnostics);
-        text::print(&saved.ok().flatten().map_or(String::new(), |path| format!("saved: {}\n", path.display())));
+        text::print(
+            &saved.ok().flatten().map_or(String::new(), |path| format!("saved: {}\n", path.display())),
+        );
     }
     saved?;
     Ok(match facts.status {

@@ -297,7 +297,8 @@ fn exceeded(violation: f64) -> Option<String> {
 
 /// The design that is saved: numbers of as few digits as still describe the optimum, judged by solving it.
 pub fn to_save(file: &ModelFile, motions: &Motions<'_>, asked: &Optimization, design: &[f64]) -> Vec<f64> {
-    let moves = |design: &Vec<f64>| judge(&file.model, motions, asked, design).is_ok_and(|j| j.violation <= SAVED);
+    let moves =
+        |design: &Vec<f64>| judge(&file.model, motions, asked, design).is_ok_and(|j| j.violation <= SAVED);
     let all = || FINER.iter().map(|finest| rounded_to(file, asked, design, *finest));
     all().find(moves).unwrap_or_else(|| rounded(file, asked, design))
 }
@@ -549,12 +550,14 @@ impl OptimizeFacts {
             ("objective", format!("{} as drawn, {} found", shown(before), shown(after))),
         ];
         rows.extend(
-            self.kkt
-                .map(|kkt| ("optimality", format!("{} of the goals' gradient is left", error(kkt)))),
+            self.kkt.map(|kkt| ("optimality", format!("{} of the goals' gradient is left", error(kkt)))),
         );
         if let Some(after) = self.margin.after {
             let before = self.margin.before.map_or("-".into(), number);
-            rows.push(("margin", format!("{before} as drawn, {} found, to a singular position", number(after))));
+            rows.push((
+                "margin",
+                format!("{before} as drawn, {} found, to a singular position", number(after)),
+            ));
         }
         if let Some(saved) = &self.saved {
             let is = match (&saved.why, saved.margin, saved.objective) {

@@ -705,7 +705,10 @@ impl ToleranceFacts {
                 let note = match m.told_by {
                     "linear" => String::new(),
                     "second_order" => "From first and second derivatives.".into(),
-                    _ => "Of the designs drawn: the variance of the mean at given deviations of each variable.".into(),
+                    _ => {
+                        "Of the designs drawn: the variance of the mean at given deviations of each variable."
+                            .into()
+                    }
                 };
                 tables.push(Table {
                     title: format!("Contributions to {}", m.titled()),

@@ -29,7 +29,7 @@ fn the_tutorial_finds_the_toe_curve_as_it_prints_it() {
     // How long it took is the machine's; what is left of the gradient, and the last steps of a search that is nearly there, are
     // round-off's.
     let iteration = |line: &str| line.trim_start().chars().next().is_some_and(|c| ('2'..='9').contains(&c));
-    let varies = ["time taken", "optimality", "looked at", "out/", "saved:"];
+    let varies = ["time taken", "optimality", "looked at", "saved ", "out/", "saved:"];
     let told = |line: &&str| !varies.iter().any(|word| line.contains(word)) && !iteration(line);
     let lines: Vec<&str> = text.lines().filter(told).collect();
     assert!(lines.len() > 25, "{text}");
@@ -41,7 +41,8 @@ fn the_tutorial_finds_the_toe_curve_as_it_prints_it() {
     let summary = bench.json("out/summary.json");
     assert_eq!(summary["status"], "optimal");
     assert!(summary["evaluations"]["designs"].as_u64().unwrap() < 20, "{}", summary["evaluations"]);
-    assert!(summary["kkt"].as_f64().unwrap() <= 1e-8);
+    // Of the goals' own gradient, which is a hundredth of that at the start.
+    assert!(summary["kkt"].as_f64().unwrap() <= 1e-6);
     let variables = summary["variables"].as_array().unwrap();
     assert_eq!(variables.len(), 5);
     assert!(variables.iter().all(|v| v["start"] == 0.0 && v["end"].as_f64().unwrap().abs() <= 15.0 + 1e-9));
@@ -287,7 +288,10 @@ time = { end = 1, steps = 4 }
 #[test]
 fn what_cannot_be_saved_is_known_before_the_search() {
     let bench = Bench::with(&[]);
-    bench.put("one.toml", &format!("{CRANK}design.A = {{ move = \"A\", along = \"xy\", bounds = [-9, 9] }}\n"));
+    bench.put(
+        "one.toml",
+        &format!("{CRANK}design.A = {{ move = \"A\", along = \"xy\", bounds = [-9, 9] }}\n"),
+    );
     let output = bench.run(&["optimize", "one.toml", "--save", "found.toml"]);
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{text}");

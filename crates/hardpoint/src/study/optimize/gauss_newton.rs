@@ -77,7 +77,8 @@ impl GaussNewton {
                     (values[k] + (0..n).map(|v| d[k][v] * spans[v] * full[v]).sum::<f64>()).powi(2)
                 };
                 let misfit = point.misfit().powi(2);
-                let promise = if misfit > 0.0 { 1.0 - (0..rows).map(left).sum::<f64>() / misfit } else { 0.0 };
+                let promise =
+                    if misfit > 0.0 { 1.0 - (0..rows).map(left).sum::<f64>() / misfit } else { 0.0 };
                 return Self { step: full, promise };
             }
             for v in stopped {

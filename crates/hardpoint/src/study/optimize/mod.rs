@@ -470,8 +470,8 @@ impl<'p> Descent<'p> {
     /// A valley bends, so that a step along it first leaves it: designs are compared after a few steps, not after each.
     fn polish(&mut self, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
         let n = self.at.len();
-        let mut damped = DAMPED;
-        while damped <= FLAT {
+        let (mut damped, mut idle) = (DAMPED, 0);
+        while damped <= FLAT && idle < WEAK_STEPS {
             let promise = |damped| GaussNewton::new(self.problem, &self.best, &self.scales, damped).promise;
             let can_fall = self.best.has_only_squares()
                 && self.violation(&self.best) <= KEPT
@@ -520,6 +520,8 @@ impl<'p> Descent<'p> {
                     break;
                 }
             }
+            let is_weak = self.best.objective() > (1.0 - WEAK) * before;
+            idle = if is_weak { idle + 1 } else { 0 };
             damped = if kept_promise(self) { (damped / DAMPING).max(LEAST_DAMPED) } else { damped * DAMPING };
         }
     }
