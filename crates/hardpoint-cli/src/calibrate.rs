@@ -34,6 +34,7 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
         Outcome::BadModel
     })?;
     session.may_save(&options.common.model, options.save.as_deref())?;
+    session.can_save(&file, &variables, options.save.as_deref())?;
     let folder = session.folder(options.output.as_deref())?;
 
     session.patient(true);
@@ -54,11 +55,19 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
     let calibrated = Calibrated { file: &file, measured: &measured, data: &data, loss, found: &found };
     let mut facts = CalibrateFacts::of(&calibrated);
     facts.seconds = session.seconds();
-    let mut saved = None;
+    let mut saved = Ok(None);
     if let Some(to) = &options.save {
-        session.save(&file, &found.design, to)?;
-        facts.files.push(to.display().to_string());
-        saved = Some(to);
+        match session.save_result(&file, &found.design, to) {
+            Ok(()) => {
+                facts.files.push(to.display().to_string());
+                saved = Ok(Some(to));
+            }
+            Err((diagnostics, why, outcome)) => {
+                facts.message = format!("{}; the result could not be saved: {why}", facts.message);
+                session.tell(&file, &diagnostics);
+                saved = Err(outcome);
+            }
+        }
     }
     let mut written = None;
     if let Some(mut folder) = folder {
@@ -76,8 +85,11 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
         }
         text::print(&out);
         text::print(&written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display())));
-        text::print(&saved.map_or(String::new(), |path| format!("saved: {}\n", path.display())));
+        text::print(
+            &saved.ok().flatten().map_or(String::new(), |path| format!("saved: {}\n", path.display())),
+        );
     }
+    saved?;
     Ok(match found.status {
         FitStatus::Interrupted => Outcome::Interrupted,
         FitStatus::IterationLimit => Outcome::FellShort,

@@ -3,12 +3,13 @@
 use std::io::Write;
 use std::num::NonZero;
 use std::ops::ControlFlow;
+use std::path::Path;
 
 use hardpoint::Solution;
 use hardpoint::model::Optimization;
-use hardpoint::study::{Motions, Optimized, Progress, Searching, optimize};
+use hardpoint::study::{Judged, Motions, Optimized, Progress, Searching, judge, optimize};
 use hardpoint_file::ModelFile;
-use hardpoint_report::optimize::{OptimizeFacts, iteration_line, rounded, start_line};
+use hardpoint_report::optimize::{OptimizeFacts, iteration_line, start_line, to_save};
 
 use crate::args::Optimize;
 use crate::folder::{Folder, NotWritten};
@@ -32,6 +33,7 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
     let [starts, iterations] = [options.starts, options.iterations].map(|n| n.map(NonZero::get));
     let asked = asked(session, &file, options.motions.case.as_deref(), [starts, iterations])?;
     session.may_save(&options.common.model, options.save.as_deref())?;
+    session.can_save(&file, &asked.variables, options.save.as_deref())?;
     let models = file.model.motions();
     let motions = Motions::of(&models, options.common.formulation());
     let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(&file, &fault))?;
@@ -40,11 +42,21 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
     session.patient(true);
     let mut search = Search::run(session, &file, &motions, &asked, options.threads);
 
-    let mut saved = None;
-    if let (Some(to), Some(design)) = (&options.save, search.rounded()) {
-        session.save(&file, &design, to)?;
-        search.facts.files.push(to.display().to_string());
-        saved = Some(to);
+    let mut saved = Ok(None);
+    if let (Some(to), Some(design)) = (&options.save, search.to_save()) {
+        match session.save_result(&file, &design, to) {
+            Ok(()) => {
+                search.facts.files.push(to.display().to_string());
+                let judged = judged_as_written(to, options, &asked);
+                search.facts.check_saved(&to.display().to_string(), judged);
+                saved = Ok(Some(to));
+            }
+            Err((diagnostics, why, outcome)) => {
+                search.facts.not_saved(&why);
+                search.facts.diagnostics.extend(diagnostics);
+                saved = Err(outcome);
+            }
+        }
     }
     let mut written = None;
     if let Some(mut folder) = folder.filter(|_| search.best().is_some()) {
@@ -59,14 +71,34 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
         text::print(&facts_text(facts));
         let written = written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display()));
         text::print(&written);
-        text::print(&saved.map_or(String::new(), |path| format!("saved: {}\n", path.display())));
+        session.tell(&file, &facts.diagnostics);
+        text::print(
+            &saved.ok().flatten().map_or(String::new(), |path| format!("saved: {}\n", path.display())),
+        );
     }
+    saved?;
     Ok(match facts.status {
         "interrupted" => Outcome::Interrupted,
         "no_start" => Outcome::Stopped,
         "optimal" => Outcome::Done,
         _ => Outcome::FellShort,
     })
+}
+
+/// The design of a saved file, read as it was written and solved once more.
+fn judged_as_written(to: &Path, options: &Optimize, asked: &Optimization) -> Result<Judged, String> {
+    let mut file = hardpoint_file::read(to).map_err(|error| {
+        let first = error.diagnostics().list().first().map_or(String::new(), |d| d.message.clone());
+        format!("it cannot be read again: {first}")
+    })?;
+    if let Some(case) = options.motions.case.as_ref().and_then(|name| file.model.case(name)) {
+        file.model = file.model.with_case_only(case);
+    }
+    let models = file.model.motions();
+    let motions = Motions::of(&models, options.common.formulation())
+        .map_err(|(_, fault)| format!("it cannot be driven: {fault}"))?;
+    let wanted = file.model.optimization.as_ref().unwrap_or(asked);
+    judge(&file.model, &motions, wanted, &[]).map_err(|refused| refused.why)
 }
 
 /// What is asked for, by the file and besides: one case of it, so many starts and iterations.
@@ -142,9 +174,9 @@ impl<'a> Search<'a> {
         self.found.best.and_then(|k| Some(&*self.found.searches[k].found.as_ref()?.design))
     }
 
-    /// The same with the searched variables at numbers of few digits in the file's units.
-    pub fn rounded(&self) -> Option<Vec<f64>> {
-        Some(rounded(self.file, self.asked, self.best()?))
+    /// The same with the searched variables at numbers of few digits in the file's units, as far as it then moves alike.
+    pub fn to_save(&self) -> Option<Vec<f64>> {
+        Some(to_save(self.file, self.motions, self.asked, self.best()?))
     }
 
     /// A page for each motion, and the summary last.

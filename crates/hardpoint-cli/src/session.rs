@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use hardpoint::draft::did_you_mean;
-use hardpoint::model::CaseId;
+use hardpoint::model::{CaseId, VariableId};
 use hardpoint::motion::Execution;
 use hardpoint::topology::{Formulation, TopologyFault};
 use hardpoint::{Analysis, Footprint, Run, Solution};
@@ -282,13 +282,44 @@ impl Session {
     /// Where the text cannot say the changed design, or the file cannot be written.
     pub fn save(&self, file: &ModelFile, design: &[f64], to: &Path) -> Result<(), Outcome> {
         let text = self.edited(file, design)?;
-        let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let name = to.file_name().map(|n| n.to_string_lossy().into_owned());
-        let written = Folder::open(parent).and_then(|mut folder| {
-            folder.write(&name.unwrap_or_default(), |out| out.write_all(text.as_bytes()))?;
-            folder.commit(&[])
-        });
-        written.map_err(|e| self.not_written(&e))
+        write_text(to, &text).map_err(|e| self.not_written(&e))
+    }
+
+    /// That changes of some variables can be saved in the model's text: known before there is anything to lose.
+    ///
+    /// # Errors
+    /// Where the text has no number for one of them.
+    pub fn can_save(
+        &self,
+        file: &ModelFile,
+        variables: &[VariableId],
+        to: Option<&Path>,
+    ) -> Result<(), Outcome> {
+        let checked = if to.is_some() { file.check_savable(variables) } else { Ok(()) };
+        checked.map_err(|diagnostics| {
+            self.fail(file, diagnostics.list());
+            Outcome::Misunderstood
+        })
+    }
+
+    /// Writes the model file with a changed design after a search: a failure is returned, so that the result can still be shown.
+    ///
+    /// # Errors
+    /// The diagnostics, the cause in one line, and how the command ends.
+    pub fn save_result(
+        &self,
+        file: &ModelFile,
+        design: &[f64],
+        to: &Path,
+    ) -> Result<(), (Vec<Diagnostic>, String, Outcome)> {
+        let text = file.edit(design).map_err(|found| {
+            let why = found.list().first().map_or(String::new(), |d| d.message.clone());
+            (found.list().to_vec(), why, Outcome::Misunderstood)
+        })?;
+        write_text(to, &text).map_err(|failure| {
+            let why = format!("`{}` cannot be written: {}", failure.path.display(), failure.error);
+            (Vec::new(), why, Outcome::NotWritten)
+        })
     }
 
     /// The model's text with a changed design.
@@ -566,4 +597,13 @@ pub fn json_text(document: &impl serde::Serialize) -> String {
     let mut text = serde_json::to_string_pretty(document).expect("results are plain data");
     text.push('\n');
     text
+}
+
+/// Writes a text, whole or not at all.
+fn write_text(to: &Path, text: &str) -> Result<(), NotWritten> {
+    let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = to.file_name().map(|n| n.to_string_lossy().into_owned());
+    let mut folder = Folder::open(parent)?;
+    folder.write(&name.unwrap_or_default(), |out| out.write_all(text.as_bytes()))?;
+    folder.commit(&[])
 }

@@ -2,7 +2,7 @@
 
 use hardpoint::joint::Quantity;
 use hardpoint::law::ParameterKind;
-use hardpoint::model::{Change, Direction, Model};
+use hardpoint::model::{Change, Direction, Model, VariableId};
 use hardpoint::space::{Mat3, Vec3};
 use toml_edit::{DocumentMut, Item, Value};
 
@@ -17,6 +17,8 @@ const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 /// The saved file's directions and lengths agree with the changed design to this, rad or part of the mechanism's size: some hundred
 /// times the round-off of their roots, far below what anything is made to.
 const SAME: f64 = 1e-12;
+/// Whether a change can be saved is tried with one of this part of the bounds: so small that expressions keep their values.
+const TRIAL: f64 = 1e-4;
 
 impl ModelFile {
     /// The text of this file with the design changed: variable k of [`model`](Self::model) at `design[k]` (missing entries are 0)
@@ -69,6 +71,29 @@ impl ModelFile {
         }
         self.read_back(&text, &edit.values)?;
         Ok(text)
+    }
+
+    /// Whether changes of some design variables can be saved in this file, found out before any work is done for them.
+    ///
+    /// # Errors
+    /// What of a small change of all of them the text has no number for.
+    pub fn check_savable(&self, variables: &[VariableId]) -> Result<(), Diagnostics> {
+        let mut design = vec![0.0; self.model.variables.len()];
+        for (k, v) in variables.iter().enumerate() {
+            let [low, high] = self.model.variables[v.0].bounds.unwrap_or([-1.0, 1.0]);
+            let room = if high > -low { high } else { low };
+            // Each moves by another part of its room.
+            design[v.0] = TRIAL * room * (1.0 + k as f64 / variables.len() as f64);
+        }
+        match self.edit(&design) {
+            Err(found) if found.list().iter().any(|d| d.code == CODE) => Err(found),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether a mirror makes the hardpoint, joint or parameter of this name from another one.
+    pub fn is_image(&self, name: &str) -> bool {
+        self.origins.names.contains_key(name)
     }
 
     /// Whether the new text says the changed design.

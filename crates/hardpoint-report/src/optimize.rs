@@ -2,8 +2,12 @@
 
 use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
-use hardpoint::model::{Dimension, Limited, Model, Optimization, OutputSource, Reduction};
-use hardpoint::study::{Binding, Iteration, Judged, Optimized, Refused, Search, Status};
+use hardpoint::model::{
+    Change, DesignVariable, Dimension, Limited, Model, Optimization, OutputSource, Reduction,
+};
+use hardpoint::study::{
+    Binding, Iteration, Judged, LIMIT_KEPT, Motions, Optimized, Refused, Search, Status, judge,
+};
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
 
@@ -27,7 +31,8 @@ pub struct OptimizeFacts {
     pub model: String,
     /// The model file.
     pub file: String,
-    /// How the best search ended: `optimal`, `stuck`, `limits_not_kept`, `iteration_limit`, `interrupted` or `no_start`.
+    /// How the best search ended: `optimal`, `stuck`, `limits_not_kept`, `iteration_limit`, `interrupted` or `no_start`; or
+    /// `not_reproduced` where the saved design does not move as the optimum does, and `not_saved` where it could not be saved.
     pub status: &'static str,
     /// The same in words, and what to do.
     pub message: String,
@@ -35,7 +40,11 @@ pub struct OptimizeFacts {
     pub objective: BeforeAfter,
     /// By how much the limit is exceeded that is exceeded most, as a part of what the bounds of the variables make of it.
     pub violation: BeforeAfter,
-    /// What is left of the gradient that neither bounds nor limits take up, as a part of the gradient at the start.
+    /// The least margin to a singular position in any motion: in the design configuration, and of the best design.
+    pub margin: BeforeAfter,
+    /// The saved design, read from the file as written and solved once more; `null` where none was saved.
+    pub saved: Option<SavedFact>,
+    /// The part of the gradient that neither bounds nor limits balance, relative to the scale of the goals; 0 where all misfits vanish.
     pub kkt: Option<f64>,
     /// The start of the best search: 0 is the design as drawn.
     pub best_start: Option<usize>,
@@ -72,6 +81,21 @@ pub struct BeforeAfter {
     pub before: Option<f64>,
     /// Of the best design; `null` where none was found.
     pub after: Option<f64>,
+}
+
+/// A saved design, read from the file as written and solved once more.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct SavedFact {
+    /// The file.
+    pub file: String,
+    /// The objective.
+    pub objective: Option<f64>,
+    /// As [`OptimizeFacts::violation`].
+    pub violation: Option<f64>,
+    /// The least margin to a singular position in any motion.
+    pub margin: Option<f64>,
+    /// Why the design is not the optimum; `null` where it is.
+    pub why: Option<String>,
 }
 
 /// What an optimisation cost.
@@ -136,12 +160,14 @@ pub struct SearchedVariable {
     pub name: String,
     /// Its unit.
     pub unit: String,
-    /// Where the best search started.
+    /// Where the best search started, as a change of the design configuration.
     pub start: f64,
-    /// Where it ended.
+    /// Where it ended, likewise.
     pub end: f64,
-    /// Between which values it may lie.
+    /// Between which changes it may lie.
     pub bounds: [f64; 2],
+    /// The value that it changes, in the design configuration; `null` where it changes more than one number.
+    pub nominal: Option<f64>,
     /// The bound that binds: `lower` or `upper`.
     pub binds: Option<&'static str>,
     /// By how much the objective would get less if that bound gave way by one unit.
@@ -238,10 +264,9 @@ pub fn case_name(model: &Model, motion: usize) -> Option<String> {
 
 /// An iteration as a line of text: what is shown while the search goes on.
 pub fn iteration_line(model: &Model, units: Units, i: &Iteration) -> String {
-    let kept = if i.violation > 0.0 {
-        format!("limits exceeded by {}", error(i.violation))
-    } else {
-        "limits kept".into()
+    let kept = match exceeded(i.violation) {
+        Some(by) => format!("limits exceeded by {by}"),
+        None => "limits kept".into(),
     };
     let kept = if model.optimization.as_ref().is_some_and(|o| o.limits.is_empty()) {
         String::new()
@@ -260,14 +285,36 @@ pub fn iteration_line(model: &Model, units: Units, i: &Iteration) -> String {
 /// A design is saved to this part of its variables' bounds: what is finer is the search's, and no hand's.
 const FINEST: f64 = 1e-9;
 
+/// Where a design of few digits does not move as the optimum does, more digits are tried: parts of the bounds, down to the last bit.
+const FINER: [f64; 3] = [FINEST, 1e-12, 1e-16];
+/// A saved design may exceed limits by this more than the optimum: what its last digit changes.
+const SAVED: f64 = 1e-7;
+
+/// By how much limits are exceeded, in words; `None` where that is round-off.
+fn exceeded(violation: f64) -> Option<String> {
+    (violation > LIMIT_KEPT).then(|| error(violation))
+}
+
+/// The design that is saved: numbers of as few digits as still describe the optimum, judged by solving it.
+pub fn to_save(file: &ModelFile, motions: &Motions<'_>, asked: &Optimization, design: &[f64]) -> Vec<f64> {
+    let moves =
+        |design: &Vec<f64>| judge(&file.model, motions, asked, design).is_ok_and(|j| j.violation <= SAVED);
+    let all = || FINER.iter().map(|finest| rounded_to(file, asked, design, *finest));
+    all().find(moves).unwrap_or_else(|| rounded(file, asked, design))
+}
+
 /// A design with the searched variables at numbers of few digits in the file's units.
 pub fn rounded(file: &ModelFile, asked: &Optimization, design: &[f64]) -> Vec<f64> {
+    rounded_to(file, asked, design, FINEST)
+}
+
+fn rounded_to(file: &ModelFile, asked: &Optimization, design: &[f64], finest: f64) -> Vec<f64> {
     let mut design = design.to_vec();
     for v in &asked.variables {
         let variable = &file.model.variables[v.0];
         let Some([low, high]) = variable.bounds else { continue };
         let [value, span] = [design[v.0], high - low].map(|x| file.units.from_si(variable.quantity, x));
-        let step = 10.0_f64.powf((FINEST * span).log10().floor());
+        let step = 10.0_f64.powf((finest * span).log10().floor());
         let value = (value / step).round() * step;
         design[v.0] = file.units.to_si(variable.quantity, value).clamp(low, high);
     }
@@ -327,6 +374,11 @@ impl OptimizeFacts {
             message: String::new(),
             objective: before_after(|j| j.objective),
             violation: before_after(|j| j.violation),
+            margin: BeforeAfter {
+                before: found.drawn.as_ref().and_then(|j| j.margin),
+                after: judged.and_then(|j| j.margin),
+            },
+            saved: None,
             kkt: best.map(|b| b.optimality.residual).filter(|r| r.is_finite()),
             best_start: found.best,
             evaluations: Evaluations {
@@ -336,7 +388,7 @@ impl OptimizeFacts {
             },
             goals: goals(model, units, asked, found, judged),
             limits: limits(model, units, asked, found, best),
-            variables: best.map_or(Vec::new(), |b| variables(model, units, asked, b)),
+            variables: best.map_or(Vec::new(), |b| variables(file, asked, b)),
             hardpoints: judged.map_or(Vec::new(), |j| moved(model, units, &j.design)),
             iterations: best.map_or(Vec::new(), |b| iterations(model, units, b)),
             starts: found.searches.iter().enumerate().map(|(k, s)| start(k, s)).collect(),
@@ -369,6 +421,7 @@ impl OptimizeFacts {
         let binding: Vec<&str> =
             self.variables.iter().filter(|v| v.binds.is_some()).map(|v| v.name.as_str()).collect();
         match status {
+            Status::Optimal if best_is_met(found) => "all goals are met: nothing is left to gain".into(),
             Status::Optimal if binding.is_empty() => "an optimum: no small change of the design is better".into(),
             Status::Optimal => format!(
                 "an optimum within the bounds, of which {} hold it; wider ones would do more",
@@ -454,9 +507,10 @@ impl OptimizeFacts {
             let [low, high] = v.bounds;
             vec![
                 v.name.clone(),
-                with_unit(v.start, &v.unit),
-                with_unit(v.end, &v.unit),
-                format!("{} to {}", number(low), number(high)),
+                with_unit(v.value(v.start), &v.unit),
+                with_unit(v.value(v.end), &v.unit),
+                signed(v.end - v.start, &v.unit),
+                format!("{} to {}", number(v.value(low)), number(v.value(high))),
                 work,
                 binds,
             ]
@@ -464,8 +518,10 @@ impl OptimizeFacts {
         if !self.variables.is_empty() {
             tables.push(Table {
                 title: "Design".into(),
-                note: "as changes of the design as drawn; work is a variable's share of what was gained, along the way".into(),
-                header: header(&["variable", "start", "found", "bounds", "work", "bound that binds"]),
+                note: "Start, found and bounds are values of the number that the variable changes; where it changes several, they are \
+                    changes of the design configuration. Work is a variable's share of what was gained, along the way."
+                    .into(),
+                header: header(&["variable", "start", "found", "change", "bounds", "work", "bound that binds"]),
                 rows: self.variables.iter().map(variable).collect(),
             });
         }
@@ -494,9 +550,27 @@ impl OptimizeFacts {
             ("objective", format!("{} as drawn, {} found", shown(before), shown(after))),
         ];
         rows.extend(
-            self.kkt
-                .map(|kkt| ("optimality", format!("{} of the gradient at the start is left", error(kkt)))),
+            self.kkt.map(|kkt| ("optimality", format!("{} of the goals' gradient is left", error(kkt)))),
         );
+        if let Some(after) = self.margin.after {
+            let before = self.margin.before.map_or("-".into(), number);
+            rows.push((
+                "margin",
+                format!("{before} as drawn, {} found, to a singular position", number(after)),
+            ));
+        }
+        if let Some(saved) = &self.saved {
+            let is = match (&saved.why, saved.margin, saved.objective) {
+                (Some(why), _, _) => format!("`{}` does not reproduce the design found: {why}", saved.file),
+                (None, margin, objective) => format!(
+                    "`{}` was read and solved again: objective {}, margin {}",
+                    saved.file,
+                    shown(objective),
+                    shown(margin)
+                ),
+            };
+            rows.push(("saved", is));
+        }
         if self.starts.len() > 1 {
             let ended = self.starts.iter().filter(|s| s.status == "optimal").count();
             let best = self.best_start.map_or("none".into(), |k| {
@@ -574,7 +648,7 @@ impl OptimizeFacts {
             vec![
                 i.iteration.to_string(),
                 number(i.objective),
-                error(i.violation),
+                exceeded(i.violation).unwrap_or_else(|| "kept".into()),
                 moved,
                 i.designs.to_string(),
             ]
@@ -708,7 +782,98 @@ fn limits(
     taken.iter().enumerate().map(fact).collect()
 }
 
-fn variables(model: &Model, units: Units, asked: &Optimization, best: &Search) -> Vec<SearchedVariable> {
+/// A change below this part of the bounds is round-off of their parts.
+const ROUND_OFF: f64 = 1e-15;
+
+fn without_round_off(x: f64, [low, high]: [f64; 2]) -> f64 {
+    if x.abs() <= ROUND_OFF * (high - low) { 0.0 } else { x }
+}
+
+/// The number of the file that a variable changes, in SI, where it is one.
+fn nominal(file: &ModelFile, variable: &DesignVariable) -> Option<f64> {
+    let model = &file.model;
+    let parameter = variable.changes.iter().find_map(|change| match change {
+        Change::Parameter(c) if c.rate == 1.0 => Some(model.parameters[c.parameter.0].value),
+        _ => None,
+    });
+    let is_image = |name: &str| file.is_image(name);
+    let own = |change: &&Change| match change {
+        Change::Move(m) => !is_image(&model.hardpoints[m.hardpoint.0].name),
+        _ => true,
+    };
+    let mut own = variable.changes.iter().filter(own);
+    let coordinate = match (own.next(), own.next()) {
+        (Some(Change::Move(m)), None) => {
+            let along = (0..3).find(|axis| m.velocity[*axis] == 1.0 && m.velocity.norm() == 1.0);
+            along.map(|axis| model.hardpoints[m.hardpoint.0].position[axis])
+        }
+        (Some(Change::Length(c)), None) if c.rate == 1.0 => model.joints[c.joint.0].length,
+        _ => None,
+    };
+    parameter.or(coordinate)
+}
+
+/// Whether the best search ended where all goals vanish.
+fn best_is_met(found: &Optimized) -> bool {
+    found.best.is_some_and(|k| found.searches[k].optimality.met)
+}
+
+/// A change with its sign.
+fn signed(by: f64, unit: &str) -> String {
+    format!("{}{}", if by > 0.0 { "+" } else { "" }, with_unit(by, unit))
+}
+
+impl SearchedVariable {
+    /// The value that a change gives, or the change where there is none.
+    fn value(&self, change: f64) -> f64 {
+        self.nominal.map_or(change, |nominal| without_round_off(nominal + change, self.bounds))
+    }
+}
+
+impl OptimizeFacts {
+    /// Takes in what solving the saved file anew has shown; a design that is not the optimum is not called one.
+    pub fn check_saved(&mut self, to: &str, judged: Result<Judged, String>) {
+        let mut saved = SavedFact { file: to.into(), ..SavedFact::default() };
+        match judged {
+            Ok(judged) => {
+                saved.objective = Some(judged.objective);
+                saved.violation = Some(judged.violation);
+                saved.margin = judged.margin;
+                if judged.violation > SAVED.max(2.0 * self.violation.after.unwrap_or(0.0)) {
+                    saved.why = Some(format!("it exceeds limits by {}", error(judged.violation)));
+                }
+            }
+            Err(why) => saved.why = Some(why),
+        }
+        if let Some(why) = &saved.why {
+            self.fall_short(
+                "not_reproduced",
+                &format!(
+                    "the saved design is not the one found: {why}; it is too near to a singular position: ask for a `margin` in \
+                     `[optimize]`"
+                ),
+            );
+        }
+        self.saved = Some(saved);
+    }
+
+    /// A result that could not be saved.
+    pub fn not_saved(&mut self, why: &str) {
+        self.fall_short("not_saved", &format!("the result could not be saved: {why}"));
+    }
+
+    fn fall_short(&mut self, status: &'static str, message: &str) {
+        if self.status == "optimal" {
+            self.status = status;
+            self.message = message.into();
+        } else {
+            self.message = format!("{}; {message}", self.message);
+        }
+    }
+}
+
+fn variables(file: &ModelFile, asked: &Optimization, best: &Search) -> Vec<SearchedVariable> {
+    let (model, units) = (&file.model, file.units);
     let end = best.found.as_ref().map_or(&best.start, |j| &j.design);
     let objective = best.found.as_ref().map_or(0.0, |j| j.objective.abs());
     let fact = |(k, v): (usize, &hardpoint::model::VariableId)| {
@@ -725,9 +890,10 @@ fn variables(model: &Model, units: Units, asked: &Optimization, best: &Search) -
         SearchedVariable {
             name: variable.name.clone(),
             unit: variable_unit(model, units, variable),
-            start: shown(best.start[v.0]),
-            end: shown(end[v.0]),
+            start: without_round_off(shown(best.start[v.0]), bounds.map(shown)),
+            end: without_round_off(shown(end[v.0]), bounds.map(shown)),
             bounds: bounds.map(shown),
+            nominal: nominal(file, variable).map(shown),
             binds: binds.map(|b| b.0),
             worth: binds.map(|b| b.1 * unit_in_si(units, variable.quantity)),
             work: best.work[k],

@@ -5,7 +5,8 @@ use std::io::Write;
 use hardpoint::measure::Output;
 use hardpoint::model::{AllocationRule, Dimension, Limited, Model, OutputSource, Tolerancing};
 use hardpoint::study::{
-    Allocation, Examination, Extreme, Impossible, MetricSpread, MonteCarlo, NONLINEAR, SampledMetric, Yield,
+    Allocation, Examination, Extreme, Impossible, MetricSpread, MonteCarlo, NONLINEAR, SampledMetric,
+    SpreadModel, Yield,
 };
 use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{ModelFile, Units};
@@ -116,8 +117,14 @@ pub struct SpreadFact {
     pub least: ExtremeFact,
     /// The greatest.
     pub greatest: ExtremeFact,
+    /// `linear`, `second_order` or `drawn`: where the spread and the contributions are from.
+    pub told_by: &'static str,
+    /// Why linear statistics are off; `null` where they hold.
+    pub nonlinear: Option<String>,
     /// The part of the variance that each variable contributes, the largest first.
     pub contributions: Vec<Contribution>,
+    /// The part that only several variables together bring; `null` where it is shared out among them.
+    pub together: Option<f64>,
     /// Of the designs drawn.
     pub sampled: Option<SampledFact>,
 }
@@ -560,22 +567,16 @@ impl ToleranceFacts {
             files: Vec::new(),
             seconds: 0.0,
         };
-        let nonlinear: Vec<String> = found
+        let nonlinear: Vec<String> = facts
             .metrics
             .iter()
-            .zip(&facts.metrics)
-            .filter(|(m, _)| m.is_nonlinear())
-            .map(|(_, fact)| format!("`{}`", fact.titled()))
+            .filter_map(|m| Some(format!("`{}` ({})", m.titled(), m.nonlinear.as_ref()?)))
             .collect();
+        let instead = if facts.samples > 0 { "use the designs drawn" } else { "draw designs with `samples`" };
         facts.message = if nonlinear.is_empty() {
             format!("the linear answer holds: second derivatives add less than {}", percent(NONLINEAR))
         } else {
-            format!(
-                "the linear answer is off for {}: within the tolerances they bend by more than {} of their standard deviation, or second \
-                 derivatives are not known; go by the designs drawn",
-                some_of(&nonlinear, ", "),
-                percent(NONLINEAR)
-            )
+            format!("the linear answer is off for {}: {instead}", some_of(&nonlinear, ", "))
         };
         if !nonlinear.is_empty() {
             facts.status = "nonlinear";
@@ -603,6 +604,16 @@ impl ToleranceFacts {
         if self.failed > 0 {
             let part = percent(self.failed as f64 / self.samples as f64);
             rows.push(("failed", format!("{} do not move to the end ({part})", self.failed)));
+        }
+        let ends = |m: &SpreadFact| {
+            [("least", &m.least), ("greatest", &m.greatest)]
+                .into_iter()
+                .filter_map(|(end, e)| Some(format!("{end} `{}`: {}", m.titled(), e.why.as_ref()?)))
+                .collect::<Vec<_>>()
+        };
+        let stopped: Vec<String> = self.metrics.iter().flat_map(ends).collect();
+        if !stopped.is_empty() {
+            rows.push(("worst case", format!("does not move: {}", some_of(&stopped, "; "))));
         }
         if !self.left_out.is_empty() {
             let names = some_of(&self.left_out, ", ");
@@ -633,14 +644,19 @@ impl ToleranceFacts {
         let optional = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| with_unit(x, unit));
         let metric = |m: &SpreadFact| {
             let off = m.sampled.as_ref().and_then(|s| s.rss_off).map_or("-".into(), percent);
-            let worst = |e: &ExtremeFact| optional(e.exact.or(e.second).or(Some(e.first)), &m.unit);
+            let worst = |e: &ExtremeFact| match &e.why {
+                Some(_) => "does not move".into(),
+                None => optional(e.exact.or(e.second).or(Some(e.first)), &m.unit),
+            };
+            let [mean, sigma] = m.told();
             vec![
                 m.titled(),
                 with_unit(m.nominal, &m.unit),
-                optional(m.mean, &m.unit),
+                optional(mean, &m.unit),
+                optional(sigma, &m.unit),
+                m.told_by.replace('_', " "),
                 with_unit(m.rss, &m.unit),
                 optional(m.sigma, &m.unit),
-                optional(m.sampled.as_ref().map(|s| s.sigma), &m.unit),
                 off,
                 m.nonlinearity.map_or("not known".into(), percent),
                 worst(&m.least),
@@ -649,22 +665,55 @@ impl ToleranceFacts {
         };
         let mut tables = vec![Table {
             title: "Metrics".into(),
-            note: "Standard deviations: root of the sum of squares, to second order, and of the designs drawn. Worst case: with every \
-                deviation at its worst."
+            note: "Mean and standard deviation (sigma) are of the designs drawn where the linear answer is off. RSS is the root of the sum \
+                of squares. Worst case: with every deviation at its worst."
                 .into(),
             header: header(&[
-                "metric", "as drawn", "mean", "RSS", "2nd order", "drawn", "RSS is off by", "bends by", "least", "greatest",
+                "metric", "as drawn", "mean", "sigma", "from", "RSS", "2nd order", "RSS is off by", "bends by", "least", "greatest",
             ]),
             rows: self.metrics.iter().map(metric).collect(),
         }];
+        let drawn = |m: &SpreadFact| {
+            let s = m.sampled.as_ref()?;
+            let mut row = vec![m.titled(), with_unit(s.mean, &m.unit), with_unit(s.sigma, &m.unit)];
+            row.extend([rounded(s.skewness, 3), rounded(s.kurtosis, 3)]);
+            row.extend(s.quantiles.map(|x| with_unit(x, &m.unit)));
+            Some(row)
+        };
+        let rows: Vec<Vec<String>> = self.metrics.iter().filter_map(drawn).collect();
+        if !rows.is_empty() {
+            let few = if self.failed > 0 { " Designs that do not move are not among them." } else { "" };
+            tables.push(Table {
+                title: "Designs drawn".into(),
+                note: format!(
+                    "Skewness is 0 and kurtosis 3 of a normal distribution; 99.73 % of the designs are between the quantiles 0.135 % and \
+                     99.865 %.{few}"
+                ),
+                header: header(&[
+                    "metric", "mean", "sigma", "skewness", "kurtosis", "least", "0.135 %", "median", "99.865 %", "greatest",
+                ]),
+                rows,
+            });
+        }
         for m in &self.metrics {
             let told = m.contributions.iter().filter(|c| c.share.abs() >= SLIGHT);
-            let rows: Vec<Vec<String>> =
+            let mut rows: Vec<Vec<String>> =
                 told.map(|c| vec![c.variable.clone(), percent(c.share), bar(c.share)]).collect();
+            if let Some(part) = m.together.filter(|part| *part >= SLIGHT) {
+                rows.push(vec!["several together".into(), percent(part), bar(part)]);
+            }
             if !rows.is_empty() {
+                let note = match m.told_by {
+                    "linear" => String::new(),
+                    "second_order" => "From first and second derivatives.".into(),
+                    _ => {
+                        "Of the designs drawn: the variance of the mean at given deviations of each variable."
+                            .into()
+                    }
+                };
                 tables.push(Table {
                     title: format!("Contributions to {}", m.titled()),
-                    note: String::new(),
+                    note,
                     header: header(&["variable", "of the variance", ""]),
                     rows,
                 });
@@ -676,14 +725,14 @@ impl ToleranceFacts {
                     l.titled(),
                     optional(l.min, &l.unit),
                     optional(l.max, &l.unit),
-                    percent(l.by_moments),
                     l.sampled.zip(l.error).map_or("-".into(), |(p, e)| yield_text(p, e)),
+                    percent(l.by_moments),
                 ]
             };
             tables.push(Table {
                 title: "Limits".into(),
-                note: "The part that keeps them: of a normal distribution with the moments, and of the designs drawn.".into(),
-                header: header(&["limit", "at least", "at most", "by moments", "drawn"]),
+                note: "The part that keeps them: of the designs drawn, and of a normal distribution with the moments.".into(),
+                header: header(&["limit", "at least", "at most", "drawn", "by moments"]),
                 rows: self.limits.iter().map(row).collect(),
             });
         }
@@ -737,6 +786,15 @@ impl ToleranceFacts {
 }
 
 impl SpreadFact {
+    /// Mean and standard deviation by the model that the spread is told by.
+    fn told(&self) -> [Option<f64>; 2] {
+        match (self.told_by, &self.sampled) {
+            ("drawn", Some(s)) => [Some(s.mean), Some(s.sigma)],
+            ("second_order", _) => [self.mean, self.sigma],
+            _ => [self.mean.or(Some(self.nominal)), Some(self.rss)],
+        }
+    }
+
     fn titled(&self) -> String {
         titled(&self.name, &self.case)
     }
@@ -785,11 +843,27 @@ fn spread(studied: &Studied<'_>, k: usize) -> SpreadFact {
         exact: e.exact.map(shown),
         why: e.why.clone(),
     };
+    let found = studied.found;
+    let told = &found.contributions[k];
+    let mut why = Vec::new();
+    if found.is_nonlinear(k) {
+        match of.nonlinearity().filter(|x| x.is_finite()) {
+            None => why.push("second derivatives are not known".to_owned()),
+            Some(part) if part > NONLINEAR => why.push(format!("it bends by {} of sigma", percent(part))),
+            Some(_) => (),
+        }
+        if found.drawn_differ(k) {
+            why.push("sigma of the designs drawn is another".into());
+        }
+        if found.fails_often() {
+            why.push("some designs do not move".into());
+        }
+    }
     let contribution = |v: usize| {
         let quantity = studied.model().variables[studied.found.variables[v].variable.0].quantity;
         Contribution {
             variable: studied.variable_name(v).to_owned(),
-            share: of.shares[v],
+            share: told.shares[v],
             d: shown(of.d[v]) / units.from_si(quantity, 1.0),
         }
     };
@@ -822,7 +896,14 @@ fn spread(studied: &Studied<'_>, k: usize) -> SpreadFact {
         nonlinearity: of.nonlinearity().filter(|x| x.is_finite()),
         least: extreme(&of.worst[0]),
         greatest: extreme(&of.worst[1]),
+        told_by: match told.model {
+            SpreadModel::Linear => "linear",
+            SpreadModel::SecondOrder => "second_order",
+            SpreadModel::Drawn => "drawn",
+        },
+        nonlinear: (!why.is_empty()).then(|| why.join(", ")),
         contributions,
+        together: told.together,
         sampled: studied.found.sampled.as_ref().and_then(sampled),
     }
 }

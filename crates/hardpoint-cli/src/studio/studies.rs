@@ -318,12 +318,19 @@ fn optimized(session: &Session, file: &ModelFile, asked: &Asked) -> Result<End, 
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative);
     let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(&file, &fault))?;
-    let search = optimize::Search::run(session, &file, &motions, &wanted, None);
-    let text = search.rounded().map(|design| session.edited(&file, &design)).transpose()?;
+    let mut search = optimize::Search::run(session, &file, &motions, &wanted, None);
+    let edited = search.to_save().map(|design| file.edit(&design)).transpose();
+    let mut diagnostics = Vec::new();
+    // A result that the text cannot take is still shown.
+    let text = edited.unwrap_or_else(|found| {
+        diagnostics = found.list().to_vec();
+        search.facts.not_saved(diagnostics.first().map_or("", |d| d.message.as_str()));
+        None
+    });
     Ok(End {
         state: if search.facts.status == "interrupted" { "cancelled" } else { "done" },
         message: search.facts.message.clone(),
-        diagnostics: json!([]),
+        diagnostics: json!(diagnostics),
         text,
         tables: search.facts.tables(),
         pages: search.pages().collect(),

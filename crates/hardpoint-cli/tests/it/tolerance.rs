@@ -162,3 +162,60 @@ fn an_interrupted_study_keeps_the_designs_that_were_drawn() {
     assert!(shown.contains(&format!("interrupted after {drawn} of 10000000 designs")), "{shown}");
     assert!(!shown.contains("NaN") && !shown.contains("\u{2013} %"), "{shown}");
 }
+
+/// A study of a model of these tests: what it prints, and its summary.
+fn studied(name: &str, samples: &str) -> (String, serde_json::Value) {
+    let bench = Bench::with(&[]);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models").join(name);
+    bench.put(name, &std::fs::read_to_string(path).unwrap());
+    let output = bench.run(&["tolerance", name, "--samples", samples, "-o", "out"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    (String::from_utf8(output.stdout).unwrap(), bench.json("out/summary.json"))
+}
+
+/// The share of a variable.
+fn share(metric: &serde_json::Value, variable: &str) -> f64 {
+    let all = metric["contributions"].as_array().unwrap();
+    all.iter().find(|c| c["variable"] == variable).unwrap()["share"].as_f64().unwrap()
+}
+
+#[test]
+fn where_linear_statistics_are_off_the_designs_drawn_come_first_and_it_is_said_why() {
+    let (text, json) = studied("tolerance_kink.toml", "3000");
+    let [linear, span] = [&json["metrics"][0], &json["metrics"][2]];
+    assert_eq!((&linear["told_by"], &linear["nonlinear"]), (&"linear".into(), &serde_json::Value::Null));
+    assert_eq!(span["told_by"], "drawn");
+    assert!(span["nonlinear"].as_str().unwrap().contains("sigma"), "{span}");
+    for words in ["skewness", "0.135 %", "median", "99.865 %", "use the designs drawn", "several together"] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    // Standard deviation and mean of the row are those drawn.
+    let row = text.lines().find(|l| l.trim_start().starts_with("span")).unwrap();
+    assert!(row.contains("drawn"), "{row}");
+}
+
+#[test]
+fn contributions_come_from_the_model_of_the_spread() {
+    // The stroke goes with the crank and with the square of the offset: 2 a + c e^2 with c = 4 a b/(b^2 - a^2)/(2 b) ...
+    let (_, drawn) = studied("tolerance_curved.toml", "4000");
+    let (_, derived) = studied("tolerance_curved.toml", "0");
+    for (json, from) in [(&drawn, "drawn"), (&derived, "second_order")] {
+        let stroke = &json["metrics"][0];
+        assert_eq!(stroke["told_by"], from);
+        // sigma of the linear part is 0.04 mm of 0.0511 mm: 61 % of the variance are the crank's, the rest the offset's.
+        let (a, e) = (share(stroke, "a"), share(stroke, "e"));
+        assert!((a - 0.6125).abs() < 0.05 && (e - 0.3875).abs() < 0.05, "{from}: {a} {e}");
+        assert_eq!(json["metrics"][1]["told_by"], "linear");
+    }
+}
+
+#[test]
+fn a_worst_case_that_does_not_assemble_is_told_as_such() {
+    let (text, json) = studied("tolerance_dead_point.toml", "1500");
+    let phi = &json["metrics"][0];
+    let stops = |end: &str| !phi[end]["why"].is_null();
+    assert!(stops("greatest") || stops("least"), "{phi}");
+    assert!(text.contains("worst case  does not move"), "{text}");
+    assert!(text.contains("do not move to the end"), "{text}");
+    assert!(phi["nonlinear"].as_str().unwrap().contains("do not move"), "{phi}");
+}

@@ -14,6 +14,8 @@ use hardpoint_file::{ModelFile, read, schema};
 
 /// What is left of the gradient at an optimum, as a part of that at the start.
 const STATIONARY: f64 = 1e-8;
+/// ... and as a part of the gradient of the goals themselves, which misfits far below those of the start make much smaller.
+const SCALED: f64 = 1e-6;
 /// How far bounds may be exceeded by, as a part of their width.
 const ROUND_OFF: f64 = 1e-12;
 
@@ -103,7 +105,8 @@ fn reaches(name: &str, points: usize, published: f64) -> (ModelFile, Search) {
     // What was minimised is what is published.
     assert!((best.objective - error).abs() <= 1e-9 * error, "{} {error}", best.objective);
     assert_eq!(search.status, Status::Optimal);
-    assert!(search.optimality.residual <= STATIONARY, "{:e}", search.optimality.residual);
+    assert!(search.optimality.left_of_start <= STATIONARY, "{:e}", search.optimality.left_of_start);
+    assert!(search.optimality.residual <= SCALED, "{:e}", search.optimality.residual);
     for v in &asked.variables {
         let [low, high] = file.model.variables[v.0].bounds.unwrap();
         let (value, slack) = (best.design[v.0], ROUND_OFF * (high - low));

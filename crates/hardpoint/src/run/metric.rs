@@ -593,6 +593,9 @@ fn take<T: Real>(
     if y.values.is_empty() {
         return None;
     }
+    if y.values.len() == 1 && matches!(metric.take, Reduction::Value(_) | Reduction::Slope(_)) {
+        return take_at_single_time(metric, y, x);
+    }
     match &metric.take {
         Reduction::Greatest => extreme(metric, y, x, 1.0).map(|(v, t)| (v, Some(t))),
         Reduction::Least => extreme(metric, y, x, -1.0).map(|(v, t)| (v, Some(t))),
@@ -619,6 +622,44 @@ fn take<T: Real>(
             };
             mean(metric, y, x, square).map(|value| (value.sqrt(), None))
         }
+    }
+}
+
+/// What a metric takes of a motion with one output time: a curve that is one point with its rates.
+fn take_at_single_time<T: Real>(
+    metric: &Metric,
+    y: &SampledCurve<'_, T>,
+    x: &Option<SampledCurve<'_, T>>,
+) -> Option<(T, Option<f64>)> {
+    let (time, [value, rate, _]) = (y.times[0], y.values[0]);
+    let place = x.as_ref().map_or(T::constant(time), |x| x.values[0][0]);
+    let is_there = |at: f64| (place.value() - at).abs() <= THERE * at.abs().max(1.0);
+    // dy/dx = y. / x.
+    let slope = |x: &SampledCurve<'_, T>| (x.orders > 1 && y.orders > 1).then(|| rate / x.values[0][1]);
+    match &metric.take {
+        Reduction::Value(at) if is_there(*at) => match x {
+            // The place stays and the time moves:  y(x = at) = y + (at - x) y. / x.
+            Some(x) if x.values[0][1].value() != 0.0 => {
+                let moved = slope(x).map_or(T::constant(0.0), |slope| (T::constant(*at) - place) * slope);
+                Some((value + moved, Some(time)))
+            }
+            _ => Some((value, Some(time))),
+        },
+        Reduction::Slope(at) if is_there(*at) => {
+            let slope = match x {
+                Some(x) => slope(x)?,
+                None => (y.orders > 1).then_some(rate)?,
+            };
+            Some((slope, Some(time)))
+        }
+        Reduction::Value(_)
+        | Reduction::Slope(_)
+        | Reduction::Greatest
+        | Reduction::Least
+        | Reduction::Range
+        | Reduction::Mean
+        | Reduction::Integral
+        | Reduction::Rms(_) => None,
     }
 }
 

@@ -40,7 +40,8 @@ pub use magnitude::Magnitude;
 pub use metric::{MetricParts, MetricValue, metric_numbers, metrics, metrics_beside, misfits, peaks};
 pub use nearest::{NearestAdmissible, nearest_admissible};
 pub use optimize::{
-    Binding, Iteration, Judged, Optimality, Optimized, Progress, Refused, Search, Searching, Status, optimize,
+    Binding, Iteration, Judged, LIMIT_KEPT, Optimality, Optimized, Progress, Refused, Search, Searching,
+    Status, judge, optimize,
 };
 pub use random::{Moments, design_stream, draw, moments};
 pub use samples::{BLOCK, Gathered, SampleRun};
@@ -50,9 +51,9 @@ pub use sweep::{
     rank_correlation, sobol_indices,
 };
 pub use tolerance::{
-    Allocated, Allocation, Band, CurveBands, Examination, Extreme, Failure, Impossible, LimitYield,
-    MetricSpread, MonteCarlo, NONLINEAR, SampledCurve, SampledMetric, SecondOrder, Stage, ToleranceFailure,
-    Tolerated, Yield, tolerance, toleranced_designs,
+    Allocated, Allocation, Band, Contributions, CurveBands, Examination, Extreme, Failure, Impossible,
+    LimitYield, MetricSpread, MonteCarlo, NONLINEAR, SampledCurve, SampledMetric, SecondOrder, SpreadModel,
+    Stage, ToleranceFailure, Tolerated, Yield, tolerance, toleranced_designs,
 };
 pub use validity::{Validity, validity};
 pub use verify::{CheckOutcome, PASS, PASS_ONE_SIDED, Verification, VerifiedValue, VerifyOptions, verify};

@@ -6,6 +6,7 @@
 //! user. A design whose motion does not assemble, locks, or reaches a dead point is a step that was refused: the search steps back and
 //! goes on.
 
+mod gauss_newton;
 mod optimality;
 mod problem;
 mod solver;
@@ -20,15 +21,18 @@ use sobol_burley::sample;
 use crate::model::{Model, Optimization, VariableId};
 
 use super::evaluation::{Cost, Motions};
+use gauss_newton::GaussNewton;
 pub use optimality::{Binding, Optimality};
 use problem::{Point, Problem, Refusal};
-use solver::{Memory, Sequential, Solver, least_squares};
+use solver::{FLAT, Memory, Sequential, Solver, least_squares};
 
-/// A limit that is exceeded by less than this part of its scale is kept.
-const KEPT: f64 = 1e-8;
+/// A limit that is exceeded by less than this part of its scale is kept: the rest is round-off of the search.
+pub const LIMIT_KEPT: f64 = 1e-8;
+use LIMIT_KEPT as KEPT;
 /// A design this near to optimal is an optimum.
 const OPTIMAL: f64 = 1e-6;
-/// A search that came to rest short of this starts again where it stands ...
+/// A search that came to rest short of this, relative to the scale of the goals or to the gradient at the start, starts again where it
+/// stands ...
 const SHARP: f64 = 5e-9;
 /// ... as often as this.
 const AGAIN: usize = 3;
@@ -40,6 +44,24 @@ const RESTING: f64 = 1e-13;
 const THE_SAME: f64 = 1e-12;
 /// A run that takes away so much of what kept the design from an optimum was worth it, whatever it did to the objective.
 const NEARER: f64 = 0.5;
+/// Gauss-Newton steps that promise less than this part of the objective are not taken.
+const NOTICEABLE: f64 = 1e-3;
+/// Gauss-Newton steps begin with this least curvature, as a part of the largest ...
+const DAMPED: f64 = 1e-8;
+/// ... which falls by this factor after a good step, and grows by it after a bad one ...
+const DAMPING: f64 = 10.0;
+/// ... down to the square of what can be told from round-off in derivatives of motions.
+const LEAST_DAMPED: f64 = 1e-20;
+/// A Gauss-Newton step that gains this part of what it promised is a good one, and so is a run that halves the objective.
+const GOOD: f64 = 0.5;
+/// Gauss-Newton steps go on although the objective is above that of the best design: until so many of them have not taken away ...
+const WEAK_STEPS: usize = 3;
+/// ... this part of the objective ...
+const WEAK: f64 = 0.2;
+/// ... or one has made it this many times greater.
+const ASTRAY: f64 = 1e6;
+/// Squares under limits that do not fall to half within so many iterations are left to Gauss-Newton steps.
+const PATIENCE: usize = 30;
 /// The first solver has done its work where a step gains less than this part of the objective: others make an end of it.
 const HARDLY_LESS: f64 = 1e-6;
 /// A start that cannot be judged is drawn nearer so many times.
@@ -72,6 +94,8 @@ pub struct Judged {
     pub objective: f64,
     /// By how much the limit is exceeded that is exceeded most, as a part of its scale; 0 where all are kept.
     pub violation: f64,
+    /// The least margin to a singular position in any motion, where it is known.
+    pub margin: Option<f64>,
     /// Per goal and motion in which it is taken, its value in SI.
     pub goals: Vec<(usize, usize, f64)>,
     /// Per limit, and motion where it is one of a metric, its value in SI.
@@ -213,6 +237,25 @@ pub fn optimize(
     Optimized { drawn, drawn_refused, best: best(&searches), searches, cost }
 }
 
+/// Judges one design, given by the values of all variables of the model.
+///
+/// # Errors
+/// Where a motion stops, comes closer to a singular position than the margin that is asked for, or a goal has no value.
+pub fn judge(
+    model: &Model,
+    motions: &Motions<'_>,
+    asked: &Optimization,
+    design: &[f64],
+) -> Result<Judged, Refused> {
+    let problem = Problem::new(model, motions, asked);
+    let design = design.iter().copied().chain(std::iter::repeat(0.0)).take(model.variables.len()).collect();
+    let judged_at = |point: Point| judged(&problem, &point, &limit_scales(&problem, &point));
+    match problem.at(design, &mut Cost::default(), &|| true) {
+        Ok(point) => Ok(judged_at(point)),
+        Err(refusal) => Err(refused(Vec::new(), refusal)),
+    }
+}
+
 /// The k-th start, as parts of the bounds: the design as drawn, then points that fill the bounds evenly.
 fn start(problem: &Problem<'_>, k: usize) -> Vec<f64> {
     let drawn = problem.parts(&vec![0.0; problem.model.variables.len()]);
@@ -257,6 +300,7 @@ fn judged(problem: &Problem<'_>, point: &Point, scales: &[f64]) -> Judged {
         design: point.design.clone(),
         objective: point.objective(),
         violation: point.violation(|k| scales[k]),
+        margin: point.margin,
         goals: goals.collect(),
         limits: limits.map(|((limit, taken), v)| (*limit, taken.map(|t| t.motion), *v)).collect(),
     }
@@ -297,7 +341,7 @@ fn search(
         start: problem.design(point.as_ref().map_or(start, |(start, _)| start)),
         status: if memory.interrupted() { Status::Interrupted } else { Status::NoStart },
         found: None,
-        optimality: Optimality { residual: f64::INFINITY, binding: Vec::new() },
+        optimality: Optimality { residual: f64::INFINITY, ..Optimality::default() },
         iterations: Vec::new(),
         work: vec![0.0; n],
         refused: Vec::new(),
@@ -349,6 +393,12 @@ impl<'p> Descent<'p> {
         Optimality::of(self.problem, point, &self.scales, self.steepest)
     }
 
+    /// Whether a search can end here.
+    fn is_sharp(&self, point: &Point) -> bool {
+        let Optimality { residual, left_of_start, .. } = self.optimality(point);
+        self.violation(point) <= KEPT && residual < OPTIMAL && (residual < SHARP || left_of_start < SHARP)
+    }
+
     fn violation(&self, point: &Point) -> f64 {
         point.violation(|k| self.scales[k])
     }
@@ -391,19 +441,88 @@ impl<'p> Descent<'p> {
             };
             let before = stands(self);
             self.descend(run, search, tell);
+            if !self.ran_out {
+                self.polish(search, tell);
+            }
             let after = stands(self);
             let less = before.0 - after.0 > THE_SAME * before.0.abs() || after.1 < before.1;
             let gained = run == 0 || less || after.2 < NEARER * before.2;
-            let sharp = after.2 < SHARP && after.1 <= KEPT;
+            let sharp = self.is_sharp(&self.best);
             idle = if gained { 0 } else { idle + 1 };
             // Where there are two solvers, what one cannot improve is left to the other.
             let at_rest = idle > usize::from(squares);
             if sharp || at_rest || self.ran_out || self.memory.interrupted() {
                 return;
             }
-            // From the best that was found, with what is known of the curvature there.
-            self.here = self.best.clone();
-            self.at = self.problem.parts(&self.here.design);
+            self.return_to_best();
+        }
+    }
+
+    /// Where the best design stands, nothing of what has been found of the curvature is kept.
+    fn return_to_best(&mut self) {
+        self.here = self.best.clone();
+        self.at = self.problem.parts(&self.here.design);
+    }
+
+    /// Damped Gauss-Newton steps under bounds and limits from the best design, as long as they gain noticeably: a restart that shows
+    /// whether small misfits are at their least, and follows the narrow valleys in which they can still fall to nothing.
+    ///
+    /// A valley bends, so that a step along it first leaves it: designs are compared after a few steps, not after each.
+    fn polish(&mut self, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
+        let n = self.at.len();
+        let (mut damped, mut idle) = (DAMPED, 0);
+        while damped <= FLAT && idle < WEAK_STEPS {
+            let promise = |damped| GaussNewton::new(self.problem, &self.best, &self.scales, damped).promise;
+            let can_fall = self.best.has_only_squares()
+                && self.violation(&self.best) <= KEPT
+                && self.best.is_small(&self.problem.bounds)
+                && !self.optimality(&self.best).met;
+            if !can_fall {
+                return;
+            }
+            let promised = promise(damped);
+            if promised <= NOTICEABLE {
+                if damped > LEAST_DAMPED && promise(LEAST_DAMPED) > NOTICEABLE {
+                    damped /= DAMPING;
+                    continue;
+                }
+                return;
+            }
+            let before = self.best.objective();
+            self.return_to_best();
+            let kept_promise = |run: &Self| 1.0 - run.best.objective() / before >= GOOD * promised;
+            let mut weak = 0;
+            while weak < WEAK_STEPS {
+                if self.memory.interrupted() {
+                    return;
+                }
+                if search.iterations.len() > self.problem.asked.iterations {
+                    self.ran_out = true;
+                    return;
+                }
+                let by = GaussNewton::new(self.problem, &self.here, &self.scales, damped).step;
+                let at: Vec<f64> = (0..n).map(|v| (self.at[v] + by[v]).clamp(0.0, 1.0)).collect();
+                if at == self.at {
+                    break;
+                }
+                let found = self.memory.at(&at, |found| found.as_ref().ok().cloned());
+                let Some(point) = found else { break };
+                let from = (std::mem::replace(&mut self.at, at), std::mem::replace(&mut self.here, point));
+                if self.is_better(&self.here, &self.best) {
+                    self.best = self.here.clone();
+                }
+                weak += usize::from(self.here.objective() > (1.0 - WEAK) * from.1.objective());
+                self.note(search, Some(from), tell);
+                if self.optimality(&self.best).met {
+                    return;
+                }
+                if kept_promise(self) || self.here.objective() > ASTRAY * before {
+                    break;
+                }
+            }
+            let is_weak = self.best.objective() > (1.0 - WEAK) * before;
+            idle = if is_weak { idle + 1 } else { 0 };
+            damped = if kept_promise(self) { (damped / DAMPING).max(LEAST_DAMPED) } else { damped * DAMPING };
         }
     }
 
@@ -411,7 +530,26 @@ impl<'p> Descent<'p> {
     fn descend(&mut self, run: usize, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
         let squares = run.is_multiple_of(2) && self.here.is_squares();
         let Some(mut solver) = self.solver(squares) else { return };
+        let hands_over = self.here.has_only_squares() && !self.here.limits.is_empty();
+        let (mut patience, mut since) = (PATIENCE, (search.iterations.len(), self.best.objective()));
         loop {
+            if hands_over && search.iterations.len() >= since.0 + patience {
+                if self.best.objective() > GOOD * since.1 {
+                    let (slow, stands) = (self.best.objective(), (self.at.clone(), self.here.clone()));
+                    self.polish(search, tell);
+                    if self.best.objective() <= GOOD * slow {
+                        self.return_to_best();
+                        match self.solver(squares) {
+                            Some(next) => solver = next,
+                            None => return,
+                        }
+                    } else {
+                        (self.at, self.here) = stands;
+                        patience *= 2;
+                    }
+                }
+                since = (search.iterations.len(), self.best.objective());
+            }
             if search.iterations.len() > self.problem.asked.iterations {
                 self.ran_out = true;
                 return;
@@ -436,8 +574,7 @@ impl<'p> Descent<'p> {
             let still = change
                 <= if squares && run == 0 { HARDLY_LESS } else { NO_LESS } * last.objective.abs()
                 && last.violation <= KEPT;
-            let sharp = || last.violation <= KEPT && self.optimality(&self.here).residual < SHARP;
-            if last.step <= RESTING || still || sharp() {
+            if last.step <= RESTING || still || self.is_sharp(&self.here) {
                 return;
             }
         }

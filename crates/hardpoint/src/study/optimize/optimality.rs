@@ -13,6 +13,10 @@ use super::problem::{Point, Problem, Rows};
 
 /// What is nearer than this to its end, as a part of its scale, binds.
 const BINDS: f64 = 1e-7;
+/// Misfits below this part of what the bounds of the strongest variable change them by are round-off: motions are solved to some 1e-14.
+const MET: f64 = 1e-12;
+/// The scale of goals that are no squares is at least this part of the gradient at the start: their value alone may pass through zero.
+const LEAST_SCALE: f64 = 1e-6;
 
 /// What keeps a design from getting better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,8 +34,15 @@ pub enum Binding {
 /// How near to optimal a design is.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Optimality {
-    /// What is left of the gradient that nothing which binds takes up, as a part of the gradient at the start: 0 at an optimum.
+    /// The part of the gradient that no active constraint balances, relative to the scale of the goals: 0 at an optimum.
+    ///
+    /// The scale of squares `f = r^T r` is `2 max |J_v| |r|`, so that the residual is the cosine between the misfits and their
+    /// derivatives; that of other goals is their value, and the gradient at the start where that is less.
     pub residual: f64,
+    /// The same relative to the gradient at the start.
+    pub left_of_start: f64,
+    /// Whether all goals are squares that vanish to round-off: nothing is left to gain.
+    pub met: bool,
     /// What binds, and by how much the objective would get less if it gave way by one SI unit (its Lagrange multiplier).
     pub binding: Vec<(Binding, f64)>,
 }
@@ -105,6 +116,8 @@ impl Optimality {
         // Rows whose multipliers come out negative do not bind: the most negative one is let go, until none is.
         let mut active: Vec<usize> = (0..rows.len()).collect();
         let weight = gradient.iter().fold(steepest, |most, g| most.max(g.abs())).max(f64::MIN_POSITIVE);
+        let met = point.is_met(&spans);
+        let scale = point.gradient_scale(&spans, steepest);
         let solve = |active: &[usize]| {
             let entry = |r: usize, c: usize| match (r < n, rows[active[c]].peak) {
                 (true, _) => rows[active[c]].d[r],
@@ -129,7 +142,8 @@ impl Optimality {
             let taken: f64 = active.iter().zip(&multipliers).map(|(row, m)| m * rows[*row].d[i]).sum();
             (gradient[i] + taken).abs()
         };
-        let residual = (0..n).map(left).fold(0.0, f64::max) / weight;
+        let left = (0..n).map(left).fold(0.0, f64::max);
+        let (residual, left_of_start) = if met { (0.0, 0.0) } else { (left / scale, left / weight) };
         let mut binding: Vec<(Binding, f64)> = Vec::new();
         for (row, multiplier) in active.iter().zip(multipliers) {
             let Some((what, scale)) = rows[*row].binding else { continue };
@@ -139,6 +153,35 @@ impl Optimality {
                 None => binding.push((what, multiplier / scale)),
             }
         }
-        Self { residual, binding }
+        Self { residual, left_of_start, met, binding }
+    }
+}
+
+impl Point {
+    /// The greatest norm of a column of the misfits' derivatives, by the parts of the bounds.
+    pub(super) fn strongest(&self, spans: &[f64]) -> f64 {
+        let column = |(v, span): (usize, &f64)| {
+            self.misfits.d.iter().map(|d| (d[v] * span).powi(2)).sum::<f64>().sqrt()
+        };
+        spans.iter().enumerate().map(column).fold(0.0, f64::max)
+    }
+
+    /// Whether all goals are squares that vanish to round-off.
+    pub(super) fn is_met(&self, spans: &[f64]) -> bool {
+        self.has_only_squares() && self.misfit() <= MET * self.strongest(spans)
+    }
+
+    /// The gradient that the goals would have if nothing in it cancelled: what the gradient is compared with.
+    fn gradient_scale(&self, spans: &[f64], steepest: f64) -> f64 {
+        let strongest = self.strongest(spans);
+        let squares = 2.0 * strongest * self.misfit().max(MET * strongest);
+        let others = if self.has_only_squares() {
+            0.0
+        } else {
+            let peaks = self.peaks.iter().map(Rows::greatest);
+            let value: f64 = self.plain.values.iter().copied().chain(peaks).map(f64::abs).sum();
+            value.clamp(LEAST_SCALE * steepest, steepest)
+        };
+        (squares + others).max(f64::MIN_POSITIVE)
     }
 }

@@ -67,6 +67,8 @@ pub(super) struct Point {
     /// Per goal taken, its value; per limit taken, likewise.
     pub goal_values: Vec<f64>,
     pub limit_values: Vec<f64>,
+    /// The least margin to a singular position in any motion, where it is known.
+    pub margin: Option<f64>,
 }
 
 /// A limit, or one of several numbers that it holds for.
@@ -112,9 +114,19 @@ impl Point {
         squares + plain + self.peaks.iter().map(Rows::greatest).sum::<f64>()
     }
 
+    /// Whether all goals are squares.
+    pub fn has_only_squares(&self) -> bool {
+        self.plain.values.is_empty() && self.peaks.is_empty()
+    }
+
     /// Whether all goals are squares, and nothing but bounds limits the design.
     pub fn is_squares(&self) -> bool {
-        self.plain.values.is_empty() && self.peaks.is_empty() && self.limits.is_empty()
+        self.has_only_squares() && self.limits.is_empty()
+    }
+
+    /// The norm of the misfits.
+    pub fn misfit(&self) -> f64 {
+        self.misfits.values.iter().map(|r| r * r).sum::<f64>().sqrt()
     }
 
     /// Its derivative by every searched variable, where it has one.
@@ -210,7 +222,8 @@ impl<'m> Problem<'m> {
             why: rejected.why,
         })?;
         self.margins(&found)?;
-        let mut point = Point { design, ..Point::default() };
+        let margins = found.solutions.iter().filter_map(|s| Some(s.motion.least_margin()?.1.value));
+        let mut point = Point { design, margin: margins.reduce(f64::min), ..Point::default() };
         for taken in &self.goals {
             self.add_goal(*taken, &found, &mut point)?;
         }

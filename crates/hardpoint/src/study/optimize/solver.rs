@@ -19,7 +19,7 @@ use super::problem::{LimitRow, Point, Problem, Refusal, Rows};
 /// of one: the square of how near to stationary a design shall be. What round-off leaves of that is for the search to see.
 const SETTLED: f64 = 1e-30;
 /// The least curvature that is assumed in any direction, as a part of the largest.
-const FLAT: f64 = 1e-4;
+pub(super) const FLAT: f64 = 1e-4;
 /// A first step without any known curvature goes so far along the bounds.
 const FIRST_STEP: f64 = 0.1;
 

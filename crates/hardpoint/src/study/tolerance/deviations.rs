@@ -122,6 +122,35 @@ impl Deviations {
         (0..g.len()).map(share).collect()
     }
 
+    /// The part of the variance to second order that each variable contributes; what two of them bring together is halved.
+    ///
+    /// ```text
+    /// g_i (S g)_i + (H S H S)_ii / 2 + (k/3 - 1) (sum over the block of G_ij^2 / 2 + tr(G_b) G_ii / 4),  over their sum
+    /// ```
+    pub fn second_shares(&self, g: &[f64], h: &[Vec<f64>]) -> Vec<f64> {
+        let n = g.len();
+        let roots: Vec<Vec<f64>> = (0..n).map(|i| self.root_row(i)).collect();
+        let covariance = |i: usize, j: usize| dot(&roots[i], &roots[j]);
+        let hs = |i: usize, j: usize| (0..n).map(|k| h[i][k] * covariance(k, j)).sum::<f64>();
+        let hs: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| hs(i, j)).collect()).collect();
+        let scaled = |i: usize, j: usize| h[i][j] * self.variables[i].sigma * self.variables[j].sigma;
+        let mut parts: Vec<f64> = (0..n)
+            .map(|i| {
+                let first = g[i] * (0..n).map(|j| covariance(i, j) * g[j]).sum::<f64>();
+                first + 0.5 * (0..n).map(|j| hs[i][j] * hs[j][i]).sum::<f64>()
+            })
+            .collect();
+        for block in &self.blocks {
+            let trace: f64 = block.range().map(|i| scaled(i, i)).sum();
+            for i in block.range() {
+                let square: f64 = block.range().map(|j| scaled(i, j).powi(2)).sum();
+                parts[i] += (block.kurtosis / 3.0 - 1.0) * (0.5 * square + 0.25 * trace * scaled(i, i));
+            }
+        }
+        let variance: f64 = parts.iter().sum();
+        parts.into_iter().map(|part| if part == 0.0 { 0.0 } else { part / variance }).collect()
+    }
+
     /// Moments to second order.
     ///
     /// ```text

@@ -5,6 +5,7 @@
 //! the error of the derivatives' answer is seen, and the loosest tolerances that keep the limits.
 
 mod allocation;
+mod contributions;
 mod curves;
 mod deviations;
 mod monte_carlo;
@@ -22,6 +23,7 @@ use super::evaluation::{Cost, Evaluated, Motions, Rejection};
 use super::magnitude::Magnitude;
 use super::metric::{metric_numbers, place_of};
 pub use allocation::{Allocated, Allocation, Impossible};
+pub use contributions::{Contributions, SpreadModel};
 pub use curves::{Band, CurveBands};
 use deviations::Deviations;
 pub use monte_carlo::{Failure, MonteCarlo, SampledCurve, SampledMetric, Yield};
@@ -43,6 +45,8 @@ pub struct Examination {
     pub left_out: Vec<VariableId>,
     /// Per metric and motion.
     pub metrics: Vec<MetricSpread>,
+    /// Per metric and motion, what each variable contributes to its variance.
+    pub contributions: Vec<Contributions>,
     /// Metrics that have no value as drawn: the metric, and the motion.
     pub unknown: Vec<(usize, usize)>,
     /// Per measure and motion.
@@ -88,6 +92,8 @@ pub struct MetricSpread {
     /// The part of the first-order variance that each variable contributes; they add up to 1. With correlated variables one may be
     /// negative: it takes away from what another brings.
     pub shares: Vec<f64>,
+    /// The same of the variance to second order, where that is known.
+    pub second_shares: Option<Vec<f64>>,
     /// The least and the greatest value that the tolerances allow.
     pub worst: [Extreme; 2],
     /// To second order; `None` where a moved design beside the drawn one does not come to its end, so that the gradient has no
@@ -222,6 +228,7 @@ pub fn tolerance(
         variables: deviations.variables.clone(),
         left_out,
         metrics,
+        contributions: Vec::new(),
         unknown,
         curves,
         limits,
@@ -252,6 +259,7 @@ pub fn tolerance(
         }
         found.allocation = Some(allocation);
     }
+    found.add_contributions(model, asked);
     found.interrupted = interrupted || !more();
     Ok(found)
 }
@@ -376,6 +384,7 @@ impl Study<'_> {
             extreme
         });
         let shares = self.deviations.shares(&d);
+        let second_shares = hessian.map(|h| self.deviations.second_shares(&d, h));
         let motion = &self.drawn.solutions[one.motion].motion;
         let dimension = self.model.metric_dimension(&self.model.metrics[one.metric]);
         let round_off = Magnitude::of_motion(self.model, motion).round_off(dimension, 0);
@@ -386,6 +395,7 @@ impl Study<'_> {
             d,
             sigma,
             shares,
+            second_shares,
             worst,
             second,
             round_off,
