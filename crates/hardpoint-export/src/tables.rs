@@ -44,6 +44,24 @@ fn csv(file: &ModelFile, out: &mut Exported) {
     }
 }
 
+/// The name without its side, where that is its last word, and its side in Adams/Car. A name that begins with its side keeps the word.
+fn side_of(name: &str) -> (&str, &'static str) {
+    // What an importer would name otherwise keeps its name whole, and has no side.
+    let is_free = |short: &&str| {
+        !short.is_empty() && !["left_", "right_", "hpl_", "hpr_", "hps_"].iter().any(|p| short.starts_with(p))
+    };
+    for side in ["left", "right"] {
+        let last = name.strip_suffix(side).and_then(|n| n.strip_suffix('_')).filter(is_free);
+        if let Some(short) = last {
+            return (short, side);
+        }
+        if name.strip_prefix(side).and_then(|n| n.strip_prefix('_')).filter(is_free).is_some() {
+            return (name, side);
+        }
+    }
+    (name, "single")
+}
+
 /// In Adams/Car's axes: from x forward, y left to x back, y right.
 fn teimorbit(file: &ModelFile, out: &mut Exported) {
     let unit = match file.units.length {
@@ -58,13 +76,10 @@ fn teimorbit(file: &ModelFile, out: &mut Exported) {
     );
     out.text += "$----------------------------------------------------------------------HARDPOINT\n[HARDPOINT]\n{hardpoint_name              symmetry        x_value      y_value      z_value}\n";
     for (name, [x, y, z]) in hardpoints(file) {
-        let (short, side) = match (name.strip_suffix("_left"), name.strip_suffix("_right")) {
-            (Some(short), _) => (short, "left"),
-            (_, Some(short)) => (short, "right"),
-            _ => (name, "single"),
-        };
-        if name.contains('\'') {
-            out.unsaid("hardpoint", name, "names with quotes cannot be written");
+        let (short, side) = side_of(name);
+        // `$` and `!` begin remarks.
+        if name.contains(['\'', '$', '!']) || name.contains(char::is_control) {
+            out.unsaid("hardpoint", name, "names with `'`, `$`, `!` or control characters cannot be written");
             continue;
         }
         let place = [-x, -y, z].map(number);

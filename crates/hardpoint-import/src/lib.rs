@@ -37,6 +37,7 @@ mod report;
 mod sdf;
 mod series;
 mod shapes;
+mod siblings;
 mod straighten;
 mod teimorbit;
 mod tree;
@@ -158,10 +159,12 @@ pub fn import(bytes: &[u8], name: &str, resolve: Resolve<'_>) -> Result<Imported
         Some(format) => import_as(format, bytes, name, resolve),
         None => {
             let notes = Notes::new(name, "");
-            let known = FORMATS.iter().map(|f| format!("`{}` ({})", f.name, f.about)).collect::<Vec<_>>();
+            if let Some(sibling) = siblings::of(&decoded(&bytes[..bytes.len().min(LOOKED_AT)]), name) {
+                return Err(is_sibling(&notes, sibling));
+            }
             let message = notes.diagnostic("HP0801", None, "the format of the file is not recognised");
-            let message = message.note(format!("known are {}", known.join(", ")));
-            let message = message.help("name the format, like `--format adams`");
+            let message = message.note(format!("known are {}", known()));
+            let message = message.help("if it is one of these, name it, like `--format adams`");
             let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
             let table = TABLES.contains(&ending.as_str());
             let help = "a table of hardpoints begins a model from a template: \
@@ -169,6 +172,18 @@ pub fn import(bytes: &[u8], name: &str, resolve: Resolve<'_>) -> Result<Imported
             Err(notes.only(if table { message.help(help) } else { message }))
         }
     }
+}
+
+/// The formats, with what they are.
+fn known() -> String {
+    let known: Vec<String> = FORMATS.iter().map(|f| format!("`{}` ({})", f.name, f.about)).collect();
+    known.join(", ")
+}
+
+/// HP0801: a file of a kind that is not read, with the file to export in place of it.
+fn is_sibling(notes: &Notes, sibling: &siblings::Sibling) -> Problems {
+    let message = format!("the file is {}: that is not read", sibling.what);
+    notes.only(notes.diagnostic("HP0801", None, message).help(sibling.help))
 }
 
 /// The same, of a format that is known.
@@ -204,17 +219,33 @@ pub fn import_as(
     let mut input = Input { bytes, text: &text, stem, resolve, shapes, series: None };
     notes.report.format = report::printable(&format!("{base}: {}", format.about));
     let mechanism = (format.read)(&mut input, &mut notes);
+    // A file that cannot be read is perhaps of another kind: that says more than what it lacks of this one.
+    let head = || decoded(&bytes[..bytes.len().min(LOOKED_AT)]);
+    let is_like_it = format.binary || (format.looks)(&head());
+    if (notes.problem_count() > 0 || mechanism.is_none()) && !is_like_it {
+        if let Some(sibling) = siblings::of(&head(), name) {
+            return Err(is_sibling(&notes, sibling));
+        }
+    }
     if let Some(problems) = notes.problems() {
         return Err(problems);
     }
     let Some(mut m) = mechanism else {
         let message = format!("there is no mechanism in the file; it was read as {}", format.about);
-        return whole(
-            &notes,
-            "HP0806",
-            message,
-            "name another format, like `--format urdf`, if it is of another",
-        );
+        let head = head();
+        let other = FORMATS.iter().find(|f| f.name != format.name && !f.binary && (f.looks)(&head));
+        return match other {
+            Some(other) => {
+                let help = format!("import it with `--format {}`: it looks like {}", other.name, other.about);
+                whole(&notes, "HP0806", message, &help)
+            }
+            None if is_like_it => whole(&notes, "HP0806", message, "export the mechanism with its bodies and joints"),
+            None => {
+                let d = notes.diagnostic("HP0806", None, message);
+                let d = d.note(format!("it looks like none of the formats that are read: {}", known()));
+                Err(notes.only(d.help("export the mechanism in one of these formats")))
+            }
+        };
     };
     let numbers = m.joints.iter().flat_map(|j| j.at.iter().chain(&j.axis).chain(&j.axis2));
     if !numbers.chain(m.hardpoints.iter().map(|h| &h.1)).all(|v| v.is_finite()) {
