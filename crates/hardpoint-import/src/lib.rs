@@ -22,6 +22,7 @@ mod adams_statement;
 mod asmt;
 mod chain;
 mod chrono;
+mod chrono_axle;
 mod chrono_generic;
 mod collada;
 mod corner;

@@ -96,13 +96,12 @@ fn text(path: &Path) -> Result<Vec<Vec<String>>, String> {
 /// The text without the `#` before the names of its columns: a line above the first row that heads columns x and y is no remark.
 fn with_header(text: &str, first: &str, delimiter: u8) -> String {
     let mut out = text.to_owned();
-    let is_row = first.split(char::from(delimiter)).any(|cell| number(&pointed(cell)).is_some());
     let above = text.lines().take_while(|l| l.trim().is_empty() || l.starts_with('#'));
     let heads = |line: &&str| {
         let titles: Vec<String> = line.split(char::from(delimiter)).map(|cell| title(cell).0).collect();
         ["x", "y"].iter().all(|axis| titles.iter().any(|t| t.trim_start_matches('#').trim() == *axis))
     };
-    if let Some(line) = above.filter(|l| l.starts_with('#')).filter(heads).last().filter(|_| is_row) {
+    if let Some(line) = above.filter(|l| l.starts_with('#')).filter(heads).last().filter(|_| !heads(&first)) {
         let at = line.as_ptr() as usize - text.as_ptr() as usize;
         // Of the same length, so that positions stay.
         out.replace_range(at..=at, " ");
@@ -138,7 +137,11 @@ fn hardpoints(cells: &[Vec<String>], in_plane: bool) -> Result<Hardpoints, Strin
             }
             let called = |t: &str| ["name", "hardpoint", "point"].contains(&t);
             let name = titles.iter().position(|(t, _)| called(t));
-            columns[0] = name.or_else(|| (0..4).find(|k| !columns[1..].contains(&Some(*k))));
+            columns[0] =
+                name.or_else(|| (0..titles.len().min(4)).find(|k| !columns[1..].contains(&Some(*k))));
+            if columns[0].is_none() {
+                return Err(format!("line {line} names its columns, and none of them holds names of hardpoints"));
+            }
             unit = unit_of(columns[1..].iter().flatten().map(|k| &titles[*k].1), line)?;
             // Units may stand in a line of their own.
             if let Some((line, units)) = lines().find(|(l, _)| *l > begin).filter(|(_, r)| is_units(r, &columns)) {
@@ -250,6 +253,7 @@ mod tests {
         for (text, unit, lines) in [
             ("name,x,y,z\n-,mm,mm,mm\nA,1,2,3.5\nB,-1,0,1e3\n", Some("mm"), [3, 4]),
             ("name;x;y;z\n;[in];[in];[in]\nA;1;2;3,5\nB;-1;0;1e3\n", Some("in"), [3, 4]),
+            ("#name,x,y,z\n-,mm,mm,mm\nA,1,2,3.5\nB,-1,0,1e3\n", Some("mm"), [3, 4]),
             ("name,x [m],y [m],z [m]\nunit,m,m,m\nA,1,2,3.5\nB,-1,0,1e3\n", Some("m"), [3, 4]),
             ("#name,x,y,z\nA,1,2,3.5\nB,-1,0,1e3\n", None, [2, 3]),
             ("# of the car\n# Point, z (mm), y (mm), x (mm)\nA,3.5,2,1\nB,1e3,0,-1\n", Some("mm"), [3, 4]),
@@ -284,6 +288,7 @@ mod tests {
             ("A;1;2;3\nB;1;2.000,5;3\n", "line 2: `2.000,5` is no number for y"),
             ("A,1,2,3\n,1,2,3\n", "line 2 has no name"),
             ("A,1,2,inf\n", "line 1: `inf`"),
+            ("x,y,z\n1,2,3\n", "none of them holds names"),
             ("1,2,3\n4,5,6\n", "line 1 has numbers alone"),
             ("name,x,y,z\n-,mm,mm,m\nA,1,2,3\n", "line 2 has columns in mm and in m"),
             ("name,x [mm],y [mm],z [mm]\n-,m,m,m\nA,1,2,3\n", "line 2 has other units"),
