@@ -29,7 +29,13 @@ struct Axle<'r> {
 }
 
 /// See the module; `angles` are the static camber and toe of the wheels, rad.
-pub fn read(root: &Tree, m: Mechanism, template: &str, angles: [f64; 2], notes: &mut Notes) -> Option<Mechanism> {
+pub fn read(
+    root: &Tree,
+    m: Mechanism,
+    template: &str,
+    angles: [f64; 2],
+    notes: &mut Notes,
+) -> Option<Mechanism> {
     let mut axle = Axle { root, m, notes, read: Vec::new() };
     axle.build(template, angles);
     let Axle { m, read, notes, .. } = axle;
@@ -84,7 +90,7 @@ impl Axle<'_> {
     /// A rod between two bodies; both its ends are hardpoints.
     fn rod(&mut self, name: &str, bodies: [usize; 2], ends: [Vec3; 2], words: [&str; 2], at: Option<At>) {
         for (end, word) in ends.into_iter().zip(words) {
-            self.hardpoint(&format!("{name}_{word}"), end);
+            self.hardpoint(&end_of(name, word), end);
         }
         if ends[0] == ends[1] {
             let message = format!("both ends of `{name}` are at one place");
@@ -118,8 +124,8 @@ impl Axle<'_> {
         for (side, suffix) in SIDES.into_iter().filter(|_| c != a) {
             let [c, a] = [over(c, side), over(a, side)];
             let name = format!("{draw}{suffix}");
-            self.hardpoint(&format!("{name}_chassis"), c);
-            self.hardpoint(&format!("{name}_axle"), a);
+            self.hardpoint(&end_of(&name, "chassis"), c);
+            self.hardpoint(&end_of(&name, "axle"), a);
             let mut leg = Joint::new(&name, String::new(), "leg", [GROUND, axle], c).between(c, a);
             leg.draw = Some(draw);
             self.m.joint(leg);
@@ -140,9 +146,7 @@ impl Axle<'_> {
             self.hardpoint(name, at);
         }
         let y = Vec3::from([0.0, 1.0, 0.0]);
-        self.m.joint(
-            Joint::new("triangle_pivot", String::new(), "revolute", [GROUND, body], pivot).along(y),
-        );
+        self.m.joint(Joint::new("triangle_pivot", String::new(), "revolute", [GROUND, body], pivot).along(y));
         self.m.joint(Joint::new("triangle_ball", String::new(), "spherical", [body, axle], ball));
         self.notes.taken("arm", "triangle", self.at(part));
     }
@@ -178,8 +182,7 @@ impl Axle<'_> {
         let (from, to) = (from?, to?);
         let rack = self.body("steering_link", from);
         let along = to - from;
-        let axis: [f64; 3] =
-            if along.x.abs() > along.y.abs() { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
+        let axis: [f64; 3] = if along.x.abs() > along.y.abs() { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
         let slide = self.m.joint(
             Joint::new("steering_slide", String::new(), "translational", [GROUND, rack], from)
                 .along(axis.into()),
@@ -221,7 +224,8 @@ impl Axle<'_> {
                 return None;
             }
             let rod = self.body("tie_rod", (left + right) * 0.5);
-            for (name, at) in [("tie_rod_left", left), ("tie_rod_right", right), ("bell_crank_tie_rod", tie)] {
+            for (name, at) in [("tie_rod_left", left), ("tie_rod_right", right), ("bell_crank_tie_rod", tie)]
+            {
                 self.hardpoint(name, at);
             }
             let [x, y] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vec3::from);
@@ -280,7 +284,8 @@ impl Axle<'_> {
                 self.hardpoint("axle_middle", middle);
                 let [x, y] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vec3::from);
                 self.m.joint(
-                    Joint::new("axle_guide", String::new(), "inplane", [GROUND, axle], middle).with_axes(y, x),
+                    Joint::new("axle_guide", String::new(), "inplane", [GROUND, axle], middle)
+                        .with_axes(y, x),
                 );
                 let why = "a plane holds its middle sideways, in place of a Watt linkage: the file has no points of it";
                 self.notes.approximated("joint", "axle_guide", self.at(part), why);
@@ -327,6 +332,16 @@ impl Axle<'_> {
         }
         Some(())
     }
+}
+
+/// The name of an element's end; its side is its last word.
+fn end_of(name: &str, word: &str) -> String {
+    for (_, suffix) in SIDES {
+        if let Some(base) = name.strip_suffix(suffix) {
+            return format!("{base}_{word}{suffix}");
+        }
+    }
+    format!("{name}_{word}")
 }
 
 /// On the left (1) or on the right (-1).

@@ -240,7 +240,9 @@ pub fn import_as(
                 let help = format!("import it with `--format {}`: it looks like {}", other.name, other.about);
                 whole(&notes, "HP0806", message, &help)
             }
-            None if is_like_it => whole(&notes, "HP0806", message, "export the mechanism with its bodies and joints"),
+            None if is_like_it => {
+                whole(&notes, "HP0806", message, "export the mechanism with its bodies and joints")
+            }
             None => {
                 let d = notes.diagnostic("HP0806", None, message);
                 let d = d.note(format!("it looks like none of the formats that are read: {}", known()));

@@ -58,7 +58,10 @@ const KINDS: &[Kind] = &[
     Kind {
         endings: &["mbd", "mbdyn"],
         looks: |text| {
-            text.contains("begin:") && text.contains("end:") && text.contains("problem") && text.contains("data;")
+            text.contains("begin:")
+                && text.contains("end:")
+                && text.contains("problem")
+                && text.contains("data;")
         },
         sibling: Sibling {
             what: "an input file of MBDyn (.mbd)",

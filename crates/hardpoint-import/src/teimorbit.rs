@@ -213,14 +213,7 @@ fn words(line: &str) -> Vec<String> {
     out
 }
 
-fn row(
-    m: &mut Mechanism,
-    sides: &mut [Side; 3],
-    columns: &[String],
-    line: &str,
-    at: At,
-    notes: &mut Notes,
-) {
+fn row(m: &mut Mechanism, sides: &mut [Side; 3], columns: &[String], line: &str, at: At, notes: &mut Notes) {
     let words = words(line);
     let column = |names: [&str; 2]| {
         columns.iter().position(|c| names.contains(&c.as_str())).and_then(|k| words.get(k))

@@ -276,9 +276,11 @@ impl<'m> Writer<'m> {
         let both: Vec<(&str, [&str; 2])> = (self.hardpoints.iter())
             .filter_map(|(left, at)| {
                 let base = left.strip_suffix("_left")?;
-                let (right, other) = self.hardpoints.iter().find(|(n, _)| n.strip_suffix("_right") == Some(base))?;
+                let (right, other) =
+                    self.hardpoints.iter().find(|(n, _)| n.strip_suffix("_right") == Some(base))?;
                 let is_image = (Vec3::from([at.x, -at.y, at.z]) - *other).norm() <= SAME_PLACE * self.size;
-                (is_image && is_used(left) && is_used(right)).then_some((base, [left.as_str(), right.as_str()]))
+                (is_image && is_used(left) && is_used(right))
+                    .then_some((base, [left.as_str(), right.as_str()]))
             })
             .collect();
         if both.len() > MOST_VARIED {

@@ -140,14 +140,17 @@ fn hardpoints(cells: &[Vec<String>], in_plane: bool) -> Result<Hardpoints, Strin
             columns[0] =
                 name.or_else(|| (0..titles.len().min(4)).find(|k| !columns[1..].contains(&Some(*k))));
             if columns[0].is_none() {
-                return Err(format!("line {line} names its columns, and none of them holds names of hardpoints"));
+                return Err(format!(
+                    "line {line} names its columns, and none of them holds names of hardpoints"
+                ));
             }
             unit = unit_of(columns[1..].iter().flatten().map(|k| &titles[*k].1), line)?;
             // Units may stand in a line of their own.
-            if let Some((line, units)) = lines().find(|(l, _)| *l > begin).filter(|(_, r)| is_units(r, &columns)) {
-                let symbol = |cell: &String| {
-                    Some(cell.trim_matches(['[', ']', '(', ')', ' ']).trim().to_lowercase())
-                };
+            if let Some((line, units)) =
+                lines().find(|(l, _)| *l > begin).filter(|(_, r)| is_units(r, &columns))
+            {
+                let symbol =
+                    |cell: &String| Some(cell.trim_matches(['[', ']', '(', ')', ' ']).trim().to_lowercase());
                 let below: Vec<Option<String>> =
                     columns[1..].iter().flatten().map(|k| units.get(*k).and_then(symbol)).collect();
                 let below = unit_of(below.iter(), line)?;

@@ -47,8 +47,9 @@ pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
     if names.iter().all(|(n, _)| n.parse::<f64>().is_ok()) {
         let line = record.position().map_or(1, csv::Position::line);
         if let Some(above) = headed(text, names.len()) {
-            let message =
-                format!("`{name}`, line {above} begins with `#`: the names of the columns are a comment there");
+            let message = format!(
+                "`{name}`, line {above} begins with `#`: the names of the columns are a comment there"
+            );
             let help = "remove that `#`; to leave the first column out, put quotes round its name, like `\"#crank\"`";
             return Err(DataError::content(message, help));
         }
