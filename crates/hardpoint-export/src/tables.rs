@@ -47,14 +47,22 @@ fn csv(file: &ModelFile, out: &mut Exported) {
     }
 }
 
-/// The name without its side, and the side as this format calls it.
+/// The name without its side, where that is its last word, and its side in Adams/Car. A name that begins with its side keeps the word.
 fn side_of(name: &str) -> (&str, &'static str) {
-    let of = |side: &'static str| {
-        let short = name.strip_prefix(side).and_then(|rest| rest.strip_prefix('_'));
-        let short = short.or_else(|| name.strip_suffix(side).and_then(|rest| rest.strip_suffix('_')));
-        short.filter(|short| !short.is_empty()).map(|short| (short, side))
+    // What an importer would name otherwise keeps its name whole, and has no side.
+    let is_free = |short: &&str| {
+        !short.is_empty() && !["left_", "right_", "hpl_", "hpr_", "hps_"].iter().any(|p| short.starts_with(p))
     };
-    of("left").or_else(|| of("right")).unwrap_or((name, "single"))
+    for side in ["left", "right"] {
+        let last = name.strip_suffix(side).and_then(|n| n.strip_suffix('_')).filter(is_free);
+        if let Some(short) = last {
+            return (short, side);
+        }
+        if name.strip_prefix(side).and_then(|n| n.strip_prefix('_')).filter(is_free).is_some() {
+            return (name, side);
+        }
+    }
+    (name, "single")
 }
 
 /// In Adams/Car's axes: from x forward, y left to x back, y right.
@@ -72,8 +80,9 @@ fn teimorbit(file: &ModelFile, out: &mut Exported) {
     out.text += "$----------------------------------------------------------------------HARDPOINT\n[HARDPOINT]\n{hardpoint_name              symmetry        x_value      y_value      z_value}\n";
     for (name, [x, y, z]) in hardpoints(file) {
         let (short, side) = side_of(name);
-        if name.contains('\'') {
-            out.unsaid("hardpoint", name, "names with quotes cannot be written");
+        // `$` and `!` begin remarks.
+        if name.contains(['\'', '$', '!']) || name.contains(char::is_control) {
+            out.unsaid("hardpoint", name, "names with `'`, `$`, `!` or control characters cannot be written");
             continue;
         }
         let place = [-x, -y, z].map(number);

@@ -156,6 +156,35 @@ pub fn placed(text: &str, name: &str, places: &[(String, [f64; 3])]) -> String {
     document.to_string()
 }
 
+/// The value at a path of keys, as it is written.
+pub fn at_keys(text: &str, keys: &[&str]) -> Option<String> {
+    let mut document: DocumentMut = text.parse().ok()?;
+    let keys: Vec<Step<'_>> = keys.iter().map(|key| Key(key)).collect();
+    value_at(&mut document, &keys).map(|value| value.clone().decorated("", "").to_string())
+}
+
+/// The text with another value at a path of keys; unchanged if there is none, or the value is not TOML.
+pub fn with_keys(text: &str, keys: &[&str], value: &str) -> String {
+    let (Ok(mut document), Ok(_)) = (text.parse::<DocumentMut>(), value.parse::<Value>()) else {
+        return text.to_owned();
+    };
+    let keys: Vec<Step<'_>> = keys.iter().map(|key| Key(key)).collect();
+    match value_at(&mut document, &keys) {
+        Some(old) => replace(old, value),
+        None => return text.to_owned(),
+    }
+    document.to_string()
+}
+
+/// The coordinates of a hardpoint that are plain numbers of a model's text, in its unit of length.
+pub fn hardpoint_in(text: &str, name: &str) -> Option<[f64; 3]> {
+    let list: Value = at_keys(text, &["hardpoints", name])?.parse().ok()?;
+    let numbers: Option<Vec<f64>> = (list.as_array()?.iter())
+        .map(|v| v.as_float().or_else(|| v.as_integer().map(|i| i as f64)))
+        .collect();
+    numbers?.try_into().ok()
+}
+
 /// A change that the file has no number for.
 const CODE: &str = "HP0505";
 

@@ -57,7 +57,7 @@ use toml::de::DeTable;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, Source};
 pub use drawing::{Drawing, Form, Mesh, MeshFrame};
-pub use edit::{hardpoints_in, placed};
+pub use edit::{at_keys, hardpoint_in, hardpoints_in, placed, with_keys};
 pub use measured::Measured;
 pub use read::planar::Plane;
 pub use read::triangles;

@@ -6,7 +6,7 @@ use crate::corner::{Corner, Link, Mount, Role, spin_axis};
 use crate::mechanism::Mechanism;
 use crate::report::Notes;
 use crate::tree::{self, Tree};
-use crate::{Format, Input, chrono_generic};
+use crate::{Format, Input, chrono_axle, chrono_generic};
 
 /// See the module.
 pub const FORMAT: Format = Format {
@@ -51,8 +51,9 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         );
         return None;
     }
-    let Some(known) = TEMPLATES.iter().find(|t| t.eq_ignore_ascii_case(name)) else {
-        let help = format!("known are {}", TEMPLATES.join(", "));
+    let all = || TEMPLATES.iter().chain(&chrono_axle::TEMPLATES);
+    let Some(known) = all().find(|t| t.eq_ignore_ascii_case(name)) else {
+        let help = format!("known are {}", all().copied().collect::<Vec<_>>().join(", "));
         notes.problem_with("HP0805", at, format!("the template `{name}` is not known here"), &help);
         return None;
     };
@@ -61,6 +62,10 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     if *known == GENERIC {
         let angle = |key: &str| root.get(key).and_then(Tree::number).unwrap_or(0.0).to_radians();
         return chrono_generic::read(&root, m, ANGLES.map(angle), notes);
+    }
+    if chrono_axle::TEMPLATES.contains(known) {
+        let angle = |key: &str| root.get(key).and_then(Tree::number).unwrap_or(0.0).to_radians();
+        return chrono_axle::read(&root, m, known, ANGLES.map(angle), notes);
     }
     let mut reader = Reader {
         root: &root,

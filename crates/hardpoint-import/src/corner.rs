@@ -102,6 +102,8 @@ const NAMES: &[(Role, &[&str])] = &[
             "ball_joint",
             "lca_balljoint",
             "lower_control_arm_outer",
+            "lower_ball",
+            "ball_joint",
             "arm_outer",
         ],
     ),
@@ -142,6 +144,7 @@ const NAMES: &[(Role, &[&str])] = &[
             "upper_ball",
             "uca_balljoint",
             "upper_control_arm_outer",
+            "upper_ball",
         ],
     ),
     (
@@ -258,6 +261,7 @@ const NAMES: &[(Role, &[&str])] = &[
             "top_damper_mount",
             "damper_upper",
             "shock_upper",
+            "damper_top",
             "dc",
         ],
     ),
@@ -273,6 +277,8 @@ const NAMES: &[(Role, &[&str])] = &[
             "lwr_shock_mount",
             "damper_lower",
             "shock_lower",
+            "damper_foot",
+            "damper_bottom",
             "rd",
         ],
     ),
@@ -287,6 +293,7 @@ const NAMES: &[(Role, &[&str])] = &[
             "spring_upr_seat",
             "spring_upper_seat",
             "spring_upper",
+            "spring_top",
         ],
     ),
     (
@@ -300,6 +307,7 @@ const NAMES: &[(Role, &[&str])] = &[
             "spring_lwr_seat",
             "spring_lower_seat",
             "spring_lower",
+            "spring_bottom",
         ],
     ),
     (Role::TrailingA, &["trailing_arm_pivot_a", "trailing_arm_inner", "trailing_arm_front"]),
@@ -408,6 +416,16 @@ impl Corner {
     fn all<const N: usize>(&self, roles: [Role; N]) -> Option<[Vec3; N]> {
         let found: Option<Vec<Vec3>> = roles.iter().map(|r| self.get(*r)).collect();
         found.and_then(|v| <[Vec3; N]>::try_from(v).ok())
+    }
+
+    /// Whether that many rods, with its arm and its tie rod, hold an upright with one freedom: a multi-link suspension.
+    pub fn is_held_by(&self, rods: usize) -> bool {
+        use Role::*;
+        let arm = |roles: [Role; 3]| 2 * usize::from(self.all(roles).is_some());
+        let arms = arm([LowerFront, LowerRear, LowerOuter]) + arm([UpperFront, UpperRear, UpperOuter]);
+        let tie = usize::from(self.all([TieInner, TieOuter]).is_some());
+        let is_guided = [TrailingA, TrailingB, TrailingBall].iter().any(|r| self.get(*r).is_some());
+        rods > 0 && !is_guided && arms + tie + rods == 5
     }
 
     /// The same on the other side.

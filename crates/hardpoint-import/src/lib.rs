@@ -22,6 +22,7 @@ mod adams_statement;
 mod asmt;
 mod chain;
 mod chrono;
+mod chrono_axle;
 mod chrono_generic;
 mod closing;
 mod collada;
@@ -39,6 +40,7 @@ mod robot;
 mod sdf;
 mod series;
 mod shapes;
+mod siblings;
 mod straighten;
 mod teimorbit;
 mod tree;
@@ -143,103 +145,6 @@ impl Format {
     }
 }
 
-/// A file of another program that is not read, although its name or its program suggests it.
-struct Sibling {
-    /// What it is.
-    what: &'static str,
-    /// How names of its files end.
-    endings: &'static [&'static str],
-    /// Beginnings of lines that show it, in small letters.
-    lines: &'static [&'static str],
-    /// What to do instead.
-    help: &'static str,
-}
-
-/// Known files that are not read.
-const SIBLINGS: &[Sibling] = &[
-    Sibling {
-        what: "an Adams/View command file",
-        endings: &["cmd"],
-        lines: &["model create", "part create", "defaults model", "marker create"],
-        help: "export the model from Adams/View as an Adams/Solver dataset (`.adm`): File, Export, Adams/Solver Data Set",
-    },
-    Sibling {
-        what: "an Adams database",
-        endings: &["bin"],
-        lines: &[],
-        help: "export the model from Adams/View as an Adams/Solver dataset (`.adm`): File, Export, Adams/Solver Data Set",
-    },
-    Sibling {
-        what: "an MBDyn input file",
-        endings: &["mbd", "mbdyn"],
-        lines: &["begin: data", "begin: nodes", "begin: elements"],
-        help: "write the mechanism as URDF, SDF or MJCF, or begin from a table of its points: \
-               `hardpoint new NAME --template TEMPLATE --hardpoints FILE`",
-    },
-    Sibling {
-        what: "a MotionView model",
-        endings: &["mdl"],
-        lines: &["*beginmdl", "*begincontext"],
-        help: "export it from MotionView as an Adams/Solver dataset (`.adm`)",
-    },
-    Sibling {
-        what: "a xacro file",
-        endings: &["xacro"],
-        lines: &["<xacro:"],
-        help: "expand it first: `xacro FILE.xacro > FILE.urdf`",
-    },
-    Sibling {
-        what: "a CAD part or assembly",
-        endings: &[
-            "step",
-            "stp",
-            "iges",
-            "igs",
-            "sldasm",
-            "sldprt",
-            "catproduct",
-            "catpart",
-            "ipt",
-            "iam",
-            "x_t",
-        ],
-        lines: &["iso-10303-21"],
-        help: "CAD files have no joints: export an assembly with joints as URDF, or begin from a table of its points: \
-               `hardpoint new NAME --template TEMPLATE --hardpoints FILE`",
-    },
-    Sibling {
-        what: "a Simulink or Simscape model",
-        endings: &["slx"],
-        lines: &[],
-        help: "write its hardpoints into a table: `hardpoint new NAME --template TEMPLATE --hardpoints FILE`",
-    },
-];
-
-impl Sibling {
-    /// The sibling that a file is, by what is in it or by how its name ends.
-    fn of(bytes: &[u8], name: &str) -> Option<&'static Self> {
-        let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
-        let by_name = || SIBLINGS.iter().find(|s| s.endings.contains(&ending.as_str()));
-        Self::by_content(bytes).or_else(by_name)
-    }
-
-    /// The sibling that a file is by what is in it.
-    fn by_content(bytes: &[u8]) -> Option<&'static Self> {
-        let head = decoded(&bytes[..bytes.len().min(LOOKED_AT)]).to_lowercase();
-        let shows = |s: &&Self| {
-            let begins = |line: &str| s.lines.iter().any(|l| line.trim_start().starts_with(l));
-            head.lines().any(begins)
-        };
-        SIBLINGS.iter().find(shows)
-    }
-
-    /// HP0801.
-    fn problem(&self, notes: &Notes) -> Problems {
-        let message = format!("the file is {}, which is not read", self.what);
-        notes.only(notes.diagnostic("HP0801", None, message).help(self.help))
-    }
-}
-
 /// Formats of robots, which name no points to look at.
 const ROBOTS: [&str; 3] = ["urdf", "sdf", "mjcf"];
 /// Tables, which many keep their hardpoints in.
@@ -278,21 +183,16 @@ pub fn import_with(
     name: &str,
     resolve: Resolve<'_>,
 ) -> Result<Imported, Problems> {
-    // What is in a file counts more than how its name ends.
-    if let (None, Some(sibling)) = (&options.format, Sibling::by_content(bytes)) {
-        return Err(sibling.problem(&Notes::new(name, "")));
-    }
     match options.format.as_ref().or_else(|| Format::of(bytes, name)) {
         Some(format) => read_as(format, &options.closings, bytes, name, resolve),
         None => {
             let notes = Notes::new(name, "");
-            if let Some(sibling) = Sibling::of(bytes, name) {
-                return Err(sibling.problem(&notes));
+            if let Some(sibling) = siblings::of(&decoded(&bytes[..bytes.len().min(LOOKED_AT)]), name) {
+                return Err(is_sibling(&notes, sibling));
             }
-            let known = FORMATS.iter().map(|f| format!("`{}` ({})", f.name, f.about)).collect::<Vec<_>>();
             let message = notes.diagnostic("HP0801", None, "the format of the file is not recognised");
-            let message = message.note(format!("known are {}", known.join(", ")));
-            let message = message.help("name the format, like `--format adams`");
+            let message = message.note(format!("known are {}", known()));
+            let message = message.help("if it is one of these, name it, like `--format adams`");
             let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
             let table = TABLES.contains(&ending.as_str());
             let help = "a table of hardpoints begins a model from a template: \
@@ -300,6 +200,18 @@ pub fn import_with(
             Err(notes.only(if table { message.help(help) } else { message }))
         }
     }
+}
+
+/// The formats, with what they are.
+fn known() -> String {
+    let known: Vec<String> = FORMATS.iter().map(|f| format!("`{}` ({})", f.name, f.about)).collect();
+    known.join(", ")
+}
+
+/// HP0801: a file of a kind that is not read, with the file to export in place of it.
+fn is_sibling(notes: &Notes, sibling: &siblings::Sibling) -> Problems {
+    let message = format!("the file is {}: that is not read", sibling.what);
+    notes.only(notes.diagnostic("HP0801", None, message).help(sibling.help))
 }
 
 /// The same, of a format that is known.
@@ -353,20 +265,35 @@ fn read_as(
         closing::close(m, &mut notes, closings);
         closing::pairs(m, &mut notes);
     }
+    // A file that cannot be read is perhaps of another kind: that says more than what it lacks of this one.
+    let head = || decoded(&bytes[..bytes.len().min(LOOKED_AT)]);
+    let is_like_it = format.binary || (format.looks)(&head());
+    if (notes.problem_count() > 0 || mechanism.is_none()) && !is_like_it {
+        if let Some(sibling) = siblings::of(&head(), name) {
+            return Err(is_sibling(&notes, sibling));
+        }
+    }
     if let Some(problems) = notes.problems() {
         return Err(problems);
     }
     let Some(mut m) = mechanism else {
-        if let Some(sibling) = Sibling::of(bytes, name) {
-            return Err(sibling.problem(&notes));
-        }
         let message = format!("there is no mechanism in the file; it was read as {}", format.about);
-        return whole(
-            &notes,
-            "HP0806",
-            message,
-            "name another format, like `--format urdf`, if it is of another",
-        );
+        let head = head();
+        let other = FORMATS.iter().find(|f| f.name != format.name && !f.binary && (f.looks)(&head));
+        return match other {
+            Some(other) => {
+                let help = format!("import it with `--format {}`: it looks like {}", other.name, other.about);
+                whole(&notes, "HP0806", message, &help)
+            }
+            None if is_like_it => {
+                whole(&notes, "HP0806", message, "export the mechanism with its bodies and joints")
+            }
+            None => {
+                let d = notes.diagnostic("HP0806", None, message);
+                let d = d.note(format!("it looks like none of the formats that are read: {}", known()));
+                Err(notes.only(d.help("export the mechanism in one of these formats")))
+            }
+        };
     };
     let count = m.bodies.len().max(m.joints.len() / 2);
     if count > robot::MOST_PARTS {

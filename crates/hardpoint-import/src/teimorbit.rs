@@ -1,8 +1,8 @@
 //! Hardpoints in the TeimOrbit format of Adams/Car (`[HARDPOINT]` blocks of subsystems), left, right or single.
 
-use hardpoint::space::Vec3;
-
 use std::collections::BTreeMap;
+
+use hardpoint::space::Vec3;
 
 use crate::corner::{Corner, Link, role_of, spin_axis};
 use crate::lotus::half_round;
@@ -27,9 +27,7 @@ const COLUMNS: [&str; 5] = ["hardpoint_name", "symmetry", "x_value", "y_value", 
 
 fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     let mut m = Mechanism::new(input.stem, "mm", "deg");
-    // Left, right and single.
-    let mut corners = [Corner::default(), Corner::default(), Corner::default()];
-    let mut ends = [LinkEnds::default(), LinkEnds::default(), LinkEnds::default()];
+    let mut sides = [Side::default(), Side::default(), Side::default()];
     let (mut section, mut columns) = (String::new(), COLUMNS.map(str::to_owned).to_vec());
     let (mut start, mut block, mut has_units) = (0, None, false);
     // Camber and toe, of both sides.
@@ -71,7 +69,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
                     columns = names.map(|n| n.to_ascii_lowercase()).collect();
                 }
                 None if section == "PARAMETER" => parameter(&mut static_angles, &columns, line, at, notes),
-                None => row(&mut m, &mut corners, &mut ends, &columns, line, at, notes),
+                None => row(&mut m, &mut sides, &columns, line, at, notes),
             },
             _ => {}
         }
@@ -81,7 +79,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
             "HP0803",
             None,
             "there is no block `[HARDPOINT]`",
-            "import the file of a subsystem",
+            "import the subsystem file (.sub) that holds the hardpoints; an assembly (.asy) names its subsystems",
         );
         return None;
     };
@@ -94,14 +92,11 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         Some(block),
         "turned half round about z, so that x points forward and y left",
     );
-    for (corner, ends) in corners.iter_mut().zip(&ends) {
-        corner.links = ends.links();
-    }
-    let [left, right, single] = corners;
+    let [left, right, single] = sides.map(Side::corner);
     let mut rack = None;
     let mut known = false;
     for (corner, suffix) in [(left, "_left"), (right, "_right")] {
-        if !corner.points.is_empty() {
+        if !corner.points.is_empty() || !corner.links.is_empty() {
             let mut corner = Corner { suffix: suffix.into(), at: Some(block), rack: true, ..corner };
             let side = if suffix == "_left" { 0 } else { 1 };
             let [camber, toe] = static_angles[side];
@@ -114,12 +109,39 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
             known |= corner.build(&mut m, notes, &mut rack);
         }
     }
-    if !known && !single.points.is_empty() {
+    if !known && !(single.points.is_empty() && single.links.is_empty()) {
         let corner = Corner { at: Some(block), rack: true, ..single };
         corner.build(&mut m, notes, &mut rack);
     }
     (!m.hardpoints.is_empty()).then_some(m)
 }
+
+/// The hardpoints of one side, or those without a side.
+#[derive(Default)]
+struct Side {
+    corner: Corner,
+    /// Ends of rods by their names, inboard first, of names that mean nothing else.
+    rods: BTreeMap<String, [Option<Vec3>; 2]>,
+}
+
+impl Side {
+    /// The corner. Pairs of inner and outer points are its rods where it is a multi-link suspension by their number.
+    fn corner(self) -> Corner {
+        let mut corner = self.corner;
+        let rods: Vec<Link> = (self.rods.into_iter())
+            .filter_map(|(name, [inner, outer])| {
+                Some(Link { name, ends: [inner?, outer?], pins: None, at: corner.at })
+            })
+            .collect();
+        if corner.is_held_by(rods.len()) {
+            corner.links = rods;
+        }
+        corner
+    }
+}
+
+/// Endings of the names of a rod's ends.
+const ENDS: [[&str; 3]; 2] = [["_inner", "_inboard", "_chassis"], ["_outer", "_outboard", "_upright"]];
 
 /// A row of a parameter: of static camber and toe, which the wheel's axis follows. Others do not concern the motion.
 fn parameter(angles: &mut [[f64; 2]; 2], columns: &[String], line: &str, at: At, notes: &mut Notes) {
@@ -191,43 +213,7 @@ fn words(line: &str) -> Vec<String> {
     out
 }
 
-/// Ends of links whose names say no more than which end they are: `camber_rod_inner`, `camber_rod_outer`.
-#[derive(Default)]
-struct LinkEnds(BTreeMap<String, [Option<Vec3>; 2]>, Option<At>);
-
-impl LinkEnds {
-    /// Endings of the names of both ends, inboard first.
-    const ENDINGS: [[&str; 2]; 2] = [["_inner", "_outer"], ["_inboard", "_outboard"]];
-
-    fn add(&mut self, name: &str, place: Vec3, at: At) {
-        let ending = |end: usize| Self::ENDINGS.iter().find_map(|e| name.strip_suffix(e[end]));
-        for (end, stem) in [0, 1].map(|end| (end, ending(end))) {
-            if let Some(stem) = stem {
-                self.0.entry(stem.to_owned()).or_default()[end] = Some(place);
-                self.1 = self.1.or(Some(at));
-            }
-        }
-    }
-
-    /// The links both of whose ends are there.
-    fn links(&self) -> Vec<Link> {
-        let link = |(name, ends): (&String, &[Option<Vec3>; 2])| {
-            let ends = [ends[0]?, ends[1]?];
-            Some(Link { name: name.clone(), ends, pins: None, at: self.1 })
-        };
-        self.0.iter().filter_map(link).collect()
-    }
-}
-
-fn row(
-    m: &mut Mechanism,
-    corners: &mut [Corner; 3],
-    ends: &mut [LinkEnds; 3],
-    columns: &[String],
-    line: &str,
-    at: At,
-    notes: &mut Notes,
-) {
+fn row(m: &mut Mechanism, sides: &mut [Side; 3], columns: &[String], line: &str, at: At, notes: &mut Notes) {
     let words = words(line);
     let column = |names: [&str; 2]| {
         columns.iter().position(|c| names.contains(&c.as_str())).and_then(|k| words.get(k))
@@ -252,12 +238,21 @@ fn row(
             Some((short, prefix)) => (short, prefix),
             None => (name.as_str(), ""),
         };
-    let role = role_of(short);
+    // A side that is a word of the name is not named once more.
     let mut put = |k: usize, suffix: &str, place: Vec3| {
-        m.hardpoints.push((format!("{short}{suffix}"), place));
-        match role {
-            Some(role) => drop(corners[k].points.insert(role, place)),
-            None => ends[k].add(short, place, at),
+        let word = suffix.trim_start_matches('_');
+        let own = short.strip_prefix(word).and_then(|s| s.strip_prefix('_')).filter(|_| !word.is_empty());
+        let plain = crate::corner::plain(own.unwrap_or(short));
+        m.hardpoints.push((if own.is_some() { short.to_owned() } else { format!("{short}{suffix}") }, place));
+        if let Some(role) = role_of(&plain) {
+            sides[k].corner.points.insert(role, place);
+        }
+        for (end, words) in ENDS.iter().enumerate() {
+            if let Some(rod) = words.iter().find_map(|word| plain.strip_suffix(word)) {
+                if role_of(&plain).is_none() {
+                    sides[k].rods.entry(rod.to_owned()).or_default()[end] = Some(place);
+                }
+            }
         }
     };
     match (symmetry.as_str(), prefix) {

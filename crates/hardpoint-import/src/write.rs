@@ -320,7 +320,7 @@ impl<'m> Writer<'m> {
     fn design(&self) -> Table {
         let mut table = Table::new();
         if self.hardpoints.len() > MOST_VARIED {
-            return table;
+            return self.design_of_both_sides();
         }
         for (name, _) in &self.hardpoints {
             // What nothing is at moves nothing.
@@ -338,6 +338,37 @@ impl<'m> Writer<'m> {
             match axes[..] {
                 [_, _, _] => table[name] = variable("xyz"),
                 _ => axes.iter().for_each(|axis| table[&format!("{name}_{axis}")] = variable(axis)),
+            }
+        }
+        table
+    }
+
+    /// Variables that move a point on the left and its mirror image alike, along x and z: those of an axle. None if there are too many.
+    fn design_of_both_sides(&self) -> Table {
+        let mut table = Table::new();
+        let is_used = |name: &str| self.named.contains(name);
+        let both: Vec<(&str, [&str; 2])> = (self.hardpoints.iter())
+            .filter_map(|(left, at)| {
+                let base = left.strip_suffix("_left")?;
+                let (right, other) =
+                    self.hardpoints.iter().find(|(n, _)| n.strip_suffix("_right") == Some(base))?;
+                let is_image = (Vec3::from([at.x, -at.y, at.z]) - *other).norm() <= SAME_PLACE * self.size;
+                (is_image && is_used(left) && is_used(right))
+                    .then_some((base, [left.as_str(), right.as_str()]))
+            })
+            .collect();
+        if both.len() > MOST_VARIED {
+            return table;
+        }
+        for (base, sides) in both {
+            for axis in ["x", "z"] {
+                let name = format!("{base}_{axis}");
+                if !self.m.unfollowed.contains(&name) {
+                    let mut entry = InlineTable::new();
+                    entry.insert("move", sides.into_iter().collect::<Array>().into());
+                    entry.insert("along", axis.into());
+                    table[&name] = value(entry);
+                }
             }
         }
         table

@@ -1,6 +1,7 @@
 //! `hardpoint new`: a model from a template, with the user's own hardpoints.
 
 mod axes;
+mod fit;
 mod table;
 
 use std::io::{BufRead, IsTerminal, Write};
@@ -83,7 +84,10 @@ fn begun(session: &Session, options: &New) -> Result<Outcome, Outcome> {
         Some(table) => places(session, template, table, options)?,
         None => Vec::new(),
     };
-    let model = hardpoint_file::placed(template.text, &name, &places);
+    let mut model = hardpoint_file::placed(template.text, &name, &places);
+    if options.hardpoints.is_some() {
+        model = fit::fitted(session, template.text, model);
+    }
     // With the user's places it is read as it will be, so that what is wrong with them is told.
     let problems = hardpoint_file::parse(&model, &path.display().to_string()).err();
     write(session, &path, &model)?;
@@ -217,10 +221,9 @@ fn places(
                 "remove one of them",
             ));
         }
-        // Round-off of the conversion is no digit of a place.
-        let round = |x: f64| (unit.metres(x) * 1e9).round() / 1e6;
-        places.push((name.clone(), axes.turned(row.place).map(round)));
+        places.push((name.clone(), axes.turned(row.place).map(|x| millimetres(unit, x))));
     }
+    fit::spindle(session, template.text, &wanted, &mut places);
     let missing: Vec<&str> =
         wanted.iter().map(String::as_str).filter(|w| !places.iter().any(|p| p.0 == **w)).collect();
     for name in &unknown {
@@ -243,6 +246,23 @@ fn places(
         in_one_plane(session, &places, &shown)?;
     }
     Ok(places)
+}
+
+/// A length in mm with the digits that it has: a power of ten moves its decimal point, and inches leave no round-off.
+fn millimetres(unit: LengthUnit, x: f64) -> f64 {
+    let moved = |by: i32| {
+        let text = format!("{x:e}");
+        let (digits, exponent) = text.split_once('e')?;
+        format!("{digits}e{}", exponent.parse::<i32>().ok()? + by).parse::<f64>().ok()
+    };
+    let moved = match unit {
+        LengthUnit::Millimetre => Some(x),
+        LengthUnit::Centimetre => moved(1),
+        LengthUnit::Metre => moved(3),
+        // Fifteen digits are those that arithmetic in double precision leaves.
+        LengthUnit::Inch => format!("{:.14e}", x * 25.4).parse().ok(),
+    };
+    moved.unwrap_or_else(|| unit.metres(x) * 1e3)
 }
 
 /// The unit of a table: the one that is said with it, or in it, or that somebody answers.

@@ -67,6 +67,7 @@ fn text(path: &Path) -> Result<Vec<Vec<String>>, String> {
     let text = text.trim_start_matches('\u{feff}');
     let first = text.lines().find(|l| !l.trim().is_empty() && !l.starts_with('#')).unwrap_or_default();
     let delimiter = *b"\t;".iter().find(|c| first.as_bytes().contains(c)).unwrap_or(&b',');
+    let text = &with_header(text, first, delimiter);
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
@@ -92,6 +93,22 @@ fn text(path: &Path) -> Result<Vec<Vec<String>>, String> {
         );
     }
     Ok(cells)
+}
+
+/// The text without the `#` before the names of its columns: a line above the first row that heads columns x and y is no remark.
+fn with_header(text: &str, first: &str, delimiter: u8) -> String {
+    let mut out = text.to_owned();
+    let above = text.lines().take_while(|l| l.trim().is_empty() || l.starts_with('#'));
+    let heads = |line: &&str| {
+        let titles: Vec<String> = line.split(char::from(delimiter)).map(|cell| title(cell).0).collect();
+        ["x", "y"].iter().all(|axis| titles.iter().any(|t| t.trim_start_matches('#').trim() == *axis))
+    };
+    if let Some(line) = above.filter(|l| l.starts_with('#')).filter(heads).last().filter(|_| !heads(&first)) {
+        let at = line.as_ptr() as usize - text.as_ptr() as usize;
+        // Of the same length, so that positions stay.
+        out.replace_range(at..=at, " ");
+    }
+    out
 }
 
 /// A number with a decimal comma, with a point; all else as it is.
@@ -122,8 +139,28 @@ fn hardpoints(cells: &[Vec<String>], in_plane: bool) -> Result<Hardpoints, Strin
             }
             let called = |t: &str| ["name", "hardpoint", "point"].contains(&t);
             let name = titles.iter().position(|(t, _)| called(t));
-            columns[0] = name.or_else(|| (0..4).find(|k| !columns[1..].contains(&Some(*k))));
+            columns[0] =
+                name.or_else(|| (0..titles.len().min(4)).find(|k| !columns[1..].contains(&Some(*k))));
+            if columns[0].is_none() {
+                return Err(format!(
+                    "line {line} names its columns, and none of them holds names of hardpoints"
+                ));
+            }
             unit = unit_of(columns[1..].iter().flatten().map(|k| &titles[*k].1), line)?;
+            // Units may stand in a line of their own.
+            if let Some((line, units)) =
+                lines().find(|(l, _)| *l > begin).filter(|(_, r)| is_units(r, &columns))
+            {
+                let symbol =
+                    |cell: &String| Some(cell.trim_matches(['[', ']', '(', ')', ' ']).trim().to_lowercase());
+                let below: Vec<Option<String>> =
+                    columns[1..].iter().flatten().map(|k| units.get(*k).and_then(symbol)).collect();
+                let below = unit_of(below.iter(), line)?;
+                if unit.is_some() && unit != below {
+                    return Err(format!("line {line} has other units than the names of its columns"));
+                }
+                (unit, begin) = (below, line);
+            }
         }
     }
     let mut rows = Vec::new();
@@ -136,12 +173,25 @@ fn hardpoints(cells: &[Vec<String>], in_plane: bool) -> Result<Hardpoints, Strin
         let mut place = [0.0; 3];
         for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
             let Some(text) = columns[k + 1].map(cell) else { continue };
-            place[k] =
-                number(text).ok_or_else(|| format!("line {line}: `{text}` is no number for {axis}"))?;
+            place[k] = number(text).ok_or_else(|| match number(name) {
+                Some(_) if text.is_empty() => {
+                    format!("line {line} has numbers alone: a hardpoint has its name before x, y and z")
+                }
+                _ => format!("line {line}: `{text}` is no number for {axis}"),
+            })?;
         }
         rows.push(Row { line, name: name.to_owned(), place });
     }
     if rows.is_empty() { Err("it has no rows".into()) } else { Ok(Hardpoints { rows, unit }) }
+}
+
+/// Whether a line below the names of the columns has a word in place of every coordinate.
+fn is_units(row: &[String], columns: &[Option<usize>; 4]) -> bool {
+    let mut cells = columns[1..].iter().flatten().map(|k| row.get(*k).map_or("", |cell| cell.trim()));
+    cells.all(|cell| {
+        let word = cell.trim_matches(['[', ']', '(', ')', ' ']);
+        !word.is_empty() && word.chars().all(char::is_alphabetic) && number(word).is_none()
+    })
 }
 
 fn number(cell: &str) -> Option<f64> {
@@ -200,6 +250,26 @@ mod tests {
     }
 
     #[test]
+    fn a_line_of_units_and_a_header_after_a_hash_are_understood() {
+        let expected = |lines: [usize; 2]| {
+            let rows = [("A", [1.0, 2.0, 3.5]), ("B", [-1.0, 0.0, 1e3])].into_iter().zip(lines);
+            rows.map(|((name, place), line)| Row { line, name: name.into(), place }).collect::<Vec<_>>()
+        };
+        for (text, unit, lines) in [
+            ("name,x,y,z\n-,mm,mm,mm\nA,1,2,3.5\nB,-1,0,1e3\n", Some("mm"), [3, 4]),
+            ("name;x;y;z\n;[in];[in];[in]\nA;1;2;3,5\nB;-1;0;1e3\n", Some("in"), [3, 4]),
+            ("#name,x,y,z\n-,mm,mm,mm\nA,1,2,3.5\nB,-1,0,1e3\n", Some("mm"), [3, 4]),
+            ("name,x [m],y [m],z [m]\nunit,m,m,m\nA,1,2,3.5\nB,-1,0,1e3\n", Some("m"), [3, 4]),
+            ("#name,x,y,z\nA,1,2,3.5\nB,-1,0,1e3\n", None, [2, 3]),
+            ("# of the car\n# Point, z (mm), y (mm), x (mm)\nA,3.5,2,1\nB,1e3,0,-1\n", Some("mm"), [3, 4]),
+            ("#,name,x,y,z\n1,A,1,2,3.5\n2,B,-1,0,1e3\n", None, [2, 3]),
+        ] {
+            let unit = unit.map(str::to_owned);
+            assert_eq!(of(text, false), Ok(Hardpoints { rows: expected(lines), unit }), "{text}");
+        }
+    }
+
+    #[test]
     fn points_in_a_plane_need_no_third_coordinate() {
         for text in ["A,1,2\nB,-1,0.5\n", "x,y,name\n1,2,A\n-1,0.5,B\n", "name,x,y,z\nA,1,2,0\nB,-1,0.5,0\n"]
         {
@@ -223,6 +293,10 @@ mod tests {
             ("A;1;2;3\nB;1;2.000,5;3\n", "line 2: `2.000,5` is no number for y"),
             ("A,1,2,3\n,1,2,3\n", "line 2 has no name"),
             ("A,1,2,inf\n", "line 1: `inf`"),
+            ("x,y,z\n1,2,3\n", "none of them holds names"),
+            ("1,2,3\n4,5,6\n", "line 1 has numbers alone"),
+            ("name,x,y,z\n-,mm,mm,m\nA,1,2,3\n", "line 2 has columns in mm and in m"),
+            ("name,x [mm],y [mm],z [mm]\n-,m,m,m\nA,1,2,3\n", "line 2 has other units"),
             ("name,x [mm],y [mm],z [m]\nA,1,2,3\n", "line 1 has columns in mm and in m"),
             ("name,x [mm],y,z\nA,1,2,3\n", "line 1 has columns in mm and in no unit"),
         ] {

@@ -133,6 +133,69 @@ fn a_table_of_the_right_side_makes_a_right_wheel() {
     assert!((camber(&left) - camber(&right)).abs() < 1e-9 && camber(&left).abs() > 1e-3);
 }
 
+/// A corner that is smaller than the template's, on a lower wheel, in mm.
+const SMALL: &str = "name,x,y,z\nuca_front,-100,-400,350\nuca_rear,100,-400,350\nupper_ball,0,-600,416.6666666666667\n\
+    lca_front,-100,-400,150\nlca_rear,100,-400,150\nlower_ball,0,-600,83.33333333333333\ntie_rod_inner,50,-400,250\n\
+    tie_rod_outer,50,-570,230\nwheel_centre,0,-650,250\n";
+
+#[test]
+fn values_of_a_template_that_contradict_the_hardpoints_are_derived_and_told() {
+    let bench = Bench::with(&[]);
+    bench.put("small.csv", &format!("{SMALL}spindle,0,-600,250\n"));
+    bench.put("hash.csv", &SMALL.replacen("name", "#name", 1).replacen("\nuca", "\n-,mm,mm,mm\nuca", 1));
+    bench.put("metres.csv", "upper_ball,0,-0.6,0.4166666666666667\n");
+    let begin = |name: &str, table: &str, units: &[&str]| {
+        let arguments = ["new", name, "-t", "double-wishbone", "--hardpoints", table, "--axes", "iso"];
+        said(&bench, &[&arguments[..], units].concat())
+    };
+    let (code, told) = begin("small", "small.csv", &["--units", "mm"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(told.contains("the radius of `wheel` is 250 mm"), "{told}");
+    assert!(told.contains("the travel of case `steer` is beyond this linkage"), "{told}");
+    let text = bench.text("small.toml");
+    for part in ["[0, -600, 83.33333333333333]", "416.6666666666667]", "\nradius = 250\n"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    // All cases go to their ends.
+    assert_eq!(said(&bench, &["run", "small.toml", "-o", "results"]).0, Some(0));
+    // Its header after a `#`, units in a line, and no point of the axis.
+    let (code, told) = begin("hash", "hash.csv", &[]);
+    assert!(
+        code == Some(0) && told.contains("the table has no `spindle`: it is placed 70 mm inboard"),
+        "{told}"
+    );
+    assert!(bench.text("hash.toml").contains("spindle = [0, -580, 250]"));
+    // Heights that count from elsewhere.
+    let high: String = SMALL.replace(",250\n", ",-20\n");
+    bench.put("high.csv", &high);
+    let (_, told) = begin("high", "high.csv", &["--units", "mm"]);
+    assert!(told.contains("the radius of `wheel` remains 310 mm"), "{told}");
+    bench.put("bare.csv", "x,y,z\n1,2,3\n");
+    let (code, told) = begin("bare", "bare.csv", &["--units", "mm"]);
+    assert!(code == Some(2) && told.contains("none of them holds names of hardpoints"), "{told}");
+}
+
+#[test]
+fn tables_of_hardpoints_import_again() {
+    /// Coordinates are written as short as they give the same places again; turning them half round changes signs alone.
+    const SAME: f64 = 1e-12;
+    for model in ["double_wishbone", "macpherson", "five_link", "front_axle"] {
+        let file = format!("{model}.toml");
+        let bench = Bench::with(&[&file]);
+        assert_eq!(said(&bench, &["export", &file, "-o", "points.sub"]).0, Some(0), "{model}");
+        let (code, told) = said(&bench, &["import", "points.sub", "-o", "back.toml"]);
+        assert_eq!(code, Some(0), "{model}: {told}");
+        let [out, back] =
+            [file.as_str(), "back.toml"].map(|f| hardpoint_file::read(&bench.path(f)).unwrap().model);
+        for own in out.hardpoints.iter().filter(|h| !h.unnamed) {
+            let again = back.hardpoints.iter().find(|h| h.name == own.name);
+            let again = again.unwrap_or_else(|| panic!("{model}: `{}` is lost", own.name));
+            assert!((again.position - own.position).norm() < SAME, "{model}: `{}`", own.name);
+        }
+        assert!(!back.joints.is_empty(), "{model}");
+    }
+}
+
 #[test]
 fn the_page_about_it_says_what_works() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/new.md");

@@ -43,19 +43,48 @@ pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
     if !reader.read_record(&mut record).map_err(no_csv)? {
         return Err(DataError::content(format!("`{name}` is empty"), write));
     }
-    let names: Vec<(String, Option<String>)> =
+    let mut names: Vec<(String, Option<String>)> =
         record.iter().map(|field| named(original(unquoted(field)))).collect();
     if names.iter().all(|(n, _)| n.parse::<f64>().is_ok()) {
-        let message = format!("`{name}`, line 1: there are numbers in place of names");
+        let line = record.position().map_or(1, csv::Position::line);
+        if let Some(above) = headed(text, names.len()) {
+            let message = format!(
+                "`{name}`, line {above} begins with `#`: the names of the columns are a comment there"
+            );
+            let help = "remove that `#`; to leave the first column out, put quotes round its name, like `\"#crank\"`";
+            return Err(DataError::content(message, help));
+        }
+        let message = format!("`{name}`, line {line}: there are numbers in place of names");
         return Err(DataError::content(message, write));
     }
     let mut rows = Vec::new();
+    let mut is_first = true;
     while reader.read_record(&mut record).map_err(no_csv)? {
         let line = record.position().map_or(0, csv::Position::line);
         if record.len() > names.len() {
             let message =
                 format!("`{name}`, line {line} has {} cells for {} columns", record.len(), names.len());
             return Err(DataError::content(message, "give one cell for each name of the first line"));
+        }
+        // Units may stand in a line of their own, below the names.
+        if std::mem::take(&mut is_first) && is_units(&record) {
+            for (cell, (title, unit)) in record.iter().zip(&mut names) {
+                let below = unquoted(cell).trim_matches(['[', ']', '(', ')', ' ']);
+                let below = Some(below).filter(|u| u.chars().any(char::is_alphanumeric)).map(str::to_owned);
+                if let (Some(own), Some(below)) = (&unit, &below)
+                    && own != below
+                {
+                    let message = format!(
+                        "`{name}`, line {line}: `{}` is in `{}` here, and in `{}` above",
+                        shown(title),
+                        shown(below),
+                        shown(own)
+                    );
+                    return Err(DataError::content(message, "give one unit to each column"));
+                }
+                *unit = below.or_else(|| unit.take());
+            }
+            continue;
         }
         let cell = |(k, (title, _)): (usize, &(String, Option<String>))| {
             let text = record.get(k).map(unquoted).filter(|text| !text.is_empty());
@@ -72,6 +101,21 @@ pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
         return Err(DataError::content(format!("`{name}` has no readings"), write));
     }
     Ok(Readings { names, rows })
+}
+
+/// The line above the first row that begins with `#` and has as many cells: it names the columns, and is a comment by its `#`.
+fn headed(text: &str, columns: usize) -> Option<usize> {
+    let delimiter = char::from(delimiter(text));
+    let above = text.lines().enumerate().take_while(|(_, l)| l.trim().is_empty() || l.starts_with('#'));
+    let heads = |line: &str| line.starts_with('#') && line.split(delimiter).count() == columns;
+    above.filter(|(_, l)| heads(l)).last().map(|(k, _)| k + 1)
+}
+
+/// Whether a line has no number, and a word at least.
+fn is_units(record: &csv::StringRecord) -> bool {
+    let mut cells = record.iter().map(unquoted);
+    cells.clone().any(|cell| cell.chars().any(char::is_alphabetic))
+        && cells.all(|cell| cell.parse::<f64>().is_err() && !cell.starts_with(|c: char| c.is_ascii_digit()))
 }
 
 /// A name and the unit behind it, as results are headed: `toe [deg]`.

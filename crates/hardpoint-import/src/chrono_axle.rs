@@ -1,0 +1,350 @@
+//! Live axles of Project Chrono's vehicle module: one rigid axle between both wheels. The file has the left side; the right one is its
+//! mirror image, as Chrono makes it.
+
+use hardpoint::space::{Pose, Vec3};
+
+use crate::corner::{Corner, Role, plain, spin_axis};
+use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism};
+use crate::report::{At, Notes};
+use crate::tree::Tree;
+
+/// The templates that are read here.
+pub const TEMPLATES: [&str; 6] = [
+    "SolidAxle",
+    "SolidThreeLinkAxle",
+    "SolidBellcrankThreeLinkAxle",
+    "RigidPanhardAxle",
+    "PanhardAxle",
+    "DeDionAxle",
+];
+
+const SIDES: [(f64, &str); 2] = [(1.0, "_left"), (-1.0, "_right")];
+
+struct Axle<'r> {
+    root: &'r Tree,
+    m: Mechanism,
+    notes: &'r mut Notes,
+    /// Parts of the file that were read.
+    read: Vec<&'static str>,
+}
+
+/// See the module; `angles` are the static camber and toe of the wheels, rad.
+pub fn read(
+    root: &Tree,
+    m: Mechanism,
+    template: &str,
+    angles: [f64; 2],
+    notes: &mut Notes,
+) -> Option<Mechanism> {
+    let mut axle = Axle { root, m, notes, read: Vec::new() };
+    axle.build(template, angles);
+    let Axle { m, read, notes, .. } = axle;
+    for (key, at, _) in root.entries() {
+        if key.ends_with("Angle (deg)") {
+            notes.taken(key, "", Some(*at));
+        } else if key == "Anti Roll Bar" {
+            notes.refused(key, "", Some(*at), "it holds nothing, and is not made");
+        } else if !read.contains(&key.as_str()) && !["Name", "Type", "Template"].contains(&key.as_str()) {
+            notes.ignored(key, Some(*at));
+        }
+    }
+    Some(m)
+}
+
+impl Axle<'_> {
+    fn at(&self, part: &str) -> Option<At> {
+        self.root.get(part).map(|t| t.at)
+    }
+
+    /// A place of a part, by the first of the names that it has; what is missing is a problem.
+    fn place(&mut self, parts: &[&'static str], names: &[&str]) -> Option<Vec3> {
+        let found = parts.iter().find_map(|p| Some((*p, self.root.get(p)?)));
+        let Some((part, tree)) = found else {
+            let message = format!("there is no `{}`", parts[0]);
+            self.notes.problem_with("HP0803", Some(self.root.at), message, "a template has all its parts");
+            return None;
+        };
+        self.read.push(part);
+        let Some(place) = names.iter().find_map(|n| tree.get(n)) else {
+            let message = format!("`{part}` has no `{}`", names[0]);
+            self.notes.problem_with("HP0803", Some(tree.at), message, "give it as a list of three numbers");
+            return None;
+        };
+        let v = place.vector();
+        if v.is_none() {
+            let message = format!("`{}` of `{part}` is three numbers", names[0]);
+            let help = "give it as a list like `[0, 0.7, 0.2]`";
+            self.notes.problem_with("HP0804", Some(place.at), message, help);
+        }
+        v.map(Vec3::from)
+    }
+
+    fn body(&mut self, name: &str, at: Vec3) -> usize {
+        self.m.body(name, String::new(), Some(Pose { rot: crate::turn::none(), r: at }))
+    }
+
+    fn hardpoint(&mut self, name: &str, at: Vec3) {
+        self.m.hardpoints.push((name.to_owned(), at));
+    }
+
+    /// A rod between two bodies; both its ends are hardpoints.
+    fn rod(&mut self, name: &str, bodies: [usize; 2], ends: [Vec3; 2], words: [&str; 2], at: Option<At>) {
+        for (end, word) in ends.into_iter().zip(words) {
+            self.hardpoint(&end_of(name, word), end);
+        }
+        if ends[0] == ends[1] {
+            let message = format!("both ends of `{name}` are at one place");
+            self.notes.problem_with("HP0804", at, message, "correct one of them");
+            return;
+        }
+        self.m.joint(Joint::new(name, String::new(), "distance", bodies, ends[0]).between(ends[0], ends[1]));
+        self.notes.taken("link", name, at);
+    }
+
+    /// A rod on each side, from the body of the vehicle to the axle.
+    fn rods(&mut self, part: &'static str, axle: usize) {
+        let chassis = self.place(&[part], &["Location Chassis"]);
+        let outer = self.place(&[part], &["Location Axle"]);
+        let (Some(c), Some(a)) = (chassis, outer) else { return };
+        let at = self.at(part);
+        for (side, suffix) in SIDES {
+            let name = format!("{}{suffix}", plain(part));
+            self.rod(&name, [GROUND, axle], [over(c, side), over(a, side)], ["chassis", "axle"], at);
+        }
+    }
+
+    /// A spring or a damper on each side; they hold nothing, and their lengths are worth knowing.
+    fn legs(&mut self, part: &'static str, draw: &'static str, axle: usize) {
+        if self.root.get(part).is_none() {
+            return;
+        }
+        let chassis = self.place(&[part], &["Location Chassis"]);
+        let outer = self.place(&[part], &["Location Axle"]);
+        let (Some(c), Some(a)) = (chassis, outer) else { return };
+        for (side, suffix) in SIDES.into_iter().filter(|_| c != a) {
+            let [c, a] = [over(c, side), over(a, side)];
+            let name = format!("{draw}{suffix}");
+            self.hardpoint(&end_of(&name, "chassis"), c);
+            self.hardpoint(&end_of(&name, "axle"), a);
+            let mut leg = Joint::new(&name, String::new(), "leg", [GROUND, axle], c).between(c, a);
+            leg.draw = Some(draw);
+            self.m.joint(leg);
+            self.notes.taken(draw, &name, self.at(part));
+        }
+    }
+
+    /// A triangle that turns on the body of the vehicle about y; its ball joint is on the axle.
+    fn triangle(&mut self, axle: usize) {
+        let part = "Triangular Link";
+        let chassis = self.place(&[part], &["Location Chassis"]);
+        let outer = self.place(&[part], &["Location Axle"]);
+        let (Some(c), Some(a)) = (chassis, outer) else { return };
+        // Chrono takes the middle of both sides.
+        let [pivot, ball] = [c, a].map(|p| Vec3::from([p.x, 0.0, p.z]));
+        let body = self.body("triangle", pivot);
+        for (name, at) in [("triangle_chassis", pivot), ("triangle_axle", ball)] {
+            self.hardpoint(name, at);
+        }
+        let y = Vec3::from([0.0, 1.0, 0.0]);
+        self.m.joint(Joint::new("triangle_pivot", String::new(), "revolute", [GROUND, body], pivot).along(y));
+        self.m.joint(Joint::new("triangle_ball", String::new(), "spherical", [body, axle], ball));
+        self.notes.taken("arm", "triangle", self.at(part));
+    }
+
+    /// Knuckles that turn on the axle, left and right.
+    fn knuckles(&mut self, axle: usize) -> Option<[(usize, [Vec3; 2]); 2]> {
+        let part = "Knuckle";
+        let lower = self.place(&[part], &["Location Lower"]);
+        let upper = self.place(&[part], &["Location Upper"]);
+        let (Some(l), Some(u)) = (lower, upper) else { return None };
+        if l == u {
+            let message = "both points of the kingpin are at one place";
+            self.notes.problem_with("HP0804", self.at(part), message, "correct one of them");
+            return None;
+        }
+        Some(SIDES.map(|(side, suffix)| {
+            let [l, u] = [over(l, side), over(u, side)];
+            let body = self.body(&format!("knuckle{suffix}"), (l + u) * 0.5);
+            self.hardpoint(&format!("kingpin_lower{suffix}"), l);
+            self.hardpoint(&format!("kingpin_upper{suffix}"), u);
+            let name = format!("kingpin{suffix}");
+            self.m.joint(Joint::new(&name, String::new(), "revolute", [axle, body], l).through(l, u));
+            self.notes.taken("joint", &name, self.at(part));
+            (body, [l, u])
+        }))
+    }
+
+    /// The drag link from the steering to the bell crank; the steering slides along the greater component of the drag link.
+    fn drag_link(&mut self, crank: usize) -> Option<()> {
+        let part = "Draglink";
+        let from = self.place(&[part], &["Location Steering", "Location Chassis"]);
+        let to = self.place(&[part], &["Location Bellcrank", "Location Bell Crank"]);
+        let (from, to) = (from?, to?);
+        let rack = self.body("steering_link", from);
+        let along = to - from;
+        let axis: [f64; 3] = if along.x.abs() > along.y.abs() { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
+        let slide = self.m.joint(
+            Joint::new("steering_slide", String::new(), "translational", [GROUND, rack], from)
+                .along(axis.into()),
+        );
+        let drives = Drives::Coordinate(Coordinate { joint: slide, name: "displacement" });
+        self.m.driver("steering", "no law in the source: held as drawn".into(), drives, Law::Held);
+        let why = "the steering is a file of its own: its link slides along the drag link, and a driver holds it as drawn";
+        self.notes.approximated("motion", "steering_slide", self.at(part), why);
+        self.rod("drag_link", [rack, crank], [from, to], ["steering", "crank"], self.at(part));
+        Some(())
+    }
+
+    /// The bell crank on the axle and what it moves; the tie rods.
+    fn steering(&mut self, template: &str, axle: usize, knuckles: &[(usize, [Vec3; 2]); 2]) -> Option<()> {
+        let crank = ["Bellcrank", "Bell Crank"];
+        let pivot = self.place(&crank, &["Location Axle"])?;
+        let tie = self.place(&crank, &["Location Tierod"])?;
+        let drag = self.place(&["Draglink"], &["Location Bellcrank", "Location Bell Crank"])?;
+        let at = self.at("Bellcrank").or_else(|| self.at("Bell Crank"));
+        let body = self.body("bell_crank", pivot);
+        self.hardpoint("bell_crank_pivot", pivot);
+        let is_solid = template == "SolidAxle";
+        let z = Vec3::from([0.0, 0.0, 1.0]);
+        let axis = if is_solid { (drag - pivot).cross(tie - pivot) } else { z };
+        let Some(axis) = axis.unit() else {
+            let message = "the points of the bell crank lie on one line: its axis is square to them";
+            self.notes.problem_with("HP0804", at, message, "correct one of them");
+            return None;
+        };
+        self.m.joint(
+            Joint::new("bell_crank_pivot", String::new(), "revolute", [axle, body], pivot).along(axis),
+        );
+        if is_solid {
+            let ends = self.place(&["Tierod"], &["Location Knuckle"])?;
+            let [left, right] = [over(ends, 1.0), over(ends, -1.0)];
+            if left == right {
+                let message = "both ends of the tie rod are at one place";
+                self.notes.problem_with("HP0804", self.at("Tierod"), message, "correct its y");
+                return None;
+            }
+            let rod = self.body("tie_rod", (left + right) * 0.5);
+            for (name, at) in [("tie_rod_left", left), ("tie_rod_right", right), ("bell_crank_tie_rod", tie)]
+            {
+                self.hardpoint(name, at);
+            }
+            let [x, y] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vec3::from);
+            self.m.joint(Joint::new("tie_rod_left", String::new(), "spherical", [rod, knuckles[0].0], left));
+            self.m.joint(
+                Joint::new("tie_rod_right", String::new(), "universal", [rod, knuckles[1].0], right)
+                    .with_axes(x, z),
+            );
+            // The crank takes the tie rod along: its point stays in a plane of the rod.
+            self.m.joint(
+                Joint::new("bell_crank_guide", String::new(), "inplane", [rod, body], tie).with_axes(y, x),
+            );
+            self.notes.taken("link", "tie_rod", self.at("Tierod"));
+        } else {
+            let outer = self.place(&["Knuckle"], &["Location Tierod"])?;
+            if self.root.get("Tierod").is_some() {
+                self.read.push("Tierod");
+            }
+            for ((side, suffix), (knuckle, _)) in SIDES.into_iter().zip(knuckles) {
+                let name = format!("tie_rod{suffix}");
+                let ends = [over(tie, side), over(outer, side)];
+                self.rod(&name, [body, *knuckle], ends, ["inner", "outer"], self.at("Knuckle"));
+            }
+        }
+        self.notes.taken("rocker", "bell_crank", at);
+        self.drag_link(body)
+    }
+
+    fn build(&mut self, template: &str, [camber, toe]: [f64; 2]) -> Option<()> {
+        let spindle = self.place(&["Spindle"], &["COM", "Location"]);
+        let part = "Axle Tube";
+        let centre = self.place(&[part], &["COM"]);
+        let (Some(spindle), Some(centre)) = (spindle, centre) else { return None };
+        let axle = self.body("axle", centre);
+        self.notes.taken("body", "axle", self.at(part));
+        let mut knuckles = None;
+        match template {
+            "SolidAxle" => {
+                self.rods("Upper Link", axle);
+                self.rods("Lower Link", axle);
+                knuckles = self.knuckles(axle);
+            }
+            "SolidThreeLinkAxle" | "SolidBellcrankThreeLinkAxle" => {
+                self.triangle(axle);
+                self.rods("Longitudinal Link", axle);
+                if template == "SolidBellcrankThreeLinkAxle" {
+                    knuckles = self.knuckles(axle);
+                }
+            }
+            "DeDionAxle" => {
+                if let Some(ball) = self.place(&[part], &["Location Connector"]) {
+                    self.hardpoint("axle_ball", ball);
+                    self.m.joint(Joint::new("axle_ball", String::new(), "spherical", [GROUND, axle], ball));
+                }
+                let middle = Vec3::from([spindle.x, 0.0, spindle.z]);
+                self.hardpoint("axle_middle", middle);
+                let [x, y] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vec3::from);
+                self.m.joint(
+                    Joint::new("axle_guide", String::new(), "inplane", [GROUND, axle], middle)
+                        .with_axes(y, x),
+                );
+                let why = "a plane holds its middle sideways, in place of a Watt linkage: the file has no points of it";
+                self.notes.approximated("joint", "axle_guide", self.at(part), why);
+            }
+            _ => {
+                let [x, y] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vec3::from);
+                self.m.joint(
+                    Joint::new("axle_guide", String::new(), "planar", [GROUND, axle], centre).with_axes(x, y),
+                );
+                self.notes.taken("joint", "axle_guide", self.at(part));
+                let chassis = self.place(&["Panhard Rod"], &["Location Chassis"]);
+                let outer = self.place(&["Panhard Rod"], &["Location Axle"]);
+                if let (Some(c), Some(a)) = (chassis, outer) {
+                    let at = self.at("Panhard Rod");
+                    self.rod("panhard_rod", [GROUND, axle], [c, a], ["chassis", "axle"], at);
+                }
+            }
+        }
+        if let Some(knuckles) = &knuckles {
+            self.steering(template, axle, knuckles);
+        }
+        self.legs("Spring", "spring", axle);
+        self.legs("Shock", "damper", axle);
+        if self.notes.problem_count() > 0 {
+            return None;
+        }
+        for (k, (side, suffix)) in SIDES.into_iter().enumerate() {
+            let centre = over(spindle, side);
+            self.hardpoint(&format!("spindle{suffix}"), centre);
+            let mut corner = Corner {
+                suffix: suffix.into(),
+                spin_axis: Some(spin_axis(side, camber, toe)),
+                rack: knuckles.is_some(),
+                at: self.at("Spindle"),
+                ..Corner::default()
+            };
+            let mut carrier = axle;
+            if let Some(knuckles) = &knuckles {
+                let (body, [lower, upper]) = knuckles[k];
+                carrier = body;
+                corner.points.extend([(Role::LowerOuter, lower), (Role::UpperOuter, upper)]);
+            }
+            corner.wheel(&mut self.m, self.notes, carrier, centre);
+        }
+        Some(())
+    }
+}
+
+/// The name of an element's end; its side is its last word.
+fn end_of(name: &str, word: &str) -> String {
+    for (_, suffix) in SIDES {
+        if let Some(base) = name.strip_suffix(suffix) {
+            return format!("{base}_{word}{suffix}");
+        }
+    }
+    format!("{name}_{word}")
+}
+
+/// On the left (1) or on the right (-1).
+fn over(v: Vec3, side: f64) -> Vec3 {
+    Vec3::from([v.x, side * v.y, v.z])
+}
