@@ -27,6 +27,7 @@ mod published;
 mod robustness;
 mod searches;
 mod shapes;
+mod sides;
 mod studies;
 mod sweeps;
 mod synthesis;
