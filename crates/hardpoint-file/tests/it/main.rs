@@ -29,6 +29,7 @@ mod published;
 mod robustness;
 mod searches;
 mod shapes;
+mod sides;
 mod singular;
 mod studies;
 mod sweeps;

@@ -249,33 +249,3 @@ fn tables_of_hardpoints_are_sent_to_new() {
         assert_eq!(told.contains("--hardpoints"), name != "x.abc", "{told}");
     }
 }
-
-/// Files of programs that have a format which is read: the message says what the file is and what to do, whichever format is named.
-#[test]
-fn files_that_are_not_read_are_named_with_what_to_do() {
-    let files: [(&str, &str, &str); 7] = [
-        (
-            "model.cmd",
-            "model create model_name=m\npart create rigid_body name_and_position part_name=.m.P\n",
-            "`.adm`",
-        ),
-        ("model.txt", "!---- Adams/View ----\nmodel create model_name=m\n", "`.adm`"),
-        ("model.bin", "\u{1}\u{2}", "`.adm`"),
-        ("beam.mbd", "begin: data;\n problem: initial value;\nend: data;\n", "URDF"),
-        ("arm.xacro", "<?xml version=\"1.0\"?>\n<xacro:include filename=\"a\"/>\n", "xacro FILE.xacro"),
-        ("frame.step", "ISO-10303-21;\nHEADER;\n", "--hardpoints"),
-        ("car.slx", "x", "--hardpoints"),
-    ];
-    for (name, text, help) in files {
-        let told = hardpoint_import::import(text.as_bytes(), name, &|_| None).unwrap_err().to_string();
-        assert!(
-            told.contains("HP0801") && told.contains("which is not read") && told.contains(help),
-            "{name}: {told}"
-        );
-        assert!(!told.contains("--format"), "{name}: no circle of formats: {told}");
-        let adams = hardpoint_import::Format::named("adams").unwrap();
-        let told =
-            hardpoint_import::import_as(adams, text.as_bytes(), name, &|_| None).unwrap_err().to_string();
-        assert!(told.contains(help) && !told.contains("--format"), "{name} as adams: {told}");
-    }
-}

@@ -24,7 +24,7 @@ use crate::joint::{self, JointType, Quantity};
 use crate::law::Law;
 use crate::model::{
     AllocationRule, AtChangePoints, Dimension, LoadMode, Reduction, Side, SweepMethod, Sweeping, Tolerancing,
-    TorqueReaction, Transmission, Vehicle, VehicleEnd,
+    TorqueReaction, Transmission, Vehicle, VehicleEnd, WheelMeasure,
 };
 use crate::space::{Pose, Vec3};
 
@@ -338,6 +338,15 @@ pub enum DrivenDraft {
     Measure(String),
 }
 
+/// Quantity of a measure of a wheel, if a driver may have it.
+fn quantity_at_wheel(what: WheelMeasure) -> Option<Quantity> {
+    match what.dimension() {
+        Dimension::LENGTH => Some(Quantity::Length),
+        Dimension::ANGLE => Some(Quantity::Angle),
+        _ => None,
+    }
+}
+
 impl DrivenDraft {
     /// What the driver's values are, as far as that is known; `type_of` gives the type of a joint.
     pub fn quantity(
@@ -351,20 +360,18 @@ impl DrivenDraft {
             Self::Position { .. } => joint::TRAVEL.quantity_of(None),
             Self::Distance { .. } => joint::LEG.quantity_of(None),
             Self::Orientation { .. } => joint::HEADING.quantity_of(None),
-            Self::Measure(name) => match &measures.iter().find(|m| m.name == *name)?.kind {
-                MeasureKindDraft::Coordinate { joint, coordinate } => {
+            Self::Measure(name) => match measures.iter().find(|m| m.name == *name).map(|m| &m.kind) {
+                // The measures that a wheel lists, `WHEEL.toe`, may be added after the drivers: their names say what they are.
+                None => quantity_at_wheel(WheelMeasure::named(name.rsplit_once('.')?.1)?),
+                Some(MeasureKindDraft::Coordinate { joint, coordinate }) => {
                     type_of(joint)?.quantity_of(coordinate.as_deref())
                 }
-                MeasureKindDraft::Distance { .. } | MeasureKindDraft::Coordinates { .. } => {
+                Some(MeasureKindDraft::Distance { .. } | MeasureKindDraft::Coordinates { .. }) => {
                     Some(Quantity::Length)
                 }
-                MeasureKindDraft::Angle { .. } | MeasureKindDraft::Toe { .. } => Some(Quantity::Angle),
-                MeasureKindDraft::Wheel { what, .. } => match what.dimension() {
-                    Dimension::LENGTH => Some(Quantity::Length),
-                    Dimension::ANGLE => Some(Quantity::Angle),
-                    _ => None,
-                },
-                _ => None,
+                Some(MeasureKindDraft::Angle { .. } | MeasureKindDraft::Toe { .. }) => Some(Quantity::Angle),
+                Some(MeasureKindDraft::Wheel { what, .. }) => quantity_at_wheel(*what),
+                Some(_) => None,
             },
         }
     }
