@@ -28,6 +28,11 @@ pub(crate) fn turned(angle: f64, near: f64) -> f64 {
     if turns.is_nan() { angle } else { angle + TURN * turns }
 }
 
+/// The angle nearest to another; where it has no number, what it was before, so that its turns are not lost.
+fn counted(angle: f64, near: f64, before: f64) -> f64 {
+    if angle.is_nan() { before } else { turned(angle, near) }
+}
+
 /// Angles that only the path counts.
 pub(crate) trait CountedAngles {
     /// The bodies that they are measured on, without ground.
@@ -111,12 +116,13 @@ impl<'m> TurnCounter<'m> {
         for (i, [now, ..]) in self.found.iter().enumerate() {
             let (before, [ahead, back, far]) = (self.values[i], predict(i));
             let near = before + if ahead.is_finite() { ahead } else { 0.0 };
-            self.ahead[i] = turned(*now, near);
+            self.ahead[i] = counted(*now, near, before);
             let moved = self.ahead[i] - before;
-            // Written so that NaN is not sure.
-            sure &= (self.ahead[i] - near).abs() <= TURN_TRUST
-                && (moved - back).abs() <= FAR_END * TURN_TRUST
-                && far <= FAR_END * TURN_TRUST;
+            // Written so that an angle without a number is no matter of turns.
+            let doubtful = (self.ahead[i] - near).abs() > TURN_TRUST
+                || (moved - back).abs() > FAR_END * TURN_TRUST
+                || far > FAR_END * TURN_TRUST;
+            sure &= now.is_nan() || !doubtful;
         }
         sure
     }
@@ -172,17 +178,17 @@ impl<'m> TurnCounter<'m> {
     /// Takes every angle in the turn that is nearest to the accepted position.
     fn nearest(&mut self) {
         for ((ahead, before), [now, ..]) in self.ahead.iter_mut().zip(&self.values).zip(&self.found) {
-            *ahead = turned(*now, *before);
+            *ahead = counted(*now, *before, *before);
         }
     }
 
     /// Whether over a step h nothing turns by more than a radian: neither the drivers together, nor a body, nor an angle.
     fn is_slow(&self, h: f64, moved: f64) -> bool {
-        let angles = self.ahead.iter().zip(&self.values).map(|(ahead, before)| (ahead - before).abs());
-        // Written so that NaN is not slow.
+        let mut angles = self.ahead.iter().zip(&self.values).map(|(ahead, before)| (ahead - before).abs());
+        // Written so that NaN of the motion is not slow, and an angle without a number is no matter of turns.
         moved <= TURN_TRUST
             && self.spin * h <= TURN_TRUST
             && self.spin_ahead * h <= TURN_TRUST
-            && angles.fold(true, |slow, moved| slow && moved <= TURN_TRUST)
+            && !angles.any(|moved| moved > TURN_TRUST)
     }
 }
