@@ -446,6 +446,7 @@ spin_axis = [0, 1, 0.01]
 radius = 310
 bump = "left_spring"
 end = "rear"
+drive = "inboard"
 measures = [
     "toe", "camber", "half_track", "bump_steer", "bump_camber", "bump_recession", "bump_scrub", "roll_centre_height",
     "roll_centre_height_geometric", "instant_centre_front_y", "instant_centre_front_z", "anti_lift", "anti_squat",
@@ -488,7 +489,7 @@ fn a_live_axle_has_the_measures_of_rear_wheels() {
     for k in (0..solution.motion.len()).step_by(10) {
         assert!((value(k, "rear.total_toe")).abs() < 0.01);
         assert!((value(k, "rear.track") - 1.48).abs() < 0.01);
-        // Driving acts at the wheel centre: its recession is what squats.
+        // With the differential on the body driving acts at the wheel centre: its recession is what squats.
         let expected = value(k, "l.bump_recession") * squat;
         assert!(
             (value(k, "l.anti_squat") - expected).abs() < 1e-9,
