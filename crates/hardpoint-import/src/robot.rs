@@ -235,7 +235,13 @@ pub fn weld(
         let axis = turn_of(i.pose.rot * j.pose.rot.transpose(), angle);
         let frame = Pose { rot: j.pose.rot, r: i.pose.r };
         let between = m.body(&format!("{}_frame", called.name), note.clone(), Some(frame));
-        let turn = Joint::new(&format!("{}_turn", called.name), note.clone(), "revolute", [i.body, between], i.pose.r);
+        let turn = Joint::new(
+            &format!("{}_turn", called.name),
+            note.clone(),
+            "revolute",
+            [i.body, between],
+            i.pose.r,
+        );
         let joint = m.joint(turn.along(axis));
         let drives = Drives::Coordinate(Coordinate { joint, name: "angle" });
         m.driver(&format!("{}_turn", called.name), note.clone(), drives, Law::Set(angle));

@@ -317,8 +317,8 @@ impl<'d> Reader<'d, '_> {
         for node in children(model.node) {
             let (name, at) = (local(node), xml::at(model.text, node));
             match name {
-                "pose" | "static" | "world" | "ball_constraint" | "linear_bushing_rpy" | "loop_joint" | "mujoco"
-                | "gravity" => {}
+                "pose" | "static" | "world" | "ball_constraint" | "linear_bushing_rpy" | "loop_joint"
+                | "mujoco" | "gravity" => {}
                 name if PLACED.contains(&name) => {}
                 "plugin" if robot::is_mimic_plugin(node) => {}
                 "plugin" => robot::plugin(model.text, node, self.notes),

@@ -72,7 +72,9 @@ fn the_sum_is_the_constant_at_all_times_in_both_formulations() {
         assert!(found.iter().any(|c| c[0].abs() > 5.0));
         // A constant moves nothing else.
         let plain = read(&GEARED.replace("constant = 50", "").replace("constant = 12", "constant = 0"));
-        for ([a, ..], [b, ..]) in found.iter().zip(coordinates(&plain, ["rocker", "arm", "slide"], formulation)) {
+        for ([a, ..], [b, ..]) in
+            found.iter().zip(coordinates(&plain, ["rocker", "arm", "slide"], formulation))
+        {
             assert!((a - b).abs() < SAME);
         }
     }
@@ -96,7 +98,10 @@ fn sensitivities_agree_with_moved_designs() {
 #[test]
 fn a_mirrored_one_has_the_same_constant() {
     let left = GEARED
-        .replace("coupler = {}, rocker = {}, arm = {}, slide = {}", "coupler = {}, rocker = {}, left_arm = {}, left_slide = {}")
+        .replace(
+            "coupler = {}, rocker = {}, arm = {}, slide = {}",
+            "coupler = {}, rocker = {}, left_arm = {}, left_slide = {}",
+        )
         .replace("\"arm\"]", "\"left_arm\"]")
         .replace("\"slide\"]", "\"left_slide\"]")
         .replace("joints.E", "joints.left_E")
@@ -124,7 +129,8 @@ fn a_mirrored_one_has_the_same_constant() {
 #[test]
 fn a_constant_that_is_no_number_is_told() {
     for (wrong, words) in [("nan", "HP"), ("inf", "HP"), ("\"much\"", "much"), ("[1]", "constant")] {
-        let error = parse(&GEARED.replace("constant = 50", &format!("constant = {wrong}")), "geared.toml").unwrap_err();
+        let error = parse(&GEARED.replace("constant = 50", &format!("constant = {wrong}")), "geared.toml")
+            .unwrap_err();
         assert!(error.to_string().contains(words), "{wrong}: {error}");
     }
     // Gears have none.

@@ -56,7 +56,10 @@ impl Reader<'_> {
         let unit = |key: &str, known: &[(&str, f64)], of_system: Option<&str>| {
             let word = units.and_then(|u| u.text(key)).map(|w| w.trim().to_ascii_uppercase());
             let word = word.as_deref().or(of_system)?;
-            known.iter().find(|(name, _)| *name == word.trim_end_matches('S') || *name == word).map(|(_, x)| *x)
+            known
+                .iter()
+                .find(|(name, _)| *name == word.trim_end_matches('S') || *name == word)
+                .map(|(_, x)| *x)
         };
         let mass = unit("MASS", &MASSES, system.map(|s| s.1));
         let force = unit("FORCE", &FORCES, system.map(|s| s.2));
@@ -90,7 +93,8 @@ impl Reader<'_> {
                 _ => {}
             }
         }
-        let unknown = statements.iter().find(|s| s.name == "PART" && s.has("MASS")).filter(|_| mass.is_none());
+        let unknown =
+            statements.iter().find(|s| s.name == "PART" && s.has("MASS")).filter(|_| mass.is_none());
         if let Some(s) = unknown {
             let why = "masses are left out: the file names no unit of mass that is known";
             self.notes.refused("MASS", "", Some(s.at), why);
@@ -102,22 +106,32 @@ impl Reader<'_> {
     fn mass(&mut self, s: &Statement, unit: f64, metre: f64) {
         let Some(&body) = self.parts.get(&format!("{}/{}", s.name, s.id)) else { return };
         let mut first = |key: &str| s.numbers(key, self.notes).and_then(|n| n.first().copied());
-        let Some(mass) = first("MASS").map(|m| m * unit).filter(|m| *m != 0.0 && body != GROUND) else { return };
+        let Some(mass) = first("MASS").map(|m| m * unit).filter(|m| *m != 0.0 && body != GROUND) else {
+            return;
+        };
         let called = Called { kind: "mass", ..s.called() };
-        let marker = |reader: &Self, key: &str| s.reference(key).and_then(|id| reader.markers.get(id)).copied();
+        let marker =
+            |reader: &Self, key: &str| s.reference(key).and_then(|id| reader.markers.get(id)).copied();
         let own = self.m.bodies[body].pose;
         let centre = match (marker(self, "CM"), s.name.as_str(), own) {
             (Some(cm), ..) => cm.pose,
             // A point mass is where it stands.
             (None, "POINT_MASS", Some(own)) => own,
             _ => {
-                self.notes.refused("mass", &s.label, Some(s.at), "a mass without a marker CM of its centre is left out");
+                self.notes.refused(
+                    "mass",
+                    &s.label,
+                    Some(s.at),
+                    "a mass without a marker CM of its centre is left out",
+                );
                 return;
             }
         };
         let about = marker(self, "IM").map_or(centre, |im| im.pose);
         let list = s.numbers("IP", self.notes).unwrap_or_default();
-        let get = |k: usize| list.get(k).copied().unwrap_or(0.0) * unit * (self.scale * metre) * (self.scale * metre);
+        let get = |k: usize| {
+            list.get(k).copied().unwrap_or(0.0) * unit * (self.scale * metre) * (self.scale * metre)
+        };
         // Products are integrals, the opposite of the matrix's entries.
         let [xx, yy, zz, xy, xz, yz] = [0, 1, 2, 3, 4, 5].map(get);
         let mut matrix = Mat3 { cols: [[xx, -xy, -xz].into(), [-xy, yy, -yz].into(), [-xz, -yz, zz].into()] };
@@ -135,7 +149,8 @@ impl Reader<'_> {
     /// A spring and damper between two markers: it pushes them apart with `-C R. - K (R - LENGTH) + FORCE`.
     fn spring(&mut self, s: &Statement, unit: f64) {
         let Some([j, i]) = self.pair(s) else { return };
-        let mut first = |key: &str| s.numbers(key, self.notes).and_then(|n| n.first().copied()).unwrap_or(0.0);
+        let mut first =
+            |key: &str| s.numbers(key, self.notes).and_then(|n| n.first().copied()).unwrap_or(0.0);
         let [k, c, length, force] = [first("K"), first("C"), first("LENGTH"), first("FORCE")];
         let (per_length, scale) = (unit / self.scale, self.scale);
         let damping = c * per_length / self.per_second();

@@ -325,7 +325,8 @@ impl<'d> Reader<'d, '_> {
         }
         let lengths = list("springlength");
         let ends = self.rods.get(name).map(|ends| ends.each_ref().map(|site| self.sites.get(site).copied()));
-        let (Some([Some((i, from)), Some((j, to))]), true) = (ends, lengths.len() < 2 && are_two(ends)) else {
+        let (Some([Some((i, from)), Some((j, to))]), true) = (ends, lengths.len() < 2 && are_two(ends))
+        else {
             let why = "only springs of tendons between two sites on two bodies, with one length, have an equivalent";
             self.notes.refused(kind, name, at, why);
             return;

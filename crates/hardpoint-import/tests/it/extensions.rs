@@ -485,7 +485,13 @@ fn springs_of_tendons_pull() {
     let (imported, _) = read("m.xml", text);
     let start = imported.text.find("law = \"").unwrap();
     let end = start + imported.text[start..].find('\n').unwrap();
-    let driver = imported.text.lines().find_map(|l| l.strip_prefix("[drivers.")).unwrap().trim_end_matches(']').to_owned();
+    let driver = imported
+        .text
+        .lines()
+        .find_map(|l| l.strip_prefix("[drivers."))
+        .unwrap()
+        .trim_end_matches(']')
+        .to_owned();
     let measured = format!(
         "{}law = \"0.4*t\"{}\n[measures.torque]\ntype = \"driver_force\"\ndriver = \"{driver}\"\n",
         &imported.text[..start],
@@ -527,7 +533,8 @@ fn datasets_of_adams_bring_masses_gravity_and_springs() {
     );
     let torque = |text: &str| {
         let (imported, _) = read("pendulum.adm", text);
-        let measured = format!("{}\n[measures.torque]\ntype = \"driver_force\"\ndriver = \"MOTION_1\"\n", imported.text);
+        let measured =
+            format!("{}\n[measures.torque]\ntype = \"driver_force\"\ndriver = \"MOTION_1\"\n", imported.text);
         let file = hardpoint_file::parse(&measured, "m.toml").unwrap_or_else(|e| panic!("{e}\n{measured}"));
         let run = Analysis::new(&file.model).unwrap().run();
         let torque = run.measured.outputs.iter().position(|o| o.name == "torque").unwrap();
@@ -543,7 +550,10 @@ fn datasets_of_adams_bring_masses_gravity_and_springs() {
     assert!((found - wanted).abs() < 1e-9, "{found} instead of {wanted}");
     // The same in other units of mass, force, length and time.
     let other = text
-        .replace("FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND", "FORCE=KNEWTON, MASS=GRAM, LENGTH=METER, TIME=MILLISECOND")
+        .replace(
+            "FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND",
+            "FORCE=KNEWTON, MASS=GRAM, LENGTH=METER, TIME=MILLISECOND",
+        )
         .replace("QP=0,0,400", "QP=0,0,0.4")
         .replace("QP=100,50,0", "QP=0.1,0.05,0")
         .replace("QP=200,0,0", "QP=0.2,0,0")
@@ -570,7 +580,10 @@ fn fixed_joints_hold_the_frames_that_are_drawn_apart_in_every_format() {
     };
     for (place, wanted) in [
         ("QP=0,0,20", pose([0.0, 0.0, 0.02], [1.0, 0.0, 0.0, 0.0])),
-        ("QP=0,0,20, REULER=40D,0D,0D", pose([0.0, 0.0, 0.02], [20.0_f64.to_radians().cos(), 0.0, 0.0, 20.0_f64.to_radians().sin()])),
+        (
+            "QP=0,0,20, REULER=40D,0D,0D",
+            pose([0.0, 0.0, 0.02], [20.0_f64.to_radians().cos(), 0.0, 0.0, 20.0_f64.to_radians().sin()]),
+        ),
         ("QP=-300,-50,0", pose([-0.3, -0.05, 0.0], [1.0, 0.0, 0.0, 0.0])),
     ] {
         let (_, file) = read("fixed.adm", &adams(place));
