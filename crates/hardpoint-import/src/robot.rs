@@ -108,13 +108,13 @@ const FOLLOWS: [&str; 3] = ["mimicJoint", "mimic_joint", "mimicJointName"];
 
 /// Whether a plugin of Gazebo says that a joint follows another.
 pub fn is_mimic_plugin(node: Node<'_, '_>) -> bool {
-    FOLLOWS.iter().any(|key| child(node, *key).is_some())
+    FOLLOWS.iter().any(|key| child(node, key).is_some())
 }
 
 /// What a plugin of Gazebo says of a joint that follows another, if it is one of those: in `mimicJoint` the one that follows.
 pub fn mimic_plugin<'a, 'i>(text: usize, node: Node<'a, 'i>, notes: &mut Notes) -> Option<Follower<'a, 'i>> {
     let words = |keys: &[&'static str]| {
-        let found = keys.iter().find_map(|key| child(node, *key))?;
+        let found = keys.iter().find_map(|key| child(node, key))?;
         Some(found.text().unwrap_or_default().trim().to_owned())
     };
     let own = words(&FOLLOWS)?;

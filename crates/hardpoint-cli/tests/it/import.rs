@@ -86,3 +86,38 @@ fn an_exported_model_is_imported_again_and_what_it_does_not_say_is_named() {
     let out = hardpoint(folder.path()).args(["export", "door.toml", "-o", "door.step"]).assert().code(2);
     assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("csv, teimorbit, urdf, mjcf"));
 }
+
+/// A four-bar whose loop an element of another program closes.
+const OPEN: &str = r#"<robot name="fourbar"><link name="base"/><link name="crank"/><link name="coupler"/><link name="rocker"/>
+<joint name="A" type="continuous"><parent link="base"/><child link="crank"/><axis xyz="0 0 1"/></joint>
+<joint name="B" type="continuous"><origin xyz="0 1 0"/><parent link="crank"/><child link="coupler"/><axis xyz="0 0 1"/></joint>
+<joint name="D" type="continuous"><origin xyz="2 0 0"/><parent link="base"/><child link="rocker"/><axis xyz="0 0 1"/></joint>
+<loop><frame1>coupler</frame1><frame2>rocker</frame2></loop></robot>"#;
+
+#[test]
+fn a_loop_that_is_left_open_is_told_first_and_closed_where_the_user_says() {
+    let folder = with("open.urdf", OPEN);
+    let run = |arguments: &[&str]| {
+        let arguments = [&["import", "open.urdf", "-o", "open.toml"], arguments].concat();
+        hardpoint(folder.path()).args(arguments).assert()
+    };
+    let out = run(&[]).success();
+    let told = String::from_utf8_lossy(&out.get_output().stdout).into_owned();
+    let first: Vec<&str> = told.lines().take(4).collect();
+    assert!(first[1].contains("`--close coupler=rocker`") && first[2].contains("held as drawn"), "{told}");
+    assert!(first[3].contains("not understood"), "{told}");
+    let out = run(&["--json"]).success();
+    let document: serde_json::Value = serde_json::from_slice(&out.get_output().stdout).unwrap();
+    assert_eq!(document["report"]["remarks"].as_array().unwrap().len(), 2);
+    let entries = document["report"]["entries"].as_array().unwrap();
+    assert!(entries.iter().any(|e| e["fate"] == "not_understood" && e["kind"] == "loop"), "{document}");
+    let out = run(&["--close", "coupler@2,0,0=rocker@0,1,0"]).success();
+    let told = String::from_utf8_lossy(&out.get_output().stdout).into_owned();
+    assert!(told.contains("1, prescribed by 1 driver") && told.contains("101 of 101 steps"), "{told}");
+    // Frames that cannot meet are no mechanism: the crank's end is one metre off at best.
+    let out = run(&["--close", "coupler=rocker"]).code(5);
+    let told = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
+    assert!(told.contains("HP0406") && told.contains("`coupler_rocker`"), "{told}");
+    run(&["--close", "coupler"]).code(2);
+    run(&["--close", "coupler=nowhere"]).code(3);
+}

@@ -140,7 +140,7 @@ impl Reader<'_> {
         for (c, column) in matrix.cols.iter_mut().enumerate() {
             let mut one = [0.0; 3];
             one[c] = d.dot(d);
-            *column = *column - (Vec3::from(one) - d * d[c]) * mass;
+            *column -= (Vec3::from(one) - d * d[c]) * mass;
         }
         let frame = Pose { rot: about.rot, r: centre.r };
         robot::mass(&mut self.m, self.notes, called, body, frame, mass, (!list.is_empty()).then_some(matrix));
