@@ -6,8 +6,8 @@ use crate::constraint::MarkerPair;
 use crate::design::Geometry;
 use crate::measure::WheelAt;
 use crate::model::{
-    Axes, BodyId, ENDS_MEET, ElementId, ElementKind, Inertia, Joint, JointId, Length, LoadMode, Model, NumberId,
-    PointId, Stiffness, TorsionalStiffness, Wheel, WheelId, about_centre,
+    Axes, BodyId, ENDS_MEET, ElementId, ElementKind, Inertia, Joint, JointId, Length, LoadMode, Model,
+    NumberId, PointId, Stiffness, TorsionalStiffness, Wheel, WheelId, about_centre,
 };
 use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 
