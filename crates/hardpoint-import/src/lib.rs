@@ -268,10 +268,9 @@ fn read_as(
     // A file that cannot be read is perhaps of another kind: that says more than what it lacks of this one.
     let head = || decoded(&bytes[..bytes.len().min(LOOKED_AT)]);
     let is_like_it = format.binary || (format.looks)(&head());
-    if (notes.problem_count() > 0 || mechanism.is_none()) && !is_like_it {
-        if let Some(sibling) = siblings::of(&head(), name) {
-            return Err(is_sibling(&notes, sibling));
-        }
+    let failed = notes.problem_count() > 0 || mechanism.is_none();
+    if let (true, false, Some(sibling)) = (failed, is_like_it, siblings::of(&head(), name)) {
+        return Err(is_sibling(&notes, sibling));
     }
     if let Some(problems) = notes.problems() {
         return Err(problems);

@@ -109,7 +109,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
             known |= corner.build(&mut m, notes, &mut rack);
         }
     }
-    if !known && !(single.points.is_empty() && single.links.is_empty()) {
+    if !(known || single.points.is_empty() && single.links.is_empty()) {
         let corner = Corner { at: Some(block), rack: true, ..single };
         corner.build(&mut m, notes, &mut rack);
     }
@@ -248,10 +248,10 @@ fn row(m: &mut Mechanism, sides: &mut [Side; 3], columns: &[String], line: &str,
             sides[k].corner.points.insert(role, place);
         }
         for (end, words) in ENDS.iter().enumerate() {
-            if let Some(rod) = words.iter().find_map(|word| plain.strip_suffix(word)) {
-                if role_of(&plain).is_none() {
-                    sides[k].rods.entry(rod.to_owned()).or_default()[end] = Some(place);
-                }
+            if let (Some(rod), None) =
+                (words.iter().find_map(|word| plain.strip_suffix(word)), role_of(&plain))
+            {
+                sides[k].rods.entry(rod.to_owned()).or_default()[end] = Some(place);
             }
         }
     };

@@ -160,7 +160,7 @@ fn with_joint(kind: &JointType, across: usize, with_axis2: bool) -> String {
     let driven = kind
         .coordinates
         .iter()
-        .filter(|c| !(kind.is_rod() && !kind.rows.is_empty()) && !(kind.has_lead() && c.name != "angle"));
+        .filter(|c| !(kind.is_rod() && !kind.rows.is_empty() || kind.has_lead() && c.name != "angle"));
     let (mut drivers, mut measures, mut held) = (String::new(), String::new(), kind.rows.len());
     for c in driven {
         let law = if c.name.starts_with("angle") { "9*t - 4*t^2" } else { "11*t + 5*t^2" };
@@ -282,7 +282,7 @@ fn every_form_of_driver() {
                 || driver.contains("left.steer")
                 || on_joint;
             for across in 0..3 {
-                if more.contains("wheels") && across != 1 || more.contains("\"toe\"") && across != 1 {
+                if across != 1 && (more.contains("wheels") || more.contains("\"toe\"")) {
                     continue;
                 }
                 let hinged = more.contains("toe\"");
@@ -697,7 +697,6 @@ fn every_measure_of_wheels_and_axles() {
     let list = text.split("measures = [").nth(1).and_then(|rest| rest.split(']').next()).unwrap();
     let symmetric = text
         .replace("right_bump = { law = \"60*sin(6*pi*t)\" }\n", "")
-        .replace("", "")
         .replace("15*sin(2*pi*t)", "0")
         .replace("steps = 200", "steps = 24")
         .replace("\n[wheels.right]\nmeasures = [\"toe\", \"camber\", \"steer_angle\", \"wheel_travel\", \"roll_centre_height\"]\n", "")

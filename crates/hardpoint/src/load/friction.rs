@@ -103,9 +103,8 @@ impl Friction {
         }
         let known = self.shared().next().is_none();
         self.rubs.iter_mut().for_each(|rub| rub.is_ambiguous = false);
-        if !(known && (0..MOST_STEPS).any(|_| self.newton())) {
-            self.moments.fill(f64::NAN);
-        } else if self.look_for_others() {
+        let solved = known && (0..MOST_STEPS).any(|_| self.newton());
+        if !solved || self.look_for_others() {
             self.moments.fill(f64::NAN);
         }
     }

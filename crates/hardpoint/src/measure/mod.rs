@@ -789,9 +789,9 @@ impl<'a, T: Real> Instant<'a, T> {
             AxleMeasure::Track => track,
             AxleMeasure::TotalToe => toe(&left) + toe(&right),
             AxleMeasure::AckermannError => {
-                let (_, inner, outer) = turning();
-                // o - r
-                outer - outer_by_ackermann(inner, track / wheelbase())
+                let (mean, inner, outer) = turning();
+                // o - r; where the axle turns from one side to the other the wheels change places, and it has a kink.
+                (outer - outer_by_ackermann(inner, track / wheelbase())) / beyond(T::one(), mean, STRAIGHT)
             }
             AxleMeasure::Ackermann => {
                 let (mean, inner, outer) = turning();

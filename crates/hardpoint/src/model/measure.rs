@@ -520,7 +520,7 @@ pub enum Ray {
 impl MeasureKind {
     /// How far a value is from where the measure has no derivative because the vector that it is the magnitude of is zero, or two directions
     /// are parallel or perpendicular; `None` for measures that are no magnitudes.
-    pub(crate) fn from_kink(&self, value: f64) -> Option<f64> {
+    pub(crate) fn distance_from_kink(&self, value: f64) -> Option<f64> {
         use std::f64::consts::{FRAC_PI_2, PI};
         match self {
             Self::Angle { about: None, .. } => Some(value.min(PI - value)),

@@ -93,6 +93,10 @@ struct FoundAssembly {
     contacts: Vec<Contact<f64>>,
 }
 
+/// A drawing counts as singular if its path ends before this part of the gaps is closed. A path that ends later ends at a limit of the
+/// mechanism, beyond which positions around the drawing are no better.
+const SINGULAR_DRAWING: f64 = 0.05;
+
 impl FoundAssembly {
     /// Whether bodies are as far, and on the same side.
     fn is_same(&self, other: &Self) -> bool {
@@ -166,6 +170,7 @@ impl Stepper<'_> {
             stop.kind,
             StopKind::LawNotFinite { .. } | StopKind::TooFar { .. } | StopKind::Interrupted
         ) || self.state.largest_gap(&self.topology) == 0.0
+            || self.time > SINGULAR_DRAWING
         {
             return false;
         }

@@ -194,7 +194,7 @@ impl Undecided {
         let columns = measured.outputs.len();
         let kinked = |k: usize, m: usize| {
             let y = measured.value(k, m)[0];
-            let Some(far) = model.measures[m].kind.from_kink(y) else { return false };
+            let Some(far) = model.measures[m].kind.distance_from_kink(y) else { return false };
             let (bend, change) = (d.bends[k * columns + m], d.outputs[k * columns + m][0] * d.step);
             // Of one-sided differences the change over the step alone is known.
             let near = if bend.is_nan() { change } else { bend };
