@@ -17,20 +17,20 @@ pub struct Dual<T = f64> {
 
 impl<T: Real> Dual<T> {
     /// What the derivative is taken by, at this value.
-    #[inline]
+    #[inline(always)]
     pub fn variable(v: T) -> Self {
         Self { v, d: T::one() }
     }
 
     /// What does not depend on it.
-    #[inline]
+    #[inline(always)]
     pub fn constant(v: T) -> Self {
         Self { v, d: T::zero() }
     }
 
     /// A function's value `v` with the derivative that it makes of this number's. What does not depend on the variable does
     /// not, also where the function has a vertical tangent.
-    #[inline]
+    #[inline(always)]
     fn or_constant(self, v: T, d: impl FnOnce(T) -> T) -> Self {
         Self { v, d: if self.d.vanishes() { T::zero() } else { d(self.d) } }
     }
@@ -38,7 +38,7 @@ impl<T: Real> Dual<T> {
 
 impl<T: Real> Add for Dual<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, o: Self) -> Self {
         Self { v: self.v + o.v, d: self.d + o.d }
     }
@@ -46,7 +46,7 @@ impl<T: Real> Add for Dual<T> {
 
 impl<T: Real> Sub for Dual<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, o: Self) -> Self {
         Self { v: self.v - o.v, d: self.d - o.d }
     }
@@ -54,7 +54,7 @@ impl<T: Real> Sub for Dual<T> {
 
 impl<T: Real> Mul for Dual<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, o: Self) -> Self {
         Self { v: self.v * o.v, d: self.d * o.v + self.v * o.d }
     }
@@ -62,7 +62,7 @@ impl<T: Real> Mul for Dual<T> {
 
 impl<T: Real> Div for Dual<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn div(self, o: Self) -> Self {
         let v = self.v / o.v;
         Self { v, d: (self.d - v * o.d) / o.v }
@@ -71,7 +71,7 @@ impl<T: Real> Div for Dual<T> {
 
 impl<T: Real> Neg for Dual<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         Self { v: -self.v, d: -self.d }
     }
@@ -79,7 +79,7 @@ impl<T: Real> Neg for Dual<T> {
 
 impl<T: Real> Add<f64> for Dual<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, o: f64) -> Self {
         Self { v: self.v + o, ..self }
     }
@@ -87,21 +87,21 @@ impl<T: Real> Add<f64> for Dual<T> {
 
 impl<T: Real> Mul<f64> for Dual<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, factor: f64) -> Self {
         Self { v: self.v * factor, d: self.d * factor }
     }
 }
 
 impl<T: Real> AddAssign for Dual<T> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, o: Self) {
         *self = *self + o;
     }
 }
 
 impl<T: Real> SubAssign for Dual<T> {
-    #[inline]
+    #[inline(always)]
     fn sub_assign(&mut self, o: Self) {
         *self = *self - o;
     }
@@ -109,45 +109,45 @@ impl<T: Real> SubAssign for Dual<T> {
 
 /// Whatever only looks at a number sees the value.
 impl<T: Real> Real for Dual<T> {
-    #[inline]
+    #[inline(always)]
     fn constant(x: f64) -> Self {
         Self::constant(T::constant(x))
     }
-    #[inline]
+    #[inline(always)]
     fn value(self) -> f64 {
         self.v.value()
     }
-    #[inline]
+    #[inline(always)]
     fn decisive(self) -> f64 {
         self.v.decisive()
     }
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
         let v = self.v.sqrt();
         Self { v, d: self.d / (v + v) }
     }
-    #[inline]
+    #[inline(always)]
     fn abs(self) -> Self {
         Self { v: self.v.abs(), d: self.d * self.v.sign() }
     }
-    #[inline]
+    #[inline(always)]
     fn sign_or(self, next: Self) -> Self {
         Self::constant(self.v.sign_or(next.v))
     }
-    #[inline]
+    #[inline(always)]
     fn exceeds(self, o: Self) -> bool {
         self.v.exceeds(o.v)
     }
-    #[inline]
+    #[inline(always)]
     fn round(self) -> Self {
         Self::constant(self.v.round())
     }
-    #[inline]
+    #[inline(always)]
     fn larger(self, o: Self) -> Self {
         let v = self.v.larger(o.v);
         Self { v, d: self.d.select(o.d, v.value() == self.v.value()) }
     }
-    #[inline]
+    #[inline(always)]
     fn select(self, other: Self, first: bool) -> Self {
         Self { v: self.v.select(other.v, first), d: self.d.select(other.d, first) }
     }
@@ -158,11 +158,11 @@ impl<T: Real> Real for Dual<T> {
     fn is_zero(self) -> bool {
         self.v.is_zero() && self.d.is_zero()
     }
-    #[inline]
+    #[inline(always)]
     fn order(self, o: Self) -> Option<Ordering> {
         self.v.order(o.v)
     }
-    #[inline]
+    #[inline(always)]
     fn held(self) -> Self {
         Self { v: self.v.held(), d: self.d.held() }
     }
@@ -180,15 +180,15 @@ impl<T: Real> Real for Dual<T> {
         let (by_x, by_y) = (self.or_constant(v, |d| d * (self.v / v)), o.or_constant(v, |d| d * (o.v / v)));
         Self { v, d: by_x.d + by_y.d }
     }
-    #[inline]
+    #[inline(always)]
     fn rate(self) -> Self {
         Self { v: self.v.rate(), d: self.d.rate() }
     }
-    #[inline]
+    #[inline(always)]
     fn vanishes(self) -> bool {
         self.v.vanishes() && self.d.vanishes()
     }
-    #[inline]
+    #[inline(always)]
     fn atan2(self, x: Self) -> Self {
         let v = self.v.atan2(x.v);
         if self.d.vanishes() && x.d.vanishes() {
@@ -197,12 +197,12 @@ impl<T: Real> Real for Dual<T> {
         let square = self.v * self.v + x.v * x.v;
         Self { v, d: (self.d * x.v - self.v * x.d) / square }
     }
-    #[inline]
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.v.sin_cos();
         (Self { v: sin, d: self.d * cos }, Self { v: cos, d: -(self.d * sin) })
     }
-    #[inline]
+    #[inline(always)]
     fn sin_cos_of_any(self) -> (Self, Self) {
         let (sin, cos) = self.v.sin_cos_of_any();
         (Self { v: sin, d: self.d * cos }, Self { v: cos, d: -(self.d * sin) })

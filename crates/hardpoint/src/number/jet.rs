@@ -30,7 +30,7 @@ pub type Rates<T = f64> = Jet<T, 3>;
 
 impl<T: Real, const N: usize> Jet<T, N> {
     /// The quantity that is `value` at all times.
-    #[inline]
+    #[inline(always)]
     pub fn constant(value: T) -> Self {
         let mut f = [T::zero(); N];
         f[0] = value;
@@ -38,7 +38,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
     }
 
     /// The time itself, at time `t` in seconds.
-    #[inline]
+    #[inline(always)]
     pub fn time(t: T) -> Self {
         let mut time = Self::constant(t);
         if N > 1 {
@@ -48,31 +48,31 @@ impl<T: Real, const N: usize> Jet<T, N> {
     }
 
     /// The value and the derivatives.
-    #[inline]
+    #[inline(always)]
     pub const fn derivatives(self) -> [T; N] {
         self.0
     }
 
     /// The value f.
-    #[inline]
+    #[inline(always)]
     pub const fn value(self) -> T {
         self.0[0]
     }
 
     /// The first time derivative df/dt.
-    #[inline]
+    #[inline(always)]
     pub const fn d(self) -> T {
         self.0[1]
     }
 
     /// The second time derivative d²f/dt².
-    #[inline]
+    #[inline(always)]
     pub const fn dd(self) -> T {
         self.0[2]
     }
 
     /// The third time derivative d³f/dt³.
-    #[inline]
+    #[inline(always)]
     pub const fn ddd(self) -> T {
         self.0[3]
     }
@@ -83,13 +83,13 @@ impl<T: Real, const N: usize> Jet<T, N> {
     }
 
     /// What has no value.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn undefined() -> Self {
         Self([T::constant(f64::NAN); N])
     }
 
     /// This quantity times one that is the same at all times.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn times(mut self, factor: T) -> Self {
         for n in 0..N {
             self.0[n] = self.0[n] * factor;
@@ -98,14 +98,14 @@ impl<T: Real, const N: usize> Jet<T, N> {
     }
 
     /// This quantity plus one that is the same at all times.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn plus(mut self, offset: T) -> Self {
         self.0[0] += offset;
         self
     }
 
     /// g(self), from g and its first three derivatives at the value.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn compose(self, [g, g_d, g_dd, g_ddd]: [T; 4]) -> Self {
         const { assert!(0 < N && N <= 4, "jets have up to three derivatives") }
         // (g∘u)' = g' u',  (g∘u)'' = g'' u'² + g' u'',  (g∘u)''' = g''' u'³ + 3 g'' u' u'' + g' u'''
@@ -133,7 +133,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
     }
 
     /// The power with an exponent that is the same at all times.
-    #[inline]
+    #[inline(always)]
     fn power(self, exponent: T) -> Self {
         // g⁽ᵏ⁾ = p (p - 1) ... (p - k + 1) x^(p - k). A vanishing coefficient wins over an infinite power: the
         // third derivative of x² is zero at x = 0 also.
@@ -151,7 +151,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
     }
 
     /// The square root, from that of the value.
-    #[inline]
+    #[inline(always)]
     fn root(self, root: T) -> Self {
         // From r r = x, differentiated: 2 r r⁽ⁿ⁾ = x⁽ⁿ⁾ - Σ_{0<k<n} C(n, k) r⁽ⁿ⁻ᵏ⁾ r⁽ᵏ⁾
         let (x, mut r) = (self.0, self.0);
@@ -170,13 +170,13 @@ impl<T: Real, const N: usize> Jet<T, N> {
     }
 
     /// The sine and the cosine, from those of the value.
-    #[inline]
+    #[inline(always)]
     fn turned(self, (sin, cos): (T, T)) -> (Self, Self) {
         (self.compose([sin, cos, -sin, -cos]), self.compose([cos, -sin, -cos, sin]))
     }
 
     /// Whether it is the same just before and after.
-    #[inline]
+    #[inline(always)]
     fn is_still(self) -> bool {
         self.0[1..].iter().all(|x| x.is_zero())
     }
@@ -184,7 +184,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
 
 impl<T: Real, const N: usize> Add for Jet<T, N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(mut self, o: Self) -> Self {
         for n in 0..N {
             self.0[n] += o.0[n];
@@ -195,7 +195,7 @@ impl<T: Real, const N: usize> Add for Jet<T, N> {
 
 impl<T: Real, const N: usize> Sub for Jet<T, N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(mut self, o: Self) -> Self {
         for n in 0..N {
             self.0[n] -= o.0[n];
@@ -206,7 +206,7 @@ impl<T: Real, const N: usize> Sub for Jet<T, N> {
 
 impl<T: Real, const N: usize> Mul for Jet<T, N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, o: Self) -> Self {
         // (a b)⁽ⁿ⁾ = Σ C(n, k) a⁽ⁿ⁻ᵏ⁾ b⁽ᵏ⁾
         let (a, b, mut f) = (self.0, o.0, self.0);
@@ -226,7 +226,7 @@ impl<T: Real, const N: usize> Mul for Jet<T, N> {
 
 impl<T: Real, const N: usize> Div for Jet<T, N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn div(self, o: Self) -> Self {
         // From a = q b, differentiated: q⁽ⁿ⁾ b = a⁽ⁿ⁾ - Σ_{k≥1} C(n, k) q⁽ⁿ⁻ᵏ⁾ b⁽ᵏ⁾
         let (a, b, mut q) = (self.0, o.0, self.0);
@@ -246,7 +246,7 @@ impl<T: Real, const N: usize> Div for Jet<T, N> {
 
 impl<T: Real, const N: usize> Neg for Jet<T, N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(mut self) -> Self {
         for n in 0..N {
             self.0[n] = -self.0[n];
@@ -257,7 +257,7 @@ impl<T: Real, const N: usize> Neg for Jet<T, N> {
 
 impl<T: Real, const N: usize> Add<f64> for Jet<T, N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(mut self, o: f64) -> Self {
         self.0[0] = self.0[0] + o;
         self
@@ -266,7 +266,7 @@ impl<T: Real, const N: usize> Add<f64> for Jet<T, N> {
 
 impl<T: Real, const N: usize> Mul<f64> for Jet<T, N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(mut self, factor: f64) -> Self {
         for n in 0..N {
             self.0[n] = self.0[n] * factor;
@@ -276,14 +276,14 @@ impl<T: Real, const N: usize> Mul<f64> for Jet<T, N> {
 }
 
 impl<T: Real, const N: usize> AddAssign for Jet<T, N> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, o: Self) {
         *self = *self + o;
     }
 }
 
 impl<T: Real, const N: usize> SubAssign for Jet<T, N> {
-    #[inline]
+    #[inline(always)]
     fn sub_assign(&mut self, o: Self) {
         *self = *self - o;
     }
@@ -291,64 +291,64 @@ impl<T: Real, const N: usize> SubAssign for Jet<T, N> {
 
 /// Whatever only looks at a number sees the value.
 impl<T: Real, const N: usize> Real for Jet<T, N> {
-    #[inline]
+    #[inline(always)]
     fn constant(x: f64) -> Self {
         Self::constant(T::constant(x))
     }
-    #[inline]
+    #[inline(always)]
     fn value(self) -> f64 {
         self.0[0].value()
     }
-    #[inline]
+    #[inline(always)]
     fn decisive(self) -> f64 {
         self.0[0].decisive()
     }
-    #[inline]
+    #[inline(always)]
     fn vanishes(self) -> bool {
         self.0.into_iter().all(T::vanishes)
     }
-    #[inline]
+    #[inline(always)]
     fn is_zero(self) -> bool {
         self.0.iter().all(|x| x.is_zero())
     }
-    #[inline]
+    #[inline(always)]
     fn order(self, o: Self) -> Option<Ordering> {
         let differing = (0..N - 1).find(|&n| self.0[n].order(o.0[n]) != Some(Ordering::Equal));
         let n = differing.unwrap_or(N - 1);
         self.0[n].order(o.0[n])
     }
-    #[inline]
+    #[inline(always)]
     fn held(self) -> Self {
         Self::constant(self.0[0])
     }
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
         self.root(self.0[0].sqrt())
     }
-    #[inline]
+    #[inline(always)]
     fn abs(self) -> Self {
         self.times(self.sign().0[0])
     }
-    #[inline]
+    #[inline(always)]
     fn sign_or(self, next: Self) -> Self {
         Self::constant(self.0.into_iter().rev().fold(next.0[0], |next, x| x.sign_or(next)))
     }
-    #[inline]
+    #[inline(always)]
     fn exceeds(self, o: Self) -> bool {
         self.0[0].exceeds(o.0[0])
     }
-    #[inline]
+    #[inline(always)]
     fn round(self) -> Self {
         Self::constant(self.0[0].round())
     }
-    #[inline]
+    #[inline(always)]
     fn select(mut self, o: Self, first: bool) -> Self {
         for n in 0..N {
             self.0[n] = self.0[n].select(o.0[n], first);
         }
         self
     }
-    #[inline]
+    #[inline(always)]
     fn map(self, function: Function) -> Self {
         match function {
             Function::Sin => self.sin_cos_of_any().0,
@@ -358,7 +358,7 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
             _ => self.compose_rare(function),
         }
     }
-    #[inline]
+    #[inline(always)]
     fn pow(self, exponent: Self) -> Self {
         if exponent.is_still() {
             return self.power(exponent.0[0]);
@@ -367,7 +367,7 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
         let power = self.0[0].pow(exponent.0[0]);
         (exponent * self.map(Function::Ln)).compose([power; 4])
     }
-    #[inline]
+    #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
         // As in `power`, a vanishing coefficient wins over an infinite power.
         let x = self.0[0];
@@ -381,7 +381,7 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
         }
         self.compose(g)
     }
-    #[inline]
+    #[inline(always)]
     fn hypot(self, o: Self) -> Self {
         // Scaled, so that no square overflows.
         let length = self.0[0].hypot(o.0[0]);
@@ -391,14 +391,14 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
         hypot.0[0] = length;
         hypot
     }
-    #[inline]
+    #[inline(always)]
     fn larger(self, o: Self) -> Self {
         let most = self.0[0].larger(o.0[0]);
         let mut larger = self.select(o, most.value() == self.0[0].value());
         larger.0[0] = most;
         larger
     }
-    #[inline]
+    #[inline(always)]
     fn rate(self) -> Self {
         let mut rate = Self::undefined();
         for n in 1..N {
@@ -406,15 +406,15 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
         }
         rate
     }
-    #[inline]
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         self.turned(self.0[0].sin_cos())
     }
-    #[inline]
+    #[inline(always)]
     fn sin_cos_of_any(self) -> (Self, Self) {
         self.turned(self.0[0].sin_cos_of_any())
     }
-    #[inline]
+    #[inline(always)]
     fn atan2(self, x: Self) -> Self {
         // The angle is the imaginary part of l = log(x + i y). From z' = l' z with w⁽ⁿ⁾ = z⁽ⁿ⁾/z follow
         // l' = w', l'' = w'' - w'², l''' = w''' - 3 w' w'' + 2 w'³. Scaled, so that no square overflows.
