@@ -60,13 +60,13 @@ BLOCK = 512
 AHEAD = 3
 """So many tasks are under way for each thread of the workers: one is solved, the others wait beside it."""
 PATIENCE = 600.0
-"""After so many seconds in which no task ends, and no worker is at one, a sweep ends with an error."""
+"""Seconds in which no task ends and no worker is at one, after which a sweep ends with an error."""
 LOOK = 1.0
-"""The states of futures are looked at every so many seconds."""
+"""Seconds between two checks of the states of futures."""
 ASK = 10.0
-"""The scheduler is asked who works every so many seconds, while nothing ends."""
+"""Seconds between two queries of the scheduler for busy workers, while nothing ends."""
 ANSWER = 30.0
-"""The scheduler answers within so many seconds, or is asked again."""
+"""Seconds in which the scheduler must answer; otherwise it is asked again."""
 ENDED = ("finished", "error", "cancelled")
 """States of futures that have ended. The data of one that is `lost` is made anew."""
 RECORD = "sweep.json"

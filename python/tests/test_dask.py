@@ -217,7 +217,7 @@ def doubled(shared, number):
 
 
 STRESS = int(os.environ.get("HARDPOINT_STRESS", "1"))
-"""So many times as many sweeps as usual, on a machine whose cores are all busy."""
+"""Factor on the number of sweeps, on a machine whose cores are all busy."""
 TASKS = 5
 
 
@@ -243,7 +243,7 @@ def killing(cluster, enough, killed):
 
 
 def sweeps(client, count):
-    """So many small sweeps, some of them given up: each finds all of its numbers, once."""
+    """Many small sweeps, some of them given up: each finds all of its numbers, once."""
     for sweep in range(count * STRESS):
         found = []
         tasks = hardpoint.dask._each(client, doubled, 2, range(TASKS), str)

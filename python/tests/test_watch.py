@@ -77,7 +77,7 @@ def test_an_exception_of_the_callback_ends_the_work(strut, patience):
 
 @pytest.fixture(scope="module")
 def slow():
-    """A motion of so many output times that each of its studies takes minutes."""
+    """A motion with enough output times for each of its studies to take minutes."""
     text = (MODELS / "macpherson.toml").read_text()
     before, after = text.split("[time]")
     lines = [line if not line.startswith("steps") else "steps = 20000" for line in after.splitlines()]

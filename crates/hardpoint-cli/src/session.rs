@@ -288,7 +288,7 @@ impl Session {
     /// That changes of some variables can be saved in the model's text: known before there is anything to lose.
     ///
     /// # Errors
-    /// Where the text has no number for one of them.
+    /// Fails where the text has no number for one of them.
     pub fn can_save(
         &self,
         file: &ModelFile,

@@ -25,7 +25,7 @@ pub fn neutral(file: &ModelFile, out: &mut Exported) -> Option<ModelFile> {
     Some(file)
 }
 
-/// Whether a character may stand in a name of any format.
+/// Returns whether a character may stand in a name of any format.
 fn fits(c: char) -> bool {
     // XML 1.0 has neither control characters nor these two.
     !c.is_control() && !['\u{fffe}', '\u{ffff}'].contains(&c)

@@ -142,7 +142,7 @@ pub struct Follower {
     pub master: usize,
     /// By what factor.
     pub factor: f64,
-    /// What is added to that: in rad, or m.
+    /// Constant added to that, in rad or m.
     pub constant: f64,
 }
 

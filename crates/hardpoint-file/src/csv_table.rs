@@ -33,7 +33,7 @@ impl<W: Write> CsvWriter<W> {
     /// Writes a row of texts and numbers, each cell [`neutral`].
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// Fails where it cannot be written.
     pub fn row<C: AsRef<str>>(&mut self, cells: impl IntoIterator<Item = C>) -> csv::Result<()> {
         for cell in cells {
             self.0.write_field(neutral(cell.as_ref()).as_bytes())?;
@@ -44,7 +44,7 @@ impl<W: Write> CsvWriter<W> {
     /// Writes a row of numbers, with texts that are [`neutral`] already.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// Fails where it cannot be written.
     pub fn serialize(&mut self, row: impl serde::Serialize) -> csv::Result<()> {
         self.0.serialize(row)
     }
@@ -52,7 +52,7 @@ impl<W: Write> CsvWriter<W> {
     /// Writes a row as another table has it.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// Fails where it cannot be written.
     pub fn copy(&mut self, row: &csv::ByteRecord) -> csv::Result<()> {
         self.0.write_byte_record(row)
     }
@@ -60,7 +60,7 @@ impl<W: Write> CsvWriter<W> {
     /// Hands back what was written to.
     ///
     /// # Errors
-    /// Where the rest cannot be written.
+    /// Fails where the rest cannot be written.
     pub fn end(self) -> io::Result<W> {
         self.0.into_inner().map_err(|e| e.into_error())
     }

@@ -17,7 +17,7 @@ const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 /// The saved file's directions and lengths agree with the changed design to this, rad or part of the mechanism's size: some hundred
 /// times the round-off of their roots, far below what anything is made to.
 const SAME: f64 = 1e-12;
-/// Whether a change can be saved is tried with one of this part of the bounds: so small that expressions keep their values.
+/// Part of the bounds of a change with which saving is tried: so small that expressions keep their values.
 const TRIAL: f64 = 1e-4;
 
 impl ModelFile {
@@ -73,10 +73,10 @@ impl ModelFile {
         Ok(text)
     }
 
-    /// Whether changes of some design variables can be saved in this file, found out before any work is done for them.
+    /// Checks that changes of some design variables can be saved in this file, before any work is done for them.
     ///
     /// # Errors
-    /// What of a small change of all of them the text has no number for.
+    /// Lists the parts of a small change of all of them that the text has no number for.
     pub fn check_savable(&self, variables: &[VariableId]) -> Result<(), Diagnostics> {
         let mut design = vec![0.0; self.model.variables.len()];
         for (k, v) in variables.iter().enumerate() {
@@ -91,7 +91,7 @@ impl ModelFile {
         }
     }
 
-    /// Whether a mirror makes the hardpoint, joint or parameter of this name from another one.
+    /// Returns whether a mirror makes the hardpoint, joint or parameter of this name from another one.
     pub fn is_image(&self, name: &str) -> bool {
         self.origins.names.contains_key(name)
     }

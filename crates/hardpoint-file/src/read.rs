@@ -81,7 +81,7 @@ pub(crate) const MODEL: Table = table! {
     may "axles": Shape::Entries("an axle", &Shape::Table(&wheels::AXLE)), "{}";
     /// Which way everything falls, and how fast.
     may "gravity": Shape::Table(&elements::GRAVITY), "{ along = \"-z\" }";
-    /// Whether loads include the inertia of the masses.
+    /// Loads with or without the inertia of the masses.
     or("\"dynamic\"") "loads": LOADS, "\"static\"";
     /// What has mass, for loads.
     may "masses": Shape::Entries("a mass", &Shape::Kinds(&elements::MASS)), "{}";
@@ -93,7 +93,7 @@ pub(crate) const MODEL: Table = table! {
     may "metrics": Shape::Entries("a metric", &Shape::Table(&results::METRIC)), "{}";
     /// The output times. Where every case has its own, they may be left out.
     may "time": Shape::Kinds(&results::TIME), "{ end = 1.0, steps = 100 }";
-    /// What happens at a change point, where two motions of the mechanism meet, as where a parallelogram lies in line.
+    /// Behaviour at a change point, where two motions of the mechanism meet, as where a parallelogram lies in line.
     or("\"stop\"") "at_change_points": CHANGE_POINTS, "\"continue\"";
     /// Several motions of the mechanism, in place of the one that the drivers' own laws make.
     may "cases": Shape::Entries("a case", &Shape::Table(&cases::CASE)), "{}";

@@ -15,9 +15,9 @@ const TYPES: [&str; 6] = ["spherical", "fixed", "revolute", "cylindrical", "tran
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// Frames nearer than this part of the mechanism's size are at one place.
 const SAME_PLACE: f64 = 1e-6;
-/// So many pairs of frames are named.
+/// Number of pairs of frames that are named at most.
 const MOST_NAMED: usize = 8;
-/// So many frames are looked at for pairs.
+/// Number of frames that are searched for pairs at most.
 const MOST_FRAMES: usize = 1000;
 /// Words in the names of frames that are made for loops.
 const OF_LOOPS: [&str; 6] = ["loop", "clos", "cut", "weld", "constraint", "mate"];
@@ -209,7 +209,7 @@ fn groups(m: &Mechanism) -> Vec<usize> {
     (0..group.len()).map(|b| find(&group, b)).collect()
 }
 
-/// Whether a joint connects what two frames are on, at the place of one of them.
+/// Returns whether a joint connects what two frames are on, at the place of one of them.
 fn is_joined(m: &Mechanism, [a, b]: [&NamedFrame; 2], group: &[usize]) -> bool {
     let near = SAME_PLACE * m.size();
     let pair = [group[a.body], group[b.body]];

@@ -418,7 +418,7 @@ impl Corner {
         found.and_then(|v| <[Vec3; N]>::try_from(v).ok())
     }
 
-    /// Whether that many rods, with its arm and its tie rod, hold an upright with one freedom: a multi-link suspension.
+    /// Returns whether that many rods, with its arm and its tie rod, hold an upright with one freedom: a multi-link suspension.
     pub fn is_held_by(&self, rods: usize) -> bool {
         use Role::*;
         let arm = |roles: [Role; 3]| 2 * usize::from(self.all(roles).is_some());

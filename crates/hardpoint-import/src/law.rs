@@ -13,7 +13,7 @@ pub enum Language {
 
 /// Expressions may be nested so deep.
 const DEEPEST: usize = 60;
-/// Written out, an expression has so many bytes at most: functions of other programs repeat their arguments.
+/// Number of bytes of a written-out expression at most: functions of other programs repeat their arguments.
 const LONGEST: usize = 4 << 20;
 /// No function repeats an argument more often than this, but for the sums over all that follow.
 const REPEATED: usize = 8;
@@ -190,7 +190,7 @@ impl Parser {
         Ok(out)
     }
 
-    /// What is written so far, unless it is too long.
+    /// Text written so far, unless it is too long.
     fn bounded(&self, out: &str) -> Result<(), String> {
         if out.len() > LONGEST { Err(too_long()) } else { Ok(()) }
     }

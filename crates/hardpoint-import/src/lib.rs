@@ -164,10 +164,10 @@ pub fn import(bytes: &[u8], name: &str, resolve: Resolve<'_>) -> Result<Imported
     import_with(&Options::default(), bytes, name, resolve)
 }
 
-/// How a source is read.
+/// Options for reading a source.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Its format; none where it shows.
+    /// Format; none to recognise it.
     pub format: Option<Format>,
     /// Loops that the source leaves open.
     pub closings: Vec<Closing>,

@@ -54,14 +54,14 @@ struct Names {
     numbers: HashMap<String, usize>,
 }
 
-/// Mass of a body: about its centre, along the global axes as drawn.
+/// Mass of a body: about its centre, along the global axes in the design configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mass {
-    /// Its name in the model file.
+    /// Name in the model file.
     pub name: String,
     /// The body.
     pub body: usize,
-    /// Its centre.
+    /// Centre.
     pub centre: Vec3,
     /// In kg.
     pub mass: f64,
@@ -72,9 +72,9 @@ pub struct Mass {
 /// A spring with a damper.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Force {
-    /// Its name in the model file.
+    /// Name in the model file.
     pub name: String,
-    /// What the source calls it.
+    /// Name in the source.
     pub note: String,
     /// On what it acts.
     pub on: ForceOn,
@@ -84,11 +84,11 @@ pub struct Force {
     pub damping: f64,
     /// The coordinate, counted from the drawing, or the length at which it has no force.
     pub free: Option<f64>,
-    /// The tension as drawn, N, where the source says that instead.
+    /// Tension in the design configuration, N, where the source gives that instead.
     pub preload: Option<f64>,
 }
 
-/// What a spring acts on.
+/// Object that a spring acts on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ForceOn {
     /// A joint's coordinate.
@@ -100,13 +100,13 @@ pub enum ForceOn {
 /// A frame that the source names.
 #[derive(Clone, Debug)]
 pub struct NamedFrame {
-    /// Its name in the source.
+    /// Name in the source.
     pub name: String,
     /// The body that it is on.
     pub body: usize,
     /// The frame, global.
     pub pose: Pose,
-    /// Whether it is nothing but a frame, so that it may be the end of a loop.
+    /// True for a frame and nothing else, which may be the end of a loop.
     pub bare: bool,
 }
 
@@ -451,7 +451,7 @@ impl Joint {
 /// Names of model files have so many characters at most.
 const LONGEST_NAME: usize = 100;
 
-/// What is left of a name without what no name may hold.
+/// Returns a name without the characters that no name may hold.
 fn clean_name(wanted: &str, kind: &str) -> String {
     let clean: String = wanted.trim().chars().filter(|c| !c.is_control()).take(LONGEST_NAME - 8).collect();
     if clean.is_empty() { kind.to_owned() } else { clean }

@@ -33,12 +33,12 @@ const DEEPEST: usize = 100;
 const CLOSED: f64 = 1e-7;
 /// So many files are included at most.
 const MOST_INCLUDED: usize = 100;
-/// Files are put into each other so many times at most.
+/// Number of times that files are put into each other at most.
 const MOST_EXPANDED: usize = 20_000;
 /// Sections that do not concern how bodies and joints move.
 const IRRELEVANT: [&str; 8] =
     ["size", "visual", "statistic", "contact", "sensor", "actuator", "custom", "option"];
-/// What is known of a joint.
+/// Known content of a joint.
 const JOINT: Vocabulary = Vocabulary {
     attributes: &[
         "name",
@@ -69,7 +69,7 @@ const JOINT: Vocabulary = Vocabulary {
     read: &[],
     irrelevant: &[],
 };
-/// What is known of a body, besides what is in it.
+/// Known content of a body, besides its elements.
 const BODY: [&str; 12] = [
     "name",
     "childclass",
@@ -84,7 +84,7 @@ const BODY: [&str; 12] = [
     "user",
     "sleep",
 ];
-/// What is known of an equality.
+/// Known content of an equality.
 const EQUALITY: Vocabulary = Vocabulary {
     attributes: &[
         "name",
@@ -130,29 +130,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     }
     let paths: Vec<String> = texts.iter().map(|(path, _)| path.clone()).collect();
     let name = root.attribute("model").filter(|n| !n.is_empty()).unwrap_or(input.stem);
-    let mut reader = Reader {
-        m: Mechanism::new(name, "m", "rad"),
-        notes,
-        paths,
-        documents: &documents,
-        compiler: Compiler::default(),
-        classes: BTreeMap::new(),
-        meshes: BTreeMap::new(),
-        bodies: BTreeMap::new(),
-        sites: BTreeMap::new(),
-        joints: BTreeMap::new(),
-        tendons: BTreeMap::new(),
-        rods: BTreeMap::new(),
-        meets: Vec::new(),
-        free: Vec::new(),
-        shapes: Vec::new(),
-        names: BTreeSet::new(),
-        told: BTreeSet::new(),
-        expanded: 0,
-        solids: Vec::new(),
-        weighed: BTreeSet::new(),
-        meshes_without_mass: 0,
-    };
+    let mut reader = Reader::new(Mechanism::new(name, "m", "rad"), notes, paths, &documents);
     let top = reader.contents((0, root), 0);
     reader.settings(&top);
     for (text, node) in &top {
@@ -200,29 +178,8 @@ pub fn extension<'d>(
     bodies: &BTreeMap<String, (usize, Pose)>,
     joints: &BTreeMap<String, Coordinate>,
 ) -> Mechanism {
-    let mut reader = Reader {
-        m,
-        notes,
-        paths: vec![String::new(); text + 1],
-        documents: &[],
-        compiler: Compiler::default(),
-        classes: BTreeMap::new(),
-        meshes: BTreeMap::new(),
-        bodies: bodies.clone(),
-        sites: BTreeMap::new(),
-        joints: joints.clone(),
-        tendons: BTreeMap::new(),
-        rods: BTreeMap::new(),
-        meets: Vec::new(),
-        free: Vec::new(),
-        shapes: Vec::new(),
-        names: BTreeSet::new(),
-        told: BTreeSet::new(),
-        expanded: 0,
-        solids: Vec::new(),
-        weighed: BTreeSet::new(),
-        meshes_without_mass: 0,
-    };
+    let mut reader = Reader::new(m, notes, vec![String::new(); text + 1], &[]);
+    (reader.bodies, reader.joints) = (bodies.clone(), joints.clone());
     let top: Vec<Element<'d>> = blocks.iter().flat_map(|b| children(*b)).map(|n| (text, n)).collect();
     reader.settings(&top);
     reader.tendons(&top);
@@ -356,13 +313,13 @@ struct Reader<'d, 'n> {
     names: BTreeSet<String>,
     /// The places of the includes that have been told of.
     told: BTreeSet<(usize, usize)>,
-    /// How many times files were put into each other.
+    /// Number of times that files were put into each other.
     expanded: usize,
     /// Masses of the geoms.
     solids: Vec<Weighed>,
     /// Bodies whose mass is written.
     weighed: BTreeSet<usize>,
-    /// How many geoms are meshes, whose masses are not worked out.
+    /// Number of geoms that are meshes, whose masses are not computed.
     meshes_without_mass: usize,
 }
 
@@ -375,7 +332,38 @@ struct Weighed {
     inertia: Mat3,
 }
 
-impl<'d> Reader<'d, '_> {
+impl<'d, 'n> Reader<'d, 'n> {
+    fn new(
+        m: Mechanism,
+        notes: &'n mut Notes,
+        paths: Vec<String>,
+        documents: &'d [Option<Document<'d>>],
+    ) -> Self {
+        Self {
+            m,
+            notes,
+            paths,
+            documents,
+            compiler: Compiler::default(),
+            classes: BTreeMap::new(),
+            meshes: BTreeMap::new(),
+            bodies: BTreeMap::new(),
+            sites: BTreeMap::new(),
+            joints: BTreeMap::new(),
+            tendons: BTreeMap::new(),
+            rods: BTreeMap::new(),
+            meets: Vec::new(),
+            free: Vec::new(),
+            shapes: Vec::new(),
+            names: BTreeSet::new(),
+            told: BTreeSet::new(),
+            expanded: 0,
+            solids: Vec::new(),
+            weighed: BTreeSet::new(),
+            meshes_without_mass: 0,
+        }
+    }
+
     /// The children of an element, with what `include` puts in its place.
     fn contents(&mut self, (text, node): Element<'d>, depth: usize) -> Vec<Element<'d>> {
         let mut out = Vec::new();
@@ -502,7 +490,7 @@ impl<'d> Reader<'d, '_> {
         let own = node.attribute("name").unwrap_or_default();
         let name = if own.is_empty() { format!("body_{}", self.m.bodies.len()) } else { own.to_owned() };
         if self.m.bodies.len() > robot::MOST_PARTS {
-            // That is told when all is read.
+            // That is reported when all is read.
             return;
         }
         for a in node.attributes().filter(|a| !BODY.contains(&a.name())) {

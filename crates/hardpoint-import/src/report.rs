@@ -10,9 +10,9 @@ use serde::Serialize;
 const LISTED: usize = 40;
 /// So many problems are shown; the others are counted.
 const SHOWN: usize = 50;
-/// So many problems are kept; the others are counted. Nobody mends more of them at a time.
+/// Number of problems that are listed at most; the others are counted. Nobody corrects more of them at a time.
 const MOST_PROBLEMS: usize = 200;
-/// A text has a mark every so many bytes: how many characters are before it.
+/// Distance of marks in a text, bytes; each mark has the number of characters before it.
 const MARK: usize = 1024;
 
 /// What became of an element.
@@ -154,7 +154,7 @@ impl fmt::Display for Entry {
 pub struct Problems {
     sources: Vec<Source>,
     list: Vec<(usize, Diagnostic)>,
-    /// How many more there are.
+    /// Number of further ones.
     dropped: usize,
 }
 
@@ -188,7 +188,7 @@ impl std::error::Error for Problems {}
 pub struct Notes {
     /// The texts that there are.
     sources: Vec<Source>,
-    /// Where the lines and characters of these texts are.
+    /// Places of the lines and characters of these texts.
     indexes: Vec<Index>,
     /// What became of what.
     pub report: Report,
@@ -196,14 +196,14 @@ pub struct Notes {
     problems: Vec<(usize, Diagnostic)>,
     /// Text, line, column and message of these.
     known: HashSet<(usize, Option<usize>, Option<usize>, String)>,
-    /// How many more there are.
+    /// Number of further ones.
     dropped: usize,
 }
 
 /// Lines and characters of a text, so that places in it are found in a time that does not grow with it.
 #[derive(Debug)]
 struct Index {
-    /// Where lines begin.
+    /// Beginnings of lines.
     lines: Vec<usize>,
     /// Per [`MARK`] bytes, how many characters begin before.
     marks: Vec<usize>,
@@ -222,7 +222,7 @@ impl Index {
         Self { lines, marks }
     }
 
-    /// How many characters begin before a byte.
+    /// Returns the number of characters that begin before a byte.
     fn before(&self, text: &str, at: usize) -> usize {
         let block = at / MARK;
         self.marks[block] + begins(&text.as_bytes()[block * MARK..at])
@@ -236,7 +236,7 @@ impl Index {
     }
 }
 
-/// How many characters begin in these bytes.
+/// Returns the number of characters that begin in these bytes.
 fn begins(bytes: &[u8]) -> usize {
     bytes.iter().filter(|b| **b & 0xc0 != 0x80).count()
 }

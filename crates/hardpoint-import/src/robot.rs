@@ -1,4 +1,4 @@
-//! What the formats of robots share: welds of frames that lie apart, joints that follow others, masses, springs, plugins.
+//! Shared parts of the robot formats: welds of frames that lie apart, joints that follow others, masses, springs, plugins.
 
 use hardpoint::space::{Mat3, Pose};
 use roxmltree::Node;
@@ -6,15 +6,30 @@ use roxmltree::Node;
 use crate::markers::{Called, Marker};
 use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mass, Mechanism};
 use crate::report::{At, Notes};
-use crate::xml::{self, child};
+use crate::xml::{self, Vocabulary, child};
+
+/// Elements of a ball constraint, as Drake adds it to URDF and SDFormat.
+pub const BALL_CONSTRAINT: Vocabulary = Vocabulary {
+    attributes: &[],
+    read: &[
+        "ball_constraint_body_A",
+        "ball_constraint_p_AP",
+        "ball_constraint_body_B",
+        "ball_constraint_p_BQ",
+    ],
+    irrelevant: &[],
+};
+/// Per end of a ball constraint, the elements that name its body and its place there.
+pub const BALL_ENDS: [(&str, &str); 2] =
+    [("ball_constraint_body_A", "ball_constraint_p_AP"), ("ball_constraint_body_B", "ball_constraint_p_BQ")];
 
 /// Frames that are turned against each other by less than this, rad, are parallel: exporters write six digits.
 const PARALLEL: f64 = 1e-5;
 /// Frames nearer than this part of the mechanism's size are at one place, for the same reason.
 const SAME_PLACE: f64 = 1e-5;
-/// What a principal moment of inertia may be above the sum of the two others, as a part of the largest: files have few digits.
+/// Excess that a principal moment of inertia may have over the sum of the two others, as a part of the largest: files have few digits.
 const FLAT: f64 = 5e-4;
-/// So many links, joints and bodies of a source are read at most.
+/// Number of links, joints and bodies of a source that are read at most.
 pub const MOST_PARTS: usize = 5000;
 /// Words in the names of plugins that measure, control and draw, and hold no bodies together.
 const IRRELEVANT_PLUGINS: &[&str] = &[
@@ -106,12 +121,12 @@ pub struct Follower<'a, 'i> {
 /// The element of a plugin for joints that follow others in which the one that follows is named.
 const FOLLOWS: [&str; 3] = ["mimicJoint", "mimic_joint", "mimicJointName"];
 
-/// Whether a plugin of Gazebo says that a joint follows another.
+/// Returns whether a plugin of Gazebo says that a joint follows another.
 pub fn is_mimic_plugin(node: Node<'_, '_>) -> bool {
     FOLLOWS.iter().any(|key| child(node, key).is_some())
 }
 
-/// What a plugin of Gazebo says of a joint that follows another, if it is one of those: in `mimicJoint` the one that follows.
+/// Reads a plugin of Gazebo that makes a joint follow another, if it is one of those: in `mimicJoint` the one that follows.
 pub fn mimic_plugin<'a, 'i>(text: usize, node: Node<'a, 'i>, notes: &mut Notes) -> Option<Follower<'a, 'i>> {
     let words = |keys: &[&'static str]| {
         let found = keys.iter().find_map(|key| child(node, key))?;
@@ -127,7 +142,7 @@ pub fn mimic_plugin<'a, 'i>(text: usize, node: Node<'a, 'i>, notes: &mut Notes) 
         x
     };
     let (factor, offset) = (number("multiplier", 1.0), number("offset", 0.0));
-    const MIMIC: xml::Vocabulary = xml::Vocabulary {
+    const MIMIC: Vocabulary = Vocabulary {
         attributes: &["name", "filename"],
         read: &[
             "mimicJoint",
@@ -157,7 +172,7 @@ pub fn mimic_plugin<'a, 'i>(text: usize, node: Node<'a, 'i>, notes: &mut Notes) 
     Some(Follower { node, own, master, factor, offset })
 }
 
-/// What `ros2_control` says of joints that follow others.
+/// Reads the joints that follow others in `ros2_control`.
 pub fn followers_of_control<'a, 'i>(
     text: usize,
     node: Node<'a, 'i>,
@@ -213,7 +228,7 @@ pub fn follow(
 }
 
 /// Holds two frames on two bodies together, as a joint of type `fixed` or, but for their places, `orientation`; its number. Where they lie
-/// apart or are turned against each other as drawn, the mechanism is assembled so.
+/// apart or are turned against each other in the design configuration, the mechanism is assembled so.
 pub fn weld(
     m: &mut Mechanism,
     notes: &mut Notes,
@@ -316,7 +331,7 @@ pub fn mass(
     }
 }
 
-/// Whether a body can have this inertia matrix about its centre: half its trace times 1, less it, has no negative eigenvalue.
+/// Returns whether a body can have this inertia matrix about its centre: half its trace times 1, less it, has no negative eigenvalue.
 fn is_possible(i: Mat3) -> bool {
     let m = |r: usize, c: usize| i.cols[c][r];
     let half = 0.5 * (m(0, 0) + m(1, 1) + m(2, 2));

@@ -29,9 +29,9 @@ pub const FORMAT: Format = Format {
 const DEEPEST: usize = 40;
 /// So many files are included at most.
 const MOST_INCLUDED: usize = 100;
-/// Models are placed so many times at most, nested ones more than once.
+/// Number of times that models are placed at most; nested ones count more than once.
 const MOST_PLACED: usize = 20_000;
-/// What is known of a link.
+/// Known content of a link.
 const LINK: Vocabulary = Vocabulary {
     attributes: &["name", "type"],
     read: &["visual", "pose", "inertial"],
@@ -53,7 +53,7 @@ const LINK: Vocabulary = Vocabulary {
         "damping",
     ],
 };
-/// What of models and worlds does not concern how links and joints move.
+/// Elements of models and worlds that do not concern the motion of links and joints.
 const IRRELEVANT: [&str; 22] = [
     "self_collide",
     "allow_auto_disable",
@@ -255,11 +255,11 @@ struct Reader<'d, 'n> {
     /// Whether the file has more than one model: then names have their model's before them.
     several: bool,
     shapes: Vec<Shown<'d>>,
-    /// How many models, links, frames and joints there are.
+    /// Number of models, links, frames and joints.
     declared: usize,
     /// Frames that are neither links nor joints.
     bare: BTreeSet<String>,
-    /// How many times a model was placed.
+    /// Number of times that a model was placed.
     placed: usize,
 }
 
@@ -593,7 +593,7 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// What a pose has that is not known.
+    /// Reports content of a pose that is not known.
     fn poses_of(&mut self, text: usize, node: Node<'d, 'd>, owner: &str) {
         const POSE: Vocabulary = Vocabulary {
             attributes: &["relative_to", "frame", "degrees", "rotation_format"],

@@ -28,13 +28,13 @@ pub const FORMAT: Format = Format {
 
 /// Types of joints without an axis.
 const WITHOUT_AXIS: [&str; 5] = ["fixed", "floating", "ball", "spherical", "universal"];
-/// What is known of a joint.
+/// Known content of a joint.
 const JOINT: Vocabulary = Vocabulary {
     attributes: &["name", "type"],
     read: &["parent", "child", "origin", "axis", "limit", "mimic", "screw_thread_pitch", "dynamics"],
     irrelevant: &["safety_controller", "calibration", "hardwareInterface", "visual", "material"],
 };
-/// What is known of the parts of a joint.
+/// Known content of the parts of a joint.
 const PARTS_OF_JOINTS: [(&str, &[&str]); 8] = [
     ("parent", &["link"]),
     ("child", &["link"]),
@@ -57,7 +57,7 @@ const PARTS_OF_JOINTS: [(&str, &[&str]); 8] = [
     ("screw_thread_pitch", &["value"]),
     ("dynamics", &["damping", "friction", "spring_reference", "spring_stiffness"]),
 ];
-/// What is known of a link.
+/// Known content of a link.
 const LINK: Vocabulary = Vocabulary {
     attributes: &["name", "type"],
     read: &["visual", "inertial"],

@@ -13,12 +13,12 @@ pub const DEEPEST: usize = 200;
 /// Limits as far off as this say that there are none: SDFormat's own default is 1e16.
 const UNLIMITED: f64 = 1e15;
 
-/// An element has so many attributes at most: parsers compare each with all others.
+/// Number of attributes of an element at most: parsers compare each with all others.
 const MOST_ATTRIBUTES: usize = 1000;
 
 /// Why a text is not handed to the parser.
 enum Unfit {
-    /// Its elements are nested too deep, from this byte on.
+    /// Elements are nested too deep, from this byte on.
     Deep(usize),
     /// The element at this byte has too many attributes.
     Wide(usize),
@@ -74,7 +74,7 @@ pub fn parse<'t>(text: &'t str, number: usize, notes: &mut Notes) -> Option<Docu
 /// The document of a text.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Lists the problems of the document.
 pub fn parse_quietly(text: &str) -> Result<Document<'_>, String> {
     if let Some(unfit) = unfit(text) {
         return Err(unfit.message().1.into());
@@ -242,7 +242,7 @@ pub fn local<'a>(node: Node<'a, '_>) -> &'a str {
     name.strip_prefix("drake_").unwrap_or(name)
 }
 
-/// What of an element its reader knows.
+/// Content of an element that its reader knows.
 #[derive(Clone, Copy, Debug)]
 pub struct Vocabulary {
     /// Attributes that it reads, or that do not concern the motion.

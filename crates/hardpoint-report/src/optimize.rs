@@ -31,7 +31,7 @@ pub struct OptimizeFacts {
     pub model: String,
     /// The model file.
     pub file: String,
-    /// How the best search ended: `optimal`, `stuck`, `limits_not_kept`, `iteration_limit`, `interrupted` or `no_start`; or
+    /// Outcome of the best search: `optimal`, `stuck`, `limits_not_kept`, `iteration_limit`, `interrupted` or `no_start`; or
     /// `not_reproduced` where the saved design does not move as the optimum does, and `not_saved` where it could not be saved.
     pub status: &'static str,
     /// The same in words, and what to do.
@@ -160,9 +160,9 @@ pub struct SearchedVariable {
     pub name: String,
     /// Its unit.
     pub unit: String,
-    /// Where the best search started, as a change of the design configuration.
+    /// Start of the best search, as a change of the design configuration.
     pub start: f64,
-    /// Where it ended, likewise.
+    /// End of the best search, likewise.
     pub end: f64,
     /// Between which changes it may lie.
     pub bounds: [f64; 2],
@@ -285,7 +285,7 @@ pub fn iteration_line(model: &Model, units: Units, i: &Iteration) -> String {
 /// A design is saved to this part of its variables' bounds: what is finer is the search's, and no hand's.
 const FINEST: f64 = 1e-9;
 
-/// Where a design of few digits does not move as the optimum does, more digits are tried: parts of the bounds, down to the last bit.
+/// Digits that are tried where a design of fewer digits does not move as the optimum does: parts of the bounds, down to the last bit.
 const FINER: [f64; 3] = [FINEST, 1e-12, 1e-16];
 /// A saved design may exceed limits by this more than the optimum: what its last digit changes.
 const SAVED: f64 = 1e-7;
@@ -792,28 +792,29 @@ fn without_round_off(x: f64, [low, high]: [f64; 2]) -> f64 {
 /// The number of the file that a variable changes, in SI, where it is one.
 fn nominal(file: &ModelFile, variable: &DesignVariable) -> Option<f64> {
     let model = &file.model;
-    let parameter = variable.changes.iter().find_map(|change| match change {
-        Change::Parameter(c) if c.rate == 1.0 => Some(model.parameters[c.parameter.0].value),
-        _ => None,
-    });
-    let is_image = |name: &str| file.is_image(name);
-    let own = |change: &&Change| match change {
-        Change::Move(m) => !is_image(&model.hardpoints[m.hardpoint.0].name),
-        _ => true,
-    };
-    let mut own = variable.changes.iter().filter(own);
-    let coordinate = match (own.next(), own.next()) {
-        (Some(Change::Move(m)), None) => {
+    let number = |change: &Change| match change {
+        Change::Move(m) => {
             let along = (0..3).find(|axis| m.velocity[*axis] == 1.0 && m.velocity.norm() == 1.0);
             along.map(|axis| model.hardpoints[m.hardpoint.0].position[axis])
         }
-        (Some(Change::Length(c)), None) if c.rate == 1.0 => model.joints[c.joint.0].length,
-        _ => None,
+        Change::Length(c) => model.joints[c.joint.0].length.filter(|_| c.rate == 1.0),
+        Change::Parameter(c) => Some(model.parameters[c.parameter.0].value).filter(|_| c.rate == 1.0),
+        Change::Marker(_) | Change::Law(_) | Change::Field(_) => None,
     };
-    parameter.or(coordinate)
+    let mut parameters = variable.changes.iter().filter(|change| matches!(change, Change::Parameter(_)));
+    if let Some(value) = parameters.find_map(number) {
+        return Some(value);
+    }
+    // What the mirror moves along with it is no number of the file.
+    let is_image = |change: &Change| matches!(change, Change::Move(m) if file.is_image(&model.hardpoints[m.hardpoint.0].name));
+    let mut own = variable.changes.iter().filter(|change| !is_image(change));
+    match (own.next(), own.next()) {
+        (Some(only), None) => number(only),
+        (None, _) | (Some(_), Some(_)) => None,
+    }
 }
 
-/// Whether the best search ended where all goals vanish.
+/// Returns whether the best search ended where all goals vanish.
 fn best_is_met(found: &Optimized) -> bool {
     found.best.is_some_and(|k| found.searches[k].optimality.met)
 }

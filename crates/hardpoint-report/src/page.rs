@@ -404,7 +404,7 @@ pub struct VehicleAxes {
 pub struct Value {
     /// The user's name of the metric or measure.
     pub name: String,
-    /// What it is, in a few words: `design configuration`, `at the start`, `range`, `largest`, ...
+    /// Kind of value, in a few words: `design configuration`, `at the start`, `range`, `largest`, ...
     pub what: String,
     /// Its unit.
     pub unit: String,

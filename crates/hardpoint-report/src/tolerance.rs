@@ -10,7 +10,7 @@ use hardpoint::study::{
 };
 use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{ModelFile, Units};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::facts::variable_unit;
 use crate::figures::{count, number, rounded, seconds, some_of, unit, with_unit};
@@ -118,7 +118,8 @@ pub struct SpreadFact {
     /// The greatest.
     pub greatest: ExtremeFact,
     /// `linear`, `second_order` or `drawn`: where the spread and the contributions are from.
-    pub told_by: &'static str,
+    #[serde(serialize_with = "as_word")]
+    pub told_by: SpreadModel,
     /// Why linear statistics are off; `null` where they hold.
     pub nonlinear: Option<String>,
     /// The part of the variance that each variable contributes, the largest first.
@@ -654,7 +655,7 @@ impl ToleranceFacts {
                 with_unit(m.nominal, &m.unit),
                 optional(mean, &m.unit),
                 optional(sigma, &m.unit),
-                m.told_by.replace('_', " "),
+                word_of(m.told_by).replace('_', " "),
                 with_unit(m.rss, &m.unit),
                 optional(m.sigma, &m.unit),
                 off,
@@ -704,16 +705,15 @@ impl ToleranceFacts {
             }
             if !rows.is_empty() {
                 let note = match m.told_by {
-                    "linear" => String::new(),
-                    "second_order" => "From first and second derivatives.".into(),
-                    _ => {
-                        "Of the designs drawn: the variance of the mean at given deviations of each variable."
-                            .into()
+                    SpreadModel::Linear => "",
+                    SpreadModel::SecondOrder => "From first and second derivatives.",
+                    SpreadModel::Drawn => {
+                        "From the sampled designs: the variance of the mean at given deviations of each variable."
                     }
                 };
                 tables.push(Table {
                     title: format!("Contributions to {}", m.titled()),
-                    note,
+                    note: note.into(),
                     header: header(&["variable", "of the variance", ""]),
                     rows,
                 });
@@ -785,13 +785,28 @@ impl ToleranceFacts {
     }
 }
 
+/// The word for a model of a spread, in JSON and tables.
+fn word_of(model: SpreadModel) -> &'static str {
+    match model {
+        SpreadModel::Linear => "linear",
+        SpreadModel::SecondOrder => "second_order",
+        SpreadModel::Drawn => "drawn",
+    }
+}
+
+fn as_word<S: Serializer>(model: &SpreadModel, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(word_of(*model))
+}
+
 impl SpreadFact {
-    /// Mean and standard deviation by the model that the spread is told by.
+    /// Mean and standard deviation by the model of the spread.
     fn told(&self) -> [Option<f64>; 2] {
         match (self.told_by, &self.sampled) {
-            ("drawn", Some(s)) => [Some(s.mean), Some(s.sigma)],
-            ("second_order", _) => [self.mean, self.sigma],
-            _ => [self.mean.or(Some(self.nominal)), Some(self.rss)],
+            (SpreadModel::Drawn, Some(s)) => [Some(s.mean), Some(s.sigma)],
+            (SpreadModel::SecondOrder, _) => [self.mean, self.sigma],
+            (SpreadModel::Linear | SpreadModel::Drawn, _) => {
+                [self.mean.or(Some(self.nominal)), Some(self.rss)]
+            }
         }
     }
 
@@ -896,11 +911,7 @@ fn spread(studied: &Studied<'_>, k: usize) -> SpreadFact {
         nonlinearity: of.nonlinearity().filter(|x| x.is_finite()),
         least: extreme(&of.worst[0]),
         greatest: extreme(&of.worst[1]),
-        told_by: match told.model {
-            SpreadModel::Linear => "linear",
-            SpreadModel::SecondOrder => "second_order",
-            SpreadModel::Drawn => "drawn",
-        },
+        told_by: told.model,
         nonlinear: (!why.is_empty()).then(|| why.join(", ")),
         contributions,
         together: told.together,

@@ -12,7 +12,7 @@ use crate::session::Session;
 const RADII: [f64; 2] = [0.5, 2.0];
 /// Heights that agree to this part were meant to be equal.
 const SAME: f64 = 1e-6;
-/// The travel of a case is tried in so many parts.
+/// Number of parts in which the travel of a case is tried.
 const PARTS: u32 = 20;
 /// The axis of a wheel is this far from the y axis at most, as a cosine: 20 deg.
 const SIDEWAYS: f64 = 0.94;
@@ -134,7 +134,7 @@ fn laws(text: &str, case: &str) -> Vec<(String, String)> {
         .collect()
 }
 
-/// Whether the motion of a case goes to its end.
+/// Returns whether the motion of a case goes to its end.
 fn ends(text: &str, case: usize) -> bool {
     let Ok(file) = hardpoint_file::parse(text, "") else { return false };
     if case >= file.model.cases.len() {

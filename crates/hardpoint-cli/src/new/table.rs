@@ -185,7 +185,7 @@ fn hardpoints(cells: &[Vec<String>], in_plane: bool) -> Result<Hardpoints, Strin
     if rows.is_empty() { Err("it has no rows".into()) } else { Ok(Hardpoints { rows, unit }) }
 }
 
-/// Whether a line below the names of the columns has a word in place of every coordinate.
+/// Returns whether a line below the names of the columns has a word in place of every coordinate.
 fn is_units(row: &[String], columns: &[Option<usize>; 4]) -> bool {
     let mut cells = columns[1..].iter().flatten().map(|k| row.get(*k).map_or("", |cell| cell.trim()));
     cells.all(|cell| {

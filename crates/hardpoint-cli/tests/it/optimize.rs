@@ -269,7 +269,7 @@ fn two_files_are_compared_in_every_case_that_both_have() {
     assert!(String::from_utf8_lossy(&no_measure.stderr).contains("did you mean `toe`?"));
 }
 
-/// A crank whose tip is to come to a height; one entry makes two variables with one pair of bounds.
+/// A crank whose tip is to reach a height; one entry makes two variables with one pair of bounds.
 const CRANK: &str = r#"
 name = "crank"
 units = { length = "mm", angle = "deg" }

@@ -23,7 +23,7 @@ pub(crate) const CASE: Table = table! {
     or("{}") "laws": Shape::Entries("a driver", &law::LAW), "{ bump = \"40*sin(2*pi*t)\" }";
     /// What all other drivers do.
     or("\"held\"") "rest": REST, "\"as_above\"";
-    /// Whether its loads include inertia, as `loads` of the file. Default: as the file has it.
+    /// Loads with or without inertia, as `loads` of the file. Default: that of the file.
     may "loads": LOADS, "\"static\"";
     /// Its output times, as `[time]` has them. Default: those of `[time]`.
     may "time": Shape::Kinds(&TIME), "{ end = 1.0, steps = 100 }";

@@ -111,7 +111,7 @@ fn headed(text: &str, columns: usize) -> Option<usize> {
     above.filter(|(_, l)| heads(l)).last().map(|(k, _)| k + 1)
 }
 
-/// Whether a line has no number, and a word at least.
+/// Returns whether a line has no number, and a word at least.
 fn is_units(record: &csv::StringRecord) -> bool {
     let mut cells = record.iter().map(unquoted);
     cells.clone().any(|cell| cell.chars().any(char::is_alphabetic))

@@ -173,7 +173,7 @@ fn exchanged(name: &str, words: &[(String, String)]) -> Option<String> {
     is_sided.then(|| pieces(name).map(|piece| counterpart(piece).map_or(piece, String::as_str)).collect())
 }
 
-/// Whether a name belongs to the side that is written: the first word of a side in it decides. None if it has no such word.
+/// Returns whether a name belongs to the side that is written: the first word of a side in it decides. None if it has no such word.
 fn is_original(name: &str, words: &[(String, String)]) -> Option<bool> {
     pieces(name).find_map(|piece| {
         let is_one = words.iter().any(|(one, _)| one == piece);

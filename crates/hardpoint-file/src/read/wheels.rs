@@ -48,10 +48,10 @@ pub(crate) const WHEEL: Table = table! {
     may "spring": Shape::exactly(2, &POINT_REF), "[{ body = \"ground\", at = \"spring_top\" }, { body = \"lca\", at = \"spring_bottom\" }]";
     /// At which end of the vehicle it is, for anti-dive and the like.
     may "end": Shape::Words(&[("front", ""), ("rear", "")]), "\"front\"";
-    /// Where the torque that drives it is reacted, for anti-squat and anti-rise. Default: `"outboard"` where its body carries wheels of both
+    /// Place where its drive torque is reacted, for anti-squat and anti-rise. Default: `"outboard"` where its body carries wheels of both
     /// sides (a live axle), else `"inboard"`.
     may "drive": REACTION, "\"inboard\"";
-    /// Where the torque of its brake is reacted, for anti-dive and anti-lift. Default: `"outboard"`.
+    /// Place where its brake torque is reacted, for anti-dive and anti-lift. Default: `"outboard"`.
     may "brakes": REACTION, "\"outboard\"";
     /// What to measure, as NAME.toe and so on: `"all"` that is possible, or a list.
     may "measures": Shape::Any("WheelMeasures", "", &[ALL, Shape::list(&WHEEL_MEASURE)]), "[\"toe\", \"camber\"]";

@@ -7,7 +7,7 @@ use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run};
 use hardpoint_file::{ModelFile, parse};
 
-/// What the solver leaves of a coordinate, deg or mm.
+/// Residual that the solver leaves of a coordinate, deg or mm.
 const SAME: f64 = 1e-8;
 
 /// A four-bar whose rocker turns an arm, and by a rack a slide: 2 arm - 3 rocker = 50 deg, slide + 0.5 rocker = 12 mm.

@@ -233,7 +233,7 @@ fn kinks_are_no_errors_and_wrong_derivatives_of_outputs_are() {
     assert!(failed >= 7, "{failed} of {}", report.checks.len());
 }
 
-/// A rod pushes a block along its guide at an angle: what presses is the weight and the push aside, which friction itself makes larger.
+/// A rod pushes a block along its guide at an angle: the normal force is the weight and the side thrust, which friction itself makes larger.
 /// With `mu tan(angle)` above 1 friction has two solutions.
 #[test]
 fn friction_with_two_solutions_has_no_number() {

@@ -486,7 +486,7 @@ fn every_model_of_the_gallery_balances_its_wrenches_and_its_power_in_both_formul
 /// A scissor lift (legs of 2 m at 30 deg, 1000 N on the platform, 200 N of legs): F = (W + Wa/2) / tan(phi), whatever the law does.
 #[test]
 fn static_loads_have_no_inertia_in_either_formulation() {
-    /// Of forces of a kilonewton, over joints whose positions are solved to 1e-12.
+    /// Relative error of forces of a kilonewton, over joints whose positions are solved to 1e-12.
     const SAME: f64 = 1e-9;
     let text = |law: &str, loads: &str| {
         format!(

@@ -674,7 +674,7 @@ fn a_law_may_turn_back_next_to_a_limit() {
     }
 }
 
-/// Metrics of a crank-rocker in so many steps.
+/// Metrics of a crank-rocker in a number of steps.
 fn crank_rocker_metrics(law: &str, n: usize, formulation: Formulation, moved: f64) -> Vec<MetricValue> {
     let text = four_bar_text([0.5, 1.2, 0.8, 1.0], 60.0, law, 1.0);
     let text = text.replace("steps = 10", &format!("steps = {n}"));

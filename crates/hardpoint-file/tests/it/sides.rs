@@ -485,7 +485,7 @@ fn loaded(across: usize, tables: &str) -> String {
     )
 }
 
-/// What is opposite on the other side of these: the moment about the cylindrical joint's angle, and components of reactions.
+/// Measures that are opposite on the other side: the moment about the cylindrical joint's angle, and components of reactions.
 fn opposite_loads(across: usize) -> Vec<String> {
     let force = |k: usize| format!("_force_{}", AXES[k]);
     let moment = |k: usize| format!("_moment_{}", AXES[k]);
@@ -558,7 +558,7 @@ fn every_mass_and_force() {
                 let sections = match element.table {
                     "masses" => format!("[masses]\n{mass}{own}"),
                     _ => {
-                        // A force with no number of its own is elastic or rubs.
+                        // A force with no number of its own is elastic or has friction.
                         let is_felt = if element.name == "elastic_joint" {
                             "left_give = { type = \"compliance\", of = \"left_height\", at = \"left_p\", along = [0.2, 0.1, 1] }\nleft_height = { type = \"position\", point = \"left_p\", along = [0.2, 0.1, 1] }\n"
                         } else {

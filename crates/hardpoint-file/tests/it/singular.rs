@@ -300,7 +300,7 @@ fn change_points_are_passed_where_the_file_says_so() {
         let derivative = |k: usize| solution.measured.d(k, VariableId(0), m)[0];
         assert!(derivative(18).is_nan(), "{}", derivative(18));
         assert!([0, 16, 20, 30, 72].into_iter().all(|k| derivative(k).is_finite()));
-        // After a whole turn the mechanism is as drawn, and so is what the variable does.
+        // After a whole turn the mechanism is in the design configuration again, with the sensitivities of that.
         assert!((derivative(72) - derivative(0)).abs() < 1e-8 * derivative(0).abs().max(1.0));
     }
 }

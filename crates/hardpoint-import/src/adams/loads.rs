@@ -1,4 +1,4 @@
-//! What loads of a dataset need: masses of parts, gravity, springs and dampers between points.
+//! Data of a dataset that loads need: masses of parts, gravity, springs and dampers between points.
 
 use std::collections::BTreeSet;
 

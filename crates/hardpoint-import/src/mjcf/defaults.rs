@@ -11,7 +11,7 @@ use crate::turn::{from_z_and_x, none, sequence};
 use crate::xml;
 use crate::xml::exactly;
 
-/// Classes of defaults hold so many attributes in all at most.
+/// Number of attributes in all classes of defaults at most.
 const MOST_DEFAULTS: usize = 100_000;
 
 impl<'d> Reader<'d, '_> {

@@ -110,7 +110,7 @@ impl<'d> Reader<'d, '_> {
         robot::weld(&mut self.m, self.notes, called, "fixed", [i, j]);
     }
 
-    /// Puts a body that nothing but a weld holds where that has it: `own` is its frame, which comes to the other one.
+    /// Places a body that nothing but a weld holds: its frame `own` is moved to the other one.
     fn place_free(&mut self, other: &Marker, own: &mut Marker) {
         let body = own.body;
         let is_free = self.free.iter().any(|f| f.bodies[1] == body);
@@ -351,7 +351,7 @@ impl<'d> Reader<'d, '_> {
     }
 }
 
-/// Whether the two ends of a tendon are on two bodies.
+/// Returns whether the two ends of a tendon are on two bodies.
 fn are_two(ends: Option<[Option<(usize, Pose)>; 2]>) -> bool {
     matches!(ends, Some([Some((i, _)), Some((j, _))]) if i != j)
 }

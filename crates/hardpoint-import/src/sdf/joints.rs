@@ -12,7 +12,7 @@ use crate::turn::home;
 use crate::xml::{Vocabulary, child, children, exactly, local, named};
 use crate::{robot, xml};
 
-/// What is known of a joint.
+/// Known content of a joint.
 const JOINT: Vocabulary = Vocabulary {
     attributes: &["name", "type"],
     read: &[
@@ -28,7 +28,7 @@ const JOINT: Vocabulary = Vocabulary {
     ],
     irrelevant: &["physics", "sensor"],
 };
-/// What is known of an axis.
+/// Known content of an axis.
 const AXIS: Vocabulary = Vocabulary {
     attributes: &[],
     read: &[
@@ -42,7 +42,7 @@ const AXIS: Vocabulary = Vocabulary {
     ],
     irrelevant: &[],
 };
-/// What is known of the parts of an axis.
+/// Known content of the parts of an axis.
 const OF_AXES: [(&str, Vocabulary); 4] = [
     ("xyz", Vocabulary { attributes: &["expressed_in"], read: &[], irrelevant: &[] }),
     (
@@ -316,7 +316,7 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// What other programs add to models: joints that follow others by plugins, equalities of MuJoCo, joints that close loops.
+    /// Reads extensions of models by other programs: joints that follow others by plugins, equalities of MuJoCo, joints that close loops.
     pub(super) fn extensions(&mut self, model: &Model<'d>) {
         let (text, scope) = (model.text, &model.scope);
         for node in named(model.node, "plugin") {
@@ -380,22 +380,8 @@ impl<'d> Reader<'d, '_> {
     pub(super) fn constraints(&mut self, model: &Model<'d>) {
         for (k, node) in named(model.node, "ball_constraint").enumerate() {
             let at = xml::at(model.text, node);
-            const KNOWN: Vocabulary = Vocabulary {
-                attributes: &[],
-                read: &[
-                    "ball_constraint_body_A",
-                    "ball_constraint_p_AP",
-                    "ball_constraint_body_B",
-                    "ball_constraint_p_BQ",
-                ],
-                irrelevant: &[],
-            };
-            xml::unknown(model.text, node, "", KNOWN, self.notes);
-            let ends = [
-                ("ball_constraint_body_A", "ball_constraint_p_AP"),
-                ("ball_constraint_body_B", "ball_constraint_p_BQ"),
-            ];
-            let ends = ends.map(|(body, place)| {
+            xml::unknown(model.text, node, "", robot::BALL_CONSTRAINT, self.notes);
+            let ends = robot::BALL_ENDS.map(|(body, place)| {
                 let frame = self.end(node, model, body)?;
                 let place = child(node, place).and_then(|p| {
                     exactly::<3>(

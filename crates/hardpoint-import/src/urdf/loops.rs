@@ -15,28 +15,17 @@ use crate::turn::{Z, home, roll_pitch_yaw};
 use crate::xml;
 use crate::xml::{Vocabulary, attribute, attribute_at, child, children, local, named};
 
-/// What is known of a joint that closes a loop.
+/// Known content of a joint that closes a loop.
 const LOOP: Vocabulary = Vocabulary {
     attributes: &["name", "type"],
     read: &["link1", "link2", "parent", "child", "origin", "parent_origin", "child_origin", "pose", "axis"],
     irrelevant: &["limit", "dynamics", "physics", "sensor"],
 };
-/// What is known of a ball constraint.
-const BALL_CONSTRAINT: Vocabulary = Vocabulary {
-    attributes: &[],
-    read: &[
-        "ball_constraint_body_A",
-        "ball_constraint_p_AP",
-        "ball_constraint_body_B",
-        "ball_constraint_p_BQ",
-    ],
-    irrelevant: &[],
-};
 /// Links lighter than this, kg, are there for their frames.
 const LIGHT: f64 = 1e-6;
 
 impl<'a, 'i> Reader<'a, 'i, '_> {
-    /// What plugins of Gazebo and `ros2_control` say of joints that follow others.
+    /// Reads joints that follow others by plugins of Gazebo and `ros2_control`.
     pub(super) fn followers(&mut self, robot: Node<'a, 'i>, joints: &mut [Written<'a, 'i>]) {
         let mut found = Vec::new();
         for node in named(robot, "gazebo").flat_map(|g| named(g, "plugin")).chain(named(robot, "plugin")) {
@@ -62,7 +51,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// Springs and dampers of joints, of their own and those that Gazebo is told of.
+    /// Springs and dampers of joints, their own and those of extensions for Gazebo.
     pub(super) fn springs(&mut self, robot: Node<'a, 'i>, joints: &[Written<'a, 'i>]) {
         for (k, j) in joints.iter().enumerate() {
             let [mut stiffness, damping, mut free] = j.spring;
@@ -124,7 +113,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         self.m = crate::mjcf::extension(m, self.notes, &blocks, 0, &self.poses, &self.joints);
     }
 
-    /// What is in an element for Gazebo.
+    /// Reads the content of an element for Gazebo.
     pub(super) fn gazebo(&mut self, node: Node<'a, 'i>) {
         const READ: [&str; 2] = ["joint", "springStiffness"];
         let owner = node.attribute("reference").unwrap_or_default();
@@ -250,12 +239,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             }
         }
         for (k, node) in named(robot, "ball_constraint").enumerate() {
-            xml::unknown(0, node, "", BALL_CONSTRAINT, self.notes);
-            let ends = [
-                ("ball_constraint_body_A", "ball_constraint_p_AP"),
-                ("ball_constraint_body_B", "ball_constraint_p_BQ"),
-            ];
-            let ends = ends.map(|(body, place)| {
+            xml::unknown(0, node, "", robot::BALL_CONSTRAINT, self.notes);
+            let ends = robot::BALL_ENDS.map(|(body, place)| {
                 let Some(named) = child(node, body) else {
                     let message = format!("the ball constraint has no `{body}`");
                     self.notes.problem_with("HP0803", xml::at(0, node), message, "name a link in it");

@@ -8,7 +8,7 @@ use hardpoint::{Analysis, Run};
 use hardpoint_file::ModelFile;
 use hardpoint_import::{Closing, Fate, Imported, Options};
 
-/// What the solver leaves of a position, m or rad.
+/// Residual that the solver leaves of a position, m or rad.
 const SAME: f64 = 1e-9;
 
 fn read_with(name: &str, text: &str, closings: &[&str]) -> (Imported, ModelFile) {
@@ -37,7 +37,7 @@ fn poses(file: &ModelFile, names: &[&str]) -> Vec<Vec<Pose>> {
     (0..solution.motion.len()).map(|k| names.iter().map(|n| of(k, n)).collect()).collect()
 }
 
-/// Whether a frame of one body stays at a frame of the other: how far off it is at most.
+/// Returns the largest distance of a frame of one body from a frame of the other.
 fn off(poses: &[Vec<Pose>], [a, b]: [Pose; 2]) -> f64 {
     let apart = |p: &Vec<Pose>| {
         let [a, b] = [p[0].compose(a), p[1].compose(b)];
@@ -106,7 +106,7 @@ fn a_weld_holds_the_frames_that_it_names() {
             r#"<weld body1="rocker" body2="tool" relpose="0 0 1 0 1 0 0"/>"#,
             [pose([0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0]), at([0.0; 3])],
         ),
-        // Without an orientation it is the pose as drawn, wherever the first three numbers are.
+        // Without an orientation it is the pose in the design configuration, wherever the first three numbers are.
         (
             "rocker",
             r#"<weld body1="rocker" body2="tool" relpose="0 1 0 0 0 0 0"/>"#,
@@ -428,7 +428,7 @@ fn masses_come_along_in_the_global_axes() {
         // What slices of that thickness leave.
         assert!((x - wanted).abs() < 1e-6 * wanted, "{key}: {x} {wanted}");
     }
-    // What no body can have is told, and the mass stays.
+    // Values that no body can have are reported, and the mass stays.
     let flat = urdf.replace("izz=\"0.5\"", "izz=\"5\"");
     let (imported, _) = read("r.urdf", &flat);
     assert!(imported.report.of(Fate::Approximated).any(|e| e.kind == "inertial"), "{}", imported.report);
@@ -436,6 +436,19 @@ fn masses_come_along_in_the_global_axes() {
     let negative = urdf.replace("<mass value=\"2\"/>", "<mass value=\"-2\"/>");
     let (imported, _) = read("r.urdf", &negative);
     assert!(imported.report.of(Fate::Refused).any(|e| e.kind == "inertial"), "{}", imported.report);
+}
+
+/// The force of the only driver of a model file at its first output time while it moves at 0.4 per second, with the file that gives it.
+fn driver_torque(text: &str) -> (f64, String) {
+    let driver = text.lines().find_map(|l| l.strip_prefix("[drivers.")).unwrap().trim_end_matches(']');
+    let start = text.find("law = \"").unwrap();
+    let end = start + text[start..].find('\n').unwrap();
+    let measure = format!("[measures.torque]\ntype = \"driver_force\"\ndriver = \"{driver}\"");
+    let measured = format!("{}law = \"0.4*t\"{}\n{measure}\n", &text[..start], &text[end..]);
+    let file = hardpoint_file::parse(&measured, "m.toml").unwrap_or_else(|e| panic!("{e}\n{measured}"));
+    let run = Analysis::new(&file.model).unwrap().run();
+    let torque = run.measured.outputs.iter().position(|o| o.name == "torque").unwrap();
+    (run.measured.value(0, torque)[0], measured)
 }
 
 #[test]
@@ -450,28 +463,10 @@ fn springs_and_dampers_of_joints_push_as_the_source_says() {
     let mjcf = r#"<mujoco><compiler angle="radian"/><option gravity="0 0 -9.80665"/><worldbody><body name="a">
         <joint name="j" axis="0 1 0" damping="0.6" stiffness="7" springref="0.5" ref="0.2"/><inertial pos="0.5 0 0" mass="2"/></body></worldbody></mujoco>"#;
     for (name, text) in [("r.urdf", urdf), ("m.sdf", sdf), ("m.xml", mjcf)] {
-        let (imported, _) = read(name, text);
-        let driver = imported
-            .text
-            .lines()
-            .find_map(|l| l.strip_prefix("[drivers."))
-            .unwrap()
-            .trim_end_matches(']')
-            .to_owned();
-        let start = imported.text.find("law = \"").unwrap();
-        let end = start + imported.text[start..].find('\n').unwrap();
-        let measured = format!(
-            "{}law = \"0.4*t\"{}\n[measures.torque]\ntype = \"driver_force\"\ndriver = \"{driver}\"\n",
-            &imported.text[..start],
-            &imported.text[end..]
-        );
-        let file = hardpoint_file::parse(&measured, "m.toml").unwrap_or_else(|e| panic!("{e}\n{measured}"));
-        let run = Analysis::new(&file.model).unwrap().run();
-        let torque = run.measured.outputs.iter().position(|o| o.name == "torque").unwrap();
+        let (found, measured) = driver_torque(&read(name, text).0.text);
         // At t = 0: about y the weight turns the pendulum with +m g l, the spring with -k (0 - 0.3); the damper with -c 0.4. SDFormat
         // has an inertia of 1 kg m^2 by default, which constant speed does not feel.
         let wanted = -2.0 * 9.80665 * 0.5 - 7.0 * 0.3 + 0.6 * 0.4;
-        let found = run.measured.value(0, torque)[0];
         assert!((found - wanted).abs() < 1e-9, "{name}: {found} instead of {wanted}\n{measured}");
     }
 }
@@ -482,27 +477,9 @@ fn springs_of_tendons_pull() {
     let text = r#"<mujoco><option gravity="0 0 0"/><worldbody><site name="top" pos="0.5 0 1"/><body name="a"><joint name="j" axis="0 1 0"/>
         <inertial pos="0.5 0 0" mass="2"/><site name="end" pos="0.5 0 0"/></body></worldbody>
         <tendon><spatial name="s" stiffness="40" damping="3" springlength="0.75"><site site="end"/><site site="top"/></spatial></tendon></mujoco>"#;
-    let (imported, _) = read("m.xml", text);
-    let start = imported.text.find("law = \"").unwrap();
-    let end = start + imported.text[start..].find('\n').unwrap();
-    let driver = imported
-        .text
-        .lines()
-        .find_map(|l| l.strip_prefix("[drivers."))
-        .unwrap()
-        .trim_end_matches(']')
-        .to_owned();
-    let measured = format!(
-        "{}law = \"0.4*t\"{}\n[measures.torque]\ntype = \"driver_force\"\ndriver = \"{driver}\"\n",
-        &imported.text[..start],
-        &imported.text[end..]
-    );
-    let file = hardpoint_file::parse(&measured, "m.toml").unwrap_or_else(|e| panic!("{e}\n{measured}"));
-    let run = Analysis::new(&file.model).unwrap().run();
-    let torque = run.measured.outputs.iter().position(|o| o.name == "torque").unwrap();
+    let (found, measured) = driver_torque(&read("m.xml", text).0.text);
     // Its end goes down with 0.4 x 0.5 m/s, so that it is drawn out.
     let wanted = 0.5 * (40.0 * 0.25 + 3.0 * 0.4 * 0.5);
-    let found = run.measured.value(0, torque)[0];
     assert!((found - wanted).abs() < 1e-9, "{found} instead of {wanted}\n{measured}");
 }
 
@@ -569,7 +546,7 @@ fn datasets_of_adams_bring_masses_gravity_and_springs() {
 
 #[test]
 fn fixed_joints_hold_the_frames_that_are_drawn_apart_in_every_format() {
-    // A hinge carries a, which carries b by a frame that is elsewhere and turned as drawn.
+    // A hinge carries a, which carries b by a frame that is elsewhere and turned in the design configuration.
     let frame = |place: &str| format!("MARKER/22, PART=2, QP=100,0,0\nMARKER/30, PART=3, {place}\n");
     let adams = |place: &str| {
         format!(

@@ -29,7 +29,7 @@ const MJCF: &str = r#"<mujoco><default><joint damping="1"/><equality solref="0.0
   <equality><connect body1="b" body2="c" anchor="1 0 0"/><weld body1="c" body2="d"/><joint joint1="one" joint2="two"/></equality>
 </mujoco>"#;
 
-/// What stands in a source, what instead of it, and what is named.
+/// Text of a source, its replacement, and the name that is reported.
 type Change = (&'static str, &'static str, &'static str);
 
 fn named_in(format: &str, bytes: &[u8], what: &str) {

@@ -64,7 +64,7 @@ pub struct Draft {
     pub forces: Vec<ElementDraft>,
     /// What everything falls with, m/s^2, global.
     pub gravity: Vec3,
-    /// Whether masses need forces for their accelerations.
+    /// Loads with or without inertia.
     pub load_mode: LoadMode,
     /// Measures.
     pub measures: Vec<MeasureDraft>,
@@ -72,7 +72,7 @@ pub struct Draft {
     pub metrics: Vec<MetricDraft>,
     /// Output times, s.
     pub times: Vec<f64>,
-    /// What happens where two motions meet.
+    /// Behaviour at change points.
     pub at_change_points: AtChangePoints,
     /// Several motions, in place of the one that the drivers' own laws and these times make.
     pub cases: Vec<CaseDraft>,
@@ -447,10 +447,10 @@ pub struct WheelDraft {
     pub spring: Option<[PointRef; 2]>,
     /// At which end of the vehicle it is.
     pub end: Option<VehicleEnd>,
-    /// Where the torque that drives it is reacted; where it is left out, outboard on a body that carries wheels of both sides (a live axle),
+    /// Place where its drive torque is reacted; where it is left out, outboard on a body that carries wheels of both sides (a live axle),
     /// else inboard.
     pub drive: Option<TorqueReaction>,
-    /// Where the torque of its brake is reacted; where it is left out, outboard.
+    /// Place where its brake torque is reacted; where it is left out, outboard.
     pub brakes: Option<TorqueReaction>,
 }
 
@@ -535,7 +535,7 @@ pub struct CaseDraft {
     pub rest: Rest,
     /// Its output times, s; those of the draft where they are left out.
     pub times: Option<Vec<f64>>,
-    /// Whether its loads include inertia; as the draft has it where there is none.
+    /// Loads with or without inertia; those of the draft where there is none.
     pub load_mode: Option<LoadMode>,
 }
 

@@ -87,9 +87,9 @@ pub struct JointType {
     pub axis: Need,
     /// Whether it needs a second axis, square to the first.
     pub axis2: Need,
-    /// How a mirror makes the images of `axis` and of `axis2`.
+    /// Rules by which a mirror makes the images of `axis` and of `axis2`.
     pub vector_kinds: [VectorKind; 2],
-    /// Whether `axis` is perpendicular to the plane of a planar model, unless the file gives it.
+    /// True if `axis` is perpendicular to the plane of a planar model unless the file gives it.
     pub normal_in_plane: bool,
     /// Motions of body j relative to body i, in order from i to j; `None` if it is always cut.
     pub freedoms: Option<&'static [Freedom]>,
@@ -114,7 +114,7 @@ pub enum Need {
     Unused,
 }
 
-/// How a mirror makes the image of a direction.
+/// Rule by which a mirror makes the image of a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VectorKind {
     /// As of an arrow: a direction to move along.
@@ -254,7 +254,7 @@ impl JointType {
         Some(coordinate?.quantity)
     }
 
-    /// Whether a coordinate of the image of a joint is the opposite of the joint's own while both move as mirror images.
+    /// Returns whether a coordinate of the image of a joint is the opposite of the joint's own while both move as mirror images.
     pub fn is_reversed_in_mirror(&self, coordinate: &CoordinateType) -> bool {
         let [z, axis2] = self.vector_kinds.map(VectorKind::sign);
         let x = match self.axis2 {

@@ -16,4 +16,4 @@ pub(crate) use least_squares::least_squares;
 pub(crate) use matrix::{Elimination, MOST_GROWTH, Watched};
 pub(crate) use monotone::monotone;
 pub(crate) use rank::FullPivot;
-pub(crate) use spline::{Basis, EndKind, Segment};
+pub(crate) use spline::{Basis, EndKind, Segment, hermite, segment_at};

@@ -196,8 +196,16 @@ impl Basis {
     }
 }
 
+/// Value and first two derivatives of a segment, s after its first knot.
+pub(crate) fn segment_at(c: &Segment, s: f64) -> [f64; 3] {
+    let value = c.iter().rev().fold(0.0, |sum, c| sum * s + c);
+    let first = (1..6).rev().fold(0.0, |sum, k| sum * s + k as f64 * c[k]);
+    let second = (2..6).rev().fold(0.0, |sum, k| sum * s + (k * (k - 1)) as f64 * c[k]);
+    [value, first, second]
+}
+
 /// The polynomial over a duration h with the values and derivatives `at(end, order)` at its ends.
-pub(super) fn hermite(h: f64, rates: usize, at: impl Fn(usize, usize) -> f64) -> Segment {
+pub(crate) fn hermite(h: f64, rates: usize, at: impl Fn(usize, usize) -> f64) -> Segment {
     // In u = s/h, with v = h d and a = h² dd.
     let rise = at(1, 0) - at(0, 0);
     let [v0, v1] = [at(0, 1) * h, at(1, 1) * h];

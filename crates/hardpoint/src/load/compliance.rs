@@ -243,7 +243,7 @@ impl Compliances<'_> {
     }
 }
 
-/// Whether no sum of these vectors, each by its own factor, is zero; of each its entries that are not zero, in the order of the rows.
+/// Returns whether no sum of these vectors, each by its own factor, is zero; of each its entries that are not zero, in the order of the rows.
 fn are_independent<'a>(vectors: impl Iterator<Item = &'a [(RowId, f64)]>) -> bool {
     let norm = |v: &[(RowId, f64)]| v.iter().map(|(_, x)| x * x).sum::<f64>().sqrt();
     let mut basis: Vec<Vec<(RowId, f64)>> = Vec::new();

@@ -44,7 +44,7 @@ struct Rub {
     per_moment: Vec<[Vec3; 2]>,
     /// Whether redundant constraints share what presses.
     is_shared: bool,
-    /// Whether the friction has another solution besides the one that was found.
+    /// True if the friction has another solution besides the one that was found.
     is_ambiguous: bool,
 }
 
@@ -112,7 +112,7 @@ impl Friction {
     /// Searches for other solutions, and notes which friction differs between them.
     ///
     /// `M -> -c N(T_0 + B M) - d` contracts where the sum of `abs(c B)` is below 1 in every row, and has one solution then. Elsewhere
-    /// Newton starts far out, where what presses is as large as what it is by friction alone.
+    /// Newton starts far out, where normal forces are as large as friction alone makes them.
     fn look_for_others(&mut self) -> bool {
         let gain = |rub: &Rub| {
             let (_, count) = rub.presses;

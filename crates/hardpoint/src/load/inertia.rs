@@ -61,7 +61,7 @@ impl<T: Real> SpatialInertia<T> {
     /// P2  =  M Y,    P1  =  ad(Y)^T M V - ad(V)^T M Y - M ad(V) Y,    P0  =  ad(Y)^T f + [g0 x (M Y)_f; 0]
     /// ```
     ///
-    /// Of static loads only P0 is left, with the weight alone as f.
+    /// Static loads leave P0 only, with the weight alone as f.
     pub fn weights(&self, model: &Model, body: &Moving<T>, y: Twist<T>) -> [Wrench<T>; 3] {
         let Moving { v, .. } = *body;
         let moved = self.on(y);
@@ -92,7 +92,7 @@ impl<T: Real> SpatialInertia<T> {
     /// ```
     ///
     /// which is what somebody who turns with the body sees, whose V changes by W. and whose A by W.. + ad(W.) V, and that turned (14).
-    /// Of static loads V, W. and W.. have no part in it.
+    /// V, W. and W.. have no part in static loads.
     pub fn changed(&self, model: &Model, body: &Moving<T>, [w0, w1, w2]: [Twist<T>; 3]) -> Wrench<T> {
         let Moving { v, .. } = *body;
         let needed = self.needed(model, body);

@@ -18,7 +18,7 @@ pub(super) enum Turns {
 }
 
 impl Turns {
-    /// Of all elements.
+    /// Returns those of all elements.
     pub fn of_all(model: &Model, topology: &Topology) -> Vec<Self> {
         let mut turns: Vec<Self> =
             (0..model.elements.len()).map(|e| Self::of(model, topology, ElementId(e))).collect();
@@ -31,15 +31,12 @@ impl Turns {
         turns
     }
 
-    /// Of one element; the place of an angle on the path is not known.
+    /// Returns those of one element; the place of an angle on the path is not known.
     pub fn of(model: &Model, topology: &Topology, e: ElementId) -> Self {
         let Some((joint, coordinate)) = model.elements[e.0].kind.coordinate(model) else { return Self::None };
         let link = topology.links.iter().find(|link| link.joint == Some(joint));
         match link.zip(model.joints[joint.0].kind.coordinates[coordinate].freedom) {
-            Some((link, freedom)) => {
-                let step = if link.parent_end == 0 { freedom } else { link.steps.len() - 1 - freedom };
-                Self::Coordinate(link.steps[step].first)
-            }
+            Some((link, freedom)) => Self::Coordinate(link.coordinate_of(freedom)),
             None if is_counted_of_element(model, topology, e) => Self::Path(0),
             None => Self::Length,
         }

@@ -503,16 +503,16 @@ enum Turns {
     Path(PathTurns),
 }
 
-/// What is known of an angle whose turns only the path tells.
+/// An angle whose turns are counted along the path.
 #[derive(Clone, Copy)]
 struct PathTurns {
-    /// Its place among the angles that were counted, where the path was followed.
+    /// Place among the angles that were counted, where the path was followed.
     angle: Option<CountedPlace>,
-    /// Its value where the path begins; as it is measured, without a whole turn, where that is `None`.
+    /// Value where the path begins; as it is measured, without a whole turn, where that is `None`.
     origin: Option<f64>,
 }
 
-/// A place among so many counted angles.
+/// A place among all counted angles.
 #[derive(Clone, Copy)]
 struct CountedPlace {
     place: usize,
@@ -536,8 +536,7 @@ fn turns(model: &Model, topology: &Topology, outputs: &[Output]) -> Vec<Option<T
         }
         let freedom = model.joints[joint.0].kind.coordinates[coordinate].freedom;
         let Some((link, freedom)) = link_of[joint.0].zip(freedom) else { return path(Some(0.0)) };
-        let step = if link.parent_end == 0 { freedom } else { link.steps.len() - 1 - freedom };
-        Turns::Coordinate(link.steps[step].first)
+        Turns::Coordinate(link.coordinate_of(freedom))
     };
     let of_output = |output: &Output| match output.source {
         OutputSource::Measure(m) if is_counted(model, output) => match model.measures[m].kind {

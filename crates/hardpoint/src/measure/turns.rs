@@ -37,7 +37,7 @@ pub(crate) fn path_angles(model: &Model, topology: &Topology, measures: bool) ->
     angles
 }
 
-/// Whether an element acts on the angle of a joint that the tree does not carry.
+/// Returns whether an element acts on the angle of a joint that the tree does not carry.
 pub(crate) fn is_counted_of_element(model: &Model, topology: &Topology, e: ElementId) -> bool {
     let Some((joint, coordinate)) = model.elements[e.0].kind.coordinate(model) else { return false };
     let coordinate = &model.joints[joint.0].kind.coordinates[coordinate];

@@ -218,7 +218,7 @@ pub(super) struct TravellingWheel<T> {
     pub wheel: WheelAt<Dual<T>>,
     /// The motion of the body that it turns on.
     pub carrier: Twist<T>,
-    /// Where the torques of its drive and its brakes are reacted.
+    /// Places where the torques of its drive and its brakes are reacted.
     pub drive: TorqueReaction,
     pub brakes: TorqueReaction,
 }
@@ -291,7 +291,13 @@ impl<T: Real> TravellingWheel<T> {
     fn reacting(&self, what: WheelMeasure, v: Vec3<T>) -> T {
         let reacted = match what.needs() {
             WheelNeed::Braking(_) => self.brakes,
-            _ => self.drive,
+            WheelNeed::Driving(_)
+            | WheelNeed::Nothing
+            | WheelNeed::Kingpin
+            | WheelNeed::Planes
+            | WheelNeed::Bump
+            | WheelNeed::Spring
+            | WheelNeed::Steer => self.drive,
         };
         match reacted {
             TorqueReaction::Outboard => v.x / v.z,

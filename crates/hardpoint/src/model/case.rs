@@ -15,11 +15,11 @@ pub struct Case {
     pub formulas: Vec<Formula>,
     /// Output times, s, increasing.
     pub times: Vec<f64>,
-    /// Whether masses need forces for their accelerations; as the model has it where there is none.
+    /// Loads with or without inertia; those of the model where there is none.
     pub load_mode: Option<LoadMode>,
 }
 
-/// Whether the loads of a motion include inertia.
+/// Loads of a motion with or without inertia.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LoadMode {
     /// Newton and Euler: forces that accelerate the masses along the motion are part of all loads.

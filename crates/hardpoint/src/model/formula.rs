@@ -101,7 +101,17 @@ impl Model {
                 let ([x, y, _], e) = (joint.frames[0].cols, joint.frames[1].cols[2]);
                 y.dot(e).atan2(x.dot(e))
             }
-            _ => 0.0,
+            Row::Point(_)
+            | Row::PointOnBase(_)
+            | Row::Dot1(..)
+            | Row::Dot2(_)
+            | Row::Angle
+            | Row::AngleOnJ
+            | Row::Heading
+            | Row::Cosine
+            | Row::Offset
+            | Row::Contact
+            | Row::ConstantVelocity => 0.0,
         }
     }
 

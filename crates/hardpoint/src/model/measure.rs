@@ -518,7 +518,7 @@ pub enum Ray {
 }
 
 impl MeasureKind {
-    /// How far a value is from where the measure has no derivative because the vector that it is the magnitude of is zero, or two directions
+    /// Returns how far a value is from where the measure has no derivative because the vector that it is the magnitude of is zero, or two directions
     /// are parallel or perpendicular; `None` for measures that are no magnitudes.
     pub(crate) fn distance_from_kink(&self, value: f64) -> Option<f64> {
         use std::f64::consts::{FRAC_PI_2, PI};
@@ -542,7 +542,57 @@ impl MeasureKind {
                 | ReactionPart::MomentAbout(_)
                 | ReactionPart::Torque => None,
             },
-            _ => None,
+            Self::Coordinate { .. }
+            | Self::Coordinates { .. }
+            | Self::Angle { about: Some(_), .. }
+            | Self::Orientation { .. }
+            | Self::Velocity { along: Some(_), .. }
+            | Self::AngularVelocity { along: Some(_), .. }
+            | Self::Acceleration { along: Some(_), .. }
+            | Self::Curvature { about: Some(_), .. }
+            | Self::Rate { .. }
+            | Self::Slope { .. }
+            | Self::Combination { .. }
+            | Self::Toe { .. }
+            | Self::Camber { .. }
+            | Self::DriverForce { .. }
+            | Self::DriverPower { .. }
+            | Self::KineticEnergy { .. }
+            | Self::ShakingForce { along: Some(_) }
+            | Self::ShakingMoment { along: Some(_), .. }
+            | Self::Compliance { .. }
+            | Self::Wheel { .. }
+            | Self::Axle { .. } => None,
+        }
+    }
+
+    /// Outputs that the measure is made of.
+    pub(crate) fn sources(&self) -> Vec<OutputSource> {
+        match self {
+            Self::Rate { of } | Self::Compliance { of, .. } => vec![*of],
+            Self::Slope { of, over, .. } => vec![*of, *over],
+            Self::Combination { expression } => expression.sources().collect(),
+            Self::Coordinate { .. }
+            | Self::Distance { .. }
+            | Self::Coordinates { .. }
+            | Self::Angle { .. }
+            | Self::Orientation { .. }
+            | Self::TransmissionAngle { .. }
+            | Self::Velocity { .. }
+            | Self::AngularVelocity { .. }
+            | Self::Acceleration { .. }
+            | Self::Curvature { .. }
+            | Self::Toe { .. }
+            | Self::Camber { .. }
+            | Self::DriverForce { .. }
+            | Self::DriverPower { .. }
+            | Self::Reaction { .. }
+            | Self::SpringForce { .. }
+            | Self::KineticEnergy { .. }
+            | Self::ShakingForce { .. }
+            | Self::ShakingMoment { .. }
+            | Self::Wheel { .. }
+            | Self::Axle { .. } => Vec::new(),
         }
     }
 

@@ -125,7 +125,7 @@ pub struct Model {
     pub numbers: Vec<ElementNumber>,
     /// What everything falls with, m/s^2, global.
     pub gravity: Vec3,
-    /// Whether masses need forces for their accelerations.
+    /// Loads with or without inertia.
     pub load_mode: LoadMode,
     /// Measures, in the order of the file.
     pub measures: Vec<Measure>,
@@ -135,7 +135,7 @@ pub struct Model {
     pub idle: Vec<Idle>,
     /// Output times, s, increasing.
     pub times: Vec<f64>,
-    /// What happens where two motions meet.
+    /// Behaviour at change points.
     pub at_change_points: AtChangePoints,
     /// Its motions, in the order of the file; where there are none, that of the drivers' own laws at `times` is the only one.
     pub cases: Vec<Case>,
@@ -266,7 +266,7 @@ pub struct BodyPoint {
 /// Joints nearer to each other than this part of the mechanism's size are at one place.
 const ONE_PLACE: f64 = 1e-12;
 
-/// What happens at a change point, where two motions of a mechanism meet.
+/// Behaviour at a change point, where two motions of a mechanism meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AtChangePoints {
     /// The motion ends there (HP0402).
@@ -328,7 +328,7 @@ impl Model {
         if size > 0.0 { size } else { Extent::of(self.hardpoints.iter().map(|h| h.position)).size() }
     }
 
-    /// Whether a joint is drawn open: its two places lie apart, or its rod is given another length than that between them.
+    /// Returns whether a joint is drawn open: its two places lie apart, or its rod is given another length than that between them.
     pub fn is_drawn_open(&self) -> bool {
         let near = ONE_PLACE * self.size();
         self.joints.iter().filter(|joint| joint.curve.is_none()).any(|joint| {

@@ -29,9 +29,9 @@ pub struct Wheel {
     pub spring: Option<[PointId; 2]>,
     /// At which end of the vehicle it is.
     pub end: Option<VehicleEnd>,
-    /// Where the torque that drives it is reacted.
+    /// Place where its drive torque is reacted.
     pub drive: TorqueReaction,
-    /// Where the torque of its brake is reacted.
+    /// Place where its brake torque is reacted.
     pub brakes: TorqueReaction,
 }
 

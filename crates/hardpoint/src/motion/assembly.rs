@@ -5,7 +5,7 @@
 //! branches like those of any motion. So the mechanism closes on the branch that was drawn, and an assembled one stays as
 //! it is. Where the path ends before the gaps are closed, as it does from a drawing in a singular position (bars in line), the nominal
 //! design is also assembled from positions around the drawing, by least squares; of all assemblies found, the nearest is taken.
-//! Where there is none, least squares give the smallest gaps.
+//! If there is none, least squares give the smallest gaps.
 
 use crate::joint::Quantity;
 use crate::linalg::Elimination;
@@ -27,6 +27,9 @@ const WORTH_TELLING: f64 = 1e-7;
 const NO_BETTER: f64 = 1e-12;
 /// ... or after so many steps.
 const MAX_SEARCH: usize = 200;
+/// A drawing counts as singular if its path ends before this part of the gaps is closed. A path that ends later ends at a limit of the
+/// mechanism, beyond which positions around the drawing are no better.
+const SINGULAR_DRAWING: f64 = 0.05;
 /// A search that leaves no scaled residual above this has found an assembly; Newton's method closes the rest.
 const FOUND: f64 = 1e-7;
 /// Assemblies that differ by less than this, rad or sizes, are one, and so are distances from the drawing.
@@ -84,7 +87,7 @@ pub struct AssemblyShift {
 
 /// An assembly that was found around a drawing.
 struct FoundAssembly {
-    /// How far the bodies are from where they were drawn, in sizes and rad.
+    /// Distance of the bodies from the drawing, in sizes and rad.
     distance: f64,
     /// To which side they went: it decides between assemblies that are equally near.
     side: f64,
@@ -93,12 +96,8 @@ struct FoundAssembly {
     contacts: Vec<Contact<f64>>,
 }
 
-/// A drawing counts as singular if its path ends before this part of the gaps is closed. A path that ends later ends at a limit of the
-/// mechanism, beyond which positions around the drawing are no better.
-const SINGULAR_DRAWING: f64 = 0.05;
-
 impl FoundAssembly {
-    /// Whether bodies are as far, and on the same side.
+    /// Returns whether bodies are as far, and on the same side.
     fn is_same(&self, other: &Self) -> bool {
         (self.distance - other.distance).abs() <= ONE_ASSEMBLY
             && (self.side - other.side).abs() <= ONE_ASSEMBLY
@@ -121,6 +120,7 @@ impl Stepper<'_> {
         self.measure_gaps();
         if !(self.state.largest_gap(&self.topology) > CLOSED) {
             self.state.gap.fill(0.0);
+            return self.assemble_along_path();
         }
         let drawn = (self.saved.clone(), self.topology.clone());
         let gaps = self.gaps(|s, r| s.state.gap[r.0], WORTH_TELLING);
@@ -157,20 +157,21 @@ impl Stepper<'_> {
             return Ok(());
         }
         // phi - (1 - s) phi_0 = 0 from s = 0 to 1
-        self.walk(Path::Assembly, 1.0).map_err(|stop| match stop.kind {
-            StopKind::Locked { .. } => stop,
-            _ => Box::new(Stop { kind: StopKind::DoesNotAssemble, ..*stop }),
+        self.walk(Path::Assembly, 1.0).map_err(|mut stop| {
+            if !matches!(stop.kind, StopKind::Locked { .. }) {
+                stop.kind = StopKind::DoesNotAssemble;
+            }
+            stop
         })
     }
 
-    /// Whether an assembly is searched for around the drawing: where the nominal design has gaps that the path does not close. A
+    /// Returns whether an assembly is searched for around the drawing: where it is singular, and the path closes its gaps of no design. A
     /// changed design is on the branch of the nominal one, or does not assemble.
     fn is_searched(&self, stop: &Stop) -> bool {
         if matches!(
             stop.kind,
             StopKind::LawNotFinite { .. } | StopKind::TooFar { .. } | StopKind::Interrupted
-        ) || self.state.largest_gap(&self.topology) == 0.0
-            || self.time > SINGULAR_DRAWING
+        ) || self.time > SINGULAR_DRAWING
         {
             return false;
         }

@@ -5,6 +5,7 @@
 //! predicted one. Positions between b and f are found from the polynomials through both ends; at the change point itself, where nothing
 //! can be solved, position, velocity and acceleration are those of the polynomials, and what is solved with J has no number.
 
+use crate::linalg::{hermite, segment_at};
 use crate::model::AtChangePoints;
 use crate::topology::BlockId;
 
@@ -167,11 +168,11 @@ impl Stepper<'_> {
         let channels = Channel::all(&self.topology);
         for (k, channel) in channels.iter().enumerate() {
             let [a, b] = [crossing.values[0][k], crossing.values[1][k]];
-            channel.put(quintic(a, b, h, s)[0], &mut self.state);
+            channel.put(between([a, b], h, s)[0], &mut self.state);
         }
         for r in self.topology.coupler_terms() {
             let [a, b] = [crossing.ends[0].coupled[r.0], crossing.ends[1].coupled[r.0]];
-            self.state.near[r.0] = quintic(a, b, h, s)[0];
+            self.state.near[r.0] = between([a, b], h, s)[0];
         }
         if (t - crossing.at).abs() > AT_IT * h {
             self.solve_within(f64::INFINITY)?;
@@ -182,7 +183,7 @@ impl Stepper<'_> {
         }
         for c in self.topology.unknown_coordinates() {
             let of = |end: &AcceptedPosition| [end.qd[c.0], end.qdd[c.0]];
-            let [speed, acceleration] = cubic(of(&crossing.ends[0]), of(&crossing.ends[1]), h, s);
+            let [speed, acceleration, _] = between(crossing.ends.each_ref().map(of), h, s);
             self.state.motion.speeds[0][c.0] = speed;
             self.state.motion.speeds[1][c.0] = acceleration;
         }
@@ -190,7 +191,7 @@ impl Stepper<'_> {
             // Of all but balls, whose speeds are no rates of their components, the polynomials of degree five know more.
             if let Channel::Coordinate(c) = channel {
                 let [a, b] = [crossing.values[0][k], crossing.values[1][k]];
-                let [_, speed, acceleration] = quintic(a, b, h, s);
+                let [_, speed, acceleration] = between([a, b], h, s);
                 self.state.motion.speeds[0][c.0] = speed;
                 self.state.motion.speeds[1][c.0] = acceleration;
             }
@@ -202,28 +203,10 @@ impl Stepper<'_> {
     }
 }
 
-/// The polynomial of degree five through value, first and second derivative at both ends of a stretch h, with its own two
-/// derivatives, at its part s.
-fn quintic(a: [f64; 3], b: [f64; 3], h: f64, s: f64) -> [f64; 3] {
-    let [a0, a1, a2] = [a[0], a[1] * h, a[2] * h * h];
-    let [b0, b1, b2] = [b[0], b[1] * h, b[2] * h * h];
-    // a0 + a1 s + a2 s^2 / 2 + c3 s^3 + c4 s^4 + c5 s^5 with the three conditions at s = 1
-    let (d0, d1, d2) = (b0 - a0 - a1 - 0.5 * a2, b1 - a1 - a2, b2 - a2);
-    let c3 = 10.0 * d0 - 4.0 * d1 + 0.5 * d2;
-    let c4 = -15.0 * d0 + 7.0 * d1 - d2;
-    let c5 = 6.0 * d0 - 3.0 * d1 + 0.5 * d2;
-    let value = a0 + s * (a1 + s * (0.5 * a2 + s * (c3 + s * (c4 + s * c5))));
-    let first = a1 + s * (a2 + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)));
-    let second = a2 + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5));
-    [value, first / h, second / (h * h)]
-}
-
-/// The polynomial of degree three through value and first derivative at both ends of a stretch h, and its derivative, at its part s.
-fn cubic(a: [f64; 2], b: [f64; 2], h: f64, s: f64) -> [f64; 2] {
-    let ([a0, a1], [b0, b1]) = ([a[0], a[1] * h], [b[0], b[1] * h]);
-    let (d0, d1) = (b0 - a0 - a1, b1 - a1);
-    let (c2, c3) = (3.0 * d0 - d1, d1 - 2.0 * d0);
-    [a0 + s * (a1 + s * (c2 + s * c3)), (a1 + s * (2.0 * c2 + s * 3.0 * c3)) / h]
+/// Value and first two derivatives, at a part s of a stretch h, of the polynomial through what is known at both ends: the value, and N - 1
+/// derivatives.
+fn between<const N: usize>(ends: [[f64; N]; 2], h: f64, s: f64) -> [f64; 3] {
+    segment_at(&hermite(h, N - 1, |end, order| ends[end][order]), s * h)
 }
 
 #[cfg(test)]
@@ -233,12 +216,12 @@ mod tests {
     #[test]
     fn polynomials_of_their_degree_are_reproduced() {
         let p = |t: f64| [t.powi(5) - 2.0 * t * t, 5.0 * t.powi(4) - 4.0 * t, 20.0 * t.powi(3) - 4.0];
-        let q = |t: f64| [t.powi(3) - t, 3.0 * t * t - 1.0];
+        let q = |t: f64| [t.powi(3) - t, 3.0 * t * t - 1.0, 6.0 * t];
         for s in [0.0, 0.3, 0.5, 1.0] {
             let t = 0.4 + 0.7 * s;
-            let found = quintic(p(0.4), p(1.1), 0.7, s);
+            let found = between([p(0.4), p(1.1)], 0.7, s);
             assert!((0..3).all(|n| (found[n] - p(t)[n]).abs() < 1e-12), "{found:?}");
-            let found = cubic(q(0.4), q(1.1), 0.7, s);
+            let found = between([q(0.4), q(1.1)].map(|[value, first, _]| [value, first]), 0.7, s);
             assert!((found[0] - q(t)[0]).abs() < 1e-14 && (found[1] - q(t)[1]).abs() < 1e-13);
         }
     }

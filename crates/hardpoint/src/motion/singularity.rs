@@ -127,7 +127,7 @@ impl Surroundings {
         travel[..self.known].iter().zip(&self.fastest).map(|(du, speed)| part(*du, *speed)).sum()
     }
 
-    /// How far the fastest of the counted angles goes, rad, when each direction moves by so much at most.
+    /// Returns how far the fastest of the counted angles goes, rad, when each direction moves by `travel` at most.
     pub fn turn_of_fastest(&self, travel: &[f64]) -> f64 {
         let angles = self.angles.first().map_or(0, Vec::len);
         let of_angle = |i: usize| -> f64 {

@@ -116,7 +116,7 @@ pub(crate) struct Stepper<'m> {
     pub turns: Option<TurnCounter<'m>>,
     /// The change point that was crossed last.
     pub(super) crossing: Option<Box<Crossing>>,
-    /// Whether the state stands at a change point, where J is singular and nothing can be solved with it.
+    /// True at a change point, where J is singular and nothing can be solved with it.
     pub at_change_point: bool,
     /// Room for the changes and moves over output times that are tried at once.
     pub(super) changes_ahead: Vec<f64>,
@@ -552,7 +552,7 @@ impl<'m> Stepper<'m> {
         smooth(difference, fastest, self.fastest_driver)
     }
 
-    /// Whether curves hardly bend from where they were touched to where they are now.
+    /// Returns whether curves hardly bend from where they were touched to where they are now.
     fn contacts_are_near(&self) -> bool {
         let contacts = self.state.contacts.iter().zip(&self.saved.contacts);
         contacts

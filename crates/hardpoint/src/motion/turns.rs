@@ -12,7 +12,7 @@ use super::kinematics::State;
 /// An angle must come within this of its prediction, rad: which turn it is in would otherwise be a guess. Over one step it moves by no
 /// more than this to first order, so that half a turn is far away.
 pub(super) const TURN_TRUST: f64 = 1.0;
-/// Seen from its far end, a step may move an angle by so many times more.
+/// Seen from its far end, a step may move an angle by this many times more.
 const FAR_END: f64 = 2.5;
 /// A step of the drivers below this, rad or sizes, is not refused for an angle: one that has no number on the way, as where the points of
 /// a direction meet, jumps there.
@@ -54,7 +54,7 @@ pub(crate) struct TurnCounter<'m> {
     pub lanes: Vec<f64>,
     /// Angular velocity of the fastest of the bodies at the accepted position, rad/s.
     spin: f64,
-    /// The same where a step has come to.
+    /// The same at the end of a step.
     spin_ahead: f64,
     ahead: Vec<f64>,
     /// Scratch.
@@ -63,7 +63,7 @@ pub(crate) struct TurnCounter<'m> {
 }
 
 impl<'m> TurnCounter<'m> {
-    /// Of these angles.
+    /// A counter of these angles.
     pub fn new(angles: Box<dyn CountedAngles + 'm>) -> Self {
         let count = angles.origins().len();
         Self {
@@ -78,7 +78,7 @@ impl<'m> TurnCounter<'m> {
         }
     }
 
-    /// How many angles there are.
+    /// Number of angles.
     pub fn len(&self) -> usize {
         self.values.len()
     }
@@ -107,7 +107,7 @@ impl<'m> TurnCounter<'m> {
         out.extend(self.found.iter().map(|[_, slope, bend]| [*slope, *bend]));
     }
 
-    /// Whether each angle, where the state stands after a step, is in the turn that was predicted. `predict` is given an angle; of what it
+    /// Returns whether each angle, where the state stands after a step, is in the turn that was predicted. `predict` is given an angle; of what it
     /// returns the first is by how much the angle moves as seen from the accepted position, the second as seen from the new one, both to
     /// second order, and the third the farthest that it gets as seen from there, to first order.
     pub fn follow(&mut self, state: &State<f64>, predict: impl Fn(usize) -> [f64; 3]) -> bool {
@@ -127,7 +127,7 @@ impl<'m> TurnCounter<'m> {
         sure
     }
 
-    /// Whether a step h from one output time to the next, over which the drivers move by so much in all, leaves no doubt about the turns of
+    /// Returns whether a step h from one output time to the next, over which the drivers move by so much in all, leaves no doubt about the turns of
     /// any angle where the state stands then.
     pub fn is_even(&mut self, state: &State<f64>, h: f64, moved: f64) -> bool {
         self.look(&|b| BodyState::of(state, b));
@@ -163,7 +163,7 @@ impl<'m> TurnCounter<'m> {
         true
     }
 
-    /// Goes on from where the last step has come to.
+    /// Accepts the end of the last step.
     pub fn accept(&mut self) {
         std::mem::swap(&mut self.values, &mut self.ahead);
         self.spin = self.spin_ahead;
@@ -182,7 +182,7 @@ impl<'m> TurnCounter<'m> {
         }
     }
 
-    /// Whether over a step h nothing turns by more than a radian: neither the drivers together, nor a body, nor an angle.
+    /// Returns whether over a step h nothing turns by more than a radian: neither the drivers together, nor a body, nor an angle.
     fn is_slow(&self, h: f64, moved: f64) -> bool {
         let mut angles = self.ahead.iter().zip(&self.values).map(|(ahead, before)| (ahead - before).abs());
         // Written so that NaN of the motion is not slow, and an angle without a number is no matter of turns.

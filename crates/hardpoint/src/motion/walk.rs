@@ -30,7 +30,7 @@ const NEAREST: f64 = 1e-6;
 /// A law that comes within this part of the distance to a singular position reaches it: the estimate of that distance, 2e-6 rad away, is
 /// good to about 1e-4 (`docs/theory.md`, section 4).
 const REACHED: f64 = 0.99;
-/// The range of a law is asked for over so many parts of the way at most, to find out what it does first.
+/// Number of parts of the way over which the range of a law is computed at most, to find out what it does first.
 const MOST_PARTS: usize = 2_000;
 /// A step that is refused at this length, rad or sizes, is refused for good.
 const SHORTEST: f64 = 1e-10;
@@ -81,6 +81,15 @@ impl Path {
     /// How the part of every gap that is left changes along it.
     fn gap_rate(self) -> f64 {
         if self == Self::Assembly { -1.0 } else { 0.0 }
+    }
+
+    /// Travel of a direction over a step h, from the values of the drivers `before` to those `now`: of a law what its driver does, of a
+    /// straight path the step itself.
+    fn travel_of(self, direction: usize, h: f64, [before, now]: [&[[f64; 3]]; 2]) -> f64 {
+        match self {
+            Self::Laws => now[direction][0] - before[direction][0],
+            Self::Assembly | Self::Line { .. } => h,
+        }
     }
 }
 
@@ -259,7 +268,7 @@ impl Stepper<'_> {
         self.on_laws = path == Path::Laws;
     }
 
-    /// How far each direction goes at most over a stretch of a path, as [`measure_travel`](Self::measure_travel) notes it.
+    /// Measures how far each direction goes at most over a stretch of a path, as [`measure_travel`](Self::measure_travel) notes it.
     pub(super) fn travel_over(&mut self, path: Path, from: f64, to: f64) {
         self.measure_travel(path, to - from);
         if path == Path::Laws {
@@ -272,7 +281,7 @@ impl Stepper<'_> {
         }
     }
 
-    /// Where on its path the singular position lies that is nearest ahead of the saved one.
+    /// Returns where on its path the nearest singular position ahead of the saved one lies.
     pub(super) fn nearest_ahead(&mut self, path: Path) -> Option<f64> {
         self.stand(path).ok()?;
         let ahead = self.ahead(path)?;
@@ -342,10 +351,7 @@ impl Stepper<'_> {
         let sure = turns.follow(state, |i| {
             let (mut ahead, mut back, mut far) = (0.0, 0.0, 0.0);
             for k in 0..directions {
-                let du = match path {
-                    Path::Laws => drivers[k][0] - saved.drivers[k][0],
-                    Path::Line { .. } | Path::Assembly => h,
-                };
+                let du = path.travel_of(k, h, [&saved.drivers, drivers]);
                 // chi_d' Du_d + chi_d'' Du_d^2 / 2 of this end,  chi_d' Du_d - chi_d'' Du_d^2 / 2 of the far one
                 let half = 0.5 * du * du;
                 let ([slope, bend], [slope_there, bend_there]) = (around.angles[k][i], beyond.angles[k][i]);
@@ -370,7 +376,7 @@ impl Stepper<'_> {
         self.examine_position()
     }
 
-    /// Whether curves are touched about where it was predicted.
+    /// Returns whether curves are touched about where it was predicted.
     fn examine_contacts(&self) -> Result<(), Refusal> {
         for (c, k) in self.topology.contacts() {
             let ([predicted, moved], curve) = (self.touching[k], &self.parts.curves[k]);
@@ -394,11 +400,11 @@ impl Stepper<'_> {
         let directions = if path == Path::Laws { self.drivers.len() } else { 1 };
         let mut moves = std::mem::take(&mut self.predicted);
         moves.fill(0.0);
+        for (touching, contact) in self.touching.iter_mut().zip(&self.state.contacts) {
+            touching[0] = contact.u;
+        }
         for k in 0..directions {
-            let du = match path {
-                Path::Laws => self.drivers[k][0] - self.saved.drivers[k][0],
-                _ => h,
-            };
+            let du = path.travel_of(k, h, [&self.saved.drivers, &self.drivers]);
             // q + sum over the drivers of (q_d' Du_d + q_d'' Du_d^2 / 2); what two drivers bend together is left to Newton.
             let half = du * du * 0.5;
             let (slopes, bends) = (&self.around.slopes[k], &self.around.bends[k]);
@@ -409,20 +415,15 @@ impl Stepper<'_> {
                 let [slope, bend] = self.around.turning[k][r.0];
                 self.state.near[r.0] += slope * du + bend * half;
             }
+            // u + u' Du + u'' Du^2 / 2
+            for ([u, _], [slope, bend]) in self.touching.iter_mut().zip(&self.around.sliding[k]) {
+                *u += slope * du + bend * half;
+            }
         }
         for (k, contact) in self.state.contacts.iter_mut().enumerate() {
-            let mut u = contact.u;
-            for direction in 0..directions {
-                let du = match path {
-                    Path::Laws => self.drivers[direction][0] - self.saved.drivers[direction][0],
-                    Path::Assembly | Path::Line { .. } => h,
-                };
-                // u + u' Du + u'' Du^2 / 2
-                let [slope, bend] = self.around.sliding[direction][k];
-                u += slope * du + bend * (du * du * 0.5);
-            }
-            self.touching[k] = [u, (u - contact.u).abs()];
-            *contact = Contact::at(&self.parts.curves[k], u);
+            let [u, moved] = &mut self.touching[k];
+            *moved = (*u - contact.u).abs();
+            *contact = Contact::at(&self.parts.curves[k], *u);
         }
         for c in self.topology.unknown_coordinates() {
             self.state.q[c.0] += moves[c.0];
@@ -496,7 +497,7 @@ impl Stepper<'_> {
         !self.ahead(path).is_some_and(|ahead| ahead.distance < 0.0)
     }
 
-    /// Whether the laws reach the singular position ahead before they go as far the other way, on the way to `target`. Where more than one
+    /// Returns whether the laws reach the singular position ahead before they go as far the other way, on the way to `target`. Where more than one
     /// driver moves there, they are taken to reach it.
     fn reaches(&mut self, path: Path, target: f64) -> bool {
         let from = self.time;

@@ -178,9 +178,18 @@ impl<'m> Analysis<'m> {
         }
     }
 
-    /// How its steps are solved.
-    pub(super) fn execution(&self) -> Execution {
-        self.programs.execution()
+    /// The same analysis at other output times, of which the first is its own: what is planned and recorded serves for these as well.
+    pub(super) fn at_times(&self, times: Vec<f64>) -> Analysis<'static> {
+        let model = Arc::new(Model { times, ..self.model().clone() });
+        Analysis {
+            topology: self.topology.clone(),
+            design_map: DesignMap::of(model),
+            opens: self.opens.clone(),
+            between: Arc::default(),
+            programs: self.programs.clone(),
+            formulas: self.formulas.clone(),
+            end: self.end.clone(),
+        }
     }
 
     pub(crate) fn design_map(&self) -> &DesignMap<'m> {
@@ -240,7 +249,7 @@ impl<'m> Analysis<'m> {
         (0..self.model().bodies.len()).map(|b| sinks.iter().any(|s| s.wants(BodyId(b)))).collect()
     }
 
-    /// The stop of a run that was told to end after so many output times.
+    /// Stop of a run that was interrupted after `done` output times.
     pub(super) fn interrupted(&self, done: usize) -> Stop {
         let last_time = done.checked_sub(1).map(|k| self.model().times[k]);
         let t = last_time.or(self.model().times.first().copied()).unwrap_or(0.0);

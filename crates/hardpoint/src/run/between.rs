@@ -10,6 +10,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use crate::law::Law;
+use crate::linalg::{hermite, segment_at};
 use crate::model::{Metric, Model, Reduction};
 use crate::motion::stepper::driver_units;
 
@@ -36,7 +37,7 @@ const JUST_BEFORE: f64 = 1e-12;
 /// Memory for the motion between output times.
 const BYTES: usize = 128 << 20;
 
-/// Whether a metric is taken at certain times of the curve.
+/// Returns whether a metric is taken at certain times of the curve.
 fn is_located(metric: &Metric) -> bool {
     match metric.take {
         Reduction::Least
@@ -49,7 +50,7 @@ fn is_located(metric: &Metric) -> bool {
 }
 
 impl Analysis<'_> {
-    /// Whether metrics ask for more times than there are output times.
+    /// Returns whether metrics ask for more times than there are output times.
     pub(super) fn has_times_between(&self) -> bool {
         self.times_between().len() > self.model().times.len()
     }
@@ -98,9 +99,7 @@ impl Analysis<'_> {
                 times.retain(|t| start <= *t && *t <= end);
                 times.sort_by(f64::total_cmp);
                 times.dedup();
-                let finer = Arc::new(Model { times: times.clone(), ..model.clone() });
-                let Ok(finer) = Analysis::with(finer, self.topology().formulation) else { return };
-                let finer = finer.executed(self.execution());
+                let finer = self.at_times(times.clone());
                 let mut next = Solution::default();
                 let design = finer.prepare(&design.values, design.scope);
                 finer.walk(&design, times.len(), &mut go_on, &mut next, &mut |_, _| ());
@@ -122,8 +121,8 @@ impl Analysis<'_> {
     }
 }
 
-/// The output times of a model, and as many between them as its laws ask for, steps so many times coarser than they might be; `None` where
-/// these are more than `most`.
+/// Returns the output times of a model, and those between them that its laws ask for, in steps `coarser` times as long as they might be;
+/// `None` where these are more than `most`.
 fn times_of(model: &Model, laws: &[(&Law, f64)], coarser: f64, most: usize) -> Option<Vec<f64>> {
     let (start, end) = (*model.times.first()?, *model.times.last()?);
     let ranges: Vec<f64> = laws
@@ -162,19 +161,15 @@ fn times_of(model: &Model, laws: &[(&Law, f64)], coarser: f64, most: usize) -> O
     Some(times)
 }
 
-/// Whether a law is, within so much, the polynomial of degree five that has its values, rates and accelerations at both ends.
+/// Returns whether a law is, within so much, the polynomial of degree five that has its values, rates and accelerations at both ends.
 fn is_resolved(law: &Law, [from, to]: [f64; 2], within: f64) -> bool {
     let h = to - from;
     let [a, b] = [from, to].map(|t| law.at(t).derivatives());
-    // Newton's form, as of the curves of metrics
-    let [a0, a1, a2] = [a[0], a[1] * h, 0.5 * a[2] * h * h];
-    let [b0, b1, b2] = [b[0], b[1] * h, 0.5 * b[2] * h * h];
-    let (p, q, r) = (b0 - a0 - a1 - a2, b1 - a1 - 2.0 * a2, b2 - a2);
-    let [c3, c4, c5] = [10.0 * p - 4.0 * q + r, -15.0 * p + 7.0 * q - 2.0 * r, 6.0 * p - 3.0 * q + r];
+    let polynomial = hermite(h, 2, |end, order| [a, b][end][order]);
     // Round-off of the value is no bend of the law.
-    let within = within.max(8.0 * f64::EPSILON * a0.abs().max(b0.abs()));
+    let within = within.max(8.0 * f64::EPSILON * a[0].abs().max(b[0].abs()));
     PLACES.iter().all(|s| {
-        let there = a0 + s * (a1 + s * (a2 + s * (c3 + s * (c4 + s * c5))));
+        let [there, ..] = segment_at(&polynomial, s * h);
         // A law without a number is no matter of resolution.
         !((law.at(from + s * h).value() - there).abs() > within)
     })

@@ -625,7 +625,7 @@ fn take<T: Real>(
     }
 }
 
-/// What a metric takes of a motion with one output time: a curve that is one point with its rates.
+/// Takes a metric of a motion with one output time: a curve that is one point with its rates.
 fn take_at_single_time<T: Real>(
     metric: &Metric,
     y: &SampledCurve<'_, T>,

@@ -1,6 +1,6 @@
 //! How far exact sensitivities are from differences of re-solved designs, quantity by quantity.
 
-use crate::model::{BodyId, Dimension, MeasureKind, Model, OutputSource};
+use crate::model::{BodyId, Dimension, Model, OutputSource};
 use crate::run::Solution;
 use crate::sensitivity::BodySensitivity;
 use crate::space::Vec3;
@@ -110,9 +110,9 @@ impl Comparison {
         [0, 1, 2].map(|order| if order < self.orders[m] { self.errors[first + order].error } else { 0.0 })
     }
 
-    /// Of outputs that agree at no step, takes off the error what the differences leave open themselves, time by time.
+    /// Reduces the error of outputs that agree at no step by the spread of the differences themselves, time by time.
     ///
-    /// Of three steps in a row that differ least, their spread s bounds what truncation or round-off does there: truncation falls by a factor of
+    /// The spread s of the three steps in a row that differ least bounds truncation and round-off there: truncation falls by a factor of
     /// 10 (one-sided of 3) from each to the next. A derivative that is wrong by more than s stays wrong by the rest.
     pub(super) fn allow_for_spread(
         &mut self,
@@ -186,7 +186,7 @@ pub(super) struct Undecided {
 const KINK: f64 = 1e-4;
 
 impl Undecided {
-    /// By the difference with the finest step: magnitudes that come to zero within the step, where `abs(v)` has a kink and no derivative
+    /// Decides by the difference with the finest step: undecided are magnitudes that reach zero within the step, where `abs(v)` has a kink and no derivative
     /// at v = 0; and outputs that the moved designs have no number for. `None` where nothing was solved.
     pub fn by(model: &Model, solution: &Solution, finest: Option<&Difference>) -> Self {
         let Some(d) = finest else { return Self::default() };
@@ -217,20 +217,8 @@ impl Undecided {
 /// The measures that an output is, or is made of.
 fn measures_of(model: &Model, output: OutputSource) -> Vec<usize> {
     let OutputSource::Measure(m) = output else { return Vec::new() };
-    let mut found = vec![m];
-    match &model.measures[m].kind {
-        MeasureKind::Rate { of } => found.extend(measures_of(model, *of)),
-        MeasureKind::Slope { of, over, .. } => {
-            found.extend(measures_of(model, *of));
-            found.extend(measures_of(model, *over));
-        }
-        MeasureKind::Compliance { of, .. } => found.extend(measures_of(model, *of)),
-        MeasureKind::Combination { expression } => {
-            found.extend(expression.sources().flat_map(|source| measures_of(model, source)));
-        }
-        _ => {}
-    }
-    found
+    let sources = model.measures[m].kind.sources().into_iter();
+    std::iter::once(m).chain(sources.flat_map(|source| measures_of(model, source))).collect()
 }
 
 struct Comparing<'a> {
@@ -289,14 +277,14 @@ impl<'a> Comparing<'a> {
         }
     }
 
-    /// What deviations of output m's time derivative of that order are relative to.
+    /// Returns the scale of deviations of output m's time derivative of that order.
     fn scale_of(&self, m: usize, order: usize) -> f64 {
         let measured = &self.solution.measured;
         let sizes = (0..self.solution.motion.len()).map(|k| measured.d(k, self.d.variable, m)[order].abs());
         sizes.fold(0.0, f64::max).max(self.negligible(measured.outputs[m].dimension, order))
     }
 
-    /// Whether output m has its numbers at time k. Next to a time without them the neighbours' may be anything.
+    /// Returns whether output m has its numbers at time k. Next to a time without them the neighbours' may be anything.
     fn is_defined(&self, k: usize, m: usize) -> bool {
         let measured = &self.solution.measured;
         let orders = measured.outputs[m].known.orders;

@@ -235,7 +235,7 @@ pub struct RowPlace {
     pub columns: Vec<CoupledColumn>,
     /// Whether it is a further term of a coupler, and no constraint by itself.
     pub is_term: bool,
-    /// Of the first term of a coupler: the value of the sum, per coefficient of this term; else zero.
+    /// Value of the sum of a coupler, per coefficient of its first term, at this term; zero elsewhere.
     pub constant: f64,
     /// What its residual is compared with: the size of its loop, m, if that is a length; else 1.
     pub unit: f64,
@@ -445,6 +445,13 @@ impl Coordinate {
 }
 
 impl Link {
+    /// The coordinate of this freedom of its joint, which counts from body i: a link that begins at body j has its steps the other way
+    /// round.
+    pub fn coordinate_of(&self, freedom: usize) -> CoordinateId {
+        let step = if self.parent_end == 0 { freedom } else { self.steps.len() - 1 - freedom };
+        self.steps[step].first
+    }
+
     /// Its coordinates.
     pub fn coordinates(&self) -> impl Iterator<Item = CoordinateId> + '_ {
         self.steps.iter().flat_map(Step::coordinates)

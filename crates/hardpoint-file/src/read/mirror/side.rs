@@ -64,7 +64,7 @@ impl<'a> Side<'_, 'a> {
         }
     }
 
-    /// Whether something else has an image of that name, which is refused.
+    /// Returns whether something else has an image of that name, which is refused.
     fn is_taken(&mut self, section: &'static str, twin: &str, name: &str, at: &Range<usize>) -> bool {
         let Some(other) = self.made.get(&(section, twin.to_owned())) else { return false };
         let message = format!(
@@ -200,7 +200,7 @@ impl<'a> Side<'_, 'a> {
         }
     }
 
-    /// Whether a coordinate of a mirrored joint is the opposite on the other side.
+    /// Returns whether a coordinate of a mirrored joint is the opposite on the other side.
     fn is_reversed(&self, joint: &str, coordinate: Option<&str>) -> bool {
         let kind = self.entry("joints", joint).and_then(type_of);
         kind.is_some_and(|kind| {
@@ -223,7 +223,7 @@ impl<'a> Side<'_, 'a> {
         }
     }
 
-    /// Whether a measure that a driver may prescribe is the opposite on the other side.
+    /// Returns whether a measure that a driver may prescribe is the opposite on the other side.
     fn is_opposite_measure(&self, name: &str) -> bool {
         if let Some(measure) = self.entry("measures", name) {
             let is_coordinate = word(measure, "type") == Some("coordinate");

@@ -30,7 +30,7 @@ enum Zero {
     None,
     /// Zero: what is measured is counted from the design configuration, like wheel travel.
     AsDrawn,
-    /// What the joint keeps of its design configuration: the length of a rod or leg, the course of an axis.
+    /// Value that the joint keeps of its design configuration: the length of a rod or leg, the course of an axis.
     Kept,
     /// Where the joint's hardpoint is along its axis.
     Position,
@@ -48,7 +48,7 @@ const HEADLESS: f64 = 1e-6;
 /// The body that stands.
 const GROUND_NAME: &str = "ground";
 
-/// The value of a driver's coordinate as drawn, over hardpoints, or as the joint keeps it.
+/// Design value of a driver's coordinate, over hardpoints, or as the joint keeps it.
 pub(super) struct AsDrawn {
     expression: Expression,
     sources: Vec<Source>,

@@ -313,15 +313,8 @@ impl Checker<'_> {
             Visit::New => state[k] = Visit::Open,
         }
         let kind = self.model.measures[k].kind.clone();
-        let used: Vec<OutputSource> = match &kind {
-            MeasureKind::Rate { of } => vec![*of],
-            MeasureKind::Slope { of, over, .. } => vec![*of, *over],
-            MeasureKind::Compliance { of, .. } => vec![*of],
-            MeasureKind::Combination { expression } => expression.sources().collect(),
-            _ => Vec::new(),
-        };
         let mut sound = true;
-        for source in used {
+        for source in kind.sources() {
             if let OutputSource::Measure(other) = source {
                 sound &= self.visit(other, state);
             }

@@ -90,7 +90,7 @@ impl GaussNewton {
 }
 
 impl Point {
-    /// Whether misfits are so small that they may be on their way to zero.
+    /// Returns whether misfits are so small that they may be on their way to zero.
     pub fn is_small(&self, bounds: &[[f64; 2]]) -> bool {
         let spans: Vec<f64> = bounds.iter().map(|[low, high]| high - low).collect();
         self.misfit() <= SMALL * self.strongest(&spans)

@@ -54,13 +54,13 @@ const DAMPING: f64 = 10.0;
 const LEAST_DAMPED: f64 = 1e-20;
 /// A Gauss-Newton step that gains this part of what it promised is a good one, and so is a run that halves the objective.
 const GOOD: f64 = 0.5;
-/// Gauss-Newton steps go on although the objective is above that of the best design: until so many of them have not taken away ...
+/// Gauss-Newton steps go on although the objective is above that of the best design: until this number of them have not taken away ...
 const WEAK_STEPS: usize = 3;
 /// ... this part of the objective ...
 const WEAK: f64 = 0.2;
 /// ... or one has made it this many times greater.
 const ASTRAY: f64 = 1e6;
-/// Squares under limits that do not fall to half within so many iterations are left to Gauss-Newton steps.
+/// Squares under limits that do not fall to half within this number of iterations are left to Gauss-Newton steps.
 const PATIENCE: usize = 30;
 /// The first solver has done its work where a step gains less than this part of the objective: others make an end of it.
 const HARDLY_LESS: f64 = 1e-6;
@@ -240,7 +240,7 @@ pub fn optimize(
 /// Judges one design, given by the values of all variables of the model.
 ///
 /// # Errors
-/// Where a motion stops, comes closer to a singular position than the margin that is asked for, or a goal has no value.
+/// Fails where a motion stops, comes closer to a singular position than the margin that is asked for, or a goal has no value.
 pub fn judge(
     model: &Model,
     motions: &Motions<'_>,
@@ -393,7 +393,7 @@ impl<'p> Descent<'p> {
         Optimality::of(self.problem, point, &self.scales, self.steepest)
     }
 
-    /// Whether a search can end here.
+    /// Returns whether a search can end here.
     fn is_sharp(&self, point: &Point) -> bool {
         let Optimality { residual, left_of_start, .. } = self.optimality(point);
         self.violation(point) <= KEPT && residual < OPTIMAL && (residual < SHARP || left_of_start < SHARP)
@@ -458,7 +458,7 @@ impl<'p> Descent<'p> {
         }
     }
 
-    /// Where the best design stands, nothing of what has been found of the curvature is kept.
+    /// Returns to the best design, and forgets the curvature found elsewhere.
     fn return_to_best(&mut self) {
         self.here = self.best.clone();
         self.at = self.problem.parts(&self.here.design);

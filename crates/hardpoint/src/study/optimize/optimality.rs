@@ -41,7 +41,7 @@ pub struct Optimality {
     pub residual: f64,
     /// The same relative to the gradient at the start.
     pub left_of_start: f64,
-    /// Whether all goals are squares that vanish to round-off: nothing is left to gain.
+    /// True if all goals are squares that vanish to round-off: nothing is left to gain.
     pub met: bool,
     /// What binds, and by how much the objective would get less if it gave way by one SI unit (its Lagrange multiplier).
     pub binding: Vec<(Binding, f64)>,
@@ -166,7 +166,7 @@ impl Point {
         spans.iter().enumerate().map(column).fold(0.0, f64::max)
     }
 
-    /// Whether all goals are squares that vanish to round-off.
+    /// Returns whether all goals are squares that vanish to round-off.
     pub(super) fn is_met(&self, spans: &[f64]) -> bool {
         self.has_only_squares() && self.misfit() <= MET * self.strongest(spans)
     }

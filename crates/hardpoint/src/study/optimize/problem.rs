@@ -114,7 +114,7 @@ impl Point {
         squares + plain + self.peaks.iter().map(Rows::greatest).sum::<f64>()
     }
 
-    /// Whether all goals are squares.
+    /// Returns whether all goals are squares.
     pub fn has_only_squares(&self) -> bool {
         self.plain.values.is_empty() && self.peaks.is_empty()
     }

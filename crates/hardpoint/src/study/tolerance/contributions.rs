@@ -1,4 +1,4 @@
-//! The part of the variance of a metric that each variable contributes, from the model that its spread is told by.
+//! The part of the variance of a metric that each variable contributes, from the model of its spread.
 
 use crate::model::{Model, Tolerancing};
 
@@ -10,11 +10,11 @@ const ERRORS: f64 = 3.0;
 const FAILING: f64 = 1e-3;
 /// Contributions are taken of drawn designs from this number on: fewer leave whole percents to chance.
 const ENOUGH: usize = 1000;
-/// Groups of drawn designs with about the same deviation of a variable: at least so many designs each, and at most so many groups.
+/// Groups of drawn designs with about the same deviation of a variable: least number of designs in each, and largest number of groups.
 const PER_GROUP: usize = 100;
 const MOST_GROUPS: usize = 50;
 
-/// The model of a metric that its spread is told by.
+/// The model of a metric that its spread is computed with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SpreadModel {
     /// First derivatives.
@@ -29,7 +29,7 @@ pub enum SpreadModel {
 /// Contributions to the variance of a metric.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contributions {
-    /// Where they are from.
+    /// Model that they are from.
     pub model: SpreadModel,
     /// Per variable that may be off. Of drawn designs they are main effects: the variance of the mean at given deviations of the variable.
     pub shares: Vec<f64>,
@@ -38,19 +38,19 @@ pub struct Contributions {
 }
 
 impl Examination {
-    /// Whether linear statistics of a metric are off: by second derivatives, or by the designs drawn.
+    /// Returns whether linear statistics of a metric are off: by second derivatives, or by the designs drawn.
     pub fn is_nonlinear(&self, metric: usize) -> bool {
         self.metrics[metric].is_nonlinear() || self.drawn_differ(metric) || self.fails_often()
     }
 
-    /// Whether the standard deviation of the designs drawn is another than the linear one.
+    /// Returns whether the standard deviation of the designs drawn is another than the linear one.
     pub fn drawn_differ(&self, metric: usize) -> bool {
         let Some(drawn) = self.sampled.as_ref().map(|s| &s.metrics[metric]) else { return false };
         let [sigma, error] = drawn.sigma;
         (self.metrics[metric].sigma - sigma).abs() > (ERRORS * error).max(NONLINEAR * sigma)
     }
 
-    /// Whether designs that do not move to the end are part of the spread.
+    /// Returns whether designs that do not move to the end are part of the spread.
     pub fn fails_often(&self) -> bool {
         self.sampled.as_ref().is_some_and(|s| s.failed as f64 > FAILING * s.samples as f64)
     }
