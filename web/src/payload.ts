@@ -578,7 +578,7 @@ export type Value = {
  */
 name: string,
 /**
- * What it is, in a few words: `design configuration`, `at the start`, `range`, `largest`, ...
+ * Kind of value, in a few words: `design configuration`, `at the start`, `range`, `largest`, ...
  */
 what: string,
 /**

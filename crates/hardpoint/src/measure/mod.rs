@@ -781,16 +781,18 @@ impl<'a, T: Real> Instant<'a, T> {
         // i = (abs(a + b) + a - b) / 2 and the outer one by o = (abs(a + b) - a + b) / 2, whichever way the axle turns.
         let turning = || {
             let (a, b) = (-toe(&left), toe(&right));
-            let (mean, apart) = ((a + b).abs() * half, (a - b) * half);
+            let (sum, apart) = ((a + b).abs(), (a - b) * half);
+            // Straight ahead the two wheels change places, a kink: derivatives are the mean of those of both sides.
+            let mean = if sum.exceeds(T::constant(KINK)) { sum * half } else { T::zero() };
             (mean, mean + apart, mean - apart)
         };
         match what {
             AxleMeasure::Track => track,
             AxleMeasure::TotalToe => toe(&left) + toe(&right),
             AxleMeasure::AckermannError => {
-                let (mean, inner, outer) = turning();
-                // o - r; where the axle turns from one side to the other the wheels change places, and it has a kink.
-                (outer - outer_by_ackermann(inner, track / wheelbase())) / beyond(T::one(), mean, STRAIGHT)
+                let (_, inner, outer) = turning();
+                // o - r
+                outer - outer_by_ackermann(inner, track / wheelbase())
             }
             AxleMeasure::Ackermann => {
                 let (mean, inner, outer) = turning();
@@ -890,6 +892,8 @@ const RESTS: f64 = 1e-12;
 
 /// A wheel that heads less into the turn than this, rad, drives straight ahead: the turning radius would be some 30 km.
 const STRAIGHT: f64 = 1e-4;
+/// A sum of headings of a symmetric axle in pure bump is zero to this round-off, rad.
+const KINK: f64 = 1e-12;
 
 /// An axle whose wheels head less aside than this in the mean, 1 degree in rad, is not steered: static toe and bump steer are of that size,
 /// while Ackermann's difference of the two headings falls with the square of the angle (0.01 degrees here), so that its part would be

@@ -69,7 +69,9 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
         d: vec![f64::NAN; model.variables.len()],
     };
     let Some((y, x)) = curves(solution, metric) else { return none };
-    let Some((value, time)) = take(metric, &y, &x) else { return none };
+    let Some((value, time)) = take(metric, &y, &x).filter(|(value, _)| value.is_finite()) else {
+        return none;
+    };
     let derivative = |v: usize| {
         let found = varied_curves(solution, metric, VariableId(v));
         found.and_then(|(y, x)| take(metric, &y, &x)).map_or(f64::NAN, |(value, _)| value.d)
