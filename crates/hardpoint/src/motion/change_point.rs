@@ -26,6 +26,9 @@ const SAME_MOTION: f64 = 0.05;
 /// polynomials.
 const AT_IT: f64 = 0.2;
 
+/// The first step back from the change point is no shorter than this part of the stretch.
+const SHORTEST_BACK: f64 = 1e-6;
+
 /// A stretch around a change point.
 #[derive(Clone)]
 pub(super) struct Crossing {
@@ -80,10 +83,20 @@ impl Stepper<'_> {
         if !(from < at && at < to) {
             return None;
         }
-        // Back to b, then over to f.
-        self.solve_at(path, from, from - self.time).ok()?;
-        self.polish().ok()?;
-        self.save(from, 0.0);
+        // Back to b, then over to f. At a distance d, q' is known to round-off / d^2 and q'' to round-off / d^3: steps double d.
+        while self.time > from {
+            let distance = f64::max(at - self.time, SHORTEST_BACK * h);
+            let back = if distance < h { f64::max(from, self.time - distance) } else { from };
+            self.solve_at(path, back, back - self.time).ok()?;
+            self.polish().ok()?;
+            self.save(back, 0.0);
+            self.examine_here(path);
+        }
+        if self.time < from {
+            self.solve_at(path, from, from - self.time).ok()?;
+            self.polish().ok()?;
+            self.save(from, 0.0);
+        }
         // The drivers move by a hundredth of a radian: an angle is in the nearest turn.
         self.renew_turns();
         self.examine_here(path);
