@@ -7,7 +7,9 @@ use hardpoint::motion::{Closing, Motion, Stop, StopKind};
 use hardpoint::topology::TopologyFault;
 use hardpoint::{
     draft::Section,
-    model::{DesignVariable, ENDS_MEET, ElementKind, JointId, MeasureKind, Model, OutputSource},
+    model::{
+        AtChangePoints, DesignVariable, ENDS_MEET, ElementKind, JointId, MeasureKind, Model, OutputSource,
+    },
 };
 use hardpoint_file::{Diagnostic, ModelFile, Severity};
 
@@ -229,7 +231,10 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
                 model.elements.iter().enumerate().filter(|(e, element)| element.kind.rubs() && kinds(*e));
             of.map(|(_, element)| element.name.clone()).collect()
         };
-        list.push(if !without_length.is_empty() {
+        list.push(if found.motion.margins.get(k).is_some_and(|margin| margin.value == 0.0) {
+            d.note("the mechanism is at a change point there, where its equilibrium is singular")
+                .help("read it at output times away from this one, or drive another joint of the loop")
+        } else if !without_length.is_empty() {
             d.note(format!("both ends of {} are at one place there: a spring of no length pulls nowhere", names_of(&without_length)))
                 .help("move one of its ends, or use a `bushing`")
         } else if is_compliance {
@@ -295,7 +300,15 @@ pub fn margin(file: &ModelFile, margin: &MarginFact) -> Option<Diagnostic> {
         rounded(margin.digits_lost.min(16.0).round(), 2)
     ));
     let d = d.note(format!("the loop consists of {}", names(margin.joints.iter().map(String::as_str))));
-    Some(d.help("drive another joint of this loop, or move its hardpoints so that it stays away from there"))
+    Some(d.help(match file.model.at_change_points {
+        AtChangePoints::Stop => {
+            "drive another joint of this loop, or move its hardpoints so that it stays away from there"
+        }
+        AtChangePoints::Continue => {
+            "the motion may pass a change point, as `at_change_points = \"continue\"` allows; read velocities, loads and sensitivities at \
+             output times away from this one, or drive another joint of this loop"
+        }
+    }))
 }
 
 /// A warning for each design variable that a change takes out of its bounds.

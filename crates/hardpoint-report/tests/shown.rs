@@ -427,3 +427,25 @@ fn a_variable_that_changes_nothing_is_told() {
     let (solution, summary) = solved(&file);
     insta::assert_snapshot!(told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None)));
 }
+
+#[test]
+fn loads_without_a_number_at_a_change_point_name_it() {
+    let text = r#"
+name = "parallelogram under gravity"
+units = { length = "m", angle = "rad" }
+planar = "xy"
+at_change_points = "continue"
+hardpoints = { A = [0, 0], B = [0, 1], C = [3, 1], D = [3, 0], G = [1, 1] }
+bodies = { ground = ["A", "D"], crank = ["A", "B"], coupler = ["B", "C"], rocker = ["C", "D"] }
+drivers.motor = { joint = "A", law = "2*pi*t" }
+time = { end = 1, steps = 8 }
+gravity = { along = "-y" }
+points.G = { body = "coupler", at = "G" }
+masses.m = { type = "rigid", centre = "G", mass = 2 }
+measures.rocker = { type = "reaction", joint = "D", part = "radial" }
+"#;
+    let file = hardpoint_file::parse(text, "drawn.toml").unwrap();
+    let (solution, summary) = solved(&file);
+    let told = told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
+    insta::assert_snapshot!(told);
+}

@@ -312,3 +312,68 @@ fn a_dead_point_is_no_change_point() {
     let stop = run(&model(&four_bar(rocker, 1.0, 50, "continue")), Formulation::Relative).stop;
     assert_eq!(stop.map(|s| s.kind), Some(StopKind::Limit));
 }
+
+/// A parallelogram with a mass on its coupler, 1 m from the crank, driven by 360 deg/s: its bars are in line at t = 0.25 and 0.75.
+fn loaded_parallelogram(end: f64, steps: usize) -> String {
+    format!(
+        r#"
+name = "parallelogram under gravity"
+units = {{ length = "m", angle = "rad" }}
+planar = "xy"
+at_change_points = "continue"
+hardpoints = {{ A = [0, 0], B = [0, 1], C = [3, 1], D = [3, 0], G = [1, 1] }}
+bodies = {{ ground = ["A", "D"], crank = ["A", "B"], coupler = ["B", "C"], rocker = ["C", "D"] }}
+drivers.motor = {{ joint = "A", law = "2*pi*t" }}
+time = {{ end = {end:?}, steps = {steps} }}
+gravity = {{ along = "-y", acceleration = 9.8 }}
+points.G = {{ body = "coupler", at = "G" }}
+masses.m = {{ type = "rigid", centre = "G", mass = 2 }}
+[measures]
+torque = {{ type = "driver_force", driver = "motor" }}
+rocker_x = {{ type = "reaction", joint = "D", part = "force_x" }}
+rocker_y = {{ type = "reaction", joint = "D", part = "force_y" }}
+crank_y = {{ type = "reaction", joint = "A", part = "force_y" }}
+"#
+    )
+}
+
+#[test]
+fn loads_are_right_beside_change_points_and_absent_at_them() {
+    let ends = [(1.0, 4), (1.0, 8), (1.0, 73), (1.0, 400), (0.2507, 3), (0.26, 1)];
+    // Last output times this little behind the change point are within the stretch that is crossed at once.
+    let beside = [1e-9, 1e-7, 1e-5, 1e-4, 2e-4].map(|after| (0.25 + after, 2));
+    for (end, steps) in ends.into_iter().chain(beside) {
+        let model = model(&loaded_parallelogram(end, steps));
+        for formulation in BOTH {
+            let solution = run(&model, formulation);
+            assert!(solution.stop.is_none(), "{end} in {steps}: {:?}", solution.stop);
+            for (k, t) in solution.motion.times.iter().enumerate() {
+                let found =
+                    ["torque", "rocker_x", "rocker_y", "crank_y"].map(|name| value(&solution, k, name));
+                let speed = std::f64::consts::TAU;
+                let (sine, cosine) = (std::f64::consts::FRAC_PI_2 + speed * t).sin_cos();
+                let nearest = f64::min((t - 0.25).abs(), (t - 0.75).abs());
+                if nearest < 3e-4 {
+                    assert!(found.iter().all(|x| x.is_nan()), "{t} of {end}: {found:?}");
+                    continue;
+                }
+                // The coupler only translates, by -speed^2 (cos, sin). The rocker has no mass: it pushes along itself, by moments about B
+                // 3 F sin = 2 (g - speed^2 sin); the driver lifts the weight.
+                let lift = 2.0 * (9.8 - speed * speed * sine);
+                let rocker = lift / (3.0 * sine);
+                let expected = [
+                    2.0 * 9.8 * cosine,
+                    // What ground puts on the rocker is what the rocker puts on the coupler.
+                    rocker * cosine,
+                    rocker * sine,
+                    lift - rocker * sine,
+                ];
+                // Positions beside a change point lose digits with the distance from it, 6e-3 rad at least.
+                let size = expected.iter().fold(20.0, |most: f64, x| most.max(x.abs()));
+                for (found, expected) in found.iter().zip(expected) {
+                    assert!((found - expected).abs() < 1e-6 * size, "{t} of {end}: {found} for {expected}");
+                }
+            }
+        }
+    }
+}
