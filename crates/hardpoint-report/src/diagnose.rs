@@ -27,12 +27,13 @@ const MOST_GAPS: usize = 5;
 pub fn all(file: &ModelFile, summary: &Summary, course: &Course, outputs: Option<&str>) -> Vec<Diagnostic> {
     let ended = &course.kept.stop;
     let mut list = file.remarks.clone();
+    list.extend(rigid(file, &summary.model));
     list.extend(variables(file, &summary.model));
     // Before a limit the margin falls to zero, and the stop says so.
     if ended.as_ref().is_none_or(|s| s.kind == StopKind::Interrupted) {
         list.extend(summary.margin.as_ref().and_then(|m| margin(file, m)));
     }
-    list.extend(residual(file, summary.effort.worst_residual_si));
+    list.extend(residual(file, &summary.model, summary.effort.worst_residual_si));
     list.extend(loads(file, course));
     list.extend(ended.as_ref().map(|s| stop(file, s, course.steps, outputs)));
     list
@@ -182,8 +183,43 @@ const VISIBLE: f64 = 1e-3;
 /// Residuals of directions count as closed up to this, rad: below it a residual says nothing about lengths.
 const LEAST_VISIBLE: f64 = 1e-5;
 
+/// The joints with redundant constraints, each once.
+fn redundant_joints(facts: &Facts) -> Vec<&str> {
+    let mut list: Vec<&str> = Vec::new();
+    for name in facts.redundancy.iter().flat_map(|r| &r.joints) {
+        if !list.contains(&name.as_str()) {
+            list.push(name);
+        }
+    }
+    list
+}
+
+/// A warning where the joints leave no degree of freedom: all that a run can show is the assembled position.
+fn rigid(file: &ModelFile, facts: &Facts) -> Option<Diagnostic> {
+    if facts.counts.mobility > 0 || facts.counts.joints == 0 {
+        return None;
+    }
+    let redundant = redundant_joints(facts);
+    let first = redundant.first().and_then(|name| file.model.joints.iter().position(|j| j.name == *name));
+    let place = Some((Section::Joints, first.unwrap_or(0)));
+    let message = "nothing can move: the joints leave 0 degrees of freedom".to_owned();
+    let d = file.diagnostic(Severity::Warning, "HP0305", message, place);
+    Some(if redundant.is_empty() {
+        d.note("it is solved as a structure: nothing changes over time")
+            .help("if it is meant to move, give a joint more freedom, and add a driver on that joint")
+    } else {
+        d.note(format!(
+            "{} have redundant constraints: where axes are not exactly parallel, or do not exactly meet, these hold what would move otherwise",
+            names(redundant.into_iter())
+        ))
+        .help(
+            "if it is meant to move, make its axes exactly parallel or give one of these joints more freedom, and add a driver",
+        )
+    })
+}
+
 /// A warning where constraints fail by more than the dimensions of the mechanism allow.
-fn residual(file: &ModelFile, residual: f64) -> Option<Diagnostic> {
+fn residual(file: &ModelFile, facts: &Facts, residual: f64) -> Option<Diagnostic> {
     let model = &file.model;
     let (shortest, size) = (model.shortest(), model.size());
     // Written so that NaN is too much.
@@ -194,15 +230,23 @@ fn residual(file: &ModelFile, residual: f64) -> Option<Diagnostic> {
         |x: f64| with_unit(file.units.from_si(Quantity::Length, x), symbol(file.units, Quantity::Length));
     let message =
         format!("the joints stay open by up to {}: the results are not to be relied on", length(residual));
-    Some(
-        file.diagnostic(Severity::Warning, "HP0410", message, None)
-            .note(format!(
-                "the shortest distance between joints is {}, the mechanism as a whole measures {}: 16 digits do not hold both",
-                length(shortest),
-                length(size)
-            ))
-            .help("draw the joints nearer together: a place along an axis may be moved along it"),
-    )
+    let d = file.diagnostic(Severity::Warning, "HP0410", message, None).note(format!(
+        "the shortest distance between joints is {}, the mechanism as a whole measures {}",
+        length(shortest),
+        length(size)
+    ));
+    let redundant = redundant_joints(facts);
+    Some(if redundant.is_empty() {
+        d.note("16 digits do not hold both")
+            .help("draw the joints nearer together: a place along an axis may be moved along it")
+    } else {
+        d.note(format!(
+            "redundant constraints of {} agree to within {} of the whole only, which is much for the shortest distance",
+            names(redundant.into_iter()),
+            rounded(residual / size, 2)
+        ))
+        .help("make axes that should be parallel exactly parallel, or give one of these joints more freedom")
+    })
 }
 
 /// A warning for each load that has no number at some output time.

@@ -449,3 +449,89 @@ measures.rocker = { type = "reaction", joint = "D", part = "radial" }
     let told = told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
     insta::assert_snapshot!(told);
 }
+
+/// Two long bars on a short coupler; the rocker's axis is tilted by so much.
+fn long_bars(tilt: f64) -> String {
+    format!(
+        r#"
+name = "long bars"
+units = {{ length = "m", angle = "rad" }}
+hardpoints = {{ A = [0, 0, 0], B = [0, 1000, 0], C = [0.1, 1000, 0], D = [0.1, 0, 0] }}
+bodies = {{ crank = {{}}, coupler = {{}}, rocker = {{}} }}
+drivers.motor = {{ joint = "A", law = "t" }}
+time = {{ end = 1, steps = 20 }}
+[joints]
+A = {{ type = "revolute", bodies = ["ground", "crank"], at = "A", axis = "z" }}
+B = {{ type = "revolute", bodies = ["crank", "coupler"], at = "B", axis = "z" }}
+C = {{ type = "revolute", bodies = ["coupler", "rocker"], at = "C", axis = "z" }}
+D = {{ type = "revolute", bodies = ["ground", "rocker"], at = "D", axis = [0, {tilt:?}, 1] }}
+"#
+    )
+}
+
+#[test]
+fn joints_that_stay_open_visibly_are_warned_of() {
+    let told_of = |tilt: f64| {
+        let file = hardpoint_file::parse(&long_bars(tilt), "drawn.toml").unwrap();
+        let (solution, summary) = solved(&file);
+        assert!(solution.stop.is_none(), "{:?}", solution.stop);
+        let told = told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
+        (summary.effort.worst_residual_si, told)
+    };
+    // The coupler's end rises by 460 m per rad of tilt; a thousandth of its length is 0.1 mm.
+    for (tilt, warns) in [(0.0, false), (1e-7, false), (1e-6, true), (1e-5, true)] {
+        let (residual, told) = told_of(tilt);
+        assert!((residual - 459.7 * tilt).abs() <= 1e-3 * residual + 1e-12, "{tilt}: {residual}");
+        assert_eq!(told.contains("HP0410"), warns, "{tilt}: {told}");
+    }
+    insta::assert_snapshot!(told_of(5e-6).1);
+}
+
+#[test]
+fn what_cannot_move_is_warned_of_with_a_fix() {
+    let frame = |joints: &str| {
+        format!(
+            r#"
+name = "rigid"
+units = {{ length = "m", angle = "rad" }}
+hardpoints = {{ A = [0, 0, 0], B = [0, 1, 0], C = [2, 2, 0], D = [3, 0, 0] }}
+bodies = {{ a = {{}}, b = {{}}, c = {{}} }}
+time = {{ end = 1, steps = 4 }}
+[joints]
+{joints}"#
+        )
+    };
+    let hinge = |name: &str, bodies: &str, axis: &str| {
+        format!("{name} = {{ type = \"revolute\", bodies = {bodies}, at = \"{name}\", axis = {axis} }}\n")
+    };
+    let held = |name: &str, body: &str| {
+        format!("{name} = {{ type = \"fixed\", bodies = [\"ground\", \"{body}\"], at = \"{name}\" }}\n")
+    };
+    let fixed = ["a", "b", "c"].map(|b| held(&b.to_uppercase(), b)).concat();
+    // A triangle of pins on ground, and a fixed body.
+    let truss = hinge("A", r#"["ground", "a"]"#, "\"z\"")
+        + &hinge("D", r#"["ground", "b"]"#, "\"z\"")
+        + &hinge("C", r#"["a", "b"]"#, "\"z\"")
+        + &held("B", "c");
+    // A four-bar whose axes are turned against each other.
+    let skew = hinge("A", r#"["ground", "a"]"#, "[0.1, 0, 1]")
+        + &hinge("B", r#"["a", "b"]"#, "\"z\"")
+        + &hinge("C", r#"["b", "c"]"#, "[0, 0.1, 1]")
+        + &hinge("D", r#"["ground", "c"]"#, "\"z\"");
+    let mut all = String::new();
+    for joints in [&fixed, &truss, &skew] {
+        let file = hardpoint_file::parse(&frame(joints), "drawn.toml").unwrap();
+        let (solution, summary) = solved(&file);
+        assert_eq!(summary.model.freedom_line(), "0 (nothing can move)");
+        all += &told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
+        all += "\n";
+    }
+    insta::assert_snapshot!(all);
+    // What a driver holds at rest is none of these.
+    let moves = frame(&skew).replace("[0.1, 0, 1]", "\"z\"").replace("[0, 0.1, 1]", "\"z\"")
+        + "[drivers]\nm = { joint = \"A\", law = \"0\" }\n";
+    let file = hardpoint_file::parse(&moves, "drawn.toml").unwrap();
+    let (solution, summary) = solved(&file);
+    let told = told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
+    assert!(!told.contains("HP0305"), "{told}");
+}
