@@ -137,12 +137,14 @@ fn gap_notes(file: &ModelFile, stop: &Stop, closed: f64) -> Vec<String> {
     if gaps.len() > MOST_GAPS {
         notes.push(format!("{} more stay open by less", gaps.len() - MOST_GAPS));
     }
-    notes.push(match closed {
-        0.0 => "as drawn the mechanism is open, and none of it can be closed, with every driver at zero".into(),
-        part => format!(
+    notes.push(if stop.is_singular_drawing() {
+        "as drawn the mechanism is open in or next to a singular position, and no assembly was found around it, with every driver at zero"
+            .into()
+    } else {
+        format!(
             "as drawn the mechanism is open; {} % of the gaps could be closed together, with every driver at zero",
-            rounded(100.0 * part, 2)
-        ),
+            rounded(100.0 * closed, 2)
+        )
     });
     notes
 }

@@ -377,3 +377,256 @@ fn loads_are_right_beside_change_points_and_absent_at_them() {
         }
     }
 }
+
+/// A linkage that is drawn open in a singular position, in the plane z = 0.
+struct SingularDrawing {
+    name: &'static str,
+    /// Hardpoints; the last two are the places of the joint that is drawn open.
+    points: &'static [(&'static str, [f64; 2])],
+    /// Joints: name, type, bodies, and the axis, whose components turn with the drawing.
+    joints: &'static [(&'static str, &'static str, [&'static str; 2], [f64; 3])],
+    driver: &'static str,
+    /// The gap that stays, m; none where it assembles.
+    open: Option<f64>,
+}
+
+const Z: [f64; 3] = [0.0, 0.0, 1.0];
+const FOUR_BAR: &[(&str, &str, [&str; 2], [f64; 3])] = &[
+    ("A", "revolute", ["ground", "crank"], Z),
+    ("B", "revolute", ["crank", "coupler"], Z),
+    ("D", "revolute", ["ground", "rocker"], Z),
+    ("tip", "revolute", ["coupler", "rocker"], Z),
+];
+const SLIDER: &[(&str, &str, [&str; 2], [f64; 3])] = &[
+    ("A", "revolute", ["ground", "crank"], Z),
+    ("B", "revolute", ["crank", "coupler"], Z),
+    ("D", "translational", ["ground", "rocker"], [1.0, 0.0, 0.0]),
+    ("tip", "revolute", ["coupler", "rocker"], Z),
+];
+
+impl SingularDrawing {
+    const fn new(
+        name: &'static str,
+        points: &'static [(&'static str, [f64; 2])],
+        joints: &'static [(&'static str, &'static str, [&'static str; 2], [f64; 3])],
+        driver: &'static str,
+        open: Option<f64>,
+    ) -> Self {
+        Self { name, points, joints, driver, open }
+    }
+
+    /// Its model, turned about z by an angle, then moved, then scaled.
+    fn text(&self, angle: f64, [x, y]: [f64; 2], scale: f64) -> String {
+        let (s, c) = angle.sin_cos();
+        let (mut hardpoints, mut joints, mut bodies) = (String::new(), String::new(), Vec::<&str>::new());
+        for (name, [px, py]) in self.points {
+            let at = [scale * (c * px - s * py + x), scale * (s * px + c * py + y), 0.0];
+            hardpoints += &format!("{name} = {at:?}\n");
+        }
+        for (name, kind, [i, j], [ax, ay, az]) in self.joints {
+            let at = if *name == "tip" { r#"["tip_i", "tip_j"]"#.to_owned() } else { format!("{name:?}") };
+            let axis = [c * ax - s * ay, s * ax + c * ay, *az];
+            let axis = if *kind == "spherical" { String::new() } else { format!(", axis = {axis:?}") };
+            joints += &format!("{name} = {{ type = {kind:?}, bodies = [{i:?}, {j:?}], at = {at}{axis} }}\n");
+            bodies.extend([*i, *j].into_iter().filter(|b| *b != "ground"));
+        }
+        bodies.sort_unstable();
+        bodies.dedup();
+        let bodies: String = bodies.iter().map(|b| format!("{b} = {{}}\n")).collect();
+        let driver = match self.driver {
+            "" => String::new(),
+            joint => format!("[drivers]\nmotor = {{ joint = {joint:?}, law = \"0\" }}\n"),
+        };
+        let [i, j] = self.joints.iter().find(|j| j.0 == "tip").unwrap().2;
+        format!(
+            r#"
+name = {:?}
+units = {{ length = "m", angle = "rad" }}
+time = {{ end = 1, steps = 1 }}
+[hardpoints]
+{hardpoints}[bodies]
+{bodies}[joints]
+{joints}{driver}[points]
+tip = {{ body = {i:?}, at = "tip_i" }}
+other = {{ body = {j:?}, at = "tip_j" }}
+[measures]
+apart = {{ type = "distance", from = "tip", to = "other" }}
+"#,
+            self.name
+        )
+    }
+}
+
+const SINGULAR_DRAWINGS: &[SingularDrawing] = &[
+    SingularDrawing::new(
+        "a folded four-bar",
+        &[("A", [0., 0.]), ("B", [2., 0.]), ("D", [3., 0.]), ("tip_i", [-1., 0.]), ("tip_j", [-0.7, 0.])],
+        FOUR_BAR,
+        "A",
+        None,
+    ),
+    SingularDrawing::new(
+        "a folded four-bar, its rocker held beyond reach",
+        &[("A", [0., 0.]), ("B", [2., 0.]), ("D", [3., 0.]), ("tip_i", [-1., 0.]), ("tip_j", [-0.7, 0.])],
+        FOUR_BAR,
+        "D",
+        Some(0.3),
+    ),
+    SingularDrawing::new(
+        "a four-bar in line",
+        &[("A", [0., 0.]), ("B", [1., 0.]), ("D", [2., 0.]), ("tip_i", [3., 0.]), ("tip_j", [3.3, 0.])],
+        FOUR_BAR,
+        "A",
+        None,
+    ),
+    SingularDrawing::new(
+        "a four-bar in line, open across",
+        &[("A", [0., 0.]), ("B", [1., 0.]), ("D", [2., 0.]), ("tip_i", [3., 0.]), ("tip_j", [3., 0.3])],
+        FOUR_BAR,
+        "A",
+        None,
+    ),
+    SingularDrawing::new(
+        "a four-bar in line, open across, its rocker held beyond reach",
+        &[("A", [0., 0.]), ("B", [1., 0.]), ("D", [2., 0.]), ("tip_i", [3., 0.]), ("tip_j", [3., 0.3])],
+        FOUR_BAR,
+        "D",
+        // sqrt(9 + 0.09) - 3
+        Some(0.014_962_688_704_276),
+    ),
+    SingularDrawing::new(
+        "a flat parallelogram",
+        &[("A", [0., 0.]), ("B", [1., 0.]), ("D", [3., 0.]), ("tip_i", [4., 0.]), ("tip_j", [4.2, 0.])],
+        FOUR_BAR,
+        "A",
+        None,
+    ),
+    SingularDrawing::new(
+        "a slider-crank at its dead point",
+        &[("A", [0., 0.]), ("B", [1., 0.]), ("D", [2.8, 0.]), ("tip_i", [3., 0.]), ("tip_j", [2.8, 0.])],
+        SLIDER,
+        "D",
+        None,
+    ),
+    SingularDrawing::new(
+        "a folded slider-crank at its dead point",
+        &[("A", [0., 0.]), ("B", [-1., 0.]), ("D", [1.3, 0.]), ("tip_i", [1., 0.]), ("tip_j", [1.3, 0.])],
+        SLIDER,
+        "D",
+        None,
+    ),
+    SingularDrawing::new(
+        "a slider-crank at its dead point, beyond reach",
+        &[("A", [0., 0.]), ("B", [1., 0.]), ("D", [3.2, 0.]), ("tip_i", [3., 0.]), ("tip_j", [3.2, 0.])],
+        SLIDER,
+        "D",
+        Some(0.2),
+    ),
+    SingularDrawing::new(
+        "a slider-crank at its dead point, driven at its crank",
+        &[("A", [0., 0.]), ("B", [1., 0.]), ("D", [3.2, 0.]), ("tip_i", [3., 0.]), ("tip_j", [3.2, 0.])],
+        SLIDER,
+        "A",
+        None,
+    ),
+    SingularDrawing::new(
+        "a flat spatial four-bar",
+        &[("A", [0., 0.]), ("B", [1., -1.]), ("D", [3., 0.]), ("tip_i", [3., 1.]), ("tip_j", [3., 1.2])],
+        &[
+            ("A", "revolute", ["ground", "crank"], Z),
+            ("B", "spherical", ["crank", "coupler"], Z),
+            ("D", "revolute", ["ground", "rocker"], [1.0, 0.0, 0.0]),
+            ("tip", "spherical", ["coupler", "rocker"], Z),
+        ],
+        "A",
+        None,
+    ),
+    SingularDrawing::new(
+        "two loops, the second in line",
+        &[
+            ("A", [0., 0.]),
+            ("B", [0., 1.]),
+            ("C", [2., 1.5]),
+            ("D", [3., 0.]),
+            ("E", [3., 1.2]),
+            ("G", [6.8, 1.2]),
+            ("tip_i", [5., 1.2]),
+            ("tip_j", [4.8, 1.2]),
+        ],
+        &[
+            ("A", "revolute", ["ground", "crank"], Z),
+            ("B", "revolute", ["crank", "coupler"], Z),
+            ("C", "revolute", ["coupler", "rocker"], Z),
+            ("D", "revolute", ["ground", "rocker"], Z),
+            ("E", "revolute", ["rocker", "left"], Z),
+            ("G", "revolute", ["ground", "right"], Z),
+            ("tip", "revolute", ["left", "right"], Z),
+        ],
+        "A",
+        None,
+    ),
+    SingularDrawing::new(
+        "two bars in line",
+        &[("A", [0., 0.]), ("D", [0.3, 0.]), ("tip_i", [0., -0.46]), ("tip_j", [0.3, -0.46])],
+        &[
+            ("A", "revolute", ["ground", "left"], Z),
+            ("D", "revolute", ["ground", "right"], Z),
+            ("tip", "revolute", ["left", "right"], Z),
+        ],
+        "",
+        None,
+    ),
+];
+
+#[test]
+fn singular_drawings_of_all_kinds_assemble_or_stay_open_by_what_they_lack() {
+    let places = [
+        (0.0, [0.0, 0.0], 1.0),
+        (0.7, [0.0, 0.0], 1.0),
+        (0.0, [5.0, -3.0], 1.0),
+        (0.0, [0.0, 0.0], 1e-3),
+        (0.0, [0.0, 0.0], 1e3),
+        (2.1, [10.0, 20.0], 1e3),
+    ];
+    for drawing in SINGULAR_DRAWINGS {
+        for (angle, by, scale) in places {
+            let text = drawing.text(angle, by, scale);
+            let model = model(&text);
+            let mut assembled = Vec::new();
+            // All places in one formulation, the first of small linkages in the other, whose searches take longer.
+            let is_one = angle != 0.0 || by != [0.0; 2] || scale != 1.0 || drawing.joints.len() > 4;
+            for formulation in BOTH.into_iter().filter(|f| *f == Formulation::Relative || !is_one) {
+                let name = format!("{} at {angle}, {by:?}, {scale}, {formulation:?}", drawing.name);
+                let solution = run(&model, formulation);
+                let Some(open) = drawing.open else {
+                    assert!(solution.stop.is_none(), "{name}: {:?}", solution.stop);
+                    // Away from the origin coordinates have fewer digits.
+                    assert!(value(&solution, 0, "apart") < 1e-11 * scale, "{name}");
+                    let assembly = solution.motion.assembly.as_ref().unwrap();
+                    // Only a mechanism that is not singular with this driver closes along the path.
+                    let is_regular = drawing.name.contains("driven at its crank");
+                    assert_eq!(assembly.found_nearby == 0, is_regular, "{name}: {assembly:?}");
+                    let tip = |of: &Solution| ["tip.x", "tip.y", "tip.z"].map(|c| value(of, 0, c) / scale);
+                    if formulation == Formulation::Relative {
+                        // The same again, to the last bit.
+                        assert_eq!(tip(&solution), tip(&run(&model, formulation)), "{name}");
+                    }
+                    assembled.push(tip(&solution));
+                    continue;
+                };
+                let stop = solution.stop.unwrap_or_else(|| panic!("{name} assembles"));
+                assert_eq!(stop.kind, StopKind::DoesNotAssemble, "{name}");
+                assert!(stop.is_singular_drawing() && !stop.remains.is_empty(), "{name}: {stop:?}");
+                if formulation == Formulation::Relative {
+                    let found = stop.remains[0].size / scale;
+                    assert!((found - open).abs() < 1e-6, "{name}: {found} stays open, not {open}");
+                }
+            }
+            // Both formulations take the same assembly.
+            for pair in assembled.windows(2) {
+                let same = pair[0].iter().zip(&pair[1]).all(|(a, b)| (a - b).abs() < 1e-7);
+                assert!(same, "{} at {angle}, {by:?}, {scale}: {assembled:?}", drawing.name);
+            }
+        }
+    }
+}

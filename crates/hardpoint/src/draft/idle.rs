@@ -59,12 +59,18 @@ impl Model {
         prescribed: &[Vec<Row>],
         size: f64,
     ) -> Option<Vec3> {
-        let centre = self.position(self.joints[ball.0].at[0]);
+        let end = |j: JointId| usize::from(bodies.contains(&self.joints[j.0].bodies[1]));
+        let place = |j: JointId| self.position(self.joints[j.0].at[end(j)]);
+        let centre = place(ball);
         let mut rows = Vec::new();
         for &j in joints {
             let joint = &self.joints[j.0];
-            let ends = self.ends(j);
-            let side = if bodies.contains(&joint.bodies[1]) { 1.0 } else { -1.0 };
+            let mut ends = self.ends(j);
+            if joint.kind.places == 1 {
+                // A joint that is drawn open closes where it is on these bodies.
+                (ends.i.r, ends.j.r) = (place(j), place(j));
+            }
+            let side = if end(j) == 1 { 1.0 } else { -1.0 };
             for &row in joint.kind.rows.iter().chain(&prescribed[j.0]) {
                 let wrench = row.wrench(&ends);
                 let scale = if row.is_length() { side / size } else { side };
@@ -86,9 +92,8 @@ impl Model {
         let on_axis = |p: Vec3| (p - centre).cross(axis).norm() <= ON_AXIS * size;
         let for_good = joints.iter().all(|&j| {
             let joint = &self.joints[j.0];
-            let e = usize::from(bodies.contains(&joint.bodies[1]));
-            let along = joint.axis.is_none() || joint.frames[e].cols[2].cross(axis).norm() <= ON_AXIS;
-            on_axis(self.position(joint.at[e])) && along
+            let along = joint.axis.is_none() || joint.frames[end(j)].cols[2].cross(axis).norm() <= ON_AXIS;
+            on_axis(place(j)) && along
         });
         (slide.norm() <= ON_AXIS && for_good).then_some(axis)
     }

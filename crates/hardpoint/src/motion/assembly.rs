@@ -29,7 +29,7 @@ const NO_BETTER: f64 = 1e-12;
 const MAX_SEARCH: usize = 200;
 /// A drawing counts as singular if its path ends before this part of the gaps is closed. A path that ends later ends at a limit of the
 /// mechanism, beyond which positions around the drawing are no better.
-const SINGULAR_DRAWING: f64 = 0.05;
+pub(super) const SINGULAR_DRAWING: f64 = 0.05;
 /// A search that leaves no scaled residual above this has found an assembly; Newton's method closes the rest.
 const FOUND: f64 = 1e-7;
 /// Assemblies that differ by less than this, rad or sizes, are one, and so are distances from the drawing.
@@ -151,18 +151,22 @@ impl Stepper<'_> {
             self.solve_within(f64::INFINITY)
         });
         self.settle_branch();
-        drawn.and_then(|()| self.examine_position()).map_err(|r| self.stop(Path::Assembly, 0.0, r, false))?;
-        self.save(0.0, 0.0);
-        if self.state.largest_gap(&self.topology) == 0.0 {
-            return Ok(());
-        }
-        // phi - (1 - s) phi_0 = 0 from s = 0 to 1
-        self.walk(Path::Assembly, 1.0).map_err(|mut stop| {
-            if !matches!(stop.kind, StopKind::Locked { .. }) {
+        let is_open = self.state.largest_gap(&self.topology) > 0.0;
+        // Where the drawing itself is singular, none of its gaps can be closed along the path.
+        let of_assembly = |mut stop: Box<Stop>| {
+            if is_open && !matches!(stop.kind, StopKind::Locked { .. }) {
                 stop.kind = StopKind::DoesNotAssemble;
             }
             stop
-        })
+        };
+        let drawn = drawn.and_then(|()| self.examine_position());
+        drawn.map_err(|r| of_assembly(self.stop(Path::Assembly, 0.0, r, false)))?;
+        self.save(0.0, 0.0);
+        if !is_open {
+            return Ok(());
+        }
+        // phi - (1 - s) phi_0 = 0 from s = 0 to 1
+        self.walk(Path::Assembly, 1.0).map_err(of_assembly)
     }
 
     /// Returns whether an assembly is searched for around the drawing: where it is singular, and the path closes its gaps of no design. A
@@ -351,14 +355,29 @@ impl Stepper<'_> {
 
 impl Stepper<'_> {
     /// How near the joints can come: least squares over the residuals of all rows of the block that
-    /// could not be closed, from where the path ended.
+    /// could not be closed, from where the path ended; of a singular drawing also from positions around it.
     pub fn least_gaps(&mut self, block: BlockId) -> Vec<Gap> {
         self.state.gap_left = [0.0; 2];
         self.restore();
         let (unknowns, rows) = (self.topology[block].unknowns.clone(), self.topology.rows_of_block(block));
-        self.search(&rows, &unknowns);
-        self.scaled_rows(&rows, &unknowns);
-        self.gaps(|s, r| s.state.residual_of(&s.topology, &s.parts, &s.drivers, r), WORTH_TELLING)
+        let is_singular = self.time <= SINGULAR_DRAWING && unknowns.len() <= LARGEST_SEARCH;
+        let starts = if is_singular { DEVIATIONS.len() * DIRECTIONS * 2 } else { 0 };
+        let ended = (self.saved.clone(), self.topology.clone());
+        let mut best: Option<(f64, Vec<Gap>)> = None;
+        for start in [None].into_iter().chain((0..starts).map(Some)) {
+            if let Some(start) = start {
+                self.deviate(&ended, &unknowns, start);
+            }
+            self.search(&rows, &unknowns);
+            let (residuals, _) = self.scaled_rows(&rows, &unknowns);
+            let squares = residuals.iter().map(|r| r * r).sum::<f64>();
+            // A start that is better by round-off only decides nothing.
+            if best.as_ref().is_none_or(|(least, _)| squares < (1.0 - ONE_ASSEMBLY) * least) {
+                let of_row = |s: &Self, r: RowId| s.state.residual_of(&s.topology, &s.parts, &s.drivers, r);
+                best = Some((squares, self.gaps(of_row, WORTH_TELLING)));
+            }
+        }
+        best.map_or_else(Vec::new, |(_, gaps)| gaps)
     }
 
     /// Moves these unknowns to where the residuals of these rows are smallest, by least squares; returns the largest scaled residual.

@@ -1,5 +1,6 @@
 //! Why a motion ended before its last output time.
 
+use super::assembly::SINGULAR_DRAWING;
 use crate::joint::Quantity;
 use crate::model::{JointId, Model};
 use crate::topology::BlockId;
@@ -133,6 +134,12 @@ impl Stop {
             StopKind::Interrupted => "interrupted".into(),
             StopKind::DoesNotAssemble | StopKind::Locked { .. } => self.headline(model),
         }
+    }
+
+    /// Returns whether it does not assemble since it is drawn in, or next to, a singular position, around which none of the assemblies
+    /// searched for was found.
+    pub fn is_singular_drawing(&self) -> bool {
+        self.closed.is_some_and(|part| part <= SINGULAR_DRAWING)
     }
 
     /// What to do.
