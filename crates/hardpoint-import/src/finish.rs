@@ -118,7 +118,9 @@ fn as_drawn(m: &mut Mechanism, notes: &mut Notes, closed: f64) {
         _ => 0.0,
     };
     let largest = m.joints.iter().filter(|j| is_open(j)).map(gap).fold(0.0, f64::max);
-    if !m.joints.iter().any(is_open) || !(largest <= closed * m.size()) || assembles(m) {
+    let turned = m.turned.iter().map(|frame| frame.angle).fold(0.0, f64::max);
+    let few = largest <= closed * m.size() && turned <= closed;
+    if (m.turned.is_empty() && !m.joints.iter().any(is_open)) || !few || assembles(m) {
         return;
     }
     let mut closed = m.clone();
@@ -129,6 +131,10 @@ fn as_drawn(m: &mut Mechanism, notes: &mut Notes, closed: f64) {
         if !rods.contains(&joint.kind) {
             joint.at.drain(..1);
         }
+    }
+    for frame in &m.turned {
+        names.push(format!("`{}`", m.joints[frame.joint].name));
+        closed.drivers[frame.driver].law = Law::Held;
     }
     if assembles(&closed) {
         *m = closed;

@@ -3,11 +3,12 @@
 use std::collections::BTreeSet;
 
 use hardpoint::joint::ALL;
-use hardpoint::space::{Pose, Vec3};
+use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::mechanism::{Coordinate, Joint, Mechanism};
 use crate::report::{At, Notes};
-use crate::turn::{angle_about, from_z_and_x};
+use crate::straighten::MEANT;
+use crate::turn::{angle_about, from_z_and_x, none};
 
 /// Markers nearer than this part of the mechanism's size are at one place: files have about seven digits.
 const APART: f64 = 1e-7;
@@ -139,12 +140,27 @@ pub fn join(
         }
         _ => {}
     }
+    // What is turned by more than digits that are missing is closed: by a frame on body i that turns, with what the joint has there.
+    let turn =
+        if awry { turn_between(kind, [&i, &j]).filter(|turn| turn.angle_to(none()) > MEANT) } else { None };
+    if let Some(turn) = turn {
+        let holds_point = ["revolute", "universal"].contains(&kind);
+        let drawn = Pose { rot: j.pose.rot, r: if holds_point { i.pose.r } else { j.pose.r } };
+        let note = called.note(notes);
+        joint.bodies[0] = crate::robot::turned_frame(m, called.name, note, i.body, drawn, turn);
+        let back = turn.transpose();
+        joint.axis = joint.axis.map(|axis| back * axis);
+        joint.axis2 = joint.axis2.map(|axis| back * axis);
+    }
     if open && ["revolute", "spherical", "universal", "constant_velocity"].contains(&kind) {
         joint = joint.between(i.pose.r, j.pose.r);
         let why = "its markers lie apart as drawn: the mechanism is assembled there before it moves";
         notes.approximated(called.kind, called.name, called.at, why);
     } else if open {
         let why = "its markers do not meet as drawn: it is taken as closed where the bodies stand";
+        notes.approximated(called.kind, called.name, called.at, why);
+    } else if turn.is_some() {
+        let why = "its markers' axes are turned against each other as drawn: the mechanism is assembled there before it moves";
         notes.approximated(called.kind, called.name, called.at, why);
     } else if awry {
         let why = "its markers' axes are turned against each other as drawn: the first marker's axis is taken for both";
@@ -153,6 +169,22 @@ pub fn join(
         notes.taken(called.kind, called.name, called.at);
     }
     Some(m.joint(joint))
+}
+
+/// The turn that takes body j from where it is drawn to where the axes of a joint agree, and its angle about them stays as drawn; none
+/// where the markers have no such place.
+fn turn_between(kind: &str, [i, j]: [&Marker; 2]) -> Option<Mat3> {
+    if ["universal", "dot1"].contains(&kind) {
+        let (a, b) = (i.z(), j.z());
+        // About the common normal of both pins, until they are square
+        let normal = a.cross(b).unit()?;
+        let square = normal.cross(a);
+        return Some(from_z_and_x(square, normal)? * from_z_and_x(b, normal)?.transpose());
+    }
+    let z = if i.z().dot(j.z()) < 0.0 { -i.z() } else { i.z() };
+    let angle = angle_about(i.z(), i.x(), j.x());
+    let x = i.x() * angle.cos() + i.y() * angle.sin();
+    Some(from_z_and_x(z, x)? * from_z_and_x(j.z(), j.x())?.transpose())
 }
 
 /// Numbers of a source that differ by less than this part of the mechanism's size from what is drawn say the same as that.
@@ -194,17 +226,29 @@ pub fn linked(
     let along = across.unit().unwrap_or_else(|| axis.any_square());
     let end = foot + along * distance;
     let same = is_drawn(m, distance, drawn);
-    let rot = from_z_and_x(axis, along).unwrap_or_else(crate::turn::none);
+    let rot = from_z_and_x(axis, along).unwrap_or_else(none);
     let link = m.body(&format!("{}_link", called.name), called.note(notes), Some(Pose { rot, r: foot }));
     let first = Joint::new(&format!("{}_i", called.name), called.note(notes), kinds[0], [i.body, link], foot);
-    let second =
-        Joint::new(&format!("{}_j", called.name), called.note(notes), kinds[1], [link, j.body], j.pose.r);
-    m.joint(first.along(axis));
-    let second = if kinds[1] == "spherical" { second } else { second.along(axis) };
-    m.joint(if same { second } else { second.between(end, j.pose.r) });
     let skew = kinds[1] != "spherical" && axis.cross(j.z()).norm() > AWRY;
+    let there = Marker { body: link, pose: Pose { rot: from_z_and_x(axis, j.x()).unwrap_or(rot), r: end } };
+    let turn =
+        if skew { turn_between(kinds[1], [&there, &j]).filter(|t| t.angle_to(none()) > MEANT) } else { None };
+    m.joint(first.along(axis));
+    let (mut carrier, mut second_axis) = (link, axis);
+    if let Some(turn) = turn {
+        let drawn = Pose { rot: j.pose.rot, r: if same { j.pose.r } else { end } };
+        let name = format!("{}_j", called.name);
+        carrier = crate::robot::turned_frame(m, &name, called.note(notes), link, drawn, turn);
+        second_axis = turn.transpose() * axis;
+    }
+    let second =
+        Joint::new(&format!("{}_j", called.name), called.note(notes), kinds[1], [carrier, j.body], j.pose.r);
+    let second = if kinds[1] == "spherical" { second } else { second.along(second_axis) };
+    m.joint(if same { second } else { second.between(end, j.pose.r) });
     if skew || !same {
-        let how = if skew {
+        let how = if turn.is_some() {
+            "its axes are turned against each other as drawn: the mechanism is assembled there before it moves"
+        } else if skew {
             "its axes are turned against each other as drawn: the first is taken for both"
         } else {
             "it is drawn at another distance: the mechanism is assembled to the one that is said"

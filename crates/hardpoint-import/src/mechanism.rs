@@ -42,8 +42,21 @@ pub struct Mechanism {
     pub gravity: Option<Vec3>,
     /// Frames that the source names, each on a body: the ends of loops that it does not close.
     pub frames: Vec<NamedFrame>,
+    /// Frames that turn from where they are drawn to where they belong, before the mechanism moves.
+    pub turned: Vec<TurnedFrame>,
     /// Names that are taken, by what they are of.
     names: HashMap<&'static str, Names>,
+}
+
+/// A frame between two bodies whose markers are turned against each other in the design configuration.
+#[derive(Clone, Copy, Debug)]
+pub struct TurnedFrame {
+    /// The hinge about which it turns.
+    pub joint: usize,
+    /// The driver that turns it.
+    pub driver: usize,
+    /// By how much, rad.
+    pub angle: f64,
 }
 
 /// Names of things of one kind.
@@ -296,6 +309,7 @@ impl Mechanism {
             forces: Vec::new(),
             gravity: None,
             frames: Vec::new(),
+            turned: Vec::new(),
             names: HashMap::new(),
         }
     }

@@ -4,7 +4,9 @@ use hardpoint::space::{Mat3, Pose};
 use roxmltree::Node;
 
 use crate::markers::{Called, Marker};
-use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mass, Mechanism};
+use crate::mechanism::{
+    Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mass, Mechanism, TurnedFrame,
+};
 use crate::report::{At, Notes};
 use crate::xml::{self, Vocabulary, child};
 
@@ -246,21 +248,9 @@ pub fn weld(
     let turned = angle > PARALLEL;
     let mut body = i.body;
     if turned {
-        // A frame between both turns from where body j is drawn to where it belongs: R = A_i A_j^T, by an angle about an axis.
-        let axis = turn_of(i.pose.rot * j.pose.rot.transpose(), angle);
-        let frame = Pose { rot: j.pose.rot, r: i.pose.r };
-        let between = m.body(&format!("{}_frame", called.name), note.clone(), Some(frame));
-        let turn = Joint::new(
-            &format!("{}_turn", called.name),
-            note.clone(),
-            "revolute",
-            [i.body, between],
-            i.pose.r,
-        );
-        let joint = m.joint(turn.along(axis));
-        let drives = Drives::Coordinate(Coordinate { joint, name: "angle" });
-        m.driver(&format!("{}_turn", called.name), note.clone(), drives, Law::Set(angle));
-        body = between;
+        // From where body j is drawn to where it belongs: R = A_i A_j^T
+        let drawn = Pose { rot: j.pose.rot, r: i.pose.r };
+        body = turned_frame(m, called.name, note.clone(), i.body, drawn, i.pose.rot * j.pose.rot.transpose());
     }
     let held = Joint::new(called.name, note, kind, [body, j.body], j.pose.r);
     let number = m.joint(if apart { held.between(i.pose.r, j.pose.r) } else { held });
@@ -271,6 +261,26 @@ pub fn weld(
         notes.taken(called.kind, called.name, called.at);
     }
     Some(number)
+}
+
+/// Adds a frame on a body that turns, about its origin, from where it is drawn to where it belongs before the mechanism moves; its number.
+pub fn turned_frame(
+    m: &mut Mechanism,
+    name: &str,
+    note: String,
+    body: usize,
+    drawn: Pose,
+    turn: Mat3,
+) -> usize {
+    let angle = turn.angle_to(Mat3::IDENTITY);
+    let frame = m.body(&format!("{name}_frame"), note.clone(), Some(drawn));
+    let name = format!("{name}_turn");
+    let hinge = Joint::new(&name, note.clone(), "revolute", [body, frame], drawn.r);
+    let joint = m.joint(hinge.along(turn_of(turn, angle)));
+    let drives = Drives::Coordinate(Coordinate { joint, name: "angle" });
+    m.driver(&name, note, drives, Law::Set(angle));
+    m.turned.push(TurnedFrame { joint, driver: m.drivers.len() - 1, angle });
+    frame
 }
 
 /// The axis about which a rotation turns by this angle.

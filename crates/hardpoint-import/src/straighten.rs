@@ -8,7 +8,7 @@ use crate::mechanism::Mechanism;
 use crate::turn::{X, Y, Z};
 
 /// Axes nearer to each other than this, in rad, may be meant to be parallel: half a turn is often written as 3.14.
-const MEANT: f64 = 2e-3;
+pub const MEANT: f64 = 2e-3;
 
 /// What was straightened.
 pub struct Straightened {
@@ -22,7 +22,9 @@ pub struct Straightened {
 pub fn straighten(m: &mut Mechanism) -> Option<Straightened> {
     let mut known: Vec<Vec3> = [X, Y, Z].map(Vec3::from).to_vec();
     let mut done = Straightened { joints: Vec::new(), by: 0.0 };
-    for k in in_loops(m) {
+    let turned: Vec<usize> = m.turned.iter().map(|frame| frame.joint).collect();
+    // A frame turns about the axis that closes it, whatever that is near.
+    for k in in_loops(m).into_iter().filter(|k| !turned.contains(k)) {
         let joint = &mut m.joints[k];
         // Where there are two they stay square.
         let (Some(axis), None, None) = (joint.axis.and_then(Vec3::unit), joint.axis2, joint.through) else {

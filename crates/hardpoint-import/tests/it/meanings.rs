@@ -179,3 +179,53 @@ fn a_chrono_suspension_told_body_by_body_moves_as_its_template() {
     }
     assert!(most > 0.01, "{most}");
 }
+
+/// A part whose marker is turned by an angle about x, and more about z, against the marker of the ground that its joint is between.
+fn turned_joint(kind: &str, tilt: f64, about_z: f64) -> String {
+    format!(
+        "Adams View model name: turned\nUNITS/\n, FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = MILLIMETER\n, TIME = SECOND\n\
+         PART/1\n, GROUND\nMARKER/1\n, PART = 1\n\
+         PART/2\n, MASS = 1\n, CM = 3\nMARKER/2\n, PART = 2\n, REULER = {about_z}, {tilt}, 0\nMARKER/3\n, PART = 2\n, QP = 100, 50, 20\n\
+         JOINT/1\n, {kind}\n, I = 2\n, J = 1\nEND\n"
+    )
+}
+
+#[test]
+fn markers_that_are_turned_against_each_other_are_assembled() {
+    for kind in ["REVOLUTE", "TRANSLATIONAL", "CYLINDRICAL", "PLANAR", "SCREW\n, PITCH = 5", "HOOKE", "FIXED"]
+    {
+        for tilt in [0.01, 0.1, 0.3] {
+            // The pins of a cross are square whatever the tilt about one of them.
+            let (tilt, about_z) = if kind == "HOOKE" { (0.0, tilt) } else { (tilt, 0.2) };
+            let text = turned_joint(kind, tilt, about_z);
+            let imported = hardpoint_import::import(text.as_bytes(), "turned.adm", &|_| None)
+                .unwrap_or_else(|e| panic!("{e}"));
+            assert!(imported.fault.is_none(), "{kind}: {}", imported.fault.unwrap());
+            let report = imported.report.to_string();
+            assert!(report.contains("assembled"), "{kind}: {report}");
+            let file = model(&imported);
+            let solution = Analysis::new(&file.model).unwrap().solve(Run::new().without_sensitivities());
+            assert!(solution.stop.is_none(), "{kind}: {:?}", solution.stop);
+            let body = file.model.bodies.iter().position(|b| b.name.to_lowercase() == "part_2").unwrap();
+            let drawn = file.model.bodies[body].frame.rot;
+            // The marker's axes as assembled at t = 0
+            let turn = solution.body(0, BodyId(body)).rotation * drawn.transpose();
+            let rotation = |z: f64, x: f64| {
+                let ([sz, cz], [sx, cx]) = ([z.sin(), z.cos()], [x.sin(), x.cos()]);
+                [[cz, sz, 0.0], [-cx * sz, cx * cz, sx], [sx * sz, -sx * cz, cx]].map(Vec3::from)
+            };
+            let [x, y, z] = rotation(about_z, tilt).map(|axis| turn * axis);
+            let off = match kind {
+                // The pins are along x of the first and y of the second marker.
+                "HOOKE" => x.y.abs(),
+                "FIXED" => (1.0 - x.x).abs() + (1.0 - y.y).abs(),
+                _ => z.x.hypot(z.y),
+            };
+            assert!(off < 1e-9, "{kind} by {tilt}: {off}");
+            if !["HOOKE", "FIXED"].contains(&kind) {
+                // What is about the axis stays as drawn: 0.2 rad.
+                assert!((x.y.atan2(x.x) - 0.2).abs() < 1e-2, "{kind}: {x:?}");
+            }
+        }
+    }
+}
