@@ -16,7 +16,7 @@ const SAME_SLOPES: f64 = 1e-7;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The names of the types of a kind of thing, from the schema.
-fn declared(of: &str) -> Vec<String> {
+pub(crate) fn declared(of: &str) -> Vec<String> {
     let schema: serde_json::Value = serde_json::from_str(&hardpoint_file::schema()).unwrap();
     let of = &schema["$defs"][of];
     let types = of["oneOf"].as_array().or(of["anyOf"].as_array()).unwrap();
