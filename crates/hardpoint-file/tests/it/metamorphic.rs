@@ -18,7 +18,7 @@ const SAME: f64 = 1e-9;
 /// Loads and slopes have the round-off of what they are solved from.
 const SAME_LOADS: f64 = 1e-7;
 /// Numbers of steps, the first of which is the one that others are held to; the last one for some models only.
-const COUNTS: [usize; 6] = [60, 1, 2, 3, 20, 5_000];
+const COUNTS: [usize; 6] = [20, 1, 2, 4, 10, 5_000];
 
 /// All that is known of a run, by name: measures, and places and orientations of bodies as seen from one of them.
 struct Answer {

@@ -281,7 +281,7 @@ const HEADER: &str =
 fn legs(count: usize) -> String {
     let leg = |k: usize| {
         let turn = |offset: f64| (60.0 * k as f64 + offset).to_radians().sin_cos();
-        let side = if k % 2 == 0 { 1.0 } else { -1.0 };
+        let side = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
         let ((s, c), (u, v)) = (turn(22.0 * side), turn(-17.0 * side));
         format!(
             "leg{k} = {{ from = {{ body = \"ground\", at = <{} {} -350> }}, to = {{ body = \"b\", at = <{} {} {}> }}, law = \"{}*sin({}*t)\" }}\n",
@@ -424,7 +424,6 @@ fn every_driver_in_a_plane_is_what_its_shorthand_stands_for() {
             other => panic!("no planar mechanism for `{other}`"),
         };
         for (keys, measure) in cases {
-            let keys = keys.replace("", "");
             let driver = format!("turn = {{ {keys}, law = \"4*t + t^2\" }}");
             // So little that the driven point is reached.
             let text =
