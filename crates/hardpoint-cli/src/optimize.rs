@@ -48,7 +48,7 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
             Ok(()) => {
                 search.facts.files.push(to.display().to_string());
                 let judged = judged_as_written(to, options, &asked);
-                search.facts.check_saved(&to.display().to_string(), judged);
+                search.facts.check_saved(&to.display().to_string(), judged, asked.margin);
                 saved = Ok(Some(to));
             }
             Err((diagnostics, why, outcome)) => {

@@ -832,8 +832,9 @@ impl SearchedVariable {
 }
 
 impl OptimizeFacts {
-    /// Takes in what solving the saved file anew has shown; a design that is not the optimum is not called one.
-    pub fn check_saved(&mut self, to: &str, judged: Result<Judged, String>) {
+    /// Takes in what solving the saved file anew has shown; a design that is not the optimum is not called one. `margin` is the one that
+    /// the search has kept.
+    pub fn check_saved(&mut self, to: &str, judged: Result<Judged, String>, margin: Option<f64>) {
         let mut saved = SavedFact { file: to.into(), ..SavedFact::default() };
         match judged {
             Ok(judged) => {
@@ -847,12 +848,13 @@ impl OptimizeFacts {
             Err(why) => saved.why = Some(why),
         }
         if let Some(why) = &saved.why {
+            let advice = match margin {
+                None => "; if it is too near to a singular position, ask for a `margin` in `[optimize]`",
+                Some(_) => "",
+            };
             self.fall_short(
                 "not_reproduced",
-                &format!(
-                    "the saved design is not the one found: {why}; it is too near to a singular position: ask for a `margin` in \
-                     `[optimize]`"
-                ),
+                &format!("the saved design is not the one found: {why}{advice}"),
             );
         }
         self.saved = Some(saved);

@@ -336,3 +336,61 @@ fn a_result_that_cannot_be_written_is_still_shown() {
     assert_eq!(output.status.code(), Some(6), "{text}");
     assert!(text.contains("could not be saved") && text.contains("A_y"), "{text}");
 }
+
+/// A slider-crank driven by its slider, with a law from a file beside the model; the rod and the crank are in line after 10.6 mm.
+const PULLED: &str = r#"
+name = "pulled"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+hardpoints = { O = [0, 0], A = [12, 16], B = [59.37, 0], P = [30, 20] }
+bodies = { ground = ["O"], crank = ["O", "A"], rod = ["A", "B", "P"], slider = ["B"] }
+joints.guide = { type = "translational", bodies = ["ground", "slider"], at = "B", axis = [1, 0] }
+drivers.pull = { joint = "guide", law = { type = "table", file = "travel.csv", columns = [1, 2] } }
+points.P = { body = "rod", at = "P" }
+design.P_y = { move = "P", along = "y", bounds = [-9, 9] }
+metrics.high = { of = "P.y", take = "value", at = 1 }
+optimize.goals.high = { target = 15 }
+time = { end = 1, steps = 10 }
+"#;
+
+#[test]
+fn a_saved_design_that_stops_or_comes_too_near_to_a_singular_position_is_no_optimum() {
+    let table = |travel: f64| format!("time,travel\n0,0\n0.5,{}\n1,{travel}\n", 0.5 * travel);
+    let saved = |margin: &str, travel: f64| {
+        let bench = Bench::with(&[]);
+        bench.put("pulled.toml", &format!("{PULLED}{margin}"));
+        bench.put("travel.csv", &table(5.0));
+        // Where the design is saved, another file is beside it.
+        std::fs::create_dir(bench.path("elsewhere")).unwrap();
+        bench.put("elsewhere/travel.csv", &table(travel));
+        let run = ["optimize", "pulled.toml", "--save", "elsewhere/found.toml"];
+        let output = bench.run(&[&run[..], &["--json"]].concat());
+        let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let output = bench.run(&run);
+        (output.status.code(), json, String::from_utf8(output.stdout).unwrap())
+    };
+    for margin in ["", "optimize.margin = 0.15\n"] {
+        let (code, json, text) = saved(margin, 5.0);
+        assert_eq!((code, json["status"].as_str()), (Some(0), Some("optimal")), "{text}");
+        assert!(!text.contains("not the one found"), "{text}");
+    }
+    for (margin, travel, why) in [
+        ("", 12.0, "cannot move beyond"),
+        ("optimize.margin = 0.15\n", 12.0, "cannot move beyond"),
+        ("optimize.margin = 0.15\n", 10.0, "less than 0.15"),
+        // A margin that the nominal design keeps, and that the saved one keeps by less.
+        ("optimize.margin = 0.15\n", 5.1, ""),
+    ] {
+        let (code, json, text) = saved(margin, travel);
+        if why.is_empty() {
+            assert_eq!((code, json["status"].as_str()), (Some(0), Some("optimal")), "{text}");
+            assert!(json["saved"]["margin"].as_f64() < json["margin"]["after"].as_f64(), "{json}");
+            continue;
+        }
+        assert_eq!((code, json["status"].as_str()), (Some(1), Some("not_reproduced")), "{travel}: {text}");
+        assert!(json["saved"]["why"].as_str().unwrap().contains(why), "{}", json["saved"]);
+        assert!(text.contains(why) && !text.contains("an optimum"), "{text}");
+        let asks = text.contains("ask for a `margin`");
+        assert_eq!(asks, margin.is_empty(), "advice for who has given a margin: {text}");
+    }
+}

@@ -16,6 +16,7 @@ mod includes;
 mod loads;
 mod measures;
 mod meshes;
+mod metamorphic;
 mod metrics;
 mod mirror;
 mod models;

@@ -1,10 +1,14 @@
 //! Mechanisms in a plane, with all left out that the plane says.
 
 use hardpoint::Analysis;
+use hardpoint::draft::{ElementType, MeasureType};
+use hardpoint::joint::{self, Need};
 use hardpoint::model::Model;
+use hardpoint::space::Vec3;
 use hardpoint_file::{ModelFile, parse, read};
 
 use crate::diagnostics::snapshot;
+use crate::sides::declared;
 
 /// Two ways to say the same mechanism solve the same equations in other orders.
 const SAME: f64 = 1e-12;
@@ -186,5 +190,321 @@ fn broken_planar_models() {
         ("body_of_points_in_space", with("planar = \"xy\"\n", "")),
     ] {
         snapshot(name, &text);
+    }
+}
+
+/// The planes, with the axes that they are written in, and their normals.
+const PLANES: [(&str, [usize; 2], &str, [f64; 3]); 4] = [
+    ("xy", [0, 1], "z", [0.0, 0.0, 1.0]),
+    ("yz", [1, 2], "x", [1.0, 0.0, 0.0]),
+    ("zx", [2, 0], "y", [0.0, 1.0, 0.0]),
+    ("xz", [0, 2], "-y", [0.0, -1.0, 0.0]),
+];
+
+/// A text in which `<1 2>` is a point or direction of the plane, `<1 2 3>` one off it, and `<axis>`, `<about>`, `<along>` and `<normal>` are
+/// keys whose value is the normal of the plane: as a planar model writes it, or with all that its shorthand leaves out.
+fn written(template: &str, plane: usize, is_short: bool) -> String {
+    let (word, axes, name, normal) = PLANES[plane];
+    let mut parts = template.split('<');
+    let mut text = match is_short {
+        true => format!("planar = \"{word}\"\n"),
+        false => String::new(),
+    };
+    text += parts.next().unwrap();
+    for part in parts {
+        let (token, rest) = part.split_once('>').unwrap();
+        let numbers: Vec<f64> = token.split(' ').filter_map(|x| x.parse().ok()).collect();
+        text += &match numbers.as_slice() {
+            [] if is_short => String::new(),
+            [] => format!(", {token} = \"{name}\""),
+            [a, b] if is_short => format!("[{a}, {b}]"),
+            [a, b, off @ ..] => {
+                let mut place = normal.map(|x| x * off.first().copied().unwrap_or(0.0));
+                place[axes[0]] += a;
+                place[axes[1]] += b;
+                format!("{place:?}")
+            }
+            [_] => panic!("{token}"),
+        };
+        text += rest;
+    }
+    text
+}
+
+/// Holds the shorthand in every plane to what it stands for: states of all bodies, and all measures.
+fn hold_to_spatial(what: &str, template: &str) {
+    for (plane, (word, ..)) in PLANES.iter().enumerate() {
+        let [short, spatial] = [true, false].map(|is_short| {
+            let text = written(template, plane, is_short);
+            let model = parse(&text, "plane.toml").unwrap_or_else(|e| panic!("{what}: {e}\n{text}")).model;
+            let analysis = Analysis::new(&model).unwrap_or_else(|e| panic!("{what}: {e:?}\n{text}"));
+            let solution = analysis.run();
+            assert!(solution.stop.is_none(), "{what}: {:?}\n{text}", solution.stop);
+            (model, solution)
+        });
+        let what = format!("{what} in {word}");
+        let mut moves = 0.0_f64;
+        let apart = |a: Vec3, b: Vec3, of: &str| {
+            let size = 1.0 + a.norm();
+            assert!((a - b).norm() <= SAME * size, "{what}: {of} {a:?} {b:?}\n{template}");
+        };
+        assert_eq!(short.1.motion.len(), spatial.1.motion.len(), "{what}");
+        for body in 1..short.0.bodies.len() {
+            for k in 0..short.1.motion.len() {
+                let [a, b] = [&short, &spatial].map(|s| s.1.motion.at(k).body(body));
+                moves = moves.max(a.v.norm() + a.omega.norm());
+                apart(a.r, b.r, "place");
+                (0..3).for_each(|c| apart(a.rotation.cols[c], b.rotation.cols[c], "orientation"));
+                apart(a.v, b.v, "velocity");
+                apart(a.omega, b.omega, "angular velocity");
+                apart(a.a, b.a, "acceleration");
+                apart(a.alpha, b.alpha, "angular acceleration");
+            }
+        }
+        assert!(moves > 1e-3, "{what}: nothing moves");
+        let [a, b] = [&short, &spatial].map(|s| &s.1.measured);
+        assert_eq!(a.outputs.len(), b.outputs.len(), "{what}");
+        for (m, output) in a.outputs.iter().enumerate() {
+            for k in 0..a.len() {
+                let [x, y] = [a, b].map(|s| s.value(k, m)[0]);
+                let same = (x - y).abs() <= 1e-10 * (1.0 + x.abs()) || x.is_nan() && y.is_nan();
+                assert!(same, "{what}: `{}` is {x}, not {y}, at step {k}\n{template}", output.name);
+            }
+        }
+    }
+}
+
+const HEADER: &str =
+    "name = \"plane\"\nunits = { length = \"mm\", angle = \"deg\" }\ntime = { end = 1.0, steps = 5 }\n";
+
+/// Legs from ground to the body `b`, of lengths that drivers change.
+fn legs(count: usize) -> String {
+    let leg = |k: usize| {
+        let turn = |offset: f64| (60.0 * k as f64 + offset).to_radians().sin_cos();
+        let side = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let ((s, c), (u, v)) = (turn(22.0 * side), turn(-17.0 * side));
+        format!(
+            "leg{k} = {{ from = {{ body = \"ground\", at = <{} {} -350> }}, to = {{ body = \"b\", at = <{} {} {}> }}, law = \"{}*sin({}*t)\" }}\n",
+            30.0 + 400.0 * c,
+            450.0 + 400.0 * s,
+            30.0 + 150.0 * v,
+            450.0 + 150.0 * u,
+            40.0 + 10.0 * k as f64,
+            3 + k,
+            2.0 - 0.3 * k as f64
+        )
+    };
+    (0..count).map(leg).collect()
+}
+
+#[test]
+fn every_joint_type_in_a_plane_is_what_its_shorthand_stands_for() {
+    for kind in joint::ALL {
+        let mut keys = format!("type = \"{}\", bodies = [\"a\", \"b\"]", kind.name);
+        keys += match kind.places {
+            0 => "",
+            1 => ", at = <10 400>",
+            _ => ", at = [<10 400>, <50 430>]",
+        };
+        if kind.axis != Need::Unused {
+            keys += if kind.normal_in_plane { "<axis>" } else { ", axis = <0.9 0.4>" };
+        }
+        keys += match kind.axis2 {
+            Need::Unused | Need::Optional => "",
+            Need::Required => ", axis2 = <-0.4 0.9>",
+            Need::OnBodyJ => ", axis2 = <0.4 0.8 0.5>",
+        };
+        if kind.has_lead() {
+            keys += ", lead = 35";
+        }
+        if kind.follows_curve() {
+            keys += ", curve = { points = [<-70 415>, <-10 400>, <70 395>, <150 402>] }";
+        }
+        let driven = kind
+            .coordinates
+            .iter()
+            .filter(|c| !(kind.is_rod() && !kind.rows.is_empty() || kind.has_lead() && c.name != "angle"));
+        let (mut drivers, mut measures, mut held) = (String::new(), String::new(), kind.rows.len());
+        for c in driven {
+            let law = if c.name.starts_with("angle") { "9*t - 4*t^2" } else { "11*t + 5*t^2" };
+            drivers += &format!("{0} = {{ joint = \"j\", coordinate = \"{0}\", law = \"{law}\" }}\n", c.name);
+            held += 1;
+        }
+        held += usize::from(kind.has_lead());
+        for c in kind.coordinates {
+            measures += &format!(
+                "q_{0} = {{ type = \"coordinate\", joint = \"j\", coordinate = \"{0}\" }}\n",
+                c.name
+            );
+        }
+        hold_to_spatial(
+            kind.name,
+            &format!(
+                "{HEADER}[bodies]\na = {{}}\nb = {{}}\n[joints]\nhinge = {{ type = \"revolute\", bodies = [\"ground\", \"a\"], at = <-200 300><axis> }}\n\
+                 j = {{ {keys} }}\n[drivers]\nturn = {{ joint = \"hinge\", law = \"3*t\" }}\n{drivers}{}[measures]\n{measures}",
+                legs(6 - held)
+            ),
+        );
+    }
+}
+
+/// A body that swings, one that slides on it, and one that turns on that, with a spring and masses, and more tables.
+fn swinging(drivers: &str, measures: &str, forces: &str) -> String {
+    format!(
+        "{HEADER}gravity = {{ along = <0.1 -1> }}\n[bodies]\na = {{}}\nb = {{}}\nc = {{}}\n[joints]\n\
+         hinge = {{ type = \"revolute\", bodies = [\"ground\", \"a\"], at = <-200 300><axis> }}\n\
+         slide = {{ type = \"translational\", bodies = [\"a\", \"b\"], at = <10 400>, axis = <0.9 0.4> }}\n\
+         pin = {{ type = \"revolute\", bodies = [\"b\", \"c\"], at = <60 430><axis> }}\n\
+         [points]\np = {{ body = \"c\", at = <90 450> }}\n[drivers]\nswing = {{ joint = \"hinge\", law = \"14*t - 3*t^2\" }}\n\
+         way = {{ joint = \"slide\", law = \"25*t + 9*t^2\" }}\n{drivers}\n[masses]\n\
+         mass_b = {{ type = \"rigid\", centre = {{ body = \"b\", at = <20 410> }}, mass = 4, ixx = 0.02, iyy = 0.03, izz = 0.04 }}\n\
+         mass_c = {{ type = \"rigid\", centre = {{ body = \"c\", at = <80 440> }}, mass = 2, ixx = 0.02, iyy = 0.03, izz = 0.04 }}\n\
+         [forces]\nspring = {{ type = \"spring\", from = {{ body = \"ground\", at = <0 200> }}, to = \"p\", stiffness = 20 }}\n\
+         soft = {{ type = \"elastic_joint\", joint = \"hinge\", x = 1000, y = 3000, z = 2000 }}\n{forces}\n\
+         [measures]\nbase = {{ type = \"position\", point = \"p\", along = <0.2 0.7> }}\n\
+         far = {{ type = \"distance\", from = \"p\", to = {{ body = \"ground\", at = <0 200> }} }}\n\
+         moment = {{ type = \"driver_force\", driver = \"swing\" }}\npush = {{ type = \"driver_force\", driver = \"way\" }}\n{measures}"
+    )
+}
+
+const TURN: &str = "turn = { joint = \"pin\", law = \"20*t + 4*t^2\" }";
+
+#[test]
+fn every_measure_in_a_plane_is_what_its_shorthand_stands_for() {
+    for kind in MeasureType::ALL {
+        let cases: &[&str] = match kind.name {
+            "coordinate" => &["joint = \"pin\""],
+            "distance" => &["from = \"p\", to = { body = \"ground\", at = <30 10> }"],
+            "position" | "velocity" | "acceleration" => &["point = \"p\", along = <0.3 0.9>"],
+            "angle" => &[
+                "from = <0.2 1>, to = [\"p\", { body = \"a\", at = <-200 300> }]<about>",
+                "from = [\"p\", { body = \"a\", at = <-200 300> }], to = { body = \"b\", axis = <1 0.3> }<about>",
+            ],
+            "orientation" => &["body = \"b\", angle = \"yaw\"", "body = \"b\", angle = \"cardan_3\""],
+            "transmission_angle" => {
+                &["from = [\"p\", { body = \"a\", at = <-200 300> }], to = { body = \"b\", axis = <1 0.3> }"]
+            }
+            "angular_velocity" => &["body = \"c\"<along>"],
+            "curvature" => &["point = \"p\""],
+            "rate" => &["of = \"base\""],
+            "slope" => &["of = \"base\", over = \"far\", driver = \"swing\""],
+            "expression" => &["expression = \"2*base + far^2/100\""],
+            "toe" | "camber" => &["body = \"c\", spin_axis = <0.4 1>"],
+            "driver_force" | "driver_power" => &["driver = \"turn\""],
+            "reaction" => &["joint = \"pin\", part = \"force\"", "joint = \"slide\", part = \"torque\""],
+            "spring_force" => &["force = \"spring\""],
+            "kinetic_energy" => &["body = \"c\""],
+            "shaking_force" => &["along = <0.3 0.9>"],
+            "shaking_moment" => &["about = { body = \"ground\", at = <10 30> }<along>"],
+            "compliance" => &["of = \"base\", at = \"p\", along = <0.2 1>"],
+            other => panic!("no planar mechanism for measure `{other}`"),
+        };
+        for keys in cases {
+            let measure = format!("own = {{ type = \"{}\", {keys} }}\n", kind.name);
+            hold_to_spatial(&format!("{} {keys}", kind.name), &swinging(TURN, &measure, ""));
+        }
+    }
+}
+
+#[test]
+fn every_driver_in_a_plane_is_what_its_shorthand_stands_for() {
+    for form in declared("Driver") {
+        let cases: &[(&str, &str)] = match form.as_str() {
+            "DrivenCoordinate" => &[("joint = \"pin\"", "")],
+            "DrivenPosition" => &[("point = \"p\", along = <0.3 -0.9>", "")],
+            "DrivenDistance" => &[("from = \"p\", to = { body = \"ground\", at = <-30 600> }", "")],
+            "DrivenOrientation" => &[("body = \"c\"<about>", "")],
+            "DrivenMeasure" => &[
+                ("measure = \"own\"", "own = { type = \"coordinate\", joint = \"pin\" }\n"),
+                (
+                    "measure = \"own\"",
+                    "own = { type = \"angle\", from = { body = \"ground\", axis = <1 0> }, to = { body = \"c\", axis = <1 0> }<about> }\n",
+                ),
+            ],
+            other => panic!("no planar mechanism for `{other}`"),
+        };
+        for (keys, measure) in cases {
+            let driver = format!("turn = {{ {keys}, law = \"4*t + t^2\" }}");
+            // So little that the driven point is reached.
+            let text =
+                swinging(&driver, measure, "").replace("14*t - 3*t^2", "2*t").replace("25*t + 9*t^2", "3*t");
+            hold_to_spatial(&format!("{form} {keys} {measure}"), &text);
+        }
+    }
+}
+
+#[test]
+fn every_coupler_in_a_plane_is_what_its_shorthand_stands_for() {
+    for name in declared("Coupler") {
+        let keys = match name.as_str() {
+            "gear" => "joints = [\"hinge\", \"pin\"], teeth = [20, 30]",
+            "bevel" => continue,                    // its axes meet at an angle
+            "rack" | "rack_and_pinion" => continue, // coupled below, by the slide that a driver would move
+            "belt" => "joints = [\"hinge\", \"pin\"], radii = [20, 30], crossed = true",
+            "linear" => {
+                "terms = [{ joint = \"hinge\", coefficient = 1 }, { joint = \"pin\", coefficient = 2 }]"
+            }
+            other => panic!("no planar mechanism for coupler `{other}`"),
+        };
+        let text = swinging("", "", "")
+            .replace("[points]", &format!("[couplers]\nown = {{ type = \"{name}\", {keys} }}\n[points]"));
+        hold_to_spatial(&format!("{name} {keys}"), &text);
+    }
+    let rack = "rack = \"slide\", pinion = \"pin\", radius = 30";
+    for name in declared("Coupler").iter().filter(|n| n.starts_with("rack")) {
+        let text = swinging("", "", "")
+            .replace("[points]", &format!("[couplers]\nown = {{ type = \"{name}\", {rack} }}\n[points]"));
+        hold_to_spatial(name, &text);
+    }
+}
+
+#[test]
+fn every_mass_and_force_in_a_plane_is_what_its_shorthand_stands_for() {
+    for element in ElementType::ALL {
+        let point = |body: &str, at: &str| format!("{{ body = \"{body}\", at = {at} }}");
+        let keys = match element.name {
+            "rigid" => {
+                format!("centre = {}, mass = 3, ixx = 0.02, iyy = 0.03, izz = 0.04", point("b", "<30 400>"))
+            }
+            "bar" => format!(
+                "from = {}, to = {}, diameter = 30, density = 7850",
+                point("b", "<10 400>"),
+                point("b", "<60 430>")
+            ),
+            "block" => format!("centre = {}, x = 30, y = 40, z = 70, density = 2700", point("b", "<30 400>")),
+            "mesh" => continue, // a file of corners in space, with nothing of a plane
+            "spring" => format!(
+                "from = {}, to = {}, stiffness = 20, preload = 30, damping = 0.4",
+                point("a", "<0 500>"),
+                point("c", "<90 450>")
+            ),
+            "joint_spring" => "joint = \"slide\", stiffness = 12, free = 5, damping = 0.3".into(),
+            "torsion_spring" => "joint = \"pin\", stiffness = 0.3, free = 4, damping = 0.02".into(),
+            "friction" => "joint = \"pin\", coefficient = 0.1, radius = 12, length = 40".into(),
+            "slide_friction" => "joint = \"slide\", coefficient = 0.1<normal>".into(),
+            "force" => format!(
+                "at = {}, force = 50, along = <0.4 0.8>, axes = \"body\", law = \"1 + t\"",
+                point("c", "<90 450>")
+            ),
+            "wheel_force" => continue, // wheels are in space
+            "moment" => "body = \"c\", moment = 5, law = \"1 + t\"<about>".into(),
+            "bushing" => format!(
+                "from = {}, to = {}, x = 100, y = 200, z = 300, about_x = 0.5, about_y = 0.7, about_z = 0.9",
+                point("a", "<60 420>"),
+                point("c", "<60 420>")
+            ),
+            "elastic_joint" => "joint = \"pin\", x = 1000, y = 3000, z = 2000".into(),
+            other => panic!("no planar mechanism for `{other}`"),
+        };
+        let own = format!("own = {{ type = \"{}\", {keys} }}\n", element.name);
+        let text = match element.table {
+            "masses" => swinging(TURN, "", "").replace("[forces]\n", &format!("{own}[forces]\n")),
+            _ => swinging(
+                TURN,
+                "give = { type = \"compliance\", of = \"base\", at = \"p\", along = <0.2 1> }\n",
+                &own,
+            ),
+        };
+        hold_to_spatial(&format!("{} {keys}", element.name), &text);
     }
 }

@@ -18,6 +18,11 @@ fn model(name: &str) -> ModelFile {
 }
 
 fn searched_on(threads: usize, file: &ModelFile, asked: &Optimization) -> Optimized {
+    searched_from(0, threads, file, asked)
+}
+
+/// Searches from the starts of these numbers on.
+fn searched_from(first: usize, threads: usize, file: &ModelFile, asked: &Optimization) -> Optimized {
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
     let mut progress = |_: usize, _: Progress<'_>| ControlFlow::Continue(());
@@ -26,7 +31,7 @@ fn searched_on(threads: usize, file: &ModelFile, asked: &Optimization) -> Optimi
         &file.model,
         &motions,
         asked,
-        Searching { progress: &mut progress, more: &|| true, threads, first: 0 },
+        Searching { progress: &mut progress, more: &|| true, threads, first },
     )
 }
 
@@ -215,17 +220,42 @@ fn a_restart_from_a_claimed_optimum_gains_nothing() {
 }
 
 #[test]
-fn the_gradient_at_the_start_does_not_make_an_optimum() {
-    // From a start whose objective is large, a search that may do little is not at an optimum by the size of its gradient.
+fn no_start_of_a_published_problem_ends_at_a_false_optimum() {
+    // These two starts lead into a valley in which the error falls from 8e-5 to 7e-7 over a long way: the gradient along it is
+    // 1e-9 of that at the start of the search.
     let file = model("synthesis/arc_five_points.toml");
-    for iterations in 1..12 {
-        let wanted = Optimization { starts: 1, iterations, ..asked(&file) };
-        let found = searched(&file, &wanted);
-        let search = best(&found);
-        if search.status == Status::Optimal {
-            assert!(search.optimality.residual <= 1e-6);
-        }
+    let found = searched_from(5, 1, &file, &Optimization { starts: 2, ..asked(&file) });
+    for search in found.searches.iter().filter(|s| s.status == Status::Optimal) {
+        let judged = search.found.as_ref().unwrap();
+        let again = hardpoint_file::parse(&file.edit(&judged.design).unwrap(), "again.toml").unwrap();
+        let restarted = searched(&again, &Optimization { starts: 1, ..asked(&again) });
+        let after = best(&restarted).found.as_ref().unwrap().objective;
+        assert!(judged.objective - after <= GAINED * judged.objective, "{:e} {after:e}", judged.objective);
     }
+    // Where the iterations suffice, the end of the valley is reached.
+    let least = best(&found).found.as_ref().unwrap().objective;
+    assert!(best(&found).status == Status::Optimal && least < 1e-6, "{least:e}");
+}
+
+/// Misfits of a path of 25 mm that are round-off, mm^2.
+const MET: f64 = 1e-18;
+
+#[test]
+fn goals_that_can_all_be_met_are_met_along_limits() {
+    // Five angles of the crank are free: the coupler point passes through six points of a line exactly, with Grashof's condition as a
+    // limit. The misfits lie in a valley as narrow as 1e-6 of its length.
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models/line_six_points.toml");
+    let file = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}"));
+    let found = searched(&file, &asked(&file));
+    let search = best(&found);
+    let judged = search.found.as_ref().unwrap();
+    assert_eq!(search.status, Status::Optimal);
+    assert!(search.optimality.met && judged.objective < MET, "{:e}", judged.objective);
+    assert!(judged.violation <= 1e-8, "{:e}", judged.violation);
+    assert!(search.cost.designs < 300, "{} designs", search.cost.designs);
+    // A search that may not go so far does not claim an optimum.
+    let early = searched(&file, &Optimization { iterations: 60, ..asked(&file) });
+    assert_eq!(best(&early).status, Status::IterationLimit, "{:?}", best(&early).found);
 }
 
 #[test]

@@ -16,7 +16,7 @@ const SAME_SLOPES: f64 = 1e-7;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The names of the types of a kind of thing, from the schema.
-fn declared(of: &str) -> Vec<String> {
+pub(crate) fn declared(of: &str) -> Vec<String> {
     let schema: serde_json::Value = serde_json::from_str(&hardpoint_file::schema()).unwrap();
     let of = &schema["$defs"][of];
     let types = of["oneOf"].as_array().or(of["anyOf"].as_array()).unwrap();
@@ -102,6 +102,9 @@ fn hold_both_sides(what: &str, text: &str, across: usize, opposite: &[&str]) {
         }
     }
 }
+
+/// Takes what a model is about, its text, across which axis it is mirrored, and parts of the names of measures that are opposite.
+pub(crate) type Hold<'h> = &'h mut dyn FnMut(&str, &str, usize, &[&str]);
 
 fn model(across: usize, tables: &str) -> String {
     format!(
@@ -190,6 +193,10 @@ fn with_joint(kind: &JointType, across: usize, with_axis2: bool) -> String {
 
 #[test]
 fn every_joint_type() {
+    joint_types(&mut hold_both_sides);
+}
+
+pub(crate) fn joint_types(hold: Hold<'_>) {
     for kind in joint::ALL {
         // What turns about the line that it slides along becomes left-handed.
         let opposite: &[&str] =
@@ -197,7 +204,7 @@ fn every_joint_type() {
         for across in 0..3 {
             for with_axis2 in [true, false] {
                 if with_axis2 || kind.axis2 == Need::Optional {
-                    hold_both_sides(kind.name, &with_joint(kind, across, with_axis2), across, opposite);
+                    hold(kind.name, &with_joint(kind, across, with_axis2), across, opposite);
                 }
             }
         }
@@ -206,6 +213,10 @@ fn every_joint_type() {
 
 #[test]
 fn every_law() {
+    laws(&mut hold_both_sides);
+}
+
+pub(crate) fn laws(hold: Hold<'_>) {
     for name in declared("LawTable") {
         let law = match name.as_str() {
             "harmonic" => "amplitude = 12, frequency = 0.6, phase = 20, offset = 3",
@@ -226,12 +237,16 @@ fn every_law() {
         let text = with_joint(joint::named("cylindrical").unwrap(), 1, false)
             .replace("\"9*t - 4*t^2\"", &law)
             .replace("\"11*t + 5*t^2\"", &law);
-        hold_both_sides(&name, &text, 1, &["q_angle"]);
+        hold(&name, &text, 1, &["q_angle"]);
     }
 }
 
 #[test]
 fn every_form_of_driver() {
+    forms_of_drivers(&mut hold_both_sides);
+}
+
+pub(crate) fn forms_of_drivers(hold: Hold<'_>) {
     let point = "{ body = \"left_b\", at = [60, 500, 30] }";
     let measured = [
         "left_m = { type = \"position\", point = { body = \"left_b\", at = [60, 500, 30] }, along = [0.3, 0.2, 0.9] }",
@@ -329,7 +344,7 @@ fn every_form_of_driver() {
                         format!("{}", if is_length { value * 1e3 } else { value.to_degrees() })
                     }
                 };
-                hold_both_sides(&format!("{form}, {driver} {more}"), &tables(&start), across, opposite);
+                hold(&format!("{form}, {driver} {more}"), &tables(&start), across, opposite);
             }
         }
     }
@@ -337,6 +352,10 @@ fn every_form_of_driver() {
 
 #[test]
 fn every_coupler() {
+    couplers(&mut hold_both_sides);
+}
+
+pub(crate) fn couplers(hold: Hold<'_>) {
     for name in declared("Coupler") {
         // On joints of one side, and on one of both sides: a shaft across the mirror, and a rack along it.
         let all: &[&str] = match name.as_str() {
@@ -434,7 +453,7 @@ fn every_coupler() {
                  [couplers]\nleft_coupler = {{ type = \"{name}\", {keys} }}\n[drivers]\n{drivers}"
                 ),
             );
-            hold_both_sides(&format!("{name}, {keys}"), &text, 1, &[]);
+            hold(&format!("{name}, {keys}"), &text, 1, &[]);
         }
     }
 }
@@ -496,6 +515,10 @@ fn opposite_loads(across: usize) -> Vec<String> {
 
 #[test]
 fn every_mass_and_force() {
+    masses_and_forces(&mut hold_both_sides);
+}
+
+pub(crate) fn masses_and_forces(hold: Hold<'_>) {
     let folder = tempfile::tempdir().unwrap();
     let stl = "solid s\n".to_owned()
         + &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
@@ -592,7 +615,7 @@ fn every_mass_and_force() {
                         );
                     }
                 } else {
-                    hold_both_sides(&what, &text, across, &opposite);
+                    hold(&what, &text, across, &opposite);
                 }
             }
         }
@@ -601,6 +624,10 @@ fn every_mass_and_force() {
 
 #[test]
 fn every_measure() {
+    measures(&mut hold_both_sides);
+}
+
+pub(crate) fn measures(hold: Hold<'_>) {
     for kind in MeasureType::ALL {
         // The measure, and across which axes it is opposite; what counts along global axes is.
         let all: Vec<(&str, &[usize])> = match kind.name {
@@ -684,7 +711,7 @@ fn every_measure() {
                     all.push("left_measured".into());
                 }
                 let all: Vec<&str> = all.iter().map(String::as_str).collect();
-                hold_both_sides(&format!("{} {keys}", kind.name), &text, across, &all);
+                hold(&format!("{} {keys}", kind.name), &text, across, &all);
             }
         }
     }
@@ -692,6 +719,10 @@ fn every_measure() {
 
 #[test]
 fn every_measure_of_wheels_and_axles() {
+    wheels_and_axles(&mut hold_both_sides);
+}
+
+pub(crate) fn wheels_and_axles(hold: Hold<'_>) {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(root.join("../../models/front_axle.toml")).unwrap();
     let list = text.split("measures = [").nth(1).and_then(|rest| rest.split(']').next()).unwrap();
@@ -715,7 +746,7 @@ fn every_measure_of_wheels_and_axles() {
         };
         seen.extend(model.measures.iter().filter_map(|m| m.name.strip_prefix("left.").map(str::to_owned)));
         assert!(model.measures.iter().any(|m| wheels(&m.name)));
-        hold_both_sides("wheel", &text, 1, &opposite);
+        hold("wheel", &text, 1, &opposite);
         for what in AxleMeasure::ALL {
             let Some(m) = model.measures.iter().position(|m| m.name == format!("front.{}", what.name()))
             else {

@@ -37,14 +37,11 @@ const JUST_BEFORE: f64 = 1e-12;
 /// Memory for the motion between output times.
 const BYTES: usize = 128 << 20;
 
-/// Returns whether a metric is taken at certain times of the curve.
-fn is_located(metric: &Metric) -> bool {
+/// Returns whether a metric is taken at times of the curve that are not among the output times, or may not be.
+fn is_located(metric: &Metric, times: &[f64]) -> bool {
     match metric.take {
-        Reduction::Least
-        | Reduction::Greatest
-        | Reduction::Range
-        | Reduction::Value(_)
-        | Reduction::Slope(_) => true,
+        Reduction::Least | Reduction::Greatest | Reduction::Range => true,
+        Reduction::Value(at) | Reduction::Slope(at) => metric.over.is_some() || !times.contains(&at),
         Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => false,
     }
 }
@@ -59,7 +56,7 @@ impl Analysis<'_> {
     fn times_between(&self) -> &[f64] {
         self.between.get_or_init(|| {
             let model = self.model();
-            if !model.metrics.iter().any(is_located) {
+            if !model.metrics.iter().any(|m| is_located(m, &model.times)) {
                 return model.times.clone();
             }
             let units = driver_units(model, self.topology());
@@ -82,7 +79,10 @@ impl Analysis<'_> {
     ) {
         solution.between = None;
         let model = self.model();
-        if !design.scope.measures || solution.stop.is_some() || !model.metrics.iter().any(is_located) {
+        if !design.scope.measures
+            || solution.stop.is_some()
+            || !model.metrics.iter().any(|m| is_located(m, &model.times))
+        {
             return;
         }
         let mut times = self.times_between().to_vec();
@@ -109,7 +109,7 @@ impl Analysis<'_> {
                 found = Some(next);
             }
             let now = found.as_ref().unwrap_or(solution);
-            let located = model.metrics.iter().filter(|m| is_located(m));
+            let located = model.metrics.iter().filter(|m| is_located(m, &model.times));
             let add: Vec<f64> =
                 located.flat_map(|metric| unresolved_times(now, metric, found.is_some())).collect();
             if add.is_empty() {

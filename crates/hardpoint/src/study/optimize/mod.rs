@@ -24,7 +24,7 @@ use super::evaluation::{Cost, Motions};
 use gauss_newton::GaussNewton;
 pub use optimality::{Binding, Optimality};
 use problem::{Point, Problem, Refusal};
-use solver::{FLAT, Memory, Sequential, Solver, least_squares};
+use solver::{Memory, Sequential, Solver, least_squares};
 
 /// A limit that is exceeded by less than this part of its scale is kept: the rest is round-off of the search.
 pub const LIMIT_KEPT: f64 = 1e-8;
@@ -44,24 +44,34 @@ const RESTING: f64 = 1e-13;
 const THE_SAME: f64 = 1e-12;
 /// A run that takes away so much of what kept the design from an optimum was worth it, whatever it did to the objective.
 const NEARER: f64 = 0.5;
-/// Gauss-Newton steps that promise less than this part of the objective are not taken.
-const NOTICEABLE: f64 = 1e-3;
-/// Gauss-Newton steps begin with this least curvature, as a part of the largest ...
-const DAMPED: f64 = 1e-8;
-/// ... which falls by this factor after a good step, and grows by it after a bad one ...
-const DAMPING: f64 = 10.0;
-/// ... down to the square of what can be told from round-off in derivatives of motions.
-const LEAST_DAMPED: f64 = 1e-20;
-/// A Gauss-Newton step that gains this part of what it promised is a good one, and so is a run that halves the objective.
-const GOOD: f64 = 0.5;
-/// Gauss-Newton steps go on although the objective is above that of the best design: until this number of them have not taken away ...
-const WEAK_STEPS: usize = 3;
-/// ... this part of the objective ...
-const WEAK: f64 = 0.2;
-/// ... or one has made it this many times greater.
-const ASTRAY: f64 = 1e6;
+/// Gauss-Newton steps that promise less than this part of the objective are not made: the rest is round-off.
+const NO_PROMISE: f64 = 1e-14;
+/// Initial damping of Gauss-Newton steps, as a part of the largest curvature.
+const DAMPING: f64 = 1e-4;
+/// Factor by which the damping changes after a step.
+const DAMPED: f64 = 3.0;
+/// Minimum damping: the square of the round-off in derivatives of motions.
+const LEAST_DAMPING: f64 = 1e-22;
+/// Maximum number of steps that lead back to a valley or a limit ...
+const CORRECTIONS: usize = 2;
+/// ... and the factor of their damping.
+const CORRECTING: f64 = 1e4;
+/// A Gauss-Newton step that gains this part of what it promised is a good one.
+const GOOD: f64 = 0.25;
+/// Steps that take away less than this part of the objective, and less than they promised, are idle ...
+const WEAK: f64 = 0.05;
+/// ... and after this number of them the misfits are too curved for Gauss-Newton steps: others make an end of it.
+const IDLE: usize = 4;
+/// Then Gauss-Newton steps are tried again only where they promise this part of the objective.
+const MUCH: f64 = 0.5;
+/// The first step promises this part of what the longest one promises.
+const FAIR: f64 = 0.1;
+/// A step that makes the objective this many times greater is not corrected.
+const ASTRAY: f64 = 1e4;
 /// Squares under limits that do not fall to half within this number of iterations are left to Gauss-Newton steps.
-const PATIENCE: usize = 30;
+const PATIENCE: usize = 20;
+/// ... which are better if they halve the objective.
+const HALVED: f64 = 0.5;
 /// The first solver has done its work where a step gains less than this part of the objective: others make an end of it.
 const HARDLY_LESS: f64 = 1e-6;
 /// A start that cannot be judged is drawn nearer so many times.
@@ -371,6 +381,8 @@ struct Descent<'p> {
     here: Point,
     best: Point,
     ran_out: bool,
+    /// Gauss-Newton steps were idle.
+    is_curved: bool,
 }
 
 impl<'p> Descent<'p> {
@@ -384,6 +396,7 @@ impl<'p> Descent<'p> {
             here: point.clone(),
             best: point,
             ran_out: false,
+            is_curved: false,
             problem,
             memory,
         }
@@ -464,35 +477,31 @@ impl<'p> Descent<'p> {
         self.at = self.problem.parts(&self.here.design);
     }
 
-    /// Damped Gauss-Newton steps under bounds and limits from the best design, as long as they gain noticeably: a restart that shows
-    /// whether small misfits are at their least, and follows the narrow valleys in which they can still fall to nothing.
+    /// Damped Gauss-Newton steps under bounds and limits from the best design, as long as they gain.
     ///
-    /// A valley bends, so that a step along it first leaves it: designs are compared after a few steps, not after each.
+    /// Small misfits lie in narrow curved valleys, and on curved limits: a step along them leaves them. Up to [`CORRECTIONS`]
+    /// further steps with much greater damping lead back before the designs are compared.
     fn polish(&mut self, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
         let n = self.at.len();
-        let (mut damped, mut idle) = (DAMPED, 0);
-        while damped <= FLAT && idle < WEAK_STEPS {
-            let promise = |damped| GaussNewton::new(self.problem, &self.best, &self.scales, damped).promise;
-            let can_fall = self.best.has_only_squares()
-                && self.violation(&self.best) <= KEPT
-                && self.best.is_small(&self.problem.bounds)
-                && !self.optimality(&self.best).met;
-            if !can_fall {
+        let promise =
+            |run: &Self, damping| GaussNewton::new(run.problem, &run.best, &run.scales, damping).promise;
+        let (mut damping, mut failures, mut idle) = (DAMPING, 0, 0);
+        let most = promise(self, LEAST_DAMPING);
+        if self.is_curved && most < MUCH {
+            return;
+        }
+        while damping > LEAST_DAMPING && promise(self, damping) < FAIR * most {
+            damping = (damping / DAMPED).max(LEAST_DAMPING);
+        }
+        while idle < IDLE && self.best.has_only_squares() && self.violation(&self.best) <= KEPT {
+            if self.is_sharp(&self.best) || self.optimality(&self.best).met {
                 return;
             }
-            let promised = promise(damped);
-            if promised <= NOTICEABLE {
-                if damped > LEAST_DAMPED && promise(LEAST_DAMPED) > NOTICEABLE {
-                    damped /= DAMPING;
-                    continue;
-                }
-                return;
-            }
-            let before = self.best.objective();
             self.return_to_best();
-            let kept_promise = |run: &Self| 1.0 - run.best.objective() / before >= GOOD * promised;
-            let mut weak = 0;
-            while weak < WEAK_STEPS {
+            let before = self.best.objective();
+            let mut promised = 0.0;
+            let mut gained = None;
+            for correction in 0..=CORRECTIONS {
                 if self.memory.interrupted() {
                     return;
                 }
@@ -500,29 +509,44 @@ impl<'p> Descent<'p> {
                     self.ran_out = true;
                     return;
                 }
-                let by = GaussNewton::new(self.problem, &self.here, &self.scales, damped).step;
-                let at: Vec<f64> = (0..n).map(|v| (self.at[v] + by[v]).clamp(0.0, 1.0)).collect();
+                let damping = if correction == 0 { damping } else { damping * CORRECTING };
+                let GaussNewton { step, promise } =
+                    GaussNewton::new(self.problem, &self.here, &self.scales, damping);
+                if correction == 0 {
+                    promised = promise;
+                    if promised <= NO_PROMISE {
+                        return;
+                    }
+                }
+                let at: Vec<f64> = (0..n).map(|v| (self.at[v] + step[v]).clamp(0.0, 1.0)).collect();
                 if at == self.at {
                     break;
                 }
-                let found = self.memory.at(&at, |found| found.as_ref().ok().cloned());
-                let Some(point) = found else { break };
+                let Some(point) = self.memory.at(&at, |found| found.as_ref().ok().cloned()) else { break };
                 let from = (std::mem::replace(&mut self.at, at), std::mem::replace(&mut self.here, point));
                 if self.is_better(&self.here, &self.best) {
                     self.best = self.here.clone();
                 }
-                weak += usize::from(self.here.objective() > (1.0 - WEAK) * from.1.objective());
                 self.note(search, Some(from), tell);
-                if self.optimality(&self.best).met {
-                    return;
+                let now = self.here.objective();
+                if self.violation(&self.here) <= KEPT && now <= (1.0 - GOOD * promised) * before {
+                    gained = Some(correction == 0);
+                    break;
                 }
-                if kept_promise(self) || self.here.objective() > ASTRAY * before {
+                if now > ASTRAY * before {
                     break;
                 }
             }
-            let is_weak = self.best.objective() > (1.0 - WEAK) * before;
-            idle = if is_weak { idle + 1 } else { 0 };
-            damped = if kept_promise(self) { (damped / DAMPING).max(LEAST_DAMPED) } else { damped * DAMPING };
+            let less = self.best.objective() < (1.0 - WEAK) * before;
+            (damping, failures) = match gained {
+                Some(true) => (damping / (DAMPED * DAMPED), 0),
+                Some(false) => (damping / DAMPED, 0),
+                None if less => (damping, 0),
+                None => (damping * DAMPED.powi(failures + 1), failures + 1),
+            };
+            damping = damping.max(LEAST_DAMPING);
+            idle = if less { 0 } else { idle + usize::from(gained != Some(true)) };
+            self.is_curved |= idle == IDLE;
         }
     }
 
@@ -530,14 +554,14 @@ impl<'p> Descent<'p> {
     fn descend(&mut self, run: usize, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
         let squares = run.is_multiple_of(2) && self.here.is_squares();
         let Some(mut solver) = self.solver(squares) else { return };
-        let hands_over = self.here.has_only_squares() && !self.here.limits.is_empty();
+        let hands_over = self.here.has_only_squares();
         let (mut patience, mut since) = (PATIENCE, (search.iterations.len(), self.best.objective()));
         loop {
             if hands_over && search.iterations.len() >= since.0 + patience {
-                if self.best.objective() > GOOD * since.1 {
+                if self.best.objective() > HALVED * since.1 {
                     let (slow, stands) = (self.best.objective(), (self.at.clone(), self.here.clone()));
                     self.polish(search, tell);
-                    if self.best.objective() <= GOOD * slow {
+                    if self.best.objective() <= HALVED * slow {
                         self.return_to_best();
                         match self.solver(squares) {
                             Some(next) => solver = next,
