@@ -24,10 +24,10 @@ python3 -c 'import ensurepip' 2>/dev/null || install python3-venv
 
 echo "== format and lints"
 cargo fmt --all --check
-cargo clippy --workspace --all-targets --quiet -- -D warnings
+cargo clippy --release --workspace --all-targets --quiet -- -D warnings
 
 echo "== Rust tests"
-cargo test --workspace
+cargo test --release --workspace
 
 echo "== instruction counts"
 bench/instructions
@@ -39,11 +39,11 @@ python3 -m venv "$work"
 python="$PWD/$work/bin/python"
 pip() { "$python" -m pip install --quiet --disable-pip-version-check "$@"; }
 pip 'maturin>=1.16,<2'
-"$work/bin/maturin" build --quiet --profile dev --manifest-path python/Cargo.toml --out "$work/wheel"
+"$work/bin/maturin" build --quiet --release --features shared --manifest-path python/Cargo.toml --out "$work/wheel"
 # The wheel alone: nothing of the sources is beside it, and no toolchain is at hand.
 wheel=$(echo "$work"/wheel/*.whl)
 PATH="$PWD/$work/bin:/usr/bin:/bin" pip "$PWD/$wheel[test]"
-PATH="$PWD/$work/bin:/usr/bin:/bin" HARDPOINT="$PWD/target/debug/hardpoint" "$python" -m pytest -q -p no:cacheprovider python/tests
+PATH="$PWD/$work/bin:/usr/bin:/bin" HARDPOINT="$PWD/target/release/hardpoint" "$python" -m pytest -q -p no:cacheprovider python/tests
 
 echo "== the page"
 cd web

@@ -19,7 +19,7 @@ REFERENCE = json.loads((ROOT / "crates/hardpoint-file/tests/reference.json").rea
 def command():
     """Runs the command line. The tests that compare with it are skipped where it is neither built nor named."""
     named = os.environ.get("HARDPOINT")
-    program = Path(named or ROOT / "target/debug/hardpoint")
+    program = Path(named or ROOT / "target/release/hardpoint")
     if not named and not program.exists():
         pytest.skip(f"there is no program {program}: `cargo build -p hardpoint-cli`, or name it in HARDPOINT")
 

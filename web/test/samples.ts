@@ -101,9 +101,9 @@ function ridden(strut: string): string {
   return text
 }
 
-/** The built programs: with the whole workspace, as `cargo test` builds it, so that after that there is nothing left to compile. */
+/** The built programs: with the whole workspace, as `cargo test --release` builds it, so that after that there is nothing left to compile. */
 function build(): Record<'hardpoint' | 'sample_page' | 'rockers' | 'answers', string> {
-  const command = ['build', '--workspace', '--bin', 'hardpoint', '--example', 'sample_page', '--example', 'rockers', '--example', 'answers', '--message-format', 'json']
+  const command = ['build', '--release', '--workspace', '--bin', 'hardpoint', '--example', 'sample_page', '--example', 'rockers', '--example', 'answers', '--message-format', 'json']
   const stdio: StdioOptions = ['ignore', 'pipe', 'inherit']
   const messages = execFileSync('cargo', command, { cwd: ROOT, maxBuffer: Infinity, stdio }).toString().trim().split('\n')
   const built = messages.map((line) => JSON.parse(line) as { executable?: string | null; target?: { name: string } })

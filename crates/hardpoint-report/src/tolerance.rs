@@ -923,7 +923,7 @@ fn limit(studied: &Studied<'_>, k: usize) -> YieldFact {
     let found = &studied.found.limits[k];
     let limit = &studied.asked.limits[found.limit];
     let of = &studied.found.metrics[found.spread];
-    debug_assert_eq!(limit.of, Limited::Metric(of.metric));
+    assert_eq!(limit.of, Limited::Metric(of.metric));
     let (units, dimension) = (studied.units(), studied.dimension(of));
     let shown = |x: f64| units.from_si(dimension, x);
     let worth = studied.found.allocation.as_ref().filter(|a| a.impossible.is_none()).map(|a| a.worth[k]);

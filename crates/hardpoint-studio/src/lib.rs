@@ -130,7 +130,7 @@ fn checked(model: &ModelText) -> Checked {
     let mut messages: Vec<Message> = file.remarks.iter().map(|d| Message::of(&model.text, d)).collect();
     if let Err(fault) = hardpoint::Analysis::new(&file.model) {
         let fault = hardpoint_report::diagnose::topology_fault(&file, &fault);
-        debug_assert_eq!(fault.severity, Severity::Error);
+        assert_eq!(fault.severity, Severity::Error);
         messages.push(Message::of(&model.text, &fault));
     }
     Checked { messages }

@@ -49,6 +49,6 @@ impl Drop for Executable {
     fn drop(&mut self) {
         // SAFETY: these are exactly our pages; who borrowed the code has returned, since `self` is borrowed mutably.
         let unmapped = unsafe { munmap(self.start.as_ptr(), self.length) };
-        debug_assert!(unmapped.is_ok(), "pages that were mapped can be unmapped");
+        assert!(unmapped.is_ok(), "pages that were mapped can be unmapped");
     }
 }

@@ -648,7 +648,7 @@ impl<'m> Stepper<'m> {
     /// Values of the tree coordinates; 0 for those of balls.
     pub fn coordinates(&self) -> impl Iterator<Item = f64> + '_ {
         let ball = self.topology.links.iter().flat_map(|l| &l.steps).filter(|s| s.freedom == Freedom::Ball);
-        debug_assert!(ball.map(|s| self.state.q[s.first.0]).all(|q| q == 0.0));
+        assert!(ball.map(|s| self.state.q[s.first.0]).all(|q| q == 0.0));
         self.state.q.iter().copied()
     }
 }

@@ -37,9 +37,7 @@ impl Block {
 
 impl Deviations {
     pub fn new(model: &Model, asked: &Tolerancing, left_out: &[VariableId]) -> Self {
-        debug_assert!(
-            asked.tolerances.iter().flat_map(|t| &t.variables).all(|v| v.0 < model.variables.len())
-        );
+        assert!(asked.tolerances.iter().flat_map(|t| &t.variables).all(|v| v.0 < model.variables.len()));
         let reaches: Vec<f64> = asked.tolerances.iter().map(|t| t.reach).collect();
         Self::of(asked, &reaches, |v| !left_out.contains(&v))
     }

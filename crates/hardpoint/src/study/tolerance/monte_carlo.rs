@@ -179,7 +179,7 @@ impl Study<'_> {
             for (k, of) in found.metrics.iter().enumerate().filter(|(_, of)| of.motion == motion) {
                 let number = numbers.get(places[k]).copied().flatten();
                 block.metrics[k].push(number.unwrap_or(f64::NAN));
-                debug_assert!(of.motion == motion);
+                assert!(of.motion == motion);
             }
             if stop.is_none() {
                 let of_motion =
