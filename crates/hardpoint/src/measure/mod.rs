@@ -782,8 +782,15 @@ impl<'a, T: Real> Instant<'a, T> {
         let turning = || {
             let (a, b) = (-toe(&left), toe(&right));
             let (sum, apart) = ((a + b).abs(), (a - b) * half);
-            // Straight ahead the two wheels change places, a kink: derivatives are the mean of those of both sides.
-            let mean = if sum.exceeds(T::constant(KINK)) { sum * half } else { T::zero() };
+            // Straight ahead the two wheels change places, a kink: derivatives by the design are the mean of those of both sides,
+            // and where the axle steers across there are no rates.
+            let mean = if sum.exceeds(T::constant(KINK)) {
+                sum * half
+            } else if (a + b).rate().abs().exceeds(T::constant(KINK)) {
+                T::zero().rate().rate()
+            } else {
+                T::zero()
+            };
             (mean, mean + apart, mean - apart)
         };
         match what {
@@ -892,8 +899,8 @@ const RESTS: f64 = 1e-12;
 
 /// A wheel that heads less into the turn than this, rad, drives straight ahead: the turning radius would be some 30 km.
 const STRAIGHT: f64 = 1e-4;
-/// A sum of headings of a symmetric axle in pure bump is zero to this round-off, rad.
-const KINK: f64 = 1e-12;
+/// A sum of headings below this is zero but for round-off, rad; and so is its rate, rad/s: of a symmetric axle in pure bump.
+const KINK: f64 = 1e-9;
 
 /// An axle whose wheels head less aside than this in the mean, 1 degree in rad, is not steered: static toe and bump steer are of that size,
 /// while Ackermann's difference of the two headings falls with the square of the angle (0.01 degrees here), so that its part would be
