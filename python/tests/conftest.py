@@ -21,7 +21,7 @@ def command():
     named = os.environ.get("HARDPOINT")
     program = Path(named or ROOT / "target/release/hardpoint")
     if not named and not program.exists():
-        pytest.skip(f"there is no program {program}: `cargo build -p hardpoint-cli`, or name it in HARDPOINT")
+        pytest.skip(f"there is no program {program}: `cargo build --release`, or name it in HARDPOINT")
 
     def run(*arguments):
         return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
