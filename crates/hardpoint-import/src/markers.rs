@@ -160,10 +160,10 @@ pub fn join(
         let why = "its markers do not meet as drawn: it is taken as closed where the bodies stand";
         notes.approximated(called.kind, called.name, called.at, why);
     } else if turn.is_some() {
-        let why = "its markers' axes are turned against each other as drawn: the mechanism is assembled there before it moves";
+        let why = "its markers' axes are turned against each other in the file: the mechanism is assembled there before it moves";
         notes.approximated(called.kind, called.name, called.at, why);
     } else if awry {
-        let why = "its markers' axes are turned against each other as drawn: the first marker's axis is taken for both";
+        let why = "its markers' axes are turned against each other in the file: the first marker's axis is taken for both";
         notes.approximated(called.kind, called.name, called.at, why);
     } else {
         notes.taken(called.kind, called.name, called.at);
@@ -171,8 +171,7 @@ pub fn join(
     Some(m.joint(joint))
 }
 
-/// The turn that takes body j from where it is drawn to where the axes of a joint agree, and its angle about them stays as drawn; none
-/// where the markers have no such place.
+/// Rotation of body j that makes the axes of a joint agree and keeps the angle about them; none where no rotation does.
 fn turn_between(kind: &str, [i, j]: [&Marker; 2]) -> Option<Mat3> {
     if ["universal", "dot1"].contains(&kind) {
         let (a, b) = (i.z(), j.z());
@@ -247,9 +246,9 @@ pub fn linked(
     m.joint(if same { second } else { second.between(end, j.pose.r) });
     if skew || !same {
         let how = if turn.is_some() {
-            "its axes are turned against each other as drawn: the mechanism is assembled there before it moves"
+            "its axes are turned against each other in the file: the mechanism is assembled there before it moves"
         } else if skew {
-            "its axes are turned against each other as drawn: the first is taken for both"
+            "its axes are turned against each other in the file: the first is taken for both"
         } else {
             "it is drawn at another distance: the mechanism is assembled to the one that is said"
         };

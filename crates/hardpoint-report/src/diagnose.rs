@@ -138,11 +138,11 @@ fn gap_notes(file: &ModelFile, stop: &Stop, closed: f64) -> Vec<String> {
         notes.push(format!("{} more stay open by less", gaps.len() - MOST_GAPS));
     }
     notes.push(if stop.is_singular_drawing() {
-        "as drawn the mechanism is open in or next to a singular position, and no assembly was found around it, with every driver at zero"
+        "in the design configuration the mechanism is open, in or next to a singular position, and no assembly was found around it, with every driver at zero"
             .into()
     } else {
         format!(
-            "as drawn the mechanism is open; {} % of the gaps could be closed together, with every driver at zero",
+            "in the design configuration the mechanism is open; {} % of the gaps could be closed together, with every driver at zero",
             rounded(100.0 * closed, 2)
         )
     });

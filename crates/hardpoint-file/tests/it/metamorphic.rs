@@ -60,7 +60,7 @@ impl Answer {
     }
 }
 
-/// How a model is run.
+/// A model, and the settings of its run.
 struct Asked<'a> {
     text: &'a str,
     steps: usize,

@@ -8,7 +8,7 @@ use hardpoint::space::Vec3;
 use hardpoint_file::{ModelFile, parse, read};
 
 use crate::diagnostics::snapshot;
-use crate::sides::declared;
+use crate::sides::{CoordinateEntries, Leg, declared};
 
 /// Two ways to say the same mechanism solve the same equations in other orders.
 const SAME: f64 = 1e-12;
@@ -280,18 +280,10 @@ const HEADER: &str =
 /// Legs from ground to the body `b`, of lengths that drivers change.
 fn legs(count: usize) -> String {
     let leg = |k: usize| {
-        let turn = |offset: f64| (60.0 * k as f64 + offset).to_radians().sin_cos();
-        let side = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let ((s, c), (u, v)) = (turn(22.0 * side), turn(-17.0 * side));
+        let Leg { base, on, law } = Leg::of(k);
+        let [base, on] = [base, on].map(|[a, b, c]| format!("<{a} {b} {c}>"));
         format!(
-            "leg{k} = {{ from = {{ body = \"ground\", at = <{} {} -350> }}, to = {{ body = \"b\", at = <{} {} {}> }}, law = \"{}*sin({}*t)\" }}\n",
-            30.0 + 400.0 * c,
-            450.0 + 400.0 * s,
-            30.0 + 150.0 * v,
-            450.0 + 150.0 * u,
-            40.0 + 10.0 * k as f64,
-            3 + k,
-            2.0 - 0.3 * k as f64
+            "leg{k} = {{ from = {{ body = \"ground\", at = {base} }}, to = {{ body = \"b\", at = {on} }}, law = \"{law}\" }}\n"
         )
     };
     (0..count).map(leg).collect()
@@ -320,29 +312,13 @@ fn every_joint_type_in_a_plane_is_what_its_shorthand_stands_for() {
         if kind.follows_curve() {
             keys += ", curve = { points = [<-70 415>, <-10 400>, <70 395>, <150 402>] }";
         }
-        let driven = kind
-            .coordinates
-            .iter()
-            .filter(|c| !(kind.is_rod() && !kind.rows.is_empty() || kind.has_lead() && c.name != "angle"));
-        let (mut drivers, mut measures, mut held) = (String::new(), String::new(), kind.rows.len());
-        for c in driven {
-            let law = if c.name.starts_with("angle") { "9*t - 4*t^2" } else { "11*t + 5*t^2" };
-            drivers += &format!("{0} = {{ joint = \"j\", coordinate = \"{0}\", law = \"{law}\" }}\n", c.name);
-            held += 1;
-        }
-        held += usize::from(kind.has_lead());
-        for c in kind.coordinates {
-            measures += &format!(
-                "q_{0} = {{ type = \"coordinate\", joint = \"j\", coordinate = \"{0}\" }}\n",
-                c.name
-            );
-        }
+        let CoordinateEntries { drivers, measures, free } = CoordinateEntries::of(kind, "");
         hold_to_spatial(
             kind.name,
             &format!(
                 "{HEADER}[bodies]\na = {{}}\nb = {{}}\n[joints]\nhinge = {{ type = \"revolute\", bodies = [\"ground\", \"a\"], at = <-200 300><axis> }}\n\
                  j = {{ {keys} }}\n[drivers]\nturn = {{ joint = \"hinge\", law = \"3*t\" }}\n{drivers}{}[measures]\n{measures}",
-                legs(6 - held)
+                legs(free)
             ),
         );
     }

@@ -116,22 +116,69 @@ fn model(across: usize, tables: &str) -> String {
 
 /// Legs from ground to a body, of lengths that drivers change: each takes one of its freedoms.
 fn legs(count: usize) -> String {
-    let mut text = String::new();
-    for k in 0..count {
+    let leg = |k: usize| {
+        let Leg { base, on, law } = Leg::of(k);
+        format!(
+            "left_leg{k} = {{ from = {{ body = \"ground\", at = {base:?} }}, to = {{ body = \"left_b\", at = {on:?} }}, law = \"{law}\" }}\n"
+        )
+    };
+    (0..count).map(leg).collect()
+}
+
+/// One of six legs that hold a body, in mm.
+pub(crate) struct Leg {
+    pub base: [f64; 3],
+    pub on: [f64; 3],
+    pub law: String,
+}
+
+impl Leg {
+    pub fn of(k: usize) -> Self {
         let turn = |offset: f64| (60.0 * k as f64 + offset).to_radians().sin_cos();
-        let side = if k % 2 == 0 { 1.0 } else { -1.0 };
+        let side = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
         let ((s, c), (u, v)) = (turn(22.0 * side), turn(-17.0 * side));
-        let (base, on) = (
-            [30.0 + 400.0 * c, 450.0 + 400.0 * s, -350.0],
-            [30.0 + 150.0 * v, 450.0 + 150.0 * u, 40.0 + 10.0 * k as f64],
-        );
-        text += &format!(
-            "left_leg{k} = {{ from = {{ body = \"ground\", at = {base:?} }}, to = {{ body = \"left_b\", at = {on:?} }}, law = \"{}*sin({}*t)\" }}\n",
-            3 + k,
-            2.0 - 0.3 * k as f64
-        );
+        Self {
+            base: [30.0 + 400.0 * c, 450.0 + 400.0 * s, -350.0],
+            on: [30.0 + 150.0 * v, 450.0 + 150.0 * u, 40.0 + 10.0 * k as f64],
+            law: format!("{}*sin({}*t)", 3 + k, 2.0 - 0.3 * k as f64),
+        }
     }
-    text
+}
+
+/// Entries for the coordinates of a joint `j`; all names begin with `side`.
+pub(crate) struct CoordinateEntries {
+    /// Drivers of those that can be driven.
+    pub drivers: String,
+    /// Measures of all of them.
+    pub measures: String,
+    /// Number of freedoms between its bodies that remain.
+    pub free: usize,
+}
+
+impl CoordinateEntries {
+    pub fn of(kind: &JointType, side: &str) -> Self {
+        let driven = kind
+            .coordinates
+            .iter()
+            .filter(|c| !(kind.is_rod() && !kind.rows.is_empty() || kind.has_lead() && c.name != "angle"));
+        let (mut drivers, mut measures) = (String::new(), String::new());
+        let mut held = kind.rows.len() + usize::from(kind.has_lead());
+        for c in driven {
+            let law = if c.name.starts_with("angle") { "9*t - 4*t^2" } else { "11*t + 5*t^2" };
+            let name = c.name;
+            drivers += &format!(
+                "{side}{name} = {{ joint = \"{side}j\", coordinate = \"{name}\", law = \"{law}\" }}\n"
+            );
+            held += 1;
+        }
+        for c in kind.coordinates {
+            let name = c.name;
+            measures += &format!(
+                "{side}q_{name} = {{ type = \"coordinate\", joint = \"{side}j\", coordinate = \"{name}\" }}\n"
+            );
+        }
+        Self { drivers, measures, free: 6 - held }
+    }
 }
 
 /// A body on a carrier by a joint of this type; all coordinates that can be driven are, and legs do the rest.
@@ -160,24 +207,7 @@ fn with_joint(kind: &JointType, across: usize, with_axis2: bool) -> String {
         let points = [point(-80.0, 15.0), point(-20.0, 0.0), point(60.0, -5.0), point(140.0, 2.0)];
         keys += &format!(", curve = {{ points = {points:?} }}");
     }
-    let driven = kind
-        .coordinates
-        .iter()
-        .filter(|c| !(kind.is_rod() && !kind.rows.is_empty() || kind.has_lead() && c.name != "angle"));
-    let (mut drivers, mut measures, mut held) = (String::new(), String::new(), kind.rows.len());
-    for c in driven {
-        let law = if c.name.starts_with("angle") { "9*t - 4*t^2" } else { "11*t + 5*t^2" };
-        drivers +=
-            &format!("left_{0} = {{ joint = \"left_j\", coordinate = \"{0}\", law = \"{law}\" }}\n", c.name);
-        held += 1;
-    }
-    held += usize::from(kind.has_lead());
-    for c in kind.coordinates {
-        measures += &format!(
-            "left_q_{0} = {{ type = \"coordinate\", joint = \"left_j\", coordinate = \"{0}\" }}\n",
-            c.name
-        );
-    }
+    let CoordinateEntries { drivers, measures, free } = CoordinateEntries::of(kind, "left_");
     model(
         across,
         &format!(
@@ -186,7 +216,7 @@ fn with_joint(kind: &JointType, across: usize, with_axis2: bool) -> String {
              [joints]\nleft_hinge = {{ type = \"revolute\", bodies = [\"ground\", \"left_a\"], at = \"left_H\", axis = [0.3, 0.5, 0.8] }}\n\
              left_j = {{ {keys} }}\n\
              [drivers]\nleft_turn = {{ joint = \"left_hinge\", law = \"3*t\" }}\n{drivers}{}[measures]\n{measures}",
-            legs(6 - held)
+            legs(free)
         ),
     )
 }

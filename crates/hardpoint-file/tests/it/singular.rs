@@ -415,7 +415,7 @@ impl SingularDrawing {
         Self { name, points, joints, driver, open }
     }
 
-    /// Its model, turned about z by an angle, then moved, then scaled.
+    /// Returns its model, turned about z by an angle, then moved, then scaled.
     fn text(&self, angle: f64, [x, y]: [f64; 2], scale: f64) -> String {
         let (s, c) = angle.sin_cos();
         let (mut hardpoints, mut joints, mut bodies) = (String::new(), String::new(), Vec::<&str>::new());

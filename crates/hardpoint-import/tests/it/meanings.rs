@@ -223,7 +223,7 @@ fn markers_that_are_turned_against_each_other_are_assembled() {
             };
             assert!(off < 1e-9, "{kind} by {tilt}: {off}");
             if !["HOOKE", "FIXED"].contains(&kind) {
-                // What is about the axis stays as drawn: 0.2 rad.
+                // The angle about the axis is kept: 0.2 rad.
                 assert!((x.y.atan2(x.x) - 0.2).abs() < 1e-2, "{kind}: {x:?}");
             }
         }

@@ -84,18 +84,13 @@ impl Stepper<'_> {
             return None;
         }
         // Back to b, then over to f. At a distance d, q' is known to round-off / d^2 and q'' to round-off / d^3: steps double d.
-        while self.time > from {
+        while self.time != from {
             let distance = f64::max(at - self.time, SHORTEST_BACK * h);
-            let back = if distance < h { f64::max(from, self.time - distance) } else { from };
-            self.solve_at(path, back, back - self.time).ok()?;
+            let next = if distance < h { f64::max(from, self.time - distance) } else { from };
+            self.solve_at(path, next, next - self.time).ok()?;
             self.polish().ok()?;
-            self.save(back, 0.0);
+            self.save(next, 0.0);
             self.examine_here(path);
-        }
-        if self.time < from {
-            self.solve_at(path, from, from - self.time).ok()?;
-            self.polish().ok()?;
-            self.save(from, 0.0);
         }
         // The drivers move by a hundredth of a radian: an angle is in the nearest turn.
         self.renew_turns();

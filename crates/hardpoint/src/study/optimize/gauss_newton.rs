@@ -66,11 +66,16 @@ impl GaussNewton {
                 return x;
             }
             let heavy = HEAVY * strongest;
-            let entry = |row: usize, c: usize| match row {
-                _ if row < rows => misfit(row, free[c]),
-                _ if row < rows + active.len() => heavy * limit(&point.limits[active[row - rows]], free[c]),
-                _ if row - rows - active.len() == c => root,
-                _ => 0.0,
+            let entry = |row: usize, c: usize| {
+                if row < rows {
+                    misfit(row, free[c])
+                } else if row < rows + active.len() {
+                    heavy * limit(&point.limits[active[row - rows]], free[c])
+                } else if row - rows - active.len() == c {
+                    root
+                } else {
+                    0.0
+                }
             };
             let limits = active.iter().map(|k| -heavy * exceeds_after(&point.limits[*k], &x));
             let right = misfits_after(&x).into_iter().map(|r| -r).chain(limits);
