@@ -141,8 +141,7 @@ pub fn join(
         _ => {}
     }
     // What is turned by more than digits that are missing is closed: by a frame on body i that turns, with what the joint has there.
-    let turn =
-        if awry { turn_between(kind, [&i, &j]).filter(|turn| turn.angle_to(none()) > MEANT) } else { None };
+    let turn = if awry { turn_between(kind, [&i, &j]) } else { None };
     if let Some(turn) = turn {
         let holds_point = ["revolute", "universal"].contains(&kind);
         let drawn = Pose { rot: j.pose.rot, r: if holds_point { i.pose.r } else { j.pose.r } };
@@ -171,19 +170,22 @@ pub fn join(
     Some(m.joint(joint))
 }
 
-/// Rotation of body j that makes the axes of a joint agree and keeps the angle about them; none where no rotation does.
+/// Rotation of body j that makes the axes of a joint agree and keeps the angle about them; none where no rotation does, or one
+/// that is only digits that are missing.
 fn turn_between(kind: &str, [i, j]: [&Marker; 2]) -> Option<Mat3> {
-    if ["universal", "dot1"].contains(&kind) {
+    let turn = if ["universal", "dot1"].contains(&kind) {
         let (a, b) = (i.z(), j.z());
         // About the common normal of both pins, until they are square
         let normal = a.cross(b).unit()?;
         let square = normal.cross(a);
-        return Some(from_z_and_x(square, normal)? * from_z_and_x(b, normal)?.transpose());
-    }
-    let z = if i.z().dot(j.z()) < 0.0 { -i.z() } else { i.z() };
-    let angle = angle_about(i.z(), i.x(), j.x());
-    let x = i.x() * angle.cos() + i.y() * angle.sin();
-    Some(from_z_and_x(z, x)? * from_z_and_x(j.z(), j.x())?.transpose())
+        from_z_and_x(square, normal)? * from_z_and_x(b, normal)?.transpose()
+    } else {
+        let z = if i.z().dot(j.z()) < 0.0 { -i.z() } else { i.z() };
+        let angle = angle_about(i.z(), i.x(), j.x());
+        let x = i.x() * angle.cos() + i.y() * angle.sin();
+        from_z_and_x(z, x)? * from_z_and_x(j.z(), j.x())?.transpose()
+    };
+    (turn.angle_to(none()) > MEANT).then_some(turn)
 }
 
 /// Numbers of a source that differ by less than this part of the mechanism's size from what is drawn say the same as that.
@@ -230,8 +232,7 @@ pub fn linked(
     let first = Joint::new(&format!("{}_i", called.name), called.note(notes), kinds[0], [i.body, link], foot);
     let skew = kinds[1] != "spherical" && axis.cross(j.z()).norm() > AWRY;
     let there = Marker { body: link, pose: Pose { rot: from_z_and_x(axis, j.x()).unwrap_or(rot), r: end } };
-    let turn =
-        if skew { turn_between(kinds[1], [&there, &j]).filter(|t| t.angle_to(none()) > MEANT) } else { None };
+    let turn = if skew { turn_between(kinds[1], [&there, &j]) } else { None };
     m.joint(first.along(axis));
     let (mut carrier, mut second_axis) = (link, axis);
     if let Some(turn) = turn {
