@@ -40,7 +40,7 @@ impl<T: Real> Add for Dual<T> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        Self { v: self.v + o.v, d: self.d + o.d }
+        T::operation(|| Self { v: self.v + o.v, d: self.d + o.d })
     }
 }
 
@@ -48,7 +48,7 @@ impl<T: Real> Sub for Dual<T> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
-        Self { v: self.v - o.v, d: self.d - o.d }
+        T::operation(|| Self { v: self.v - o.v, d: self.d - o.d })
     }
 }
 
@@ -56,7 +56,7 @@ impl<T: Real> Mul for Dual<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        Self { v: self.v * o.v, d: self.d * o.v + self.v * o.d }
+        T::operation(|| Self { v: self.v * o.v, d: self.d * o.v + self.v * o.d })
     }
 }
 
@@ -64,8 +64,10 @@ impl<T: Real> Div for Dual<T> {
     type Output = Self;
     #[inline(always)]
     fn div(self, o: Self) -> Self {
-        let v = self.v / o.v;
-        Self { v, d: (self.d - v * o.d) / o.v }
+        T::operation(|| {
+            let v = self.v / o.v;
+            Self { v, d: (self.d - v * o.d) / o.v }
+        })
     }
 }
 
@@ -73,7 +75,7 @@ impl<T: Real> Neg for Dual<T> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { v: -self.v, d: -self.d }
+        T::operation(|| Self { v: -self.v, d: -self.d })
     }
 }
 
@@ -110,6 +112,10 @@ impl<T: Real> SubAssign for Dual<T> {
 /// Whatever only looks at a number sees the value.
 impl<T: Real> Real for Dual<T> {
     #[inline(always)]
+    fn operation<R>(operation: impl FnOnce() -> R) -> R {
+        T::operation(operation)
+    }
+    #[inline(always)]
     fn constant(x: f64) -> Self {
         Self::constant(T::constant(x))
     }
@@ -123,8 +129,10 @@ impl<T: Real> Real for Dual<T> {
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        let v = self.v.sqrt();
-        Self { v, d: self.d / (v + v) }
+        T::operation(|| {
+            let v = self.v.sqrt();
+            Self { v, d: self.d / (v + v) }
+        })
     }
     #[inline(always)]
     fn abs(self) -> Self {
@@ -199,13 +207,17 @@ impl<T: Real> Real for Dual<T> {
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = self.v.sin_cos();
-        (Self { v: sin, d: self.d * cos }, Self { v: cos, d: -(self.d * sin) })
+        T::operation(|| {
+            let (sin, cos) = self.v.sin_cos();
+            (Self { v: sin, d: self.d * cos }, Self { v: cos, d: -(self.d * sin) })
+        })
     }
     #[inline(always)]
     fn sin_cos_of_any(self) -> (Self, Self) {
-        let (sin, cos) = self.v.sin_cos_of_any();
-        (Self { v: sin, d: self.d * cos }, Self { v: cos, d: -(self.d * sin) })
+        T::operation(|| {
+            let (sin, cos) = self.v.sin_cos_of_any();
+            (Self { v: sin, d: self.d * cos }, Self { v: cos, d: -(self.d * sin) })
+        })
     }
 }
 

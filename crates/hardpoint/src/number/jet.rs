@@ -91,10 +91,12 @@ impl<T: Real, const N: usize> Jet<T, N> {
     /// This quantity times one that is the same at all times.
     #[inline(always)]
     pub(crate) fn times(mut self, factor: T) -> Self {
-        for n in 0..N {
-            self.0[n] = self.0[n] * factor;
-        }
-        self
+        T::operation(|| {
+            for n in 0..N {
+                self.0[n] = self.0[n] * factor;
+            }
+            self
+        })
     }
 
     /// This quantity plus one that is the same at all times.
@@ -107,20 +109,22 @@ impl<T: Real, const N: usize> Jet<T, N> {
     /// g(self), from g and its first three derivatives at the value.
     #[inline(always)]
     pub(crate) fn compose(self, [g, g_d, g_dd, g_ddd]: [T; 4]) -> Self {
-        const { assert!(0 < N && N <= 4, "jets have up to three derivatives") }
-        // (g∘u)' = g' u',  (g∘u)'' = g'' u'² + g' u'',  (g∘u)''' = g''' u'³ + 3 g'' u' u'' + g' u'''
-        let (u, mut f) = (self.0, self.0);
-        f[0] = g;
-        if N > 1 {
-            f[1] = g_d * u[1];
-        }
-        if N > 2 {
-            f[2] = g_dd * u[1] * u[1] + g_d * u[2];
-        }
-        if N > 3 {
-            f[3] = g_ddd * u[1] * u[1] * u[1] + g_dd * u[1] * u[2] * 3.0 + g_d * u[3];
-        }
-        Self(f)
+        T::operation(|| {
+            const { assert!(0 < N && N <= 4, "jets have up to three derivatives") }
+            // (g∘u)' = g' u',  (g∘u)'' = g'' u'² + g' u'',  (g∘u)''' = g''' u'³ + 3 g'' u' u'' + g' u'''
+            let (u, mut f) = (self.0, self.0);
+            f[0] = g;
+            if N > 1 {
+                f[1] = g_d * u[1];
+            }
+            if N > 2 {
+                f[2] = g_dd * u[1] * u[1] + g_d * u[2];
+            }
+            if N > 3 {
+                f[3] = g_ddd * u[1] * u[1] * u[1] + g_dd * u[1] * u[2] * 3.0 + g_d * u[3];
+            }
+            Self(f)
+        })
     }
 
     /// A function that is none of the commonest, apart from the code of those.
@@ -135,38 +139,42 @@ impl<T: Real, const N: usize> Jet<T, N> {
     /// The power with an exponent that is the same at all times.
     #[inline(always)]
     fn power(self, exponent: T) -> Self {
-        // g⁽ᵏ⁾ = p (p - 1) ... (p - k + 1) x^(p - k). A vanishing coefficient wins over an infinite power: the
-        // third derivative of x² is zero at x = 0 also.
-        let (x, zero) = (self.0[0], T::zero());
-        let mut g = [x.pow(exponent), zero, zero, zero];
-        let mut coefficient = exponent;
-        for (k, g) in g.iter_mut().enumerate().take(N).skip(1) {
-            let lowered = exponent + -(k as f64);
-            if !coefficient.vanishes() {
-                *g = zero.select(coefficient * x.pow(lowered), coefficient.is_zero());
+        T::operation(|| {
+            // g⁽ᵏ⁾ = p (p - 1) ... (p - k + 1) x^(p - k). A vanishing coefficient wins over an infinite power: the
+            // third derivative of x² is zero at x = 0 also.
+            let (x, zero) = (self.0[0], T::zero());
+            let mut g = [x.pow(exponent), zero, zero, zero];
+            let mut coefficient = exponent;
+            for (k, g) in g.iter_mut().enumerate().take(N).skip(1) {
+                let lowered = exponent + -(k as f64);
+                if !coefficient.vanishes() {
+                    *g = zero.select(coefficient * x.pow(lowered), coefficient.is_zero());
+                }
+                coefficient = coefficient * lowered;
             }
-            coefficient = coefficient * lowered;
-        }
-        self.compose(g)
+            self.compose(g)
+        })
     }
 
     /// The square root, from that of the value.
     #[inline(always)]
     fn root(self, root: T) -> Self {
-        // From r r = x, differentiated: 2 r r⁽ⁿ⁾ = x⁽ⁿ⁾ - Σ_{0<k<n} C(n, k) r⁽ⁿ⁻ᵏ⁾ r⁽ᵏ⁾
-        let (x, mut r) = (self.0, self.0);
-        r[0] = root;
-        let twice = r[0] + r[0];
-        if N > 1 {
-            r[1] = x[1] / twice;
-        }
-        if N > 2 {
-            r[2] = (x[2] - r[1] * r[1] * 2.0) / twice;
-        }
-        if N > 3 {
-            r[3] = (x[3] - r[1] * r[2] * 6.0) / twice;
-        }
-        Self(r)
+        T::operation(|| {
+            // From r r = x, differentiated: 2 r r⁽ⁿ⁾ = x⁽ⁿ⁾ - Σ_{0<k<n} C(n, k) r⁽ⁿ⁻ᵏ⁾ r⁽ᵏ⁾
+            let (x, mut r) = (self.0, self.0);
+            r[0] = root;
+            let twice = r[0] + r[0];
+            if N > 1 {
+                r[1] = x[1] / twice;
+            }
+            if N > 2 {
+                r[2] = (x[2] - r[1] * r[1] * 2.0) / twice;
+            }
+            if N > 3 {
+                r[3] = (x[3] - r[1] * r[2] * 6.0) / twice;
+            }
+            Self(r)
+        })
     }
 
     /// The sine and the cosine, from those of the value.
@@ -186,10 +194,12 @@ impl<T: Real, const N: usize> Add for Jet<T, N> {
     type Output = Self;
     #[inline(always)]
     fn add(mut self, o: Self) -> Self {
-        for n in 0..N {
-            self.0[n] += o.0[n];
-        }
-        self
+        T::operation(|| {
+            for n in 0..N {
+                self.0[n] += o.0[n];
+            }
+            self
+        })
     }
 }
 
@@ -197,10 +207,12 @@ impl<T: Real, const N: usize> Sub for Jet<T, N> {
     type Output = Self;
     #[inline(always)]
     fn sub(mut self, o: Self) -> Self {
-        for n in 0..N {
-            self.0[n] -= o.0[n];
-        }
-        self
+        T::operation(|| {
+            for n in 0..N {
+                self.0[n] -= o.0[n];
+            }
+            self
+        })
     }
 }
 
@@ -208,19 +220,21 @@ impl<T: Real, const N: usize> Mul for Jet<T, N> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        // (a b)⁽ⁿ⁾ = Σ C(n, k) a⁽ⁿ⁻ᵏ⁾ b⁽ᵏ⁾
-        let (a, b, mut f) = (self.0, o.0, self.0);
-        f[0] = a[0] * b[0];
-        if N > 1 {
-            f[1] = a[1] * b[0] + a[0] * b[1];
-        }
-        if N > 2 {
-            f[2] = a[2] * b[0] + a[1] * b[1] * 2.0 + a[0] * b[2];
-        }
-        if N > 3 {
-            f[3] = a[3] * b[0] + (a[2] * b[1] + a[1] * b[2]) * 3.0 + a[0] * b[3];
-        }
-        Self(f)
+        T::operation(|| {
+            // (a b)⁽ⁿ⁾ = Σ C(n, k) a⁽ⁿ⁻ᵏ⁾ b⁽ᵏ⁾
+            let (a, b, mut f) = (self.0, o.0, self.0);
+            f[0] = a[0] * b[0];
+            if N > 1 {
+                f[1] = a[1] * b[0] + a[0] * b[1];
+            }
+            if N > 2 {
+                f[2] = a[2] * b[0] + a[1] * b[1] * 2.0 + a[0] * b[2];
+            }
+            if N > 3 {
+                f[3] = a[3] * b[0] + (a[2] * b[1] + a[1] * b[2]) * 3.0 + a[0] * b[3];
+            }
+            Self(f)
+        })
     }
 }
 
@@ -228,19 +242,21 @@ impl<T: Real, const N: usize> Div for Jet<T, N> {
     type Output = Self;
     #[inline(always)]
     fn div(self, o: Self) -> Self {
-        // From a = q b, differentiated: q⁽ⁿ⁾ b = a⁽ⁿ⁾ - Σ_{k≥1} C(n, k) q⁽ⁿ⁻ᵏ⁾ b⁽ᵏ⁾
-        let (a, b, mut q) = (self.0, o.0, self.0);
-        q[0] = a[0] / b[0];
-        if N > 1 {
-            q[1] = (a[1] - q[0] * b[1]) / b[0];
-        }
-        if N > 2 {
-            q[2] = (a[2] - q[1] * b[1] * 2.0 - q[0] * b[2]) / b[0];
-        }
-        if N > 3 {
-            q[3] = (a[3] - (q[2] * b[1] + q[1] * b[2]) * 3.0 - q[0] * b[3]) / b[0];
-        }
-        Self(q)
+        T::operation(|| {
+            // From a = q b, differentiated: q⁽ⁿ⁾ b = a⁽ⁿ⁾ - Σ_{k≥1} C(n, k) q⁽ⁿ⁻ᵏ⁾ b⁽ᵏ⁾
+            let (a, b, mut q) = (self.0, o.0, self.0);
+            q[0] = a[0] / b[0];
+            if N > 1 {
+                q[1] = (a[1] - q[0] * b[1]) / b[0];
+            }
+            if N > 2 {
+                q[2] = (a[2] - q[1] * b[1] * 2.0 - q[0] * b[2]) / b[0];
+            }
+            if N > 3 {
+                q[3] = (a[3] - (q[2] * b[1] + q[1] * b[2]) * 3.0 - q[0] * b[3]) / b[0];
+            }
+            Self(q)
+        })
     }
 }
 
@@ -248,10 +264,12 @@ impl<T: Real, const N: usize> Neg for Jet<T, N> {
     type Output = Self;
     #[inline(always)]
     fn neg(mut self) -> Self {
-        for n in 0..N {
-            self.0[n] = -self.0[n];
-        }
-        self
+        T::operation(|| {
+            for n in 0..N {
+                self.0[n] = -self.0[n];
+            }
+            self
+        })
     }
 }
 
@@ -268,10 +286,12 @@ impl<T: Real, const N: usize> Mul<f64> for Jet<T, N> {
     type Output = Self;
     #[inline(always)]
     fn mul(mut self, factor: f64) -> Self {
-        for n in 0..N {
-            self.0[n] = self.0[n] * factor;
-        }
-        self
+        T::operation(|| {
+            for n in 0..N {
+                self.0[n] = self.0[n] * factor;
+            }
+            self
+        })
     }
 }
 
@@ -291,6 +311,10 @@ impl<T: Real, const N: usize> SubAssign for Jet<T, N> {
 
 /// Whatever only looks at a number sees the value.
 impl<T: Real, const N: usize> Real for Jet<T, N> {
+    #[inline(always)]
+    fn operation<R>(operation: impl FnOnce() -> R) -> R {
+        T::operation(operation)
+    }
     #[inline(always)]
     fn constant(x: f64) -> Self {
         Self::constant(T::constant(x))
@@ -383,13 +407,15 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
     }
     #[inline(always)]
     fn hypot(self, o: Self) -> Self {
-        // Scaled, so that no square overflows.
-        let length = self.0[0].hypot(o.0[0]);
-        let scale = T::one() / length;
-        let (x, y) = (self.times(scale), o.times(scale));
-        let mut hypot = (x * x + y * y).sqrt().times(length);
-        hypot.0[0] = length;
-        hypot
+        T::operation(|| {
+            // Scaled, so that no square overflows.
+            let length = self.0[0].hypot(o.0[0]);
+            let scale = T::one() / length;
+            let (x, y) = (self.times(scale), o.times(scale));
+            let mut hypot = (x * x + y * y).sqrt().times(length);
+            hypot.0[0] = length;
+            hypot
+        })
     }
     #[inline(always)]
     fn larger(self, o: Self) -> Self {
@@ -416,27 +442,29 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
-        // The angle is the imaginary part of l = log(x + i y). From z' = l' z with w⁽ⁿ⁾ = z⁽ⁿ⁾/z follow
-        // l' = w', l'' = w'' - w'², l''' = w''' - 3 w' w'' + 2 w'³. Scaled, so that no square overflows.
-        let mut angle = self.0;
-        angle[0] = self.0[0].atan2(x.0[0]);
-        let scale = T::one() / self.0[0].hypot(x.0[0]);
-        let (y, x) = (self.times(scale).0, x.times(scale).0);
-        let square = x[0] * x[0] + y[0] * y[0];
-        let real = |n: usize| (x[n] * x[0] + y[n] * y[0]) / square;
-        let imaginary = |n: usize| (y[n] * x[0] - x[n] * y[0]) / square;
-        if N > 1 {
-            angle[1] = imaginary(1);
-        }
-        if N > 2 {
-            angle[2] = imaginary(2) - real(1) * imaginary(1) * 2.0;
-        }
-        if N > 3 {
-            let (a, b) = (real(1), imaginary(1));
-            let cube = (a * a * 3.0 - b * b) * b;
-            angle[3] = imaginary(3) - (a * imaginary(2) + b * real(2)) * 3.0 + cube * 2.0;
-        }
-        Self(angle)
+        T::operation(|| {
+            // The angle is the imaginary part of l = log(x + i y). From z' = l' z with w⁽ⁿ⁾ = z⁽ⁿ⁾/z follow
+            // l' = w', l'' = w'' - w'², l''' = w''' - 3 w' w'' + 2 w'³. Scaled, so that no square overflows.
+            let mut angle = self.0;
+            angle[0] = self.0[0].atan2(x.0[0]);
+            let scale = T::one() / self.0[0].hypot(x.0[0]);
+            let (y, x) = (self.times(scale).0, x.times(scale).0);
+            let square = x[0] * x[0] + y[0] * y[0];
+            let real = |n: usize| (x[n] * x[0] + y[n] * y[0]) / square;
+            let imaginary = |n: usize| (y[n] * x[0] - x[n] * y[0]) / square;
+            if N > 1 {
+                angle[1] = imaginary(1);
+            }
+            if N > 2 {
+                angle[2] = imaginary(2) - real(1) * imaginary(1) * 2.0;
+            }
+            if N > 3 {
+                let (a, b) = (real(1), imaginary(1));
+                let cube = (a * a * 3.0 - b * b) * b;
+                angle[3] = imaginary(3) - (a * imaginary(2) + b * real(2)) * 3.0 + cube * 2.0;
+            }
+            Self(angle)
+        })
     }
 }
 

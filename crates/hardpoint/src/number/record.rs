@@ -42,6 +42,10 @@ pub(crate) fn is_arithmetic() -> bool {
 
 /// Decisions go by the values of the run that is recorded.
 impl Real for Number {
+    #[inline(never)]
+    fn operation<R>(operation: impl FnOnce() -> R) -> R {
+        operation()
+    }
     fn constant(x: f64) -> Self {
         Number::constant(x)
     }
