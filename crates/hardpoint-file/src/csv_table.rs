@@ -36,17 +36,38 @@ impl<W: Write> CsvWriter<W> {
     /// Fails where it cannot be written.
     pub fn row<C: AsRef<str>>(&mut self, cells: impl IntoIterator<Item = C>) -> csv::Result<()> {
         for cell in cells {
-            self.0.write_field(neutral(cell.as_ref()).as_bytes())?;
+            self.text(cell.as_ref())?;
         }
-        self.0.write_record(None::<&[u8]>)
+        self.end_row()
     }
 
-    /// Writes a row of numbers, with texts that are [`neutral`] already.
+    /// Writes a text as the next cell of the row, [`neutral`].
     ///
     /// # Errors
     /// Fails where it cannot be written.
-    pub fn serialize(&mut self, row: impl serde::Serialize) -> csv::Result<()> {
-        self.0.serialize(row)
+    pub fn text(&mut self, text: &str) -> csv::Result<()> {
+        self.0.write_field(neutral(text).as_bytes())
+    }
+
+    /// Writes numbers as the next cells of the row: the shortest decimals that read back as the same double. A cell is empty where there
+    /// is no number, as for the curvature of a path at rest.
+    ///
+    /// # Errors
+    /// Fails where they cannot be written.
+    pub fn numbers(&mut self, numbers: impl IntoIterator<Item = f64>) -> csv::Result<()> {
+        let mut digits = zmij::Buffer::new();
+        for x in numbers {
+            self.0.write_field(if x.is_finite() { digits.format_finite(x) } else { "" })?;
+        }
+        Ok(())
+    }
+
+    /// Ends the row.
+    ///
+    /// # Errors
+    /// Fails where it cannot be written.
+    pub fn end_row(&mut self) -> csv::Result<()> {
+        self.0.write_record(None::<&[u8]>)
     }
 
     /// Writes a row as another table has it.
@@ -80,6 +101,15 @@ mod tests {
             assert_eq!(neutral(text), text);
             assert_eq!(original(&neutral(text)), text);
         }
+    }
+
+    #[test]
+    fn numbers_are_the_shortest_that_read_back_and_no_number_is_an_empty_cell() {
+        let mut table = CsvWriter::new(Vec::new());
+        table.text("-x").unwrap();
+        table.numbers([1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.1, 1e-7, 2.5e20]).unwrap();
+        table.end_row().unwrap();
+        assert_eq!(String::from_utf8(table.end().unwrap()).unwrap(), "'-x,1.0,,,,-0.1,1e-7,2.5e20\n");
     }
 
     #[test]

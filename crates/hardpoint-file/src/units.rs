@@ -151,8 +151,7 @@ impl Units {
     pub fn per_si(self, of: impl Into<Dimension>) -> f64 {
         let of = of.into();
         // Moments, energies and powers are in N m, J and W.
-        let (length, angle) = (of.length_in_units(), of.angle);
-        self.length.per_metre().powi(length.into()) * self.angle.per_radian().powi(angle.into())
+        power(self.length.per_metre(), of.length_in_units()) * power(self.angle.per_radian(), of.angle)
     }
 
     /// How many of the user's units of such a number of a mass or force make one SI unit: what loads are made of is in kg, N and N m,
@@ -201,6 +200,16 @@ impl Units {
     /// ```
     pub fn derivative_from_si(self, of: impl Into<Dimension>, by: Quantity, value: f64) -> f64 {
         value * (self.per_si(of) / self.per_si(by))
+    }
+}
+
+/// `x` to a whole power; those of nearly all quantities need no call of a library, as there is one for every number that is written.
+fn power(x: f64, exponent: i8) -> f64 {
+    match exponent {
+        0 => 1.0,
+        1 => x,
+        -1 => 1.0 / x,
+        other => x.powi(other.into()),
     }
 }
 

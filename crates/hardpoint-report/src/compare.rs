@@ -13,7 +13,6 @@ use serde::Serialize;
 use crate::GENERATOR;
 use crate::columns::Column;
 use crate::course::{RoundOff, settled};
-use crate::csv::numbers;
 use crate::figures::{number, rounded, unit, with_unit};
 use crate::page::{Payload, Table};
 
@@ -184,7 +183,8 @@ impl CompareFacts {
         for (k, t) in self.times.iter().enumerate() {
             let curves = self.measures.iter().flat_map(|c| c.curves.iter().map(|curve| curve[k]));
             let row: Vec<f64> = std::iter::once(*t).chain(curves).collect();
-            writer.serialize(numbers(&row))?;
+            writer.numbers(row)?;
+            writer.end_row()?;
         }
         writer.end()?;
         Ok(())

@@ -11,7 +11,6 @@ use csv::{ByteRecord, Reader};
 use hardpoint::Solution;
 use hardpoint::study::Jerks;
 use hardpoint_file::csv_table::{CsvWriter, neutral};
-use serde::{Serialize, Serializer};
 
 use crate::columns::{Column, Columns};
 use crate::facts::variable_unit;
@@ -42,7 +41,8 @@ impl<'m, W: Write> MotionCsv<'m, W> {
             self.row.clear();
             self.row.push(t);
             self.columns.motion(window, k, &mut self.row);
-            self.writer.serialize(numbers(&self.row))?;
+            self.writer.numbers(self.row.iter().copied())?;
+            self.writer.end_row()?;
         }
         Ok(())
     }
@@ -87,8 +87,11 @@ impl<'m, W: Write> SensitivityCsv<'m, W> {
             for (b, variable) in self.columns.model.variables.iter().enumerate() {
                 self.row.clear();
                 if self.columns.sensitivities(window, k, b, &mut self.row).is_some() {
-                    let name = neutral(&variable.name);
-                    self.writer.serialize((t, name, &self.units[b], numbers(&self.row)))?;
+                    self.writer.numbers([t])?;
+                    self.writer.text(&variable.name)?;
+                    self.writer.text(&self.units[b])?;
+                    self.writer.numbers(self.row.iter().copied())?;
+                    self.writer.end_row()?;
                 }
             }
         }
@@ -170,7 +173,8 @@ impl<'m, W: Write> JerkCsv<'m, W> {
             self.row.clear();
             self.row.push(t);
             self.columns.jerk(jerks, k, &mut self.row);
-            self.writer.serialize(numbers(&self.row))?;
+            self.writer.numbers(self.row.iter().copied())?;
+            self.writer.end_row()?;
         }
         Ok(())
     }
@@ -191,30 +195,9 @@ fn with_header<W: Write>(first: &[&str], columns: &[Column], out: W) -> csv::Res
     Ok(writer)
 }
 
-/// The fields of a row.
-pub(crate) fn numbers(row: &[f64]) -> Vec<Number> {
-    row.iter().map(|x| Number(*x)).collect()
-}
-
-/// A number; an empty field where there is none, as for the curvature of a path at rest.
-pub(crate) struct Number(f64);
-
-impl Serialize for Number {
-    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
-        if self.0.is_finite() { s.serialize_f64(self.0) } else { s.serialize_none() }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn no_number_is_an_empty_field() {
-        let mut writer = CsvWriter::new(Vec::new());
-        writer.serialize(numbers(&[1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.5])).unwrap();
-        assert_eq!(writer.end().unwrap(), b"1.0,,,,-0.5\n");
-    }
 
     #[test]
     fn rows_of_a_variable_are_taken_out() {

@@ -282,19 +282,22 @@ fn in_order(value: f32) -> i32 {
 
 /// Of the differences of all orders those with the smallest numbers, signs folded in; the first are from zero.
 fn differences(mut numbers: Vec<i32>) -> (u8, Vec<u32>) {
-    let mut best = (u64::MAX, 0, Vec::new());
+    let folded = |r: i32| ((r << 1) ^ (r >> 31)) as u32;
+    let (mut least, mut best, mut residuals) = (u64::MAX, 0, Vec::new());
     for order in 0..=MOST_DIFFERENCES {
-        let folded: Vec<u32> = numbers.iter().map(|r| ((r << 1) ^ (r >> 31)) as u32).collect();
         // The bits of a floating point number grow as its logarithm does.
-        let cost = folded.iter().map(|r| (f64::from(*r) + 1.0).to_bits() >> 32).sum();
-        if cost < best.0 {
-            best = (cost, order, folded);
+        let cost = numbers.iter().map(|r| (f64::from(folded(*r)) + 1.0).to_bits() >> 32).sum();
+        if cost < least {
+            (least, best) = (cost, order);
+            residuals.clear();
+            residuals.extend(numbers.iter().map(|r| folded(*r)));
         }
-        for k in (1..numbers.len()).rev() {
-            numbers[k] = numbers[k].wrapping_sub(numbers[k - 1]);
+        let mut before = 0;
+        for r in &mut numbers {
+            before = std::mem::replace(r, r.wrapping_sub(before));
         }
     }
-    (best.1, best.2)
+    (best, residuals)
 }
 
 #[cfg(test)]

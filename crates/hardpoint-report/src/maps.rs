@@ -1,16 +1,14 @@
 //! Maps: every measure over a grid of two drivers, with its sensitivities. `maps.csv`, `map_sensitivity.csv`, `maps.json`.
 
-use std::borrow::Cow;
 use std::io::Write;
 
 use hardpoint::measure::Output;
 use hardpoint::model::{Dimension, Model, OutputSource, VariableId};
 use hardpoint::study::{GridMap, GridStop};
 use hardpoint_file::Units;
-use hardpoint_file::csv_table::{CsvWriter, neutral};
+use hardpoint_file::csv_table::CsvWriter;
 use serde::Serialize;
 
-use crate::csv::numbers;
 use crate::facts::variable_unit;
 use crate::figures::{number, per, unit, with_unit};
 use crate::page::{Curve, GridDriver, GridMap as GridPage, GridQuantity, GridSensitivity, Payload, Table};
@@ -281,8 +279,10 @@ pub fn write_csv(facts: &[MapFact], out: impl Write) -> csv::Result<()> {
     writer.row(&header)?;
     for map in facts {
         for (j, i) in map.rows() {
-            let row: Vec<f64> = map.measures.iter().map(|m| m.values[j][i].unwrap_or(f64::NAN)).collect();
-            writer.serialize((map.place(j, i), numbers(&row), map.why(j, i)))?;
+            map.write_place(j, i, &mut writer)?;
+            writer.numbers(map.measures.iter().map(|m| m.values[j][i].unwrap_or(f64::NAN)))?;
+            writer.text(&map.why(j, i))?;
+            writer.end_row()?;
         }
     }
     writer.end()?;
@@ -315,8 +315,11 @@ pub fn write_sensitivity_csv(facts: &[MapFact], out: impl Write) -> csv::Result<
                     .map(|m| m.sensitivities[b].values[j][i].unwrap_or(f64::NAN))
                     .collect();
                 if row.iter().any(|x| x.is_finite()) {
-                    let name = neutral(&by.variable);
-                    writer.serialize((map.place(j, i), name, &by.per, numbers(&row)))?;
+                    map.write_place(j, i, &mut writer)?;
+                    writer.text(&by.variable)?;
+                    writer.text(&by.per)?;
+                    writer.numbers(row)?;
+                    writer.end_row()?;
                 }
             }
         }
@@ -329,8 +332,6 @@ pub fn write_sensitivity_csv(facts: &[MapFact], out: impl Write) -> csv::Result<
 const PLACES: [&str; 7] =
     ["case", "first driver", "first value", "first unit", "second driver", "second value", "second unit"];
 
-type Place<'a> = (Cow<'a, str>, Cow<'a, str>, f64, &'a str, Cow<'a, str>, f64, &'a str);
-
 impl MapFact {
     /// Row and column of all positions.
     fn rows(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
@@ -338,11 +339,15 @@ impl MapFact {
         (0..rows).flat_map(move |j| (0..columns).map(move |i| (j, i)))
     }
 
-    fn place(&self, j: usize, i: usize) -> Place<'_> {
-        let [first, second] = &self.drivers;
-        let names = [&self.name, &first.name, &second.name].map(|n| neutral(n));
-        let [name, a, b] = names;
-        (name, a, first.values[i], &first.unit, b, second.values[j], &second.unit)
+    /// Writes which position a row is of.
+    fn write_place(&self, j: usize, i: usize, writer: &mut CsvWriter<impl Write>) -> csv::Result<()> {
+        writer.text(&self.name)?;
+        for (driver, k) in self.drivers.iter().zip([i, j]) {
+            writer.text(&driver.name)?;
+            writer.numbers([driver.values[k]])?;
+            writer.text(&driver.unit)?;
+        }
+        Ok(())
     }
 
     /// Why a position was not reached: what ended its row on that side.

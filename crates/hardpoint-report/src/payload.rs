@@ -497,10 +497,10 @@ impl<'a> Compose<'a> {
     ) -> Quantity {
         let [unit, rate_unit, accel_unit] = [0, 1, 2].map(|order| order_unit(self.units, kind, order));
         let spans = [0, 1, 2].map(|order| Span::of((0..self.solution.motion.len()).map(|k| value(k, order))));
-        let [value, rate, accel] = self.curves(orders, |k, order| {
-            let shown = spans[order].shown(value(k, order), self.round_off.value(kind, order));
-            self.units.from_si(kind, shown)
-        });
+        let (per_si, round_off) =
+            (self.units.per_si(kind), [0, 1, 2].map(|order| self.round_off.value(kind, order)));
+        let [value, rate, accel] =
+            self.curves(orders, |k, order| spans[order].shown(value(k, order), round_off[order]) * per_si);
         let (name, group, wanted) = (name.into(), group.into(), Curve::default());
         Quantity { name, unit, rate_unit, accel_unit, group, value, rate, accel, wanted }
     }
@@ -545,13 +545,14 @@ impl<'a> Compose<'a> {
     /// How every body moves with a variable, to first order.
     fn shifts(&self, b: usize) -> Vec<Curve> {
         let by = self.model.variables[b].quantity;
+        let shown = self.derivatives_shown(b, Dimension::LENGTH);
         let least_turn = self.round_off.of(b, Kind::Angle.into(), 0);
+        let turn_shown = self.units.derivative_from_si(Kind::Number, by, 1.0);
         let of_body = |body: usize| {
             let at = |&k: &usize| {
                 let [x, y, z, turn @ ..] = self.course.shift(k, b, body).unwrap_or_default();
-                let place = [x, y, z].map(|x| self.shown(b, Dimension::LENGTH, 0, x));
-                let turn =
-                    turn.map(|x| self.units.derivative_from_si(Kind::Number, by, settled(x, least_turn)));
+                let place = [x, y, z].map(|x| shown(0, x));
+                let turn = turn.map(|x| settled(x, least_turn) * turn_shown);
                 place.into_iter().chain(turn)
             };
             self.steps.iter().flat_map(at).collect()
@@ -569,7 +570,7 @@ impl<'a> Compose<'a> {
             let overlay = difference.zip(comparison.as_ref()).map(|(d, comparison)| {
                 (d, comparison.of_output(m), move |k: usize, order: usize| d.outputs[k * columns + m][order])
             });
-            let exact = |k: usize, order: usize| measured.d(k, VariableId(b), m)[order];
+            let exact = |k: usize, order: usize| measured.derivative(k, VariableId(b), m, order);
             list.push(self.sensitivity(
                 list.len(),
                 (output.dimension, output.known.orders),
@@ -608,12 +609,12 @@ impl<'a> Compose<'a> {
         exact: impl Fn(usize, usize) -> f64,
         overlay: Option<(&Difference, [f64; 3], F)>,
     ) -> Sensitivity {
-        let [value, rate, accel] =
-            self.curves(orders, |k, order| self.shown(b, kind, order, exact(k, order)));
+        let shown = self.derivatives_shown(b, kind);
+        let [value, rate, accel] = self.curves(orders, |k, order| shown(order, exact(k, order)));
         let fd = overlay.map(|(d, worst, difference)| {
             let stride = stride_of_marks(self.steps.len());
             let marks = |order: usize| {
-                let of = |&k: &usize| self.shown(b, kind, order, difference(k, order));
+                let of = |&k: &usize| shown(order, difference(k, order));
                 let steps = self.steps.iter().step_by(stride).filter(|_| order < orders);
                 steps.map(of).collect::<Curve>()
             };
@@ -633,10 +634,11 @@ impl<'a> Compose<'a> {
         Sensitivity { quantity, value, rate, accel, fd }
     }
 
-    /// A derivative by variable b in the user's units; round-off becomes 0.
-    fn shown(&self, b: usize, kind: Dimension, order: usize, x: f64) -> f64 {
-        let by = self.model.variables[b].quantity;
-        self.units.derivative_from_si(kind, by, settled(x, self.round_off.of(b, kind, order)))
+    /// Returns what shows a derivative by variable b, of an order and in SI, in the user's units; round-off becomes 0.
+    fn derivatives_shown(&self, b: usize, kind: Dimension) -> impl Fn(usize, f64) -> f64 + use<> {
+        let per_si = self.units.derivative_from_si(kind, self.model.variables[b].quantity, 1.0);
+        let round_off = [0, 1, 2].map(|order| self.round_off.of(b, kind, order));
+        move |order, x| settled(x, round_off[order]) * per_si
     }
 }
 

@@ -14,7 +14,6 @@ use serde::Serialize;
 use crate::GENERATOR;
 use crate::columns::Column;
 use crate::course::{MarginCourse, RoundOff};
-use crate::csv::numbers;
 use crate::diagnose::out_of_bounds;
 use crate::facts::variable_unit;
 use crate::figures::{names, number, per, rounded, unit, with_unit};
@@ -318,7 +317,8 @@ impl WhatIfFacts {
             for m in &self.measures {
                 row.extend(m.curves().map(|(_, curve)| curve[k]));
             }
-            writer.serialize(numbers(&row))?;
+            writer.numbers(row)?;
+            writer.end_row()?;
         }
         writer.end()?;
         Ok(())

@@ -250,7 +250,9 @@ impl Beside<'_> {
             let value = |k: usize, order: usize| {
                 let now = today.measured.value(k, m)[order];
                 let rise = || {
-                    changed().map(|(v, by)| by * today.measured.d(k, VariableId(v), m)[order]).sum::<f64>()
+                    changed()
+                        .map(|(v, by)| by * today.measured.derivative(k, VariableId(v), m, order))
+                        .sum::<f64>()
                 };
                 let other = if order == 0 { what_if.foreseen(k, m)[0] } else { now + rise() };
                 units.from_si(output.dimension, self.beside(output.dimension, order, now, other))

@@ -137,7 +137,7 @@ impl Comparison {
                 let scale = comparing.scale_of(m, order);
                 let (mut worst, mut time) = (0.0, 0.0);
                 for k in (0..steps).filter(|k| comparing.is_defined(*k, m) && !undecided.at(*k, m)) {
-                    let exact = measured.d(k, variable, m)[order];
+                    let exact = measured.derivative(k, variable, m, order);
                     let of = |d: &Difference| d.outputs[k * columns + m][order];
                     let rest = |w: &[Difference]| {
                         let [a, b, c] = [of(&w[0]), of(&w[1]), of(&w[2])];
@@ -267,7 +267,7 @@ impl<'a> Comparing<'a> {
             let compared: Vec<bool> =
                 (0..steps).map(|k| self.is_defined(k, m) && !undecided.at(k, m)).collect();
             for order in 0..output.known.orders {
-                let analytic = |k: usize| measured.d(k, d.variable, m)[order];
+                let analytic = |k: usize| measured.derivative(k, d.variable, m, order);
                 let scale = self.scale_of(m, order);
                 let deviation = |k: usize| (analytic(k) - d.outputs[k * columns + m][order]).abs();
                 let name = output.order_name(order);
@@ -280,7 +280,8 @@ impl<'a> Comparing<'a> {
     /// Returns the scale of deviations of output m's time derivative of that order.
     fn scale_of(&self, m: usize, order: usize) -> f64 {
         let measured = &self.solution.measured;
-        let sizes = (0..self.solution.motion.len()).map(|k| measured.d(k, self.d.variable, m)[order].abs());
+        let sizes =
+            (0..self.solution.motion.len()).map(|k| measured.derivative(k, self.d.variable, m, order).abs());
         sizes.fold(0.0, f64::max).max(self.negligible(measured.outputs[m].dimension, order))
     }
 

@@ -51,7 +51,7 @@ pub fn validity(
     // The largest sensitivity of each output over the motion, and how far that takes it with a natural step of the variable.
     // max over the motion of abs(y_b)
     let first = |v: usize, m: usize| {
-        let d = (0..measured.len()).map(|k| measured.d(k, VariableId(v), m)[0].abs());
+        let d = (0..measured.len()).map(|k| measured.derivative(k, VariableId(v), m, 0).abs());
         d.fold(0.0, f64::max)
     };
     let firsts: Vec<Vec<f64>> = (0..variables).map(|v| (0..outputs).map(|m| first(v, m)).collect()).collect();
