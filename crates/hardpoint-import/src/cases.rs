@@ -1,4 +1,4 @@
-//! Motions of a vehicle that no source says anything of: heave, roll and steering, each for itself.
+//! Motions of a vehicle that no source gives: heave, roll and steering, each by itself.
 
 use crate::finish;
 use crate::mechanism::{Case, Law, Mechanism};
@@ -49,7 +49,7 @@ pub fn of_vehicle(m: &mut Mechanism, notes: &mut Notes) {
     }
 }
 
-/// Whether the mechanism moves from end to end in a case.
+/// Returns whether the mechanism moves from end to end in a case.
 fn moves(m: &Mechanism, case: &Case) -> bool {
     let mut alone = m.clone();
     alone.cases.clear();

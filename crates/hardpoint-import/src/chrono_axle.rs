@@ -86,7 +86,7 @@ impl Axle<'_> {
         axle::rod(&mut self.m, self.notes, name, bodies, ends, at);
     }
 
-    /// Both ends of a member, on the vehicle and on the axle.
+    /// Returns the ends of a member, on the vehicle and on the axle.
     fn ends(&mut self, part: &'static str) -> Option<[Vec3; 2]> {
         let chassis = self.place(&[part], &["Location Chassis"]);
         let outer = self.place(&[part], &["Location Axle"]);

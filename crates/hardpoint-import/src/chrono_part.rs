@@ -59,7 +59,7 @@ pub struct Inertial {
 }
 
 impl Inertial {
-    /// Of a part that has a mass.
+    /// Reads those of a part that has a mass.
     pub fn of(part: &Tree) -> Option<Self> {
         let mass = part.get("Mass")?.number()?;
         let vector = |keys: [&str; 3]| keys.iter().find_map(|key| part.get(key)?.vector());
@@ -76,9 +76,9 @@ impl Inertial {
 pub struct Masses<'r> {
     /// The file.
     pub root: &'r Tree,
-    /// Where they go.
+    /// Mechanism that they go to.
     pub m: &'r mut Mechanism,
-    /// What becomes of them.
+    /// Report of what becomes of them.
     pub notes: &'r mut Notes,
     /// 1 on the left, where the file has them, and -1 on the right.
     pub side: f64,
@@ -87,7 +87,7 @@ pub struct Masses<'r> {
 }
 
 impl Masses<'_> {
-    /// The same for another side.
+    /// Reborrows it, for another side.
     pub fn again(&mut self) -> Masses<'_> {
         Masses { root: self.root, m: self.m, notes: self.notes, side: self.side, suffix: self.suffix }
     }
@@ -174,15 +174,18 @@ pub fn level_axes(along: Vec3) -> Option<Mat3> {
     from_z_and_x(z, along)
 }
 
-/// Characteristics of the springs and dampers among the parts, by the words of their members.
+/// Characteristics of the springs and dampers among the parts, by the words of their members, and their places.
 pub fn springs(
     root: &Tree,
     parts: &[(&str, &'static str)],
     notes: &mut Notes,
-) -> BTreeMap<&'static str, Spring> {
-    let found =
-        parts.iter().filter_map(|(part, member)| Some((*member, spring(root.get(part)?, part, notes)?)));
-    found.collect()
+) -> BTreeMap<&'static str, (Spring, At)> {
+    let mut found = BTreeMap::new();
+    for (part, member) in parts {
+        let Some(tree) = root.get(part) else { continue };
+        found.extend(spring(tree, part, notes).map(|spring| (*member, (spring, tree.at))));
+    }
+    found
 }
 
 /// The characteristic of a spring or damper, if it has one that the model can have. It pushes its ends apart with

@@ -406,8 +406,8 @@ pub struct Corner {
     pub radius: Option<f64>,
     /// The spin axis, outboard, where no spindle point gives it.
     pub spin_axis: Option<Vec3>,
-    /// Characteristics of its coilover, spring and damper, by these words.
-    pub springs: BTreeMap<&'static str, Spring>,
+    /// Characteristics of its coilover, spring and damper, by these words, and their places in the source.
+    pub springs: BTreeMap<&'static str, (Spring, At)>,
     /// The end of the vehicle that it is at.
     pub end: Option<End>,
     /// The driver that moves its wheel up and down, where there is one already.
@@ -710,7 +710,7 @@ impl Corner {
         Some(body)
     }
 
-    /// What has a length that is worth knowing: coilover, damper, spring. They hold nothing. Returns the ends of the spring.
+    /// Adds coilover, damper and spring as legs, whose lengths are worth knowing, and their forces. Returns the ends of the spring.
     fn springs(
         &self,
         m: &mut Mechanism,
@@ -753,11 +753,11 @@ impl Corner {
 
     /// The force of a coilover, spring or damper, as far as the source gives its characteristic.
     pub fn force(&self, m: &mut Mechanism, notes: &mut Notes, base: &str, ends: Ends) {
-        let Some(spring) = self.springs.get(base) else { return };
+        let Some((spring, at)) = self.springs.get(base) else { return };
         let name = format!("{base}{}", self.suffix);
-        let note = Called { kind: base, name: &name, at: self.at }.note(notes);
+        let note = Called { kind: base, name: &name, at: Some(*at) }.note(notes);
         m.force(Force { name: name.clone(), note, on: ForceOn::Points(ends), spring: spring.clone() });
-        notes.taken("force", &name, self.at);
+        notes.taken("force", &name, Some(*at));
     }
 
     /// The wheel on an upright, which goes up and down.

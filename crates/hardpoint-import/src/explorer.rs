@@ -215,7 +215,7 @@ fn vehicle(root: &Tree, m: &mut Mechanism, notes: &mut Notes) {
     };
 }
 
-/// Accounts for what the file says besides its hardpoints.
+/// Accounts for the settings besides the hardpoints.
 fn account(root: &Tree, notes: &mut Notes) {
     const READ: [&str; 16] = [
         "hardpoints",

@@ -423,7 +423,7 @@ fn candidates<'m>(m: &'m Mechanism, left: &'m Left) -> impl Iterator<Item = Held
     free.chain(balls.map(|j| Held::Turns(*j, ALL_AXES))).chain(of_joints).chain(of_bodies)
 }
 
-/// Whether it moves from end to end in the first second.
+/// Returns whether it moves from end to end in the first second.
 pub fn moves(m: &Mechanism) -> bool {
     parsed(m).is_ok_and(|mut file| {
         file.model.times = (0..=TRIED).map(|k| k as f64 / TRIED as f64).collect();

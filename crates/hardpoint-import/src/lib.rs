@@ -331,11 +331,13 @@ fn read_as(
         let message = "the topology is not recognised: only the hardpoints are written";
         let help = "write bodies and joints between them, as in docs/file-format.md";
         let message = notes.diagnostic("HP0807", None, message);
-        let unplaced: Vec<String> = m.unplaced.iter().map(|name| format!("`{name}`")).collect();
-        let message = if unplaced.is_empty() {
-            message
-        } else {
-            message.note(format!("their names tell of no member: {}", unplaced.join(", ")))
+        let unplaced: Vec<String> = m.unplaced.iter().flatten().map(|name| format!("`{name}`")).collect();
+        let message = match &m.unplaced {
+            Some(names) if names.is_empty() => {
+                message.note("all their names are known, and a member or the wheel's centre is missing")
+            }
+            Some(_) => message.note(format!("their names tell of no member: {}", unplaced.join(", "))),
+            None => message,
         };
         Some(message.help(help))
     };

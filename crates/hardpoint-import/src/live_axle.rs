@@ -43,7 +43,7 @@ struct Rod {
 }
 
 impl Rod {
-    /// Its ends, on the vehicle first; `centre` is that of the wheel, or of the axle.
+    /// Returns its ends, on the vehicle first; `centre` is that of the wheel, or of the axle.
     fn places(&self, centre: Vec3) -> Option<[Vec3; 2]> {
         let from = |p: Vec3| (p.x - centre.x).abs();
         let [front, rear] = self.lengthwise;
@@ -65,8 +65,8 @@ fn member(name: &str) -> Option<(&str, &str)> {
     member.split('_').any(|word| RODS.contains(&word) || word == "watt").then_some((member, end))
 }
 
-/// Returns whether these names tell of a live axle.
-pub fn is_told(places: &[Places; 3]) -> bool {
+/// Returns whether these names are those of a live axle.
+pub fn names_one(places: &[Places; 3]) -> bool {
     let names = places.iter().flat_map(|p| &p.named);
     names.into_iter().any(|(name, _)| OWN.iter().any(|word| name.contains(word)))
 }

@@ -36,8 +36,8 @@ pub struct Mechanism {
     pub steering: Option<usize>,
     /// Motions of its own, each by some drivers while the others are held.
     pub cases: Vec<Case>,
-    /// Hardpoints of the source that no member is at, where its topology is not recognised.
-    pub unplaced: Vec<String>,
+    /// Hardpoints of the source that no member is at, where its topology is not recognised and these are known.
+    pub unplaced: Option<Vec<String>>,
     /// Design variables that it cannot follow, by the names that the writer would give them.
     pub unfollowed: Vec<String>,
     /// The output times: when they end, and how many intervals there are.
@@ -121,7 +121,7 @@ pub struct Force {
     pub note: String,
     /// On what it acts.
     pub on: ForceOn,
-    /// Its characteristic.
+    /// Characteristic.
     pub spring: Spring,
 }
 
@@ -325,7 +325,7 @@ pub struct Wheel {
     pub kingpin: Option<[(usize, Vec3); 2]>,
     /// The driver that moves it up and down.
     pub bump: usize,
-    /// Whether the steering turns it.
+    /// True if the steering turns it.
     pub is_steered: bool,
     /// The ends of its spring.
     pub spring: Option<[(usize, Vec3); 2]>,
@@ -379,7 +379,7 @@ impl Mechanism {
             vehicle: Vehicle::default(),
             steering: None,
             cases: Vec::new(),
-            unplaced: Vec::new(),
+            unplaced: None,
             unfollowed: Vec::new(),
             times: None,
             masses: Vec::new(),

@@ -1,4 +1,4 @@
-//! Both sides of a vehicle: names, mirror images across y = 0, and whether the right side is the image of the left one.
+//! Left and right sides of a vehicle: names, mirror images across y = 0, and the test whether the right side is the image of the left one.
 
 use std::collections::HashSet;
 
@@ -44,7 +44,7 @@ fn pieces(name: &str) -> Vec<&str> {
     out
 }
 
-/// The side that the first such word of a name says, as an index of [`SIDES`].
+/// Side of a name by its first word of a side, as an index of [`SIDES`].
 fn side_of(name: &str) -> Option<usize> {
     pieces(name).into_iter().find_map(|piece| WORDS.iter().position(|word| *word == piece))
 }
@@ -113,7 +113,7 @@ fn pairs<T>(list: &[T], name: impl Fn(&T) -> &String) -> Option<Vec<(&T, &T)>> {
     pairs.filter(|_| left.len() == right.len())
 }
 
-/// What is an image of what, of a mechanism.
+/// Images of the bodies of a mechanism, and tests whether other things are images.
 struct Mirror<'m> {
     m: &'m Mechanism,
     /// The image of each body.
@@ -132,7 +132,7 @@ impl Mirror<'_> {
         left.unit().zip(right.unit()).is_some_and(|(l, r)| apart(l, r))
     }
 
-    /// Both are none, or the one is the other's image up to its sign: an axis that turns is one either way round.
+    /// Returns whether one axis is the other's image up to its sign, or both are none: an axis that turns is one either way round.
     fn is_axis(left: Option<Vec3>, right: Option<Vec3>) -> bool {
         match (left, right) {
             (Some(l), Some(r)) => Self::is_direction(l, r) || Self::is_direction(l, -r),

@@ -118,7 +118,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         (corner.suffix, corner.rack, corner.radius) = (SIDES[side].1.into(), true, parameters.radius);
         (corner.at, corner.end) = (Some(block), end);
     }
-    if live_axle::is_told(&places) {
+    if live_axle::names_one(&places) {
         known = live_axle::build(&mut m, notes, &places, &corners, Some(block));
     }
     if !known {
@@ -140,7 +140,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         known = live_axle::build(&mut m, notes, &places, &corners, Some(block));
     }
     if !known {
-        m.unplaced = live_axle::unplaced(&places, |name| role_of(name).is_some());
+        m.unplaced = Some(live_axle::unplaced(&places, |name| role_of(name).is_some()));
         if live_axle::has_leaf_springs(&places) {
             let why = "leaf springs guide the axle by bending: the model has no such member";
             notes.refused("hardpoint", "leaf spring", Some(block), why);
@@ -152,9 +152,9 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
 
 /// A block of values by keys.
 pub struct Block {
-    /// Its name, in capital letters.
+    /// Name, in capital letters.
     pub name: String,
-    /// Where it begins.
+    /// Place of its beginning.
     pub at: At,
     /// Keys in capital letters, and their values.
     pub values: Vec<(String, String)>,
@@ -177,7 +177,7 @@ fn number(word: &str) -> Option<f64> {
     word.to_ascii_lowercase().replace('d', "e").parse().ok().filter(|x: &f64| x.is_finite())
 }
 
-/// Whether the line says that masses are in another unit than kilograms.
+/// Returns whether a line of units gives masses in another unit than kilograms.
 fn is_other_mass(line: &str) -> bool {
     let Some((key, value)) = line.split_once('=') else { return false };
     let unit = value.trim().trim_matches(['\'', '"']).to_ascii_lowercase();
@@ -220,7 +220,7 @@ struct Parameters {
     angles: [[f64; 2]; 2],
     /// From the wheel's centre to the ground.
     radius: Option<f64>,
-    /// Whether masses are in kg.
+    /// True if masses are in kg.
     mass_is_kg: bool,
 }
 
@@ -352,13 +352,13 @@ fn row(m: &mut Mechanism, sides: &mut [Side; 3], columns: &[String], line: &str,
             Some((short, prefix)) => (short, prefix),
             None => (name.as_str(), ""),
         };
-    // The side is the last word of all names: one that the source has in front is not named once more.
+    // A side that is the first or last word of the name is not named once more.
     let mut put = |k: usize, suffix: &str, place: Vec3| {
         let word = suffix.trim_start_matches('_');
-        let own = short.strip_prefix(word).and_then(|s| s.strip_prefix('_')).filter(|_| !word.is_empty());
-        let own = own.or_else(|| short.strip_suffix(suffix).filter(|_| !suffix.is_empty())).unwrap_or(short);
-        let plain = plain(own);
-        m.hardpoints.push((format!("{own}{suffix}"), place));
+        let in_front = short.strip_prefix(word).and_then(|s| s.strip_prefix('_'));
+        let own = in_front.or_else(|| short.strip_suffix(suffix)).filter(|_| !word.is_empty());
+        let plain = plain(own.unwrap_or(short));
+        m.hardpoints.push((if own.is_some() { short.to_owned() } else { format!("{short}{suffix}") }, place));
         sides[k].places.named.push((plain.clone(), place));
         if let Some(role) = role_of(&plain) {
             sides[k].corner.points.insert(role, place);

@@ -33,7 +33,7 @@ struct Writer<'m> {
     hardpoints: Vec<(String, Vec3)>,
     /// Those that something is at.
     named: HashSet<String>,
-    /// With a mirror, the joints of the right side that are written all the same.
+    /// Joints of the right side that are written beside a mirror; none without one.
     mirror: Option<HashSet<&'m str>>,
 }
 
@@ -121,7 +121,7 @@ impl<'m> Writer<'m> {
         doc.to_string()
     }
 
-    /// Without the entries that a mirror makes of those of the left side.
+    /// Leaves out the entries that a mirror makes of those of the left side.
     fn one_side(&self, mut table: Table) -> Table {
         if let Some(written) = &self.mirror {
             let names: Vec<String> = table.iter().map(|(name, _)| name.to_owned()).collect();
@@ -132,12 +132,12 @@ impl<'m> Writer<'m> {
         table
     }
 
-    /// Whether a mirror makes this hardpoint of one of the left side.
+    /// Returns whether a mirror makes this hardpoint of one of the left side.
     fn is_image_of_one(&self, (name, at): &(String, Vec3)) -> bool {
         self.mirror.is_some() && sides::is_right(name) && self.is_image(&sides::other(name), *at)
     }
 
-    /// Whether the hardpoint of that name is the mirror image of a place.
+    /// Returns whether the hardpoint of that name is the mirror image of a place.
     fn is_image(&self, name: &str, at: Vec3) -> bool {
         let image = over(at, -1.0);
         self.hardpoints.iter().any(|(n, p)| n == name && (*p - image).norm() <= SAME_PLACE * self.size)
