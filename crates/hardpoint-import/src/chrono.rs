@@ -2,11 +2,12 @@
 
 use hardpoint::space::Vec3;
 
-use crate::corner::{Corner, Link, Mount, Role, spin_axis};
+use crate::chrono_part::{self, Masses};
+use crate::corner::{Corner, Link, Mount, Role, plain, spin_axis};
 use crate::mechanism::Mechanism;
 use crate::report::Notes;
 use crate::tree::{self, Tree};
-use crate::{Format, Input, chrono_axle, chrono_generic};
+use crate::{Format, Input, chrono_axle, chrono_generic, robot};
 
 /// See the module.
 pub const FORMAT: Format = Format {
@@ -80,7 +81,13 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
                 [Role::LowerFront, Role::LowerRear, Role::LowerOuter],
                 &["Location Chassis Front", "Location Chassis Back", "Location Upright"],
             );
-            reader.pair("Shock", [Role::StrutTop, Role::StrutBottom], &["Location Upright"]);
+            // Chrono's strut slides along its spring.
+            let strut = if root.get("Spring").is_some() { "Spring" } else { "Shock" };
+            reader.pair(strut, [Role::StrutTop, Role::StrutBottom], &["Location Upright"]);
+            if strut != "Shock" {
+                reader.pair("Shock", [Role::DamperChassis, Role::DamperMoving], &["Location Upright"]);
+                reader.corner.damper_on = Some(Mount::Upright);
+            }
         }
         "MultiLink" => {
             reader.arm(
@@ -126,16 +133,16 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
             let ends = ["Location Chassis Front", "Location Chassis Back", "Location Upright"];
             reader.arm("Upper Control Arm", [Role::UpperFront, Role::UpperRear, Role::UpperOuter], &ends);
             reader.arm("Lower Control Arm", [Role::LowerFront, Role::LowerRear, Role::LowerOuter], &ends);
-            reader.pair(
-                "Shock",
-                [Role::DamperChassis, Role::DamperMoving],
-                &["Location Arm", "Location Upright"],
-            );
-            reader.pair(
-                "Spring",
-                [Role::SpringChassis, Role::SpringMoving],
-                &["Location Arm", "Location Upright"],
-            );
+            let ends = ["Location Arm", "Location Upright"];
+            // One element is both in the reduced template.
+            let is_both = root.get("Spring").is_none() && root.get("Shock").is_some();
+            let shock = if is_both {
+                [Role::StrutTop, Role::StrutBottom]
+            } else {
+                [Role::DamperChassis, Role::DamperMoving]
+            };
+            reader.pair("Shock", shock, &ends);
+            reader.pair("Spring", [Role::SpringChassis, Role::SpringMoving], &ends);
             let reduced = known.ends_with("Reduced");
             reader.corner.spring_on = Some(if reduced { Mount::Upright } else { Mount::Lower });
         }
@@ -144,21 +151,90 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         reader.pair("Tierod", [Role::TieInner, Role::TieOuter], &["Location Upright"]);
     }
     reader.wheel();
-    let corner = reader.corner;
-    for (key, at, value) in root.entries() {
-        let is_made = value.entries().iter().any(|(k, ..)| k.starts_with("Location"));
-        if ANGLES.contains(&key.as_str()) {
-            notes.taken(key, value.text().unwrap_or_default(), Some(*at));
-        } else if !is_made && !["Name", "Type", "Template", "Spindle"].contains(&key.as_str()) {
-            notes.ignored(key, Some(*at));
-        }
-    }
+    let mut corner = reader.corner;
+    let is = |role| corner.points.contains_key(&role);
+    let members = match (is(Role::StrutTop), root.get("Spring").is_some()) {
+        (true, true) => [("Spring", "coilover"), ("Shock", "damper")],
+        (true, false) => [("Spring", "spring"), ("Shock", "coilover")],
+        (false, _) => [("Spring", "spring"), ("Shock", "damper")],
+    };
+    corner.springs = chrono_part::springs(&root, &members, notes);
+    chrono_part::account(&root, PARTS, notes);
     let mut rack = None;
     if notes.problem_count() == 0 && !corner.build(&mut m, notes, &mut rack) {
         let message = format!("points are missing of what a `{name}` consists of");
         notes.problem_with("HP0803", at, message, "give the locations of its arms and links");
     }
+    if notes.problem_count() == 0 {
+        masses(&root, &mut m, known, &corner, notes);
+    }
     Some(m)
+}
+
+/// Parts of the templates that are read here.
+const PARTS: &[&str] = &[
+    "Spindle",
+    "Upright",
+    "Upper Control Arm",
+    "Lower Control Arm",
+    "Control Arm",
+    "Strut",
+    "Upper Arm",
+    "Lateral",
+    "Trailing Link",
+    "Trailing Arm",
+    "Upper Link",
+    "Lower Link",
+    "Tierod",
+    "Spring",
+    "Shock",
+];
+
+/// The masses of the parts, on the bodies that they are of, or at the ends of rods, along the axes that Chrono gives each part.
+fn masses(root: &Tree, m: &mut Mechanism, template: &str, corner: &Corner, notes: &mut Notes) {
+    let point = |part: &str, key: &str| root.get(part).and_then(|p| p.get(key)?.vector()).map(Vec3::from);
+    let outer = |part: &str| point(part, "Location Upright").or_else(|| point(part, "Location Arm"));
+    let ends = |part: &str| point(part, "Location Chassis").zip(outer(part)).map(<[Vec3; 2]>::from);
+    let between = |[a, b]: [Vec3; 2]| (a + b) * 0.5;
+    let mut masses = Masses { root, m, notes, side: 1.0, suffix: "" };
+    masses.on("Spindle", "upright", None, corner.spin_axis.and_then(chrono_part::spindle_axes));
+    masses.on("Upright", "upright", None, None);
+    let arm = ["Location Chassis Front", "Location Chassis Back", "Location Upright"];
+    for (part, body) in [
+        ("Upper Control Arm", "upper_arm"),
+        ("Upper Arm", "upper_arm"),
+        ("Lower Control Arm", "lower_arm"),
+        ("Control Arm", "lower_arm"),
+    ] {
+        masses.arm(part, body, arm);
+    }
+    masses.on("Strut", "strut", ends("Spring").or_else(|| ends("Shock")).map(between), None);
+    if template == "SemiTrailingArm" {
+        let places = ["Location Chassis Outer", "Location Chassis Inner", "Location Spindle"];
+        masses.arm("Trailing Arm", "upright", places);
+    } else if let Some((chassis, spindle)) =
+        point("Trailing Arm", "Location Chassis").zip(point("Trailing Arm", "Location Spindle"))
+    {
+        masses.on("Trailing Arm", "upright", None, chrono_part::level_axes(chassis - spindle));
+    }
+    for part in ["Lateral", "Trailing Link", "Upper Link", "Lower Link"] {
+        let Some(places) = ends(part) else { continue };
+        let body = plain(part);
+        if masses.m.bodies.iter().any(|b| b.name == body) {
+            // z along the link, y across its plane with the spring.
+            let seat = point("Spring", "Location Link").or_else(|| outer("Spring"));
+            let [chassis, upright] = places;
+            let axes = seat
+                .and_then(|s| chrono_part::link_axes(chassis - upright, (upright - s).cross(chassis - s)));
+            masses.on(part, &body, Some(between(places)), axes);
+        } else {
+            masses.rod(part, ["ground", "upright"], places);
+        }
+    }
+    if let Some(places) = ends("Tierod") {
+        masses.rod("Tierod", ["rack", "upright"], places);
+    }
+    robot::standard_gravity(m, notes, "a Chrono suspension");
 }
 
 struct Reader<'r> {
@@ -201,7 +277,7 @@ impl Reader<'_> {
     fn point(&mut self, part: &str, names: &[&str], role: Role) {
         if let Some(v) = self.location(part, names) {
             let short = names[0].trim_start_matches("Location ");
-            self.m.hardpoints.push((crate::corner::plain(&format!("{part} {short}")), v));
+            self.m.hardpoints.push((plain(&format!("{part} {short}")), v));
             let at = self.root.get(part).map(|t| t.at);
             self.notes.taken("location", &format!("{part}, {short}"), at);
             self.corner.points.insert(role, v);
@@ -227,7 +303,7 @@ impl Reader<'_> {
         let outer = ["Location Upright", "Location Arm"];
         let ends = [self.location(part, &["Location Chassis"]), self.location(part, &outer)];
         if let [Some(i), Some(j)] = ends {
-            let name = crate::corner::plain(part);
+            let name = plain(part);
             let pin = |key: &str| self.root.get(part)?.get(key)?.vector().map(Vec3::from);
             let pins = pin("Universal Joint Axis Chassis").zip(pin("Universal Joint Axis Link"));
             for (end, v) in [("chassis", i), ("upright", j)] {

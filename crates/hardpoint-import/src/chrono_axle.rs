@@ -1,12 +1,15 @@
 //! Live axles of Project Chrono's vehicle module: one rigid axle between both wheels. The file has the left side; the right one is its
 //! mirror image, as Chrono makes it.
 
-use hardpoint::space::{Pose, Vec3};
+use hardpoint::space::Vec3;
 
+use crate::chrono_part::{self, Masses};
 use crate::corner::{Corner, Role, plain, spin_axis};
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism};
 use crate::report::{At, Notes};
+use crate::sides::{SIDES, over};
 use crate::tree::Tree;
+use crate::{axle, robot};
 
 /// The templates that are read here.
 pub const TEMPLATES: [&str; 6] = [
@@ -17,8 +20,6 @@ pub const TEMPLATES: [&str; 6] = [
     "PanhardAxle",
     "DeDionAxle",
 ];
-
-const SIDES: [(f64, &str); 2] = [(1.0, "_left"), (-1.0, "_right")];
 
 struct Axle<'r> {
     root: &'r Tree,
@@ -39,15 +40,7 @@ pub fn read(
     let mut axle = Axle { root, m, notes, read: Vec::new() };
     axle.build(template, angles);
     let Axle { m, read, notes, .. } = axle;
-    for (key, at, _) in root.entries() {
-        if key.ends_with("Angle (deg)") {
-            notes.taken(key, "", Some(*at));
-        } else if key == "Anti Roll Bar" {
-            notes.refused(key, "", Some(*at), "it holds nothing, and is not made");
-        } else if !read.contains(&key.as_str()) && !["Name", "Type", "Template"].contains(&key.as_str()) {
-            notes.ignored(key, Some(*at));
-        }
-    }
+    chrono_part::account(root, &read, notes);
     Some(m)
 }
 
@@ -80,7 +73,7 @@ impl Axle<'_> {
     }
 
     fn body(&mut self, name: &str, at: Vec3) -> usize {
-        self.m.body(name, String::new(), Some(Pose { rot: crate::turn::none(), r: at }))
+        axle::body(&mut self.m, name, at)
     }
 
     fn hardpoint(&mut self, name: &str, at: Vec3) {
@@ -89,58 +82,46 @@ impl Axle<'_> {
 
     /// A rod between two bodies; both its ends are hardpoints.
     fn rod(&mut self, name: &str, bodies: [usize; 2], ends: [Vec3; 2], words: [&str; 2], at: Option<At>) {
-        for (end, word) in ends.into_iter().zip(words) {
-            self.hardpoint(&end_of(name, word), end);
-        }
-        if ends[0] == ends[1] {
-            let message = format!("both ends of `{name}` are at one place");
-            self.notes.problem_with("HP0804", at, message, "correct one of them");
-            return;
-        }
-        self.m.joint(Joint::new(name, String::new(), "distance", bodies, ends[0]).between(ends[0], ends[1]));
-        self.notes.taken("link", name, at);
+        axle::ends(&mut self.m, name, ends, words);
+        axle::rod(&mut self.m, self.notes, name, bodies, ends, at);
+    }
+
+    /// Returns the ends of a member, on the vehicle and on the axle.
+    fn ends(&mut self, part: &'static str) -> Option<[Vec3; 2]> {
+        let chassis = self.place(&[part], &["Location Chassis"]);
+        let outer = self.place(&[part], &["Location Axle"]);
+        Some([chassis?, outer?])
     }
 
     /// A rod on each side, from the body of the vehicle to the axle.
     fn rods(&mut self, part: &'static str, axle: usize) {
-        let chassis = self.place(&[part], &["Location Chassis"]);
-        let outer = self.place(&[part], &["Location Axle"]);
-        let (Some(c), Some(a)) = (chassis, outer) else { return };
+        let Some(ends) = self.ends(part) else { return };
         let at = self.at(part);
         for (side, suffix) in SIDES {
             let name = format!("{}{suffix}", plain(part));
-            self.rod(&name, [GROUND, axle], [over(c, side), over(a, side)], ["chassis", "axle"], at);
+            self.rod(&name, [GROUND, axle], ends.map(|p| over(p, side)), ["chassis", "axle"], at);
         }
     }
 
-    /// A spring or a damper on each side; they hold nothing, and their lengths are worth knowing.
-    fn legs(&mut self, part: &'static str, draw: &'static str, axle: usize) {
-        if self.root.get(part).is_none() {
-            return;
+    /// A spring or a damper on each side; returns its ends on the left, if it is there.
+    fn legs(&mut self, part: &'static str, draw: &'static str, axle: usize) -> Option<[Vec3; 2]> {
+        self.root.get(part)?;
+        let ends = self.ends(part).filter(|[c, a]| c != a)?;
+        let at = self.at(part);
+        for (side, suffix) in SIDES {
+            let (name, places) = (format!("{draw}{suffix}"), ends.map(|p| over(p, side)));
+            axle::ends(&mut self.m, &name, places, ["chassis", "axle"]);
+            axle::leg(&mut self.m, self.notes, &name, [GROUND, axle], places, draw, at);
         }
-        let chassis = self.place(&[part], &["Location Chassis"]);
-        let outer = self.place(&[part], &["Location Axle"]);
-        let (Some(c), Some(a)) = (chassis, outer) else { return };
-        for (side, suffix) in SIDES.into_iter().filter(|_| c != a) {
-            let [c, a] = [over(c, side), over(a, side)];
-            let name = format!("{draw}{suffix}");
-            self.hardpoint(&end_of(&name, "chassis"), c);
-            self.hardpoint(&end_of(&name, "axle"), a);
-            let mut leg = Joint::new(&name, String::new(), "leg", [GROUND, axle], c).between(c, a);
-            leg.draw = Some(draw);
-            self.m.joint(leg);
-            self.notes.taken(draw, &name, self.at(part));
-        }
+        Some(ends)
     }
 
     /// A triangle that turns on the body of the vehicle about y; its ball joint is on the axle.
     fn triangle(&mut self, axle: usize) {
         let part = "Triangular Link";
-        let chassis = self.place(&[part], &["Location Chassis"]);
-        let outer = self.place(&[part], &["Location Axle"]);
-        let (Some(c), Some(a)) = (chassis, outer) else { return };
+        let Some(ends) = self.ends(part) else { return };
         // Chrono takes the middle of both sides.
-        let [pivot, ball] = [c, a].map(|p| Vec3::from([p.x, 0.0, p.z]));
+        let [pivot, ball] = ends.map(middle);
         let body = self.body("triangle", pivot);
         for (name, at) in [("triangle_chassis", pivot), ("triangle_axle", ball)] {
             self.hardpoint(name, at);
@@ -188,7 +169,9 @@ impl Axle<'_> {
                 .along(axis.into()),
         );
         let drives = Drives::Coordinate(Coordinate { joint: slide, name: "displacement" });
-        self.m.driver("steering", "no law in the source: held as drawn".into(), drives, Law::Held);
+        let steering =
+            self.m.driver("steering", "no law in the source: held as drawn".into(), drives, Law::Held);
+        self.m.steering = Some(steering);
         let why = "the steering is a file of its own: its link slides along the drag link, and a driver holds it as drawn";
         self.notes.approximated("motion", "steering_slide", self.at(part), why);
         self.rod("drag_link", [rack, crank], [from, to], ["steering", "crank"], self.at(part));
@@ -280,7 +263,7 @@ impl Axle<'_> {
                     self.hardpoint("axle_ball", ball);
                     self.m.joint(Joint::new("axle_ball", String::new(), "spherical", [GROUND, axle], ball));
                 }
-                let middle = Vec3::from([spindle.x, 0.0, spindle.z]);
+                let middle = middle(spindle);
                 self.hardpoint("axle_middle", middle);
                 let [x, y] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vec3::from);
                 self.m.joint(
@@ -296,22 +279,22 @@ impl Axle<'_> {
                     Joint::new("axle_guide", String::new(), "planar", [GROUND, axle], centre).with_axes(x, y),
                 );
                 self.notes.taken("joint", "axle_guide", self.at(part));
-                let chassis = self.place(&["Panhard Rod"], &["Location Chassis"]);
-                let outer = self.place(&["Panhard Rod"], &["Location Axle"]);
-                if let (Some(c), Some(a)) = (chassis, outer) {
+                if let Some(ends) = self.ends("Panhard Rod") {
                     let at = self.at("Panhard Rod");
-                    self.rod("panhard_rod", [GROUND, axle], [c, a], ["chassis", "axle"], at);
+                    self.rod("panhard_rod", [GROUND, axle], ends, ["chassis", "axle"], at);
                 }
             }
         }
         if let Some(knuckles) = &knuckles {
             self.steering(template, axle, knuckles);
         }
-        self.legs("Spring", "spring", axle);
-        self.legs("Shock", "damper", axle);
+        let legs = [("Spring", "spring"), ("Shock", "damper")]
+            .map(|(part, draw)| (draw, self.legs(part, draw, axle)));
         if self.notes.problem_count() > 0 {
             return None;
         }
+        let springs =
+            chrono_part::springs(self.root, &[("Spring", "spring"), ("Shock", "damper")], self.notes);
         for (k, (side, suffix)) in SIDES.into_iter().enumerate() {
             let centre = over(spindle, side);
             self.hardpoint(&format!("spindle{suffix}"), centre);
@@ -319,32 +302,80 @@ impl Axle<'_> {
                 suffix: suffix.into(),
                 spin_axis: Some(spin_axis(side, camber, toe)),
                 rack: knuckles.is_some(),
+                springs: springs.clone(),
                 at: self.at("Spindle"),
                 ..Corner::default()
             };
+            let ends_of = |ends: [Vec3; 2]| [(GROUND, over(ends[0], side)), (axle, over(ends[1], side))];
+            for (draw, ends) in legs.iter().filter_map(|(draw, ends)| Some((draw, ends.as_ref()?))) {
+                corner.force(&mut self.m, self.notes, draw, ends_of(*ends));
+            }
             let mut carrier = axle;
             if let Some(knuckles) = &knuckles {
                 let (body, [lower, upper]) = knuckles[k];
                 carrier = body;
                 corner.points.extend([(Role::LowerOuter, lower), (Role::UpperOuter, upper)]);
             }
-            corner.wheel(&mut self.m, self.notes, carrier, centre);
+            corner.wheel(&mut self.m, self.notes, carrier, centre, legs[0].1.map(ends_of));
         }
+        self.masses(template, [camber, toe], knuckles.is_some());
         Some(())
     }
-}
 
-/// The name of an element's end; its side is its last word.
-fn end_of(name: &str, word: &str) -> String {
-    for (_, suffix) in SIDES {
-        if let Some(base) = name.strip_suffix(suffix) {
-            return format!("{base}_{word}{suffix}");
+    /// The masses of the parts, on the bodies that they are of, or at the ends of rods.
+    fn masses(&mut self, template: &str, [camber, toe]: [f64; 2], has_knuckles: bool) {
+        let root = self.root;
+        let point = |part: &str, key: &str| root.get(part).and_then(|p| p.get(key)?.vector()).map(Vec3::from);
+        let mut masses = Masses { root, m: &mut self.m, notes: self.notes, side: 1.0, suffix: "" };
+        masses.on("Axle Tube", "axle", None, None);
+        let ends = |part: &str| {
+            point(part, "Location Chassis").zip(point(part, "Location Axle")).map(<[Vec3; 2]>::from)
+        };
+        if let Some(ends) = ends("Triangular Link").map(|ends| ends.map(middle)) {
+            masses.on("Triangular Link", "triangle", Some((ends[0] + ends[1]) * 0.5), None);
         }
+        if let Some(ends) = ends("Panhard Rod") {
+            masses.rod("Panhard Rod", ["ground", "axle"], ends);
+        }
+        let crank = if root.get("Bellcrank").is_some() { "Bellcrank" } else { "Bell Crank" };
+        let first = |part, keys: [&str; 2]| keys.iter().find_map(|key| point(part, key));
+        let drag = first("Draglink", ["Location Steering", "Location Chassis"])
+            .zip(first("Draglink", ["Location Bellcrank", "Location Bell Crank"]));
+        if let Some((from, to)) = drag {
+            masses.rod("Draglink", ["steering_link", "bell_crank"], [from, to]);
+            let places = point(crank, "Location Axle").zip(point(crank, "Location Tierod"));
+            if let Some((pivot, tie)) = places {
+                let is_solid = template == "SolidAxle";
+                // Of the axle on four links the crank's axes are those of the drag link, across the plane with the lower link.
+                let lower = point("Lower Link", "Location Axle").filter(|_| is_solid);
+                let axes = lower.and_then(|l| chrono_part::link_axes(from - to, (to - l).cross(from - l)));
+                let centre = if is_solid { (to + pivot + tie) * (1.0 / 3.0) } else { pivot };
+                masses.on(crank, "bell_crank", Some(centre), axes);
+            }
+        }
+        if let Some(end) = point("Tierod", "Location Knuckle") {
+            masses.on("Tierod", "tie_rod", Some(middle(end)), None);
+        }
+        let ties = point(crank, "Location Tierod").zip(point("Knuckle", "Location Tierod"));
+        for (side, suffix) in SIDES {
+            let mut masses = Masses { side, suffix, ..masses.again() };
+            let carrier = if has_knuckles { format!("knuckle{suffix}") } else { "axle".into() };
+            masses.on("Spindle", &carrier, None, chrono_part::spindle_axes(spin_axis(side, camber, toe)));
+            masses.on("Knuckle", &carrier, None, None);
+            for part in ["Upper Link", "Lower Link", "Longitudinal Link"] {
+                if let Some(ends) = ends(part) {
+                    masses.rod(part, ["ground", "axle"], ends);
+                }
+            }
+            if let Some((inner, outer)) = ties {
+                masses.rod("Tierod", ["bell_crank", &carrier], [inner, outer]);
+            }
+        }
+        robot::standard_gravity(&mut self.m, self.notes, "a Chrono suspension");
     }
-    format!("{name}_{word}")
 }
 
-/// On the left (1) or on the right (-1).
-fn over(v: Vec3, side: f64) -> Vec3 {
-    Vec3::from([v.x, side * v.y, v.z])
+/// The place in the middle between both sides.
+fn middle(v: Vec3) -> Vec3 {
+    Vec3::from([v.x, 0.0, v.z])
 }

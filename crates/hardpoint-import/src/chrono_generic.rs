@@ -5,9 +5,13 @@ use std::collections::BTreeMap;
 
 use hardpoint::space::{Mat3, Vec3};
 
+use crate::chrono_part::{self, Inertial, Masses};
 use crate::corner::{Corner, spin_axis};
-use crate::mechanism::{GROUND, Joint, Mechanism};
+use crate::markers::Called;
+use crate::mechanism::{Force, ForceOn, GROUND, Joint, Mechanism, Spring};
 use crate::report::{At, Notes};
+use crate::robot;
+use crate::sides::{SIDES, over};
 use crate::tree::{Tree, Value};
 
 /// Bodies of the vehicle that stand still here.
@@ -15,29 +19,49 @@ const CHASSIS: [&str; 2] = ["Chassis", "Subchassis"];
 /// The body of the vehicle that the tie rods are on.
 const STEERING: &str = "Steering";
 
+/// Lists of elements.
+const LISTS: [&str; 4] = ["Bodies", "Joints", "Distance Constraints", "TSDAs"];
+
 /// See the module.
 pub fn read(root: &Tree, mut m: Mechanism, [camber, toe]: [f64; 2], notes: &mut Notes) -> Option<Mechanism> {
     let bodies = list(root, "Bodies");
     let between = bodies.iter().any(|b| !is_mirrored(b));
     let mut rack = None;
-    for (side, suffix) in [(1.0, "_left"), (-1.0, "_right")].into_iter().take(1 + usize::from(between)) {
+    let springs: BTreeMap<&str, Spring> = list(root, "TSDAs")
+        .iter()
+        .filter_map(|tree| {
+            let name = tree.text_of("Name").unwrap_or_default();
+            Some((name, chrono_part::spring(tree, name, notes)?))
+        })
+        .collect();
+    for (side, suffix) in SIDES.into_iter().take(1 + usize::from(between)) {
         let suffix = if between { suffix } else { "" };
-        let mut reader =
-            Side { root, m: &mut m, notes, side, suffix, names: BTreeMap::new(), rack: &mut rack };
+        let mut reader = Side {
+            root,
+            m: &mut m,
+            notes,
+            side,
+            suffix,
+            names: BTreeMap::new(),
+            rack: &mut rack,
+            springs: &springs,
+        };
         reader.bodies(bodies);
         reader.joints();
         reader.rods();
-        reader.springs();
-        reader.wheel(spin_axis(side, camber, toe));
+        let spring = reader.springs();
+        reader.wheel(spin_axis(side, camber, toe), spring);
     }
-    let read = ["Name", "Type", "Template", "Bodies", "Joints", "Distance Constraints", "TSDAs", "Spindle"];
-    for (key, at, _) in root.entries().iter().filter(|(key, ..)| !read.contains(&key.as_str())) {
-        if key.ends_with("Angle (deg)") {
-            notes.taken(key, "", Some(*at));
-        } else {
-            notes.ignored(key, Some(*at));
-        }
+    for tree in LISTS.into_iter().flat_map(|key| list(root, key)) {
+        chrono_part::part(tree.text_of("Name").unwrap_or_default(), tree, notes);
     }
+    for tree in list(root, "RSDAs") {
+        let why = "a spring about an axis of its own has no equivalent: it is left out";
+        notes.refused("RSDA", tree.text_of("Name").unwrap_or_default(), Some(tree.at), why);
+    }
+    let read: Vec<&str> = LISTS.into_iter().chain(["RSDAs", "Spindle"]).collect();
+    chrono_part::account(root, &read, notes);
+    robot::standard_gravity(&mut m, notes, "a Chrono suspension");
     Some(m)
 }
 
@@ -51,6 +75,8 @@ struct Side<'r> {
     /// The bodies by their names in the file.
     names: BTreeMap<String, usize>,
     rack: &'r mut Option<usize>,
+    /// Characteristics of springs and dampers by their names in the file.
+    springs: &'r BTreeMap<&'r str, Spring>,
 }
 
 impl Side<'_> {
@@ -65,7 +91,13 @@ impl Side<'_> {
     }
 
     fn over(&self, v: Vec3) -> Vec3 {
-        Vec3::from([v.x, self.side * v.y, v.z])
+        over(v, self.side)
+    }
+
+    /// The axes of an element on this side: x and z are mirrored, y follows, as Chrono has it.
+    fn axes(&self, tree: &Tree, rotation: Mat3) -> Mat3 {
+        let [x, _, z] = rotation.cols.map(|axis| if is_mirrored(tree) { self.over(axis) } else { axis });
+        Mat3 { cols: [x, z.cross(x), z] }
     }
 
     /// Three numbers of an element, on this side.
@@ -98,6 +130,12 @@ impl Side<'_> {
                 self.notes.problem_with("HP0803", Some(tree.at), message, "rename one of them");
             }
             self.notes.taken("body", &name, Some(tree.at));
+            if let Some(Inertial { mass, inertia }) = Inertial::of(tree) {
+                let rotation = tree.get("Rotation").and_then(quaternion).unwrap_or_else(crate::turn::none);
+                let frame = hardpoint::space::Pose { rot: self.axes(tree, rotation), r };
+                let called = Called { kind: "mass", name: &name, at: Some(tree.at) };
+                robot::mass(self.m, self.notes, called, body, frame, mass, inertia);
+            }
         }
     }
 
@@ -171,8 +209,9 @@ impl Side<'_> {
                 );
                 continue;
             };
-            let here = |v: Vec3| if is_mirrored(tree) { self.over(v) } else { v };
-            let (at, [x, y, z]) = (here(at.into()), rotation.cols.map(here));
+            let at = Vec3::from(at);
+            let at = if is_mirrored(tree) { self.over(at) } else { at };
+            let [x, y, z] = self.axes(tree, rotation).cols;
             let Some(bodies) = self.pair(tree, at) else { continue };
             let joint = Joint::new(&name, note("joint", &name, tree.at, self.notes), kind, bodies, at);
             self.m.joint(match kind {
@@ -194,33 +233,55 @@ impl Side<'_> {
         }
     }
 
-    /// Springs and dampers hold nothing; their lengths are worth knowing.
-    fn springs(&mut self) {
+    /// Springs and dampers hold nothing; their lengths are worth knowing. Returns the ends of the first spring.
+    fn springs(&mut self) -> Option<[(usize, Vec3); 2]> {
+        let mut first = None;
         for tree in list(self.root, "TSDAs").iter().filter(|t| self.is_here(t)).collect::<Vec<_>>() {
             let is_damper =
                 tree.entries().iter().all(|(key, ..)| !key.contains("Spring") && key != "Free Length");
-            self.between(tree, "spring", "leg", Some(if is_damper { "damper" } else { "spring" }));
+            let member = if is_damper { "damper" } else { "spring" };
+            let Some(ends) = self.between(tree, "spring", "leg", Some(member)) else { continue };
+            let (name, own) = (self.named(tree), tree.text_of("Name").unwrap_or_default());
+            if let Some(spring) = self.springs.get(own) {
+                let note = note(member, own, tree.at, self.notes);
+                self.m.force(Force {
+                    name: name.clone(),
+                    note,
+                    on: ForceOn::Points(ends),
+                    spring: spring.clone(),
+                });
+                self.notes.taken("force", &name, Some(tree.at));
+            }
+            first = first.or((!is_damper).then_some(ends));
         }
+        first
     }
 
-    fn between(&mut self, tree: &Tree, what: &str, kind: &'static str, draw: Option<&'static str>) {
+    fn between(
+        &mut self,
+        tree: &Tree,
+        what: &str,
+        kind: &'static str,
+        draw: Option<&'static str>,
+    ) -> Option<[(usize, Vec3); 2]> {
         let name = self.named(tree);
         let ends = ["Point1", "Point2"].map(|key| self.place(tree, key));
-        let [Some(i), Some(j)] = ends else { return };
-        let Some(bodies) = self.pair(tree, i) else { return };
+        let [Some(i), Some(j)] = ends else { return None };
+        let bodies = self.pair(tree, i)?;
         if i == j {
             let message = format!("both ends of `{name}` are at one place");
             self.notes.problem_with("HP0804", Some(tree.at), message, "correct one of them");
-            return;
+            return None;
         }
         let mut rod =
             Joint::new(&name, note(what, &name, tree.at, self.notes), kind, bodies, i).between(i, j);
         rod.draw = draw;
         self.m.joint(rod);
         self.notes.taken(what, &name, Some(tree.at));
+        Some([(bodies[0], i), (bodies[1], j)])
     }
 
-    fn wheel(&mut self, axis: Vec3) {
+    fn wheel(&mut self, axis: Vec3, spring: Option<[(usize, Vec3); 2]>) {
         let Some(spindle) = self.root.get("Spindle") else {
             let help = "give its `Attachment Body` and `COM`";
             self.notes.problem_with("HP0803", Some(self.root.at), "there is no `Spindle`", help);
@@ -241,12 +302,17 @@ impl Side<'_> {
         let corner = Corner {
             suffix: self.suffix.into(),
             spin_axis: Some(axis),
+            rack: self.rack.is_some(),
             at: Some(spindle.at),
             ..Corner::default()
         };
-        let centre = self.over(centre.into());
-        self.m.hardpoints.push((format!("spindle{}", self.suffix), centre));
-        corner.wheel(self.m, self.notes, carrier, centre);
+        let centre = Vec3::from(centre);
+        self.m.hardpoints.push((format!("spindle{}", self.suffix), self.over(centre)));
+        corner.wheel(self.m, self.notes, carrier, self.over(centre), spring);
+        let carrier = self.m.bodies[carrier].name.clone();
+        let mut masses =
+            Masses { root: self.root, m: self.m, notes: self.notes, side: self.side, suffix: self.suffix };
+        masses.on("Spindle", &carrier, None, chrono_part::spindle_axes(axis));
     }
 }
 
@@ -268,5 +334,5 @@ fn quaternion(tree: &Tree) -> Option<Mat3> {
 }
 
 fn note(kind: &str, name: &str, at: At, notes: &Notes) -> String {
-    crate::markers::Called { kind, name, at: Some(at) }.note(notes)
+    Called { kind, name, at: Some(at) }.note(notes)
 }

@@ -4,8 +4,12 @@ use std::collections::BTreeMap;
 
 use hardpoint::space::Vec3;
 
-use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Wheel};
+use crate::markers::Called;
+use crate::mechanism::{
+    Coordinate, Drives, End, Force, ForceOn, GROUND, Joint, Law, Mechanism, Spring, Wheel,
+};
 use crate::report::{At, Notes};
+use crate::sides::over;
 use crate::turn::{X, Y, from_z_and_x};
 
 /// What a hardpoint of a corner is.
@@ -57,6 +61,15 @@ pub enum Role {
     TrailingB,
     /// The ball joint of a trailing arm that has one alone.
     TrailingBall,
+}
+
+impl Role {
+    /// Returns whether it is of an arm, which carries the upright by a ball joint.
+    pub fn is_of_an_arm(self) -> bool {
+        use Role::*;
+        let arms = [LowerFront, LowerRear, LowerOuter, UpperFront, UpperRear, UpperOuter];
+        arms.contains(&self) || [TrailingA, TrailingB, TrailingBall].contains(&self)
+    }
 }
 
 /// Names of hardpoints, in small letters and with `_` between words, by what they are. The first that fits is taken.
@@ -393,14 +406,40 @@ pub struct Corner {
     pub radius: Option<f64>,
     /// The spin axis, outboard, where no spindle point gives it.
     pub spin_axis: Option<Vec3>,
+    /// Characteristics of its coilover, spring and damper, by these words, and their places in the source.
+    pub springs: BTreeMap<&'static str, (Spring, At)>,
+    /// The end of the vehicle that it is at.
+    pub end: Option<End>,
+    /// The driver that moves its wheel up and down, where there is one already.
+    pub bump: Option<usize>,
     /// Where its file begins to tell of it.
     pub at: Option<At>,
 }
+
+/// The ends of a spring, each on a body.
+type Ends = [(usize, Vec3); 2];
 
 /// The bump of a wheel, in mm, of whose law no source says anything.
 const BUMP: f64 = 60.0;
 /// The radius of a wheel, in mm, of which the source says none.
 const RADIUS: f64 = 330.0;
+
+/// A driver that moves a point of a body, such as a wheel's centre, up and down; its number.
+pub fn bump(
+    m: &mut Mechanism,
+    notes: &mut Notes,
+    suffix: &str,
+    at: Option<At>,
+    body: usize,
+    centre: Vec3,
+) -> usize {
+    let text = format!("{}*sin(2*pi*t)", BUMP * m.per_mm());
+    let why = format!("nothing drives it in the source: it goes up and down, law `{text}`");
+    notes.approximated("motion", &format!("wheel{suffix}"), at, why);
+    let drives = Drives::Way { body, at: centre, along: [0.0, 0.0, 1.0].into() };
+    let note = "no law in the source: the wheel goes up and down".into();
+    m.driver(&format!("bump{suffix}"), note, drives, Law::Text(text))
+}
 
 /// The spin axis, outboard, of a wheel with static camber and toe-in, in rad: toe-in turns it forward, camber tilts it down. `side` is 1
 /// on the left and -1 on the right.
@@ -430,12 +469,13 @@ impl Corner {
 
     /// The same on the other side.
     pub fn mirrored(&self, suffix: &str) -> Self {
-        let over = |v: Vec3| Vec3::from([v.x, -v.y, v.z]);
+        let image = |v: Vec3| over(v, -1.0);
         let mut out = self.clone();
         out.suffix = suffix.to_owned();
-        out.points.values_mut().for_each(|p| *p = over(*p));
-        out.links.iter_mut().for_each(|l| (l.ends, l.pins) = (l.ends.map(over), l.pins.map(|p| p.map(over))));
-        out.spin_axis = self.spin_axis.map(over);
+        out.points.values_mut().for_each(|p| *p = image(*p));
+        let links = out.links.iter_mut();
+        links.for_each(|l| (l.ends, l.pins) = (l.ends.map(image), l.pins.map(|p| p.map(image))));
+        out.spin_axis = self.spin_axis.map(image);
         out
     }
 
@@ -514,6 +554,7 @@ impl Corner {
             slide.draw = Some("coilover");
             m.joint(slide);
             notes.taken("strut", &name("strut"), self.at);
+            self.force(m, notes, "coilover", [(GROUND, top), (upright, bottom)]);
         }
         if let Some([a, b]) = trailing {
             m.joint(
@@ -576,9 +617,12 @@ impl Corner {
             Mount::Nothing(_) => None,
         };
         let rocker = self.rocker(m, notes, &on);
-        self.springs(m, notes, &on, rocker, is_strut);
+        let mut spring = self.springs(m, notes, &on, rocker, is_strut);
+        if let (true, Some([top, bottom])) = (is_strut, strut) {
+            spring = Some([(GROUND, top), (upright, bottom)]);
+        }
         if let Some(centre) = centre {
-            self.wheel(m, notes, upright, centre);
+            self.wheel(m, notes, upright, centre, spring);
         } else {
             notes.approximated(
                 "wheel",
@@ -606,7 +650,8 @@ impl Corner {
                 .along([0.0, 1.0, 0.0].into()),
         );
         let drives = Drives::Coordinate(Coordinate { joint: slide, name: "displacement" });
-        m.driver("steering", "no law in the source: held as drawn".into(), drives, Law::Held);
+        let steering = m.driver("steering", "no law in the source: held as drawn".into(), drives, Law::Held);
+        m.steering = Some(steering);
         notes.approximated(
             "motion",
             "rack_slide",
@@ -665,7 +710,7 @@ impl Corner {
         Some(body)
     }
 
-    /// What has a length that is worth knowing: coilover, damper, spring. They hold nothing.
+    /// Adds coilover, damper and spring as legs, whose lengths are worth knowing, and their forces. Returns the ends of the spring.
     fn springs(
         &self,
         m: &mut Mechanism,
@@ -673,8 +718,9 @@ impl Corner {
         on: &dyn Fn(&Mount) -> Option<usize>,
         rocker: Option<usize>,
         is_strut: bool,
-    ) {
+    ) -> Option<Ends> {
         use Role::*;
+        let mut spring = None;
         let pairs = [
             ("coilover", [StrutTop, StrutBottom], "coilover", is_strut),
             ("damper", [DamperChassis, DamperMoving], "damper", false),
@@ -696,19 +742,36 @@ impl Corner {
             leg.draw = Some(form);
             m.joint(leg);
             notes.taken(base, &name, self.at);
+            let ends = [(GROUND, top), (carrier, bottom)];
+            self.force(m, notes, base, ends);
+            if base != "damper" {
+                spring = Some(ends);
+            }
         }
+        spring
+    }
+
+    /// The force of a coilover, spring or damper, as far as the source gives its characteristic.
+    pub fn force(&self, m: &mut Mechanism, notes: &mut Notes, base: &str, ends: Ends) {
+        let Some((spring, at)) = self.springs.get(base) else { return };
+        let name = format!("{base}{}", self.suffix);
+        let note = Called { kind: base, name: &name, at: Some(*at) }.note(notes);
+        m.force(Force { name: name.clone(), note, on: ForceOn::Points(ends), spring: spring.clone() });
+        notes.taken("force", &name, Some(*at));
     }
 
     /// The wheel on an upright, which goes up and down.
-    pub fn wheel(&self, m: &mut Mechanism, notes: &mut Notes, upright: usize, centre: Vec3) {
+    pub fn wheel(
+        &self,
+        m: &mut Mechanism,
+        notes: &mut Notes,
+        upright: usize,
+        centre: Vec3,
+        spring: Option<Ends>,
+    ) {
         use Role::*;
         let name = format!("wheel{}", self.suffix);
-        let per_mm = match m.length {
-            "m" => 1e-3,
-            "cm" => 0.1,
-            "in" => 1.0 / 25.4,
-            _ => 1.0,
-        };
+        let per_mm = m.per_mm();
         let outboard = Vec3::from([0.0, if centre.y < 0.0 { -1.0 } else { 1.0 }, 0.0]);
         let axis = self.get(Spindle).and_then(|s| (centre - s).unit()).or(self.spin_axis).unwrap_or(outboard);
         let spindle = self.get(Spindle).filter(|s| (centre - *s).dot(outboard) > 0.0);
@@ -723,21 +786,8 @@ impl Corner {
             );
             radius
         });
-        let bump = BUMP * per_mm;
-        let text = format!("{bump}*sin(2*pi*t)");
-        let drives = Drives::Way { body: upright, at: centre, along: [0.0, 0.0, 1.0].into() };
-        notes.approximated(
-            "motion",
-            &name,
-            self.at,
-            format!("nothing drives it in the source: it goes up and down, law `{text}`"),
-        );
-        let bump = m.driver(
-            &format!("bump{}", self.suffix),
-            "no law in the source: the wheel goes up and down".into(),
-            drives,
-            Law::Text(text),
-        );
+        let driver = || bump(m, notes, &self.suffix, self.at, upright, centre);
+        let bump = self.bump.unwrap_or_else(driver);
         let lower = self.get(LowerOuter).map(|p| (upright, p));
         let upper = self.get(UpperOuter).map(|p| (upright, p)).or(self.get(StrutTop).map(|p| (GROUND, p)));
         let kingpin = lower.zip(upper).map(|(l, u)| [l, u]).filter(|_| self.rack);
@@ -750,6 +800,9 @@ impl Corner {
             radius,
             kingpin,
             bump,
+            is_steered: self.rack && m.steering.is_some(),
+            spring,
+            end: self.end,
         });
         notes.taken("wheel", &name, self.at);
     }

@@ -3,10 +3,11 @@
 use hardpoint::space::Vec3;
 
 use crate::corner::{Corner, Link, Mount, plain, role_of};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{End, Mechanism, Vehicle};
 use crate::report::{At, Notes};
+use crate::sides::{self, over};
 use crate::tree::{self, Tree};
-use crate::{Format, Input};
+use crate::{FEW_DIGITS, Format, Input};
 
 /// See the module.
 pub const FORMAT: Format = Format {
@@ -43,7 +44,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     let mut known = true;
     let mut made = false;
     if sides.is_empty() {
-        let mut corner = Corner { at: Some(points.at), ..settings(&root, m.length, notes) };
+        let mut corner = Corner { at: Some(points.at), ..settings(&root, m.per_mm(), notes) };
         collect(points, "", &mut corner, &mut m, notes, "");
         mount(&root, &mut corner);
         if root.text_of("side").is_some_and(|s| s.eq_ignore_ascii_case("right"))
@@ -62,7 +63,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     for side in &sides {
         let Some(list) = points.get(side) else { continue };
         let mut corner =
-            Corner { suffix: format!("_{side}"), at: Some(list.at), ..settings(&root, m.length, notes) };
+            Corner { suffix: format!("_{side}"), at: Some(list.at), ..settings(&root, m.per_mm(), notes) };
         collect(list, "", &mut corner, &mut m, notes, &format!("_{side}"));
         mount(&root, &mut corner);
         known &= corner.build(&mut m, notes, &mut rack);
@@ -75,6 +76,9 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
                 Some(list.at),
                 "the file has one side: the other is its mirror image",
             );
+            let images: Vec<(String, Vec3)> =
+                m.hardpoints.iter().map(|(name, at)| (sides::other(name), over(*at, -1.0))).collect();
+            m.hardpoints.extend(images);
             known &= corner.mirrored(other).build(&mut m, notes, &mut rack);
         }
     }
@@ -88,23 +92,8 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
             );
         }
     }
-    for (key, at, _) in root.entries() {
-        let used = [
-            "hardpoints",
-            "hard_points",
-            "name",
-            "units",
-            "type",
-            "side",
-            "config",
-            "actuation",
-            "axle_config",
-            "scope",
-        ];
-        if !used.contains(&key.as_str()) {
-            notes.ignored(key, Some(*at));
-        }
-    }
+    vehicle(&root, &mut m, notes);
+    account(&root, notes);
     if !known {
         m.bodies.truncate(1);
         m.joints.clear();
@@ -142,21 +131,20 @@ fn units(root: &Tree, notes: &mut Notes) -> &'static str {
     }
 }
 
+/// The settings of the corner or axle.
+fn config(root: &Tree) -> Option<&Tree> {
+    ["axle_config", "config", "configuration"].into_iter().find_map(|key| root.get(key))
+}
+
 /// Steering, and the wheel.
-fn settings(root: &Tree, unit: &str, notes: &mut Notes) -> Corner {
-    let config = root.get("axle_config").or_else(|| root.get("config")).or_else(|| root.get("configuration"));
+fn settings(root: &Tree, per_mm: f64, notes: &mut Notes) -> Corner {
+    let config = config(root);
     let steering = config.and_then(|c| c.get("steering"));
     let kind = steering.and_then(|s| s.text_of("type").or(s.text())).unwrap_or("rack");
     let steered = config.and_then(|c| c.text_of("steered")).is_none_or(|s| s != "false");
     let tire = config.and_then(|c| c.get("wheel")).and_then(|w| w.get("tire").or_else(|| w.get("tyre")));
     let number = |key: &str| tire.and_then(|t| t.get(key)).and_then(Tree::number);
     // A rim is in inches and a tyre in millimetres, whatever the hardpoints are in.
-    let per_mm = match unit {
-        "m" => 1e-3,
-        "cm" => 0.1,
-        "in" => 1.0 / 25.4,
-        _ => 1.0,
-    };
     let radius = match (number("aspect_ratio"), number("section_width"), number("rim_diameter")) {
         (Some(aspect), Some(width), Some(rim)) => Some((aspect * width + rim * 25.4 / 2.0) * per_mm),
         _ => number("nominal_radius").or_else(|| number("radius")),
@@ -176,17 +164,110 @@ fn settings(root: &Tree, unit: &str, notes: &mut Notes) -> Corner {
     for (key, at, shim) in setups.flat_map(|s| s.entries()).chain(own) {
         let thickness = ["design_thickness", "setup_thickness"].map(|k| shim.get(k).and_then(Tree::number));
         if !key.ends_with("_shim") {
-            if !["steering", "wheel", "actuation", "steered"].contains(&key.as_str()) {
-                notes.ignored(key, Some(*at));
-            }
-        } else if thickness[0] == thickness[1] {
+            continue;
+        }
+        if thickness[0] == thickness[1] {
             notes.ignored(key, Some(*at));
         } else {
             let why = "the parts are taken as designed, without the shim of the setup";
             notes.refused(key, "", Some(*at), why);
         }
     }
-    Corner { rack: steered && !kind.eq_ignore_ascii_case("none"), radius, ..Corner::default() }
+    let end = config.and_then(|c| c.text_of("axle_position")).and_then(End::named);
+    Corner { rack: steered && !kind.eq_ignore_ascii_case("none"), radius, end, ..Corner::default() }
+}
+
+/// Figures of the vehicle: of a corner they are among its settings.
+fn vehicle(root: &Tree, m: &mut Mechanism, notes: &mut Notes) {
+    let found =
+        |key: &str| [root.get("vehicle_config"), config(root)].into_iter().flatten().find_map(|c| c.get(key));
+    let mut figure = |key: &str, value: &dyn Fn(&Tree) -> Option<f64>, is_valid: &dyn Fn(f64) -> bool| {
+        let tree = found(key)?;
+        let figure = value(tree).filter(|x| is_valid(*x));
+        match figure {
+            Some(_) => notes.taken(key, "", Some(tree.at)),
+            None => {
+                let why = "no figure of a vehicle that the model has";
+                notes.refused(key, tree.text().unwrap_or_default(), Some(tree.at), why);
+            }
+        }
+        figure
+    };
+    let is_length = |x: f64| x > 0.0;
+    let is_share = |x: f64| (0.0..=1.0).contains(&x);
+    let driven = |tree: &Tree| {
+        Some(match End::named(tree.text()?)? {
+            End::Front => 1.0,
+            End::Rear => 0.0,
+        })
+    };
+    let road = m.wheels.first().map_or(0.0, |wheel| {
+        let down = wheel.spin_axis.unit().map_or(1.0, |n| (1.0 - n.z * n.z).max(0.0).sqrt());
+        let road = wheel.centre.z - wheel.radius * down;
+        // Files have few digits: a wheel that stands on z = 0 to these does.
+        if road.abs() <= FEW_DIGITS * wheel.radius { 0.0 } else { road }
+    });
+    m.vehicle = Vehicle {
+        wheelbase: figure("wheelbase", &Tree::number, &is_length),
+        centre_of_gravity: figure("cg_position", &|tree| Some(tree.vector()?[2] - road), &is_length),
+        front_brake_share: figure("front_brake_bias", &Tree::number, &is_share),
+        front_drive_share: figure("driven_axle", &driven, &is_share),
+    };
+}
+
+/// Accounts for the settings besides the hardpoints.
+fn account(root: &Tree, notes: &mut Notes) {
+    const READ: [&str; 16] = [
+        "hardpoints",
+        "hard_points",
+        "name",
+        "units",
+        "type",
+        "side",
+        "scope",
+        "actuation",
+        "steering",
+        "steered",
+        "wheel",
+        "wheelbase",
+        "cg_position",
+        "front_brake_bias",
+        "driven_axle",
+        "axle_position",
+    ];
+    const GROUPS: [&str; 7] =
+        ["config", "configuration", "axle_config", "vehicle_config", "setup", "left_setup", "right_setup"];
+    let inner = root.entries().iter().filter(|(key, ..)| GROUPS.contains(&key.as_str()));
+    let all = inner.flat_map(|(.., group)| group.entries()).chain(root.entries());
+    for (key, at, tree) in all {
+        let kind = tree.text_of("type").or(tree.text()).unwrap_or_default();
+        match key.as_str() {
+            key if READ.contains(&key) || GROUPS.contains(&key) || key.ends_with("_shim") => {}
+            "version" => notes.ignored(key, Some(*at)),
+            "spring" | "damper" | "anti_roll" | "heave_link" if kind.eq_ignore_ascii_case("none") => {
+                notes.ignored(key, Some(*at));
+            }
+            "spring" | "damper" if tree.entries().len() > 1 => {
+                notes.not_understood(key, kind, Some(*at), "values of it that are not known here");
+            }
+            "spring" | "damper" => {
+                let why = "the file has its type alone, no stiffness or damping: it is measured where it has two ends, and has no force";
+                notes.refused(key, kind, Some(*at), why);
+            }
+            "anti_roll" | "heave_link" => {
+                notes.refused(
+                    key,
+                    kind,
+                    Some(*at),
+                    "what is between both sides holds nothing and is not made",
+                );
+            }
+            "opposite_axle_axis_height" => {
+                notes.refused(key, "", Some(*at), "no measure uses a figure of the other axle");
+            }
+            _ => notes.not_understood(key, "", Some(*at), "a setting that is not known here"),
+        }
+    }
 }
 
 /// What the rod or the coilover is on.

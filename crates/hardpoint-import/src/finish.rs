@@ -328,7 +328,7 @@ fn freedom(m: &Mechanism, notes: &Notes) -> Result<Left, Box<Diagnostic>> {
 fn parsed(m: &Mechanism) -> Result<hardpoint_file::ModelFile, String> {
     let mut bare = m.clone();
     bare.bodies.iter_mut().for_each(|b| b.mesh = None);
-    hardpoint_file::parse(&write::text(&bare, ""), "import").map_err(|d| {
+    hardpoint_file::parse(&write::explicit(&bare, ""), "import").map_err(|d| {
         d.list()
             .first()
             .map_or(String::new(), |d| [std::slice::from_ref(&d.message), &d.notes[..]].concat().join("; "))
@@ -423,6 +423,14 @@ fn candidates<'m>(m: &'m Mechanism, left: &'m Left) -> impl Iterator<Item = Held
     free.chain(balls.map(|j| Held::Turns(*j, ALL_AXES))).chain(of_joints).chain(of_bodies)
 }
 
+/// Returns whether it moves from end to end in the first second.
+pub fn moves(m: &Mechanism) -> bool {
+    parsed(m).is_ok_and(|mut file| {
+        file.model.times = (0..=TRIED).map(|k| k as f64 / TRIED as f64).collect();
+        Analysis::new(&file.model).is_ok_and(|a| a.solve(Run::new().without_sensitivities()).stop.is_none())
+    })
+}
+
 /// The one degree of freedom is plainly the input: it swings, as far as it can.
 fn swing(m: &mut Mechanism, notes: &mut Notes) {
     let Some(driver) = m.drivers.len().checked_sub(1) else { return };
@@ -447,12 +455,7 @@ fn swing(m: &mut Mechanism, notes: &mut Notes) {
         let d = &mut m.drivers[driver];
         d.law = Law::Text(text.clone());
         d.note = "nothing drives it in the source: as the only freedom it is the input".into();
-        let goes = parsed(m).is_ok_and(|mut file| {
-            file.model.times = (0..=TRIED).map(|k| k as f64 / TRIED as f64).collect();
-            Analysis::new(&file.model)
-                .is_ok_and(|a| a.solve(Run::new().without_sensitivities()).stop.is_none())
-        });
-        if goes {
+        if moves(m) {
             let why =
                 format!("nothing drives it in the source: as the only freedom it is the input, law `{text}`");
             notes.approximated("motion", &name, None, why);
@@ -472,7 +475,7 @@ fn swing(m: &mut Mechanism, notes: &mut Notes) {
 }
 
 /// To two digits, for people to read.
-fn rounded(x: f64) -> f64 {
+pub fn rounded(x: f64) -> f64 {
     if x == 0.0 || !x.is_finite() {
         return x;
     }

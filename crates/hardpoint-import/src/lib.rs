@@ -20,10 +20,13 @@
 mod adams;
 mod adams_statement;
 mod asmt;
+mod axle;
+mod cases;
 mod chain;
 mod chrono;
 mod chrono_axle;
 mod chrono_generic;
+mod chrono_part;
 mod closing;
 mod collada;
 mod corner;
@@ -31,6 +34,7 @@ mod explorer;
 mod finish;
 mod freecad;
 mod law;
+mod live_axle;
 mod lotus;
 mod markers;
 pub mod mechanism;
@@ -41,8 +45,10 @@ mod sdf;
 mod series;
 mod shapes;
 mod siblings;
+mod sides;
 mod straighten;
 mod teimorbit;
+mod teimorbit_blocks;
 mod tree;
 mod turn;
 mod urdf;
@@ -317,11 +323,23 @@ fn read_as(
         let closed = if is_robot { FEW_DIGITS } else { f64::INFINITY };
         let fault = finish::finish(&mut m, &mut notes, closed);
         finish::remark(&m, &mut notes, is_robot);
+        if fault.is_none() {
+            cases::of_vehicle(&mut m, &mut notes);
+        }
         fault
     } else {
         let message = "the topology is not recognised: only the hardpoints are written";
         let help = "write bodies and joints between them, as in docs/file-format.md";
-        Some(notes.diagnostic("HP0807", None, message).help(help))
+        let message = notes.diagnostic("HP0807", None, message);
+        let unplaced: Vec<String> = m.unplaced.iter().flatten().map(|name| format!("`{name}`")).collect();
+        let message = match &m.unplaced {
+            Some(names) if names.is_empty() => {
+                message.note("all their names are known, and a member or the wheel's centre is missing")
+            }
+            Some(_) => message.note(format!("their names tell of no member: {}", unplaced.join(", "))),
+            None => message,
+        };
+        Some(message.help(help))
     };
     let files = input.shapes.files(&mut m, &format!("{}_meshes", shapes::file_name(stem)));
     let fault = fault.map(|diagnostic| notes.only(diagnostic));

@@ -3,7 +3,7 @@
 use hardpoint::space::Vec3;
 
 use crate::corner::{Corner, Role, role_of};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{End, Mechanism};
 use crate::report::{At, Notes};
 use crate::{Format, Input};
 
@@ -116,10 +116,16 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
             "the first number behind the points is taken for the wheel's loaded radius",
         );
     }
-    let mut corner = Corner { at: Some(lines[*block].at), rack: true, radius, ..Corner::default() };
+    for (number, at) in scalars.iter().skip(1) {
+        let why = "the file does not name what it is";
+        notes.refused("number", &format!("{number}"), Some(*at), why);
+    }
+    let end = lines[*block].text.split_whitespace().next().and_then(End::named);
+    let mut corner = Corner { at: Some(lines[*block].at), rack: true, radius, end, ..Corner::default() };
     for (name, (place, at)) in names.iter().zip(&places) {
         if name.contains("C of G") {
-            notes.ignored("centre of gravity", Some(*at));
+            let why = "a centre of gravity without a mass in the file";
+            notes.refused("point", name, Some(*at), why);
             continue;
         }
         let place = if forward { Vec3::from(*place) } else { half_round(*place) };

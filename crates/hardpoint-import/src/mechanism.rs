@@ -30,6 +30,14 @@ pub struct Mechanism {
     pub points: Vec<Point>,
     /// Road wheels.
     pub wheels: Vec<Wheel>,
+    /// Figures of the vehicle.
+    pub vehicle: Vehicle,
+    /// The driver that steers the wheels.
+    pub steering: Option<usize>,
+    /// Motions of its own, each by some drivers while the others are held.
+    pub cases: Vec<Case>,
+    /// Hardpoints of the source that no member is at, where its topology is not recognised and these are known.
+    pub unplaced: Option<Vec<String>>,
     /// Design variables that it cannot follow, by the names that the writer would give them.
     pub unfollowed: Vec<String>,
     /// The output times: when they end, and how many intervals there are.
@@ -82,6 +90,28 @@ pub struct Mass {
     pub inertia: Option<Mat3>,
 }
 
+/// Figures of the vehicle that measures use, in the mechanism's unit of length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Vehicle {
+    /// Distance of the axles.
+    pub wheelbase: Option<f64>,
+    /// Height of the centre of gravity above the ground.
+    pub centre_of_gravity: Option<f64>,
+    /// Part of the braking force at the front wheels, 0 to 1.
+    pub front_brake_share: Option<f64>,
+    /// Part of the driving force at the front wheels, 0 to 1.
+    pub front_drive_share: Option<f64>,
+}
+
+/// A motion of some drivers while all others are held.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// Name in the model file.
+    pub name: &'static str,
+    /// Drivers and their laws, as expressions of model files.
+    pub laws: Vec<(usize, String)>,
+}
+
 /// A spring with a damper.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Force {
@@ -91,14 +121,23 @@ pub struct Force {
     pub note: String,
     /// On what it acts.
     pub on: ForceOn,
-    /// Per unit of length or angle of the mechanism, in N or N m.
+    /// Characteristic.
+    pub spring: Spring,
+}
+
+/// Characteristic of a spring with a damper, per unit of length or angle of the mechanism, in N or N m.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Spring {
+    /// Stiffness.
     pub stiffness: f64,
-    /// Likewise, times s.
+    /// Damping, per speed.
     pub damping: f64,
     /// The coordinate, counted from the drawing, or the length at which it has no force.
     pub free: Option<f64>,
     /// Tension in the design configuration, N, where the source gives that instead.
     pub preload: Option<f64>,
+    /// Points of extension beyond the free length and tension, N, beside the stiffness.
+    pub extension: Vec<[f64; 2]>,
 }
 
 /// Object that a spring acts on.
@@ -286,6 +325,40 @@ pub struct Wheel {
     pub kingpin: Option<[(usize, Vec3); 2]>,
     /// The driver that moves it up and down.
     pub bump: usize,
+    /// True if the steering turns it.
+    pub is_steered: bool,
+    /// The ends of its spring.
+    pub spring: Option<[(usize, Vec3); 2]>,
+    /// The end of the vehicle that it is at.
+    pub end: Option<End>,
+}
+
+/// An end of the vehicle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The front axle.
+    Front,
+    /// The rear axle.
+    Rear,
+}
+
+impl End {
+    /// The end that a word names, whatever its case.
+    pub fn named(word: &str) -> Option<Self> {
+        match word.trim().to_ascii_lowercase().as_str() {
+            "front" => Some(Self::Front),
+            "rear" => Some(Self::Rear),
+            _ => None,
+        }
+    }
+
+    /// The word of model files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Front => "front",
+            Self::Rear => "rear",
+        }
+    }
 }
 
 impl Mechanism {
@@ -303,6 +376,10 @@ impl Mechanism {
             drivers: Vec::new(),
             points: Vec::new(),
             wheels: Vec::new(),
+            vehicle: Vehicle::default(),
+            steering: None,
+            cases: Vec::new(),
+            unplaced: None,
             unfollowed: Vec::new(),
             times: None,
             masses: Vec::new(),
@@ -399,6 +476,16 @@ impl Mechanism {
             }
         }
         reached[to]
+    }
+
+    /// Millimetres in its unit of length.
+    pub fn per_mm(&self) -> f64 {
+        match self.length {
+            "m" => 1e-3,
+            "cm" => 0.1,
+            "in" => 1.0 / 25.4,
+            _ => 1.0,
+        }
     }
 
     /// How large it is: the greatest distance of two of its places along an axis, above zero.

@@ -1,11 +1,12 @@
-//! Shared parts of the robot formats: welds of frames that lie apart, joints that follow others, masses, springs, plugins.
+//! Shared parts of the robot formats: welds of frames that lie apart, joints that follow others, masses, springs, plugins. Vehicles share
+//! their masses and gravity.
 
 use hardpoint::space::{Mat3, Pose};
 use roxmltree::Node;
 
 use crate::markers::{Called, Marker};
 use crate::mechanism::{
-    Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mass, Mechanism, TurnedFrame,
+    Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mass, Mechanism, Spring, TurnedFrame,
 };
 use crate::report::{At, Notes};
 use crate::xml::{self, Vocabulary, child};
@@ -105,6 +106,9 @@ const IRRELEVANT_PLUGINS: &[&str] = &[
     "realsense",
     "template",
 ];
+
+/// Gravity for the masses of a format that has none, m/s^2.
+const STANDARD_GRAVITY: f64 = 9.80665;
 
 /// A joint that follows another: `own = factor master + offset`.
 pub struct Follower<'a, 'i> {
@@ -355,6 +359,15 @@ fn is_possible(i: Mat3) -> bool {
     above && minors.iter().all(|x| *x >= 0.0) && determinant >= 0.0
 }
 
+/// Standard gravity along -z, if there are masses: this format has none.
+pub fn standard_gravity(m: &mut Mechanism, notes: &mut Notes, format: &str) {
+    if !m.masses.is_empty() {
+        m.gravity = Some([0.0, 0.0, -STANDARD_GRAVITY].into());
+        let why = format!("{format} has none: {STANDARD_GRAVITY} m/s^2 along -z");
+        notes.approximated("gravity", "", None, why);
+    }
+}
+
 /// A spring with a damper on a joint's coordinate; `free` counts from the drawing.
 pub fn joint_spring(
     m: &mut Mechanism,
@@ -385,10 +398,7 @@ pub fn joint_spring(
         name: called.name.to_owned(),
         note: called.note(notes),
         on: ForceOn::Coordinate(coordinate),
-        stiffness,
-        damping,
-        free: (stiffness != 0.0).then_some(free),
-        preload: None,
+        spring: Spring { stiffness, damping, free: (stiffness != 0.0).then_some(free), ..Spring::default() },
     });
     notes.taken(called.kind, called.name, called.at);
 }

@@ -4,11 +4,13 @@ use std::collections::BTreeMap;
 
 use hardpoint::space::Vec3;
 
-use crate::corner::{Corner, Link, role_of, spin_axis};
+use crate::corner::{Corner, Link, plain, role_of, spin_axis};
+use crate::live_axle::{self, Places};
 use crate::lotus::half_round;
-use crate::mechanism::Mechanism;
+use crate::mechanism::{End, Mechanism};
 use crate::report::{At, Notes};
-use crate::{Format, Input};
+use crate::sides::SIDES;
+use crate::{Format, Input, teimorbit_blocks};
 
 /// See the module.
 pub const FORMAT: Format = Format {
@@ -30,8 +32,8 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     let mut sides = [Side::default(), Side::default(), Side::default()];
     let (mut section, mut columns) = (String::new(), COLUMNS.map(str::to_owned).to_vec());
     let (mut start, mut block, mut has_units) = (0, None, false);
-    // Camber and toe, of both sides.
-    let mut static_angles = [[0.0; 2]; 2];
+    let mut parameters = Parameters::default();
+    let mut blocks: Vec<Block> = Vec::new();
     for whole in input.text.split_inclusive('\n') {
         let line = whole.split(['$', '!']).next().unwrap_or_default().trim();
         let from = start + whole.len() - whole.trim_start().len();
@@ -49,7 +51,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
                 }
                 "UNITS" | "MDI_HEADER" => {}
                 "PARAMETER" => columns = PARAMETERS.map(str::to_owned).to_vec(),
-                other => notes.ignored(other, Some(at)),
+                other => blocks.push(Block { name: other.to_owned(), at, values: Vec::new() }),
             }
             continue;
         }
@@ -62,16 +64,26 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
             continue;
         }
         match section.as_str() {
-            "UNITS" => has_units |= unit(&mut m, line, at, notes),
+            "UNITS" => {
+                has_units |= unit(&mut m, line, at, notes);
+                parameters.mass_is_kg &= !is_other_mass(line);
+            }
             "PARAMETER" | "HARDPOINT" => match line.strip_prefix('{') {
                 Some(header) => {
                     let names = header.trim_end_matches('}').split_whitespace();
                     columns = names.map(|n| n.to_ascii_lowercase()).collect();
                 }
-                None if section == "PARAMETER" => parameter(&mut static_angles, &columns, line, at, notes),
+                None if section == "PARAMETER" => parameters.row(&mut m, &columns, line, at, notes),
                 None => row(&mut m, &mut sides, &columns, line, at, notes),
             },
-            _ => {}
+            _ => {
+                let value = line.split_once('=').map(|(key, value)| {
+                    (key.trim().to_ascii_uppercase(), value.trim().trim_matches(['\'', '"']).to_owned())
+                });
+                if let (Some(block), Some(value)) = (blocks.last_mut().filter(|b| b.name == section), value) {
+                    block.values.push(value);
+                }
+            }
         }
     }
     let Some(block) = block else {
@@ -92,17 +104,26 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         Some(block),
         "turned half round about z, so that x points forward and y left",
     );
+    let end = blocks.iter().find_map(|b| End::named(b.value("MINOR_ROLE")?));
+    let places = sides.each_ref().map(|side| side.places.clone());
     let [left, right, single] = sides.map(Side::corner);
     let mut rack = None;
     let mut known = false;
-    for (corner, suffix) in [(left, "_left"), (right, "_right")] {
-        if !corner.points.is_empty() || !corner.links.is_empty() {
-            let mut corner = Corner { suffix: suffix.into(), at: Some(block), rack: true, ..corner };
-            let side = if suffix == "_left" { 0 } else { 1 };
-            let [camber, toe] = static_angles[side];
-            if [camber, toe] != [0.0; 2] {
-                corner.spin_axis = Some(spin_axis(1.0 - 2.0 * side as f64, camber, toe));
-            }
+    let mut corners = [left, right];
+    for (side, corner) in corners.iter_mut().enumerate() {
+        let [camber, toe] = parameters.angles[side];
+        if [camber, toe] != [0.0; 2] {
+            corner.spin_axis = Some(spin_axis(SIDES[side].0, camber, toe));
+        }
+        (corner.suffix, corner.rack, corner.radius) = (SIDES[side].1.into(), true, parameters.radius);
+        (corner.at, corner.end) = (Some(block), end);
+    }
+    if live_axle::names_one(&places) {
+        known = live_axle::build(&mut m, notes, &places, &corners, Some(block));
+    }
+    if !known {
+        for corner in corners.iter().filter(|c| !c.points.is_empty() || !c.links.is_empty()) {
+            let mut corner = corner.clone();
             for (role, place) in &single.points {
                 corner.points.entry(*role).or_insert(*place);
             }
@@ -110,10 +131,57 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         }
     }
     if !(known || single.points.is_empty() && single.links.is_empty()) {
-        let corner = Corner { at: Some(block), rack: true, ..single };
-        corner.build(&mut m, notes, &mut rack);
+        let corner = Corner { at: Some(block), rack: true, radius: parameters.radius, end, ..single };
+        known = corner.build(&mut m, notes, &mut rack);
     }
+    // Arms without their ball joints are no links of an axle.
+    let has_arms = corners.iter().flat_map(|c| c.points.keys()).any(|role| role.is_of_an_arm());
+    if !known && !has_arms {
+        known = live_axle::build(&mut m, notes, &places, &corners, Some(block));
+    }
+    if !known {
+        m.unplaced = Some(live_axle::unplaced(&places, |name| role_of(name).is_some()));
+        if live_axle::has_leaf_springs(&places) {
+            let why = "leaf springs guide the axle by bending: the model has no such member";
+            notes.refused("hardpoint", "leaf spring", Some(block), why);
+        }
+    }
+    teimorbit_blocks::take(&blocks, &mut m, parameters.mass_is_kg, notes);
     (!m.hardpoints.is_empty()).then_some(m)
+}
+
+/// A block of values by keys.
+pub struct Block {
+    /// Name, in capital letters.
+    pub name: String,
+    /// Place of its beginning.
+    pub at: At,
+    /// Keys in capital letters, and their values.
+    pub values: Vec<(String, String)>,
+}
+
+impl Block {
+    /// The value of a key.
+    pub fn value(&self, key: &str) -> Option<&str> {
+        self.values.iter().find(|(k, _)| k == key).map(|(_, value)| value.as_str())
+    }
+
+    /// The number of a key.
+    pub fn number(&self, key: &str) -> Option<f64> {
+        number(self.value(key)?)
+    }
+}
+
+/// A finite number, whose exponent may begin with D.
+fn number(word: &str) -> Option<f64> {
+    word.to_ascii_lowercase().replace('d', "e").parse().ok().filter(|x: &f64| x.is_finite())
+}
+
+/// Returns whether a line of units gives masses in another unit than kilograms.
+fn is_other_mass(line: &str) -> bool {
+    let Some((key, value)) = line.split_once('=') else { return false };
+    let unit = value.trim().trim_matches(['\'', '"']).to_ascii_lowercase();
+    key.trim().eq_ignore_ascii_case("MASS") && !["kg", "kilogram"].contains(&unit.as_str())
 }
 
 /// The hardpoints of one side, or those without a side.
@@ -122,6 +190,8 @@ struct Side {
     corner: Corner,
     /// Ends of rods by their names, inboard first, of names that mean nothing else.
     rods: BTreeMap<String, [Option<Vec3>; 2]>,
+    /// All of them, for a live axle.
+    places: Places,
 }
 
 impl Side {
@@ -143,28 +213,76 @@ impl Side {
 /// Endings of the names of a rod's ends.
 const ENDS: [[&str; 3]; 2] = [["_inner", "_inboard", "_chassis"], ["_outer", "_outboard", "_upright"]];
 
-/// A row of a parameter: of static camber and toe, which the wheel's axis follows. Others do not concern the motion.
-fn parameter(angles: &mut [[f64; 2]; 2], columns: &[String], line: &str, at: At, notes: &mut Notes) {
-    let words = words(line);
-    let column = |name: &str| columns.iter().position(|c| c == name).and_then(|k| words.get(k));
-    let name = column("parameter_name").map_or("", String::as_str);
-    let short = ["pvl_", "pvr_", "pvs_"].iter().find_map(|p| name.strip_prefix(p)).unwrap_or(name);
-    let Some(k) = ["camber_angle", "toe_angle"].iter().position(|angle| *angle == short) else {
-        notes.ignored("PARAMETER", Some(at));
-        return;
-    };
-    let Some(value) = column("value").and_then(|v| v.parse::<f64>().ok()).filter(|v| v.is_finite()) else {
-        let help = format!("its columns are {}", columns.join(", "));
-        notes.problem_with("HP0804", Some(at), format!("`{name}` is no number"), &help);
-        return;
-    };
-    let symmetry = column("symmetry").map_or("", String::as_str).to_ascii_lowercase();
-    for (side, own) in ["left", "right"].into_iter().enumerate() {
-        if symmetry == own || symmetry != ["right", "left"][side] {
-            angles[side][k] = value.to_radians();
-        }
+/// Parameters of the subsystem that the model has.
+#[derive(Debug)]
+struct Parameters {
+    /// Static camber and toe of both sides, rad.
+    angles: [[f64; 2]; 2],
+    /// From the wheel's centre to the ground.
+    radius: Option<f64>,
+    /// True if masses are in kg.
+    mass_is_kg: bool,
+}
+
+impl Default for Parameters {
+    fn default() -> Self {
+        Self { angles: [[0.0; 2]; 2], radius: None, mass_is_kg: true }
     }
-    notes.taken("PARAMETER", name, Some(at));
+}
+
+/// Names of parameters: the static angles, figures of the vehicle and the wheel's radius, the loaded one first.
+const ANGLES: [&str; 2] = ["camber_angle", "toe_angle"];
+const WHEELBASE: [&str; 1] = ["wheelbase"];
+const HEIGHT: [&str; 3] = ["cg_height", "cog_height", "centre_of_gravity_height"];
+const RADII: [&str; 6] = [
+    "tire_loaded_radius",
+    "loaded_radius",
+    "rolling_radius",
+    "wheel_radius",
+    "tire_radius",
+    "tire_unloaded_radius",
+];
+
+impl Parameters {
+    /// A row: static camber and toe, which the wheel's axis follows, and figures of the vehicle.
+    fn row(&mut self, m: &mut Mechanism, columns: &[String], line: &str, at: At, notes: &mut Notes) {
+        let words = words(line);
+        let column = |name: &str| columns.iter().position(|c| c == name).and_then(|k| words.get(k));
+        let name = column("parameter_name").map_or("", String::as_str);
+        let short = ["pvl_", "pvr_", "pvs_"].iter().find_map(|p| name.strip_prefix(p)).unwrap_or(name);
+        let is = |list: &[&str]| list.contains(&short);
+        if !(is(&ANGLES) || is(&WHEELBASE) || is(&HEIGHT) || is(&RADII)) {
+            if column("type").is_some_and(|kind| kind.eq_ignore_ascii_case("real")) {
+                notes.not_understood("PARAMETER", name, Some(at), "a parameter that is not known here");
+            } else {
+                notes.ignored("PARAMETER", Some(at));
+            }
+            return;
+        }
+        let Some(value) = column("value").and_then(|v| number(v)) else {
+            let help = format!("its columns are {}", columns.join(", "));
+            notes.problem_with("HP0804", Some(at), format!("`{name}` is no number"), &help);
+            return;
+        };
+        if let Some(k) = ANGLES.iter().position(|angle| *angle == short) {
+            let symmetry = column("symmetry").map_or("", String::as_str).to_ascii_lowercase();
+            for (side, own) in ["left", "right"].into_iter().enumerate() {
+                if symmetry == own || symmetry != ["right", "left"][side] {
+                    self.angles[side][k] = value.to_radians();
+                }
+            }
+        } else if !(value > 0.0) {
+            notes.refused("PARAMETER", name, Some(at), format!("{value} is no length of a vehicle"));
+            return;
+        } else if is(&WHEELBASE) {
+            m.vehicle.wheelbase = Some(value);
+        } else if is(&HEIGHT) {
+            m.vehicle.centre_of_gravity = Some(value);
+        } else if self.radius.is_none() || short != RADII[RADII.len() - 1] {
+            self.radius = Some(value);
+        }
+        notes.taken("PARAMETER", name, Some(at));
+    }
 }
 
 /// Whether the line says the unit of length.
@@ -219,11 +337,7 @@ fn row(m: &mut Mechanism, sides: &mut [Side; 3], columns: &[String], line: &str,
         columns.iter().position(|c| names.contains(&c.as_str())).and_then(|k| words.get(k))
     };
     let name = column(["hardpoint_name", "name"]);
-    let value = |axis: [&str; 2]| {
-        column(axis)
-            .and_then(|w| w.to_ascii_lowercase().replace('d', "e").parse::<f64>().ok())
-            .filter(|x| x.is_finite())
-    };
+    let value = |axis: [&str; 2]| column(axis).and_then(|w| number(w));
     let place = [value(["x_value", "x"]), value(["y_value", "y"]), value(["z_value", "z"])];
     let (Some(name), [Some(x), Some(y), Some(z)]) = (name, place) else {
         let help = format!("its columns are {}", columns.join(", "));
@@ -238,12 +352,14 @@ fn row(m: &mut Mechanism, sides: &mut [Side; 3], columns: &[String], line: &str,
             Some((short, prefix)) => (short, prefix),
             None => (name.as_str(), ""),
         };
-    // A side that is a word of the name is not named once more.
+    // A side that is the first or last word of the name is not named once more.
     let mut put = |k: usize, suffix: &str, place: Vec3| {
         let word = suffix.trim_start_matches('_');
-        let own = short.strip_prefix(word).and_then(|s| s.strip_prefix('_')).filter(|_| !word.is_empty());
-        let plain = crate::corner::plain(own.unwrap_or(short));
+        let in_front = short.strip_prefix(word).and_then(|s| s.strip_prefix('_'));
+        let own = in_front.or_else(|| short.strip_suffix(suffix)).filter(|_| !word.is_empty());
+        let plain = plain(own.unwrap_or(short));
         m.hardpoints.push((if own.is_some() { short.to_owned() } else { format!("{short}{suffix}") }, place));
+        sides[k].places.named.push((plain.clone(), place));
         if let Some(role) = role_of(&plain) {
             sides[k].corner.points.insert(role, place);
         }

@@ -121,8 +121,6 @@ const IRRELEVANT_IN_GAZEBO: [&str; 36] = [
     "maxSpeed",
     "springReference",
 ];
-/// Gravity where a source names none, m/s^2.
-const STANDARD_GRAVITY: f64 = 9.80665;
 /// Mimic joints follow each other so deep at most.
 const DEEPEST: usize = 100;
 

@@ -6,6 +6,7 @@ use hardpoint::space::{Quat, Vec3};
 use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value, value};
 
 use crate::mechanism::{Drives, ForceOn, GROUND, Law, Mechanism, valid_name};
+use crate::sides::{self, over, with_word};
 
 /// Places nearer to each other than this part of the mechanism's size are one hardpoint; coordinates that were typed agree to about this.
 pub(crate) const SAME_PLACE: f64 = 1e-9;
@@ -16,9 +17,14 @@ const MOST_VARIED: usize = 24;
 /// Without output times of the source there are so many intervals in one second.
 const STEPS: i64 = 100;
 
-/// The text of a model file.
+/// The text of a model file: of a vehicle whose right side is the image of the left one the left side, with a mirror.
 pub fn text(mechanism: &Mechanism, about: &str) -> String {
-    Writer::new(mechanism).text(about)
+    Writer::new(mechanism, sides::symmetry(mechanism)).text(about)
+}
+
+/// The text of a model file in which the bodies and joints are those of the mechanism, in its order.
+pub fn explicit(mechanism: &Mechanism, about: &str) -> String {
+    Writer::new(mechanism, None).text(about)
 }
 
 struct Writer<'m> {
@@ -27,16 +33,18 @@ struct Writer<'m> {
     hardpoints: Vec<(String, Vec3)>,
     /// Those that something is at.
     named: HashSet<String>,
+    /// Joints of the right side that are written beside a mirror; none without one.
+    mirror: Option<HashSet<&'m str>>,
 }
 
 impl<'m> Writer<'m> {
-    fn new(m: &'m Mechanism) -> Self {
+    fn new(m: &'m Mechanism, mirror: Option<HashSet<&'m str>>) -> Self {
         let mut hardpoints: Vec<(String, Vec3)> = Vec::new();
         for (name, at) in &m.hardpoints {
             let name = free_name(name, &hardpoints);
             hardpoints.push((name, *at));
         }
-        Self { m, size: m.size(), hardpoints, named: HashSet::new() }
+        Self { m, size: m.size(), hardpoints, named: HashSet::new(), mirror }
     }
 
     /// The hardpoint there, made where there is none yet.
@@ -64,26 +72,37 @@ impl<'m> Writer<'m> {
         units.insert("angle", m.angle.into());
         doc["units"] = value(units);
 
+        if self.mirror.is_some() {
+            let mut table = Table::new();
+            table["across"] = value("y");
+            table
+                .decor_mut()
+                .set_prefix(format!("\n{}", comment("the right side is the mirror image of the left one")));
+            doc["mirror"] = Item::Table(table);
+        }
+        put(&mut doc, "vehicle", self.vehicle());
         let mut table = Table::new();
-        for (name, at) in &self.hardpoints {
+        for (name, at) in self.hardpoints.iter().filter(|h| !self.is_image_of_one(h)) {
             table[name] = value(self.place(*at));
         }
         put(&mut doc, "hardpoints", table);
-        put(&mut doc, "bodies", self.bodies());
-        put(&mut doc, "joints", joints);
+        put(&mut doc, "bodies", self.one_side(self.bodies()));
+        put(&mut doc, "joints", self.one_side(joints));
         put(&mut doc, "couplers", self.couplers());
-        put(&mut doc, "drivers", self.drivers());
+        put(&mut doc, "drivers", self.one_side(self.drivers()));
         put(&mut doc, "design", self.design());
-        put(&mut doc, "points", self.points());
-        put(&mut doc, "wheels", wheels);
+        put(&mut doc, "points", self.one_side(self.points()));
+        put(&mut doc, "wheels", self.one_side(wheels));
+        put(&mut doc, "axles", self.axles());
         if let Some(gravity) = m.gravity {
             let mut table = Table::new();
             table["along"] = direction(gravity);
             table["acceleration"] = value(gravity.norm());
             put(&mut doc, "gravity", table);
         }
-        put(&mut doc, "masses", self.masses());
-        put(&mut doc, "forces", self.forces());
+        put(&mut doc, "masses", self.one_side(self.masses()));
+        put(&mut doc, "forces", self.one_side(self.forces()));
+        put(&mut doc, "cases", self.cases());
         let mut time = Table::new();
         match m.times {
             Some(t) => {
@@ -100,6 +119,68 @@ impl<'m> Writer<'m> {
         }
         put(&mut doc, "time", time);
         doc.to_string()
+    }
+
+    /// Leaves out the entries that a mirror makes of those of the left side.
+    fn one_side(&self, mut table: Table) -> Table {
+        if let Some(written) = &self.mirror {
+            let names: Vec<String> = table.iter().map(|(name, _)| name.to_owned()).collect();
+            let images =
+                names.iter().filter(|name| sides::is_right(name) && !written.contains(name.as_str()));
+            images.for_each(|name| drop(table.remove(name)));
+        }
+        table
+    }
+
+    /// Returns whether a mirror makes this hardpoint of one of the left side.
+    fn is_image_of_one(&self, (name, at): &(String, Vec3)) -> bool {
+        self.mirror.is_some() && sides::is_right(name) && self.is_image(&sides::other(name), *at)
+    }
+
+    /// Returns whether the hardpoint of that name is the mirror image of a place.
+    fn is_image(&self, name: &str, at: Vec3) -> bool {
+        let image = over(at, -1.0);
+        self.hardpoints.iter().any(|(n, p)| n == name && (*p - image).norm() <= SAME_PLACE * self.size)
+    }
+
+    fn vehicle(&self) -> Table {
+        let v = &self.m.vehicle;
+        let figures = [
+            ("wheelbase", v.wheelbase),
+            ("centre_of_gravity", v.centre_of_gravity),
+            ("front_brake_share", v.front_brake_share),
+            ("front_drive_share", v.front_drive_share),
+        ];
+        let mut table = Table::new();
+        figures.into_iter().filter_map(|(key, x)| Some((key, x?))).for_each(|(key, x)| table[key] = value(x));
+        table
+    }
+
+    fn axles(&self) -> Table {
+        let mut table = Table::new();
+        let [left, right] = self.m.wheels.as_slice() else { return table };
+        if sides::other(&left.name) == right.name && left.name != right.name {
+            let mut axle = InlineTable::new();
+            axle.insert("left", left.name.as_str().into());
+            axle.insert("right", right.name.as_str().into());
+            axle.insert("measures", "all".into());
+            table[left.end.map_or("axle", |end| end.word())] = value(axle);
+        }
+        table
+    }
+
+    fn cases(&self) -> Table {
+        let mut table = Table::new();
+        for case in &self.m.cases {
+            let mut laws = InlineTable::new();
+            for (driver, law) in &case.laws {
+                laws.insert(self.m.drivers[*driver].name.as_str(), law.as_str().into());
+            }
+            let mut entry = InlineTable::new();
+            entry.insert("laws", laws.into());
+            table[case.name] = value(entry);
+        }
+        table
     }
 
     fn bodies(&self) -> Table {
@@ -143,7 +224,7 @@ impl<'m> Writer<'m> {
                     [at] => t["at"] = value(self.hardpoint(&joint.name, at)),
                     [i, j] => {
                         let [i, j] = [("i", i), ("j", j)]
-                            .map(|(end, at)| self.hardpoint(&format!("{}_{end}", joint.name), at));
+                            .map(|(end, at)| self.hardpoint(&with_word(&joint.name, end), at));
                         t["at"] = value([i, j].into_iter().collect::<Array>());
                     }
                     _ => {}
@@ -174,7 +255,7 @@ impl<'m> Writer<'m> {
 
     /// A direction from one hardpoint to another.
     fn through(&mut self, name: &str, [from, to]: [Vec3; 2]) -> InlineTable {
-        let ends = [("from", from), ("to", to)].map(|(end, at)| self.hardpoint(&format!("{name}_{end}"), at));
+        let ends = [("from", from), ("to", to)].map(|(end, at)| self.hardpoint(&with_word(name, end), at));
         let mut axis = InlineTable::new();
         axis.insert("through", ends.into_iter().collect::<Array>().into());
         axis
@@ -202,20 +283,30 @@ impl<'m> Writer<'m> {
         table
     }
 
-    /// A point of a body.
+    /// A point of a body, at a hardpoint if there is one.
     fn point(&self, body: usize, at: Vec3) -> Value {
+        self.point_at(body, at, &self.hardpoints)
+    }
+
+    /// A point of a body, at one of these hardpoints if it is there.
+    fn point_at(&self, body: usize, at: Vec3, hardpoints: &[(String, Vec3)]) -> Value {
         let mut point = InlineTable::new();
         point.insert("body", self.m.bodies[body].name.as_str().into());
-        point.insert("at", self.place(at).into());
+        let name = hardpoints.iter().find(|h| (h.1 - at).norm() <= SAME_PLACE * self.size);
+        point.insert("at", name.map_or_else(|| self.place(at).into(), |(name, _)| name.as_str().into()));
         point.into()
     }
 
+    /// Masses follow the hardpoints that the source names.
     fn masses(&self) -> Table {
         let mut table = Table::new();
         for mass in &self.m.masses {
             let mut entry = InlineTable::new();
             entry.insert("type", "rigid".into());
-            entry.insert("centre", self.point(mass.body, mass.centre));
+            entry.insert(
+                "centre",
+                self.point_at(mass.body, mass.centre, &self.hardpoints[..self.m.hardpoints.len()]),
+            );
             entry.insert("mass", mass.mass.into());
             if let Some(inertia) = mass.inertia {
                 let i = |r: usize, c: usize| inertia.cols[c][r];
@@ -235,6 +326,7 @@ impl<'m> Writer<'m> {
     fn forces(&self) -> Table {
         let mut table = Table::new();
         for force in &self.m.forces {
+            let spring = &force.spring;
             let mut t = Table::new();
             match force.on {
                 ForceOn::Coordinate(c) => {
@@ -242,21 +334,27 @@ impl<'m> Writer<'m> {
                     t["type"] = value(if turns { "torsion_spring" } else { "joint_spring" });
                     t["joint"] = value(self.m.joints[c.joint].name.as_str());
                     t["coordinate"] = value(c.name);
-                    t["stiffness"] = value(force.stiffness);
-                    force.free.filter(|x| *x != 0.0).into_iter().for_each(|x| t["free"] = value(x));
+                    t["stiffness"] = value(spring.stiffness);
+                    spring.free.filter(|x| *x != 0.0).into_iter().for_each(|x| t["free"] = value(x));
                 }
                 ForceOn::Points(ends) => {
                     t["type"] = value("spring");
                     for (key, (body, at)) in ["from", "to"].into_iter().zip(ends) {
                         t[key] = value(self.point(body, at));
                     }
-                    t["stiffness"] = value(force.stiffness);
-                    force.free.into_iter().for_each(|x| t["free_length"] = value(x));
-                    force.preload.into_iter().for_each(|x| t["preload"] = value(x));
+                    if spring.stiffness != 0.0 || spring.extension.is_empty() {
+                        t["stiffness"] = value(spring.stiffness);
+                    }
+                    if !spring.extension.is_empty() {
+                        let points = spring.extension.iter().map(|p| Value::from(numbers(p)));
+                        t["extension"] = value(points.collect::<Array>());
+                    }
+                    spring.free.into_iter().for_each(|x| t["free_length"] = value(x));
+                    spring.preload.into_iter().for_each(|x| t["preload"] = value(x));
                 }
             }
-            if force.damping != 0.0 {
-                t["damping"] = value(force.damping);
+            if spring.damping != 0.0 {
+                t["damping"] = value(spring.damping);
             }
             decorate(&mut t, &force.note);
             table[&force.name] = Item::Table(t);
@@ -275,17 +373,7 @@ impl<'m> Writer<'m> {
                     t["coordinate"] = value(c.name);
                 }
                 Drives::Way { body, at, along } => {
-                    let mut point = InlineTable::new();
-                    point.insert("body", m.bodies[body].name.as_str().into());
-                    let name = self.hardpoints.iter().find(|h| (h.1 - at).norm() <= SAME_PLACE * self.size);
-                    point.insert(
-                        "at",
-                        match name {
-                            Some((name, _)) => name.as_str().into(),
-                            None => Value::from(self.place(at)),
-                        },
-                    );
-                    t["point"] = value(point);
+                    t["point"] = value(self.point(body, at));
                     t["along"] = direction(along);
                 }
                 Drives::Heading { body, about, relative_to } => {
@@ -317,58 +405,39 @@ impl<'m> Writer<'m> {
         table
     }
 
+    /// Variables that move hardpoints; those of the left side move their mirror images alike.
     fn design(&self) -> Table {
         let mut table = Table::new();
-        if self.hardpoints.len() > MOST_VARIED {
-            return self.design_of_both_sides();
+        let twin = |(name, at): &(String, Vec3)| {
+            let other = sides::other(name);
+            (other != *name && self.is_image(&other, *at)).then_some(other)
+        };
+        // What nothing is at moves nothing.
+        let used = self.hardpoints.iter().filter(|h| self.named.contains(&h.0));
+        let own: Vec<(&(String, Vec3), Option<String>)> =
+            used.map(|h| (h, twin(h))).filter(|(h, twin)| twin.is_none() || !sides::is_right(&h.0)).collect();
+        if own.len() > MOST_VARIED {
+            return table;
         }
-        for (name, _) in &self.hardpoints {
-            // What nothing is at moves nothing.
-            if !self.named.contains(name) {
-                continue;
-            }
+        for ((name, _), twin) in &own {
+            let base =
+                sides::base(name).filter(|base| twin.is_some() && own.iter().all(|(h, _)| h.0 != *base));
+            let base = base.as_deref().unwrap_or(name);
             let variable = |axes: &str| {
                 let mut entry = InlineTable::new();
                 entry.insert("move", name.as_str().into());
                 entry.insert("along", axes.into());
+                if let (Some(twin), None) = (twin, &self.mirror) {
+                    entry.insert("mirror", "y".into());
+                    entry.insert("mirrored", twin.as_str().into());
+                }
                 value(entry)
             };
-            let followed = |axis: &&str| !self.m.unfollowed.contains(&format!("{name}_{axis}"));
+            let followed = |axis: &&str| !self.m.unfollowed.contains(&format!("{base}_{axis}"));
             let axes: Vec<&str> = ["x", "y", "z"].into_iter().filter(followed).collect();
             match axes[..] {
-                [_, _, _] => table[name] = variable("xyz"),
-                _ => axes.iter().for_each(|axis| table[&format!("{name}_{axis}")] = variable(axis)),
-            }
-        }
-        table
-    }
-
-    /// Variables that move a point on the left and its mirror image alike, along x and z: those of an axle. None if there are too many.
-    fn design_of_both_sides(&self) -> Table {
-        let mut table = Table::new();
-        let is_used = |name: &str| self.named.contains(name);
-        let both: Vec<(&str, [&str; 2])> = (self.hardpoints.iter())
-            .filter_map(|(left, at)| {
-                let base = left.strip_suffix("_left")?;
-                let (right, other) =
-                    self.hardpoints.iter().find(|(n, _)| n.strip_suffix("_right") == Some(base))?;
-                let is_image = (Vec3::from([at.x, -at.y, at.z]) - *other).norm() <= SAME_PLACE * self.size;
-                (is_image && is_used(left) && is_used(right))
-                    .then_some((base, [left.as_str(), right.as_str()]))
-            })
-            .collect();
-        if both.len() > MOST_VARIED {
-            return table;
-        }
-        for (base, sides) in both {
-            for axis in ["x", "z"] {
-                let name = format!("{base}_{axis}");
-                if !self.m.unfollowed.contains(&name) {
-                    let mut entry = InlineTable::new();
-                    entry.insert("move", sides.into_iter().collect::<Array>().into());
-                    entry.insert("along", axis.into());
-                    table[&name] = value(entry);
-                }
+                [_, _, _] => table[base] = variable("xyz"),
+                _ => axes.iter().for_each(|axis| table[&format!("{base}_{axis}")] = variable(axis)),
             }
         }
         table
@@ -391,10 +460,10 @@ impl<'m> Writer<'m> {
         for wheel in &m.wheels {
             let mut t = Table::new();
             t["body"] = value(m.bodies[wheel.body].name.as_str());
-            t["centre"] = value(self.hardpoint(&format!("{}_centre", wheel.name), wheel.centre));
+            t["centre"] = value(self.hardpoint(&with_word(&wheel.name, "centre"), wheel.centre));
             t["spin_axis"] = match wheel.spindle {
                 Some(spindle) => {
-                    value(self.through(&format!("{}_spindle", wheel.name), [spindle, wheel.centre]))
+                    value(self.through(&with_word(&wheel.name, "spindle"), [spindle, wheel.centre]))
                 }
                 None => direction(wheel.spin_axis),
             };
@@ -403,12 +472,23 @@ impl<'m> Writer<'m> {
                 let points = [("lower", kingpin[0]), ("upper", kingpin[1])].map(|(end, (body, at))| {
                     let mut point = InlineTable::new();
                     point.insert("body", m.bodies[body].name.as_str().into());
-                    point.insert("at", self.hardpoint(&format!("{}_kingpin_{end}", wheel.name), at).into());
+                    let name = with_word(&wheel.name, &format!("kingpin_{end}"));
+                    point.insert("at", self.hardpoint(&name, at).into());
                     point
                 });
                 t["kingpin"] = value(points.into_iter().collect::<Array>());
             }
+            if let Some(ends) = wheel.spring {
+                t["spring"] =
+                    value(ends.into_iter().map(|(body, at)| self.point(body, at)).collect::<Array>());
+            }
+            if let Some(end) = wheel.end {
+                t["end"] = value(end.word());
+            }
             t["bump"] = value(m.drivers[wheel.bump].name.as_str());
+            if let Some(steering) = m.steering.filter(|_| wheel.is_steered) {
+                t["steer"] = value(m.drivers[steering].name.as_str());
+            }
             t["measures"] = value("all");
             table[&wheel.name] = Item::Table(t);
         }

@@ -6,7 +6,7 @@ use hardpoint::space::{Mat3, Pose, Vec3};
 
 use super::{Reader, Statement};
 use crate::markers::Called;
-use crate::mechanism::{Force, ForceOn, GROUND};
+use crate::mechanism::{Force, ForceOn, GROUND, Spring};
 use crate::robot;
 
 /// Units of mass, in kg.
@@ -171,10 +171,13 @@ impl Reader<'_> {
             name: s.label.clone(),
             note: s.called().note(self.notes),
             on: ForceOn::Points([(i.body, i.pose.r), (j.body, j.pose.r)]),
-            stiffness: k * per_length,
-            damping,
-            free,
-            preload: (k == 0.0 && force != 0.0).then_some(-force * unit),
+            spring: Spring {
+                stiffness: k * per_length,
+                damping,
+                free,
+                preload: (k == 0.0 && force != 0.0).then_some(-force * unit),
+                ..Spring::default()
+            },
         });
         self.notes.taken("SPRINGDAMPER", &s.label, Some(s.at));
     }

@@ -4,7 +4,7 @@ use hardpoint::space::{Pose, Quat, Vec3};
 
 use super::{CLOSED, Element, Meet, Reader};
 use crate::markers::{Called, Marker, join};
-use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law};
+use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Spring};
 use crate::turn::{home, none};
 use crate::{robot, xml};
 
@@ -342,10 +342,7 @@ impl<'d> Reader<'d, '_> {
             name: name.to_owned(),
             note: called.note(self.notes),
             on: ForceOn::Points([(i, from.r), (j, to.r)]),
-            stiffness,
-            damping,
-            free,
-            preload: None,
+            spring: Spring { stiffness, damping, free, ..Spring::default() },
         });
         self.notes.taken(kind, name, at);
     }

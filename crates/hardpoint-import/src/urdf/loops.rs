@@ -5,9 +5,7 @@ use std::collections::BTreeSet;
 use hardpoint::space::{Mat3, Pose, Vec3};
 use roxmltree::Node;
 
-use super::{
-    IRRELEVANT_IN_GAZEBO, Mimic, Reader, STANDARD_GRAVITY, WITHOUT_AXIS, Written, pose, value_as_drawn,
-};
+use super::{IRRELEVANT_IN_GAZEBO, Mimic, Reader, WITHOUT_AXIS, Written, pose, value_as_drawn};
 use crate::markers::Called;
 use crate::mechanism::Mechanism;
 use crate::robot::{self, Follower};
@@ -96,11 +94,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let called = Called { kind: "inertial", name: &name, at: xml::at(0, inertial) };
             robot::mass(&mut self.m, self.notes, called, body, frame, mass, Some(matrix));
         }
-        if !self.m.masses.is_empty() {
-            self.m.gravity = Some([0.0, 0.0, -STANDARD_GRAVITY].into());
-            let why = format!("URDF has none: {STANDARD_GRAVITY} m/s^2 along -z");
-            self.notes.approximated("gravity", "", None, why);
-        }
+        robot::standard_gravity(&mut self.m, self.notes, "URDF");
     }
 
     /// Equalities of MuJoCo in a URDF file.

@@ -9,6 +9,7 @@ mod meanings;
 mod models;
 mod robots;
 mod unknown;
+mod vehicles;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -1,0 +1,66 @@
+//! Motions of a vehicle that no source gives: heave, roll and steering, each by itself.
+
+use crate::finish;
+use crate::mechanism::{Case, Law, Mechanism};
+use crate::report::Notes;
+
+/// Travel of the wheels, mm: in heave or bump, in roll, and of the rack.
+const HEAVE: f64 = 60.0;
+const ROLL: f64 = 40.0;
+const RACK: f64 = 30.0;
+/// Parts of these that are tried, one after the other: a mechanism may end before.
+const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
+
+/// Adds the motions that a vehicle has: of both wheels up and down together and against each other, and of the steering. A single motion
+/// needs no case.
+pub fn of_vehicle(m: &mut Mechanism, notes: &mut Notes) {
+    let mut bumps: Vec<usize> = m.wheels.iter().map(|w| w.bump).collect();
+    bumps.dedup();
+    let mut wanted: Vec<(&'static str, Vec<(usize, f64)>)> = match bumps[..] {
+        [left, right] => {
+            vec![("heave", vec![(left, HEAVE), (right, HEAVE)]), ("roll", vec![(left, ROLL), (right, -ROLL)])]
+        }
+        [bump] => vec![("bump", vec![(bump, HEAVE)])],
+        _ => return,
+    };
+    wanted.extend(m.steering.map(|steering| ("steer", vec![(steering, RACK)])));
+    if wanted.len() < 2 {
+        return;
+    }
+    for (name, travels) in wanted {
+        let case = |part: f64| {
+            let law = |travel: f64| format!("{}*sin(2*pi*t)", finish::rounded(part * travel * m.per_mm()));
+            Case { name, laws: travels.iter().map(|(driver, travel)| (*driver, law(*travel))).collect() }
+        };
+        match PARTS.into_iter().map(case).find(|case| moves(m, case)) {
+            Some(case) => {
+                let laws: Vec<String> =
+                    case.laws.iter().map(|(k, law)| format!("`{}` {law}", m.drivers[*k].name)).collect();
+                let why =
+                    format!("nothing drives it in the source: a motion of its own, {}", laws.join(", "));
+                notes.approximated("case", name, None, why);
+                m.cases.push(case);
+            }
+            None => {
+                let why = "the mechanism does not move so far: there is no such case";
+                notes.approximated("case", name, None, why);
+            }
+        }
+    }
+}
+
+/// Returns whether the mechanism moves from end to end in a case.
+fn moves(m: &Mechanism, case: &Case) -> bool {
+    let mut alone = m.clone();
+    alone.cases.clear();
+    for driver in &mut alone.drivers {
+        match driver.law {
+            Law::Text(_) | Law::Table(_) => driver.law = Law::Held,
+            Law::Held | Law::Set(_) => {}
+        }
+    }
+    for (driver, law) in &case.laws {
+        alone.drivers[*driver].law = Law::Text(law.clone());
+    }
+    finish::moves(&alone)
+}

@@ -1,0 +1,318 @@
+//! Masses, springs and dampers of the parts of Project Chrono's suspension templates.
+
+use std::collections::BTreeMap;
+
+use hardpoint::space::{Mat3, Pose, Vec3};
+
+use crate::corner::plain;
+use crate::markers::Called;
+use crate::mechanism::{GROUND, Mechanism, Spring};
+use crate::report::{At, Notes};
+use crate::robot;
+use crate::sides::{over, with_word};
+use crate::tree::{Tree, Value};
+use crate::turn::{Z, from_z_and_x, none};
+
+/// Keys of a part that are read here.
+const READ: &[&str] = &[
+    "Name",
+    "Attachment Body",
+    "Mass",
+    "COM",
+    "Inertia",
+    "Moments of Inertia",
+    "Products of Inertia",
+    "Inertia Moments",
+    "Inertia Products",
+    "Free Length",
+    "Spring Coefficient",
+    "Damping Coefficient",
+    "Preload",
+    "Curve Data",
+    "Spring Curve Data",
+    "Damping Curve Data",
+    "Map Data",
+    "Deformation",
+    "Degressivity Compression",
+    "Degressivity Expansion",
+    "Position",
+    "Rotation",
+    "Coordinate System",
+    "Type",
+    "Mirrored",
+    "Body1",
+    "Body2",
+    "Point1",
+    "Point2",
+];
+/// Keys of a part for its drawing.
+const DRAWN: [&str; 3] = ["Radius", "Width", "Visualization"];
+/// Ends of the range of a spring between its stops.
+const STOPS: [&str; 2] = ["Minimum Length", "Maximum Length"];
+
+/// Mass and inertia of a part, about its centre and along its own axes.
+pub struct Inertial {
+    /// In kg.
+    pub mass: f64,
+    /// In kg m^2.
+    pub inertia: Option<Mat3>,
+}
+
+impl Inertial {
+    /// Reads those of a part that has a mass.
+    pub fn of(part: &Tree) -> Option<Self> {
+        let mass = part.get("Mass")?.number()?;
+        let vector = |keys: [&str; 3]| keys.iter().find_map(|key| part.get(key)?.vector());
+        let moments = vector(["Inertia", "Moments of Inertia", "Inertia Moments"]);
+        let [xy, yz, zx] = vector(["Products of Inertia", "Inertia Products", ""]).unwrap_or_default();
+        // Products are entries of the matrix here.
+        let matrix =
+            |[x, y, z]: [f64; 3]| Mat3 { cols: [[x, xy, zx], [xy, y, yz], [zx, yz, z]].map(Vec3::from) };
+        Some(Self { mass, inertia: moments.map(matrix) })
+    }
+}
+
+/// Masses of parts under way to the bodies of a mechanism.
+pub struct Masses<'r> {
+    /// The file.
+    pub root: &'r Tree,
+    /// Mechanism that they go to.
+    pub m: &'r mut Mechanism,
+    /// Report of what becomes of them.
+    pub notes: &'r mut Notes,
+    /// 1 on the left, where the file has them, and -1 on the right.
+    pub side: f64,
+    /// Ending of names of that side.
+    pub suffix: &'static str,
+}
+
+impl Masses<'_> {
+    /// Reborrows it, for another side.
+    pub fn again(&mut self) -> Masses<'_> {
+        Masses { root: self.root, m: self.m, notes: self.notes, side: self.side, suffix: self.suffix }
+    }
+
+    fn body(&self, name: &str) -> Option<usize> {
+        self.m.bodies.iter().position(|b| b.name == name)
+    }
+
+    fn at(&self, part: &str) -> Option<At> {
+        self.root.get(part).map(|t| t.at)
+    }
+
+    /// The mass of a part on a body; its centre on the left, where the part has none of its own; its axes on this side, if they are not
+    /// the global ones.
+    pub fn on(&mut self, part: &str, body: &str, centre: Option<Vec3>, axes: Option<Mat3>) {
+        let Some(tree) = self.root.get(part) else { return };
+        let Some(Inertial { mass, inertia }) = Inertial::of(tree) else { return };
+        let name = format!("{}{}", plain(part), self.suffix);
+        let own = tree.get("COM").and_then(Tree::vector).map(Vec3::from);
+        let (Some(centre), Some(body)) = (own.or(centre), self.body(body)) else {
+            let why = "it has no centre in the file, or no body here: its mass is left out";
+            self.notes.refused("mass", &name, Some(tree.at), why);
+            return;
+        };
+        let is_global = self.root.text_of("Vehicle-Frame Inertia") == Some("true");
+        let rot = axes.filter(|_| !is_global).unwrap_or_else(none);
+        let frame = Pose { rot, r: over(centre, self.side) };
+        let called = Called { kind: "mass", name: &name, at: Some(tree.at) };
+        robot::mass(self.m, self.notes, called, body, frame, mass, inertia);
+    }
+
+    /// The mass of an arm in the plane of its places: x from the second to the first, z across the plane.
+    pub fn arm(&mut self, part: &str, body: &str, places: [&str; 3]) {
+        let place = |key: &str| self.root.get(part).and_then(|p| p.get(key)?.vector()).map(Vec3::from);
+        let [Some(f), Some(b), Some(u)] = places.map(place) else { return };
+        self.on(part, body, None, from_z_and_x((b - u).cross(f - u), f - b));
+    }
+
+    /// The mass of a part that is a rod here, without a body: at its ends, as its centre lies between them.
+    pub fn rod(&mut self, part: &str, carriers: [&str; 2], ends: [Vec3; 2]) {
+        let Some(tree) = self.root.get(part) else { return };
+        let Some(Inertial { mass, .. }) = Inertial::of(tree).filter(|i| i.mass != 0.0) else { return };
+        let name = format!("{}{}", plain(part), self.suffix);
+        if !(mass > 0.0 && mass.is_finite()) {
+            self.notes.refused("mass", &name, Some(tree.at), format!("no body has a mass of {mass} kg"));
+            return;
+        }
+        let along = ends[1] - ends[0];
+        let own = tree.get("COM").and_then(Tree::vector).map(Vec3::from);
+        let outer = own.map_or(0.5, |c| ((c - ends[0]).dot(along) / along.dot(along)).clamp(0.0, 1.0));
+        for (k, share) in [1.0 - outer, outer].into_iter().enumerate() {
+            let body = self.body(carriers[k]).filter(|b| *b != GROUND && share > 0.0);
+            if let Some(body) = body {
+                self.m.mass(crate::mechanism::Mass {
+                    name: with_word(&name, ["inner", "outer"][k]),
+                    body,
+                    centre: over(ends[k], self.side),
+                    mass: share * mass,
+                    inertia: None,
+                });
+            }
+        }
+        let why = "it is a rod without a body here: its mass is at its ends, as its centre lies between them, its inertia is left out";
+        self.notes.approximated("mass", &name, self.at(part), why);
+    }
+}
+
+/// The axes of a spindle: y along the wheel's axis, x level.
+pub fn spindle_axes(axis: Vec3) -> Option<Mat3> {
+    // The same way on both sides.
+    let y = if axis.y < 0.0 { -axis } else { axis };
+    let x = y.cross(Z.into()).unit()?;
+    Some(Mat3 { cols: [x, y, x.cross(y)] })
+}
+
+/// The axes of a link: z along it, y along another direction as nearly as can be.
+pub fn link_axes(along: Vec3, y: Vec3) -> Option<Mat3> {
+    from_z_and_x(along, y.cross(along))
+}
+
+/// The axes of an arm along x, its y level.
+pub fn level_axes(along: Vec3) -> Option<Mat3> {
+    let z = along.cross(Vec3::from(Z).cross(along));
+    from_z_and_x(z, along)
+}
+
+/// Characteristics of the springs and dampers among the parts, by the words of their members, and their places.
+pub fn springs(
+    root: &Tree,
+    parts: &[(&str, &'static str)],
+    notes: &mut Notes,
+) -> BTreeMap<&'static str, (Spring, At)> {
+    let mut found = BTreeMap::new();
+    for (part, member) in parts {
+        let Some(tree) = root.get(part) else { continue };
+        found.extend(spring(tree, part, notes).map(|spring| (*member, (spring, tree.at))));
+    }
+    found
+}
+
+/// The characteristic of a spring or damper, if it has one that the model can have. It pushes its ends apart with
+/// `Preload - Coefficient (length - Free Length)`.
+pub fn spring(part: &Tree, name: &str, notes: &mut Notes) -> Option<Spring> {
+    let number = |key: &str| part.get(key).and_then(Tree::number);
+    let at = |key: &str| part.get(key).map(|t| t.at);
+    let [stiffness, damping, preload] =
+        ["Spring Coefficient", "Damping Coefficient", "Preload"].map(|key| number(key).unwrap_or(0.0));
+    if !(stiffness >= 0.0 && damping >= 0.0) {
+        let why = format!("no spring has a stiffness of {stiffness} and a damping of {damping}");
+        notes.refused("force", name, Some(part.at), why);
+        return None;
+    }
+    for key in STOPS.into_iter().filter(|key| part.get(key).is_some()) {
+        notes.refused(key, name, at(key), "the force of its stop is not in the file, and not made");
+    }
+    let length = number("Free Length");
+    let is_spring = length.is_some();
+    for (key, is_damping) in [("Damping Curve Data", true), ("Curve Data", !is_spring), ("Map Data", true)] {
+        if is_damping && part.get(key).is_some() {
+            let why = "a damping that is not in proportion to the speed has no equivalent: it is left out";
+            notes.refused(key, name, at(key), why);
+        }
+    }
+    if let Some(key) =
+        ["Degressivity Compression", "Degressivity Expansion"].into_iter().find(|k| part.get(k).is_some())
+    {
+        notes.approximated(
+            key,
+            name,
+            at(key),
+            "its damping is taken as in proportion to the speed, as it is at low speeds",
+        );
+    }
+    let curve =
+        ["Spring Curve Data", "Curve Data"].into_iter().find(|key| is_spring && part.get(key).is_some());
+    let points = curve.and_then(|key| Some((key, points(part.get(key)?))));
+    let extension: Vec<[f64; 2]> = match points {
+        Some((key, Some(points))) => {
+            let why = "straight between its points there, a smooth curve through them here";
+            notes.approximated(key, name, at(key), why);
+            points.into_iter().map(|[x, force]| [x, force - preload]).collect()
+        }
+        Some((key, None)) => {
+            notes.refused(key, name, at(key), "it is no list of two or more points in increasing order");
+            Vec::new()
+        }
+        None => Vec::new(),
+    };
+    if stiffness == 0.0 && damping == 0.0 && extension.is_empty() {
+        return None;
+    }
+    if stiffness > 0.0 && length.is_none() {
+        notes.approximated(
+            "force",
+            name,
+            Some(part.at),
+            "it has no `Free Length`: that of the drawing is taken",
+        );
+    }
+    let is_curve = !extension.is_empty();
+    let free =
+        if is_curve { length } else { length.filter(|_| stiffness > 0.0).map(|l| l + preload / stiffness) };
+    let preload = (free.is_none() && preload != 0.0).then_some(-preload);
+    let stiffness = if is_curve { 0.0 } else { stiffness };
+    Some(Spring { stiffness, damping, free, preload, extension })
+}
+
+/// Two or more points in increasing order.
+fn points(list: &Tree) -> Option<Vec<[f64; 2]>> {
+    let Value::List(rows) = &list.value else { return None };
+    let point = |row: &Tree| match &row.value {
+        Value::List(pair) => {
+            <[f64; 2]>::try_from(pair.iter().map(Tree::number).collect::<Option<Vec<_>>>()?).ok()
+        }
+        Value::Map(_) | Value::Scalar(..) => None,
+    };
+    let points = rows.iter().map(point).collect::<Option<Vec<_>>>()?;
+    (points.len() >= 2 && points.windows(2).all(|w| w[0][0] < w[1][0])).then_some(points)
+}
+
+/// Accounts for all keys of the file besides the parts that were read: those that hold something else, and keys that are not known.
+pub fn account(root: &Tree, read: &[&str], notes: &mut Notes) {
+    for (key, at, value) in root.entries() {
+        match key.as_str() {
+            "Name" | "Type" | "Template" | "Vehicle-Frame Inertia" | "Independent" | "Steerable" => {}
+            _ if key.ends_with("Angle (deg)") => {
+                notes.taken(key, value.text().unwrap_or_default(), Some(*at))
+            }
+            "Axle" => {
+                let why = "the wheel does not spin here: the inertia of its shaft is left out";
+                notes.refused(key, "", Some(*at), why);
+            }
+            "Anti Roll Bar" => {
+                let why = "its two halves, their masses and the spring between them are not made";
+                notes.refused(key, "", Some(*at), why);
+            }
+            "Antiroll Body" => notes.ignored(key, Some(*at)),
+            _ if read.contains(&key.as_str()) => part(key, value, notes),
+            _ => notes.not_understood(
+                key,
+                "",
+                Some(*at),
+                "a part that is not known in this template: it is left out",
+            ),
+        }
+    }
+}
+
+/// Accounts for the keys of a part.
+pub fn part(name: &str, part: &Tree, notes: &mut Notes) {
+    for (key, at, _) in part.entries() {
+        let known = |list: &[&str]| list.contains(&key.as_str());
+        if key.starts_with("Location")
+            || key.starts_with("Universal Joint Axis")
+            || known(READ)
+            || known(&STOPS)
+        {
+            continue;
+        }
+        if known(&DRAWN) {
+            notes.ignored(key, Some(*at));
+        } else if key.starts_with("Bushing") {
+            notes.refused(key, name, Some(*at), "bushings are forces: its joint is rigid here");
+        } else {
+            notes.not_understood(key, name, Some(*at), "a key of the part that is not known here");
+        }
+    }
+}

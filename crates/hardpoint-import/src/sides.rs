@@ -1,0 +1,261 @@
+//! Left and right sides of a vehicle: names, mirror images across y = 0, and the test whether the right side is the image of the left one.
+
+use std::collections::HashSet;
+
+use hardpoint::space::{Mat3, Vec3};
+
+use crate::mechanism::{Body, Driver, Drives, Force, ForceOn, Joint, Law, Mass, Mechanism, Point, Wheel};
+use crate::write::SAME_PLACE;
+
+/// Sign of y and ending of names, left and right.
+pub const SIDES: [(f64, &str); 2] = [(1.0, "_left"), (-1.0, "_right")];
+
+/// The words of both sides in names.
+const WORDS: [&str; 2] = ["left", "right"];
+
+/// A place or direction of the left side, on the left (1) or on the right (-1).
+pub fn over(v: Vec3, side: f64) -> Vec3 {
+    Vec3::from([v.x, side * v.y, v.z])
+}
+
+/// A name with a further word; the side remains its last word.
+pub fn with_word(name: &str, word: &str) -> String {
+    let sided = SIDES.iter().find_map(|(_, suffix)| Some((name.strip_suffix(suffix)?, suffix)));
+    match sided {
+        Some((base, suffix)) => format!("{base}_{word}{suffix}"),
+        None => format!("{name}_{word}"),
+    }
+}
+
+/// The pieces of a name: words, and what is between them.
+fn pieces(name: &str) -> Vec<&str> {
+    let mut out = Vec::new();
+    let mut rest = name;
+    while let Some(first) = rest.chars().next() {
+        let end = if first.is_alphanumeric() {
+            rest.find(|c: char| !c.is_alphanumeric()).unwrap_or(rest.len())
+        } else {
+            first.len_utf8()
+        };
+        let (piece, after) = rest.split_at(end);
+        out.push(piece);
+        rest = after;
+    }
+    out
+}
+
+/// Side of a name by its first word of a side, as an index of [`SIDES`].
+fn side_of(name: &str) -> Option<usize> {
+    pieces(name).into_iter().find_map(|piece| WORDS.iter().position(|word| *word == piece))
+}
+
+/// Returns whether a name is of the right side.
+pub fn is_right(name: &str) -> bool {
+    side_of(name) == Some(1)
+}
+
+/// The name of the same thing on the other side, of a name that has one; the name itself of all others.
+pub fn other(name: &str) -> String {
+    let exchanged = |piece| match WORDS.iter().position(|word| *word == piece) {
+        Some(side) => WORDS[1 - side],
+        None => piece,
+    };
+    pieces(name).into_iter().map(exchanged).collect()
+}
+
+/// The name without its side, of the left one of a pair.
+pub fn base(name: &str) -> Option<String> {
+    if side_of(name) != Some(0) {
+        return None;
+    }
+    let words: Vec<&str> = name.split('_').filter(|word| *word != WORDS[0]).collect();
+    Some(words.join("_")).filter(|base| !base.is_empty() && side_of(base).is_none())
+}
+
+/// The joints of the right side that are no images of their counterparts, if all else of it is the image of the left side; none if it is
+/// not, or if there are no sides.
+pub fn symmetry(m: &Mechanism) -> Option<HashSet<&str>> {
+    let is_sided = |c: &crate::mechanism::Coupler| {
+        let joints = c.terms.iter().map(|(c, _)| m.joints[c.joint].name.as_str());
+        joints.chain([c.name.as_str()]).any(|name| side_of(name).is_some())
+    };
+    if m.couplers.iter().any(is_sided) || !m.turned.is_empty() || m.bodies.iter().any(|b| b.mesh.is_some()) {
+        return None;
+    }
+    let image = |b: &Body| m.bodies.iter().position(|other| other.name == self::other(&b.name));
+    let bodies = m.bodies.iter().map(image).collect::<Option<Vec<usize>>>()?;
+    let mirror = Mirror { m, bodies, near: SAME_PLACE * m.size() };
+    let both = |name: &str| WORDS.iter().all(|word| pieces(name).contains(word));
+    let names = m.bodies.iter().map(|b| &b.name).chain(m.joints.iter().map(|j| &j.name));
+    if names.chain(m.hardpoints.iter().map(|h| &h.0)).any(|name| both(name)) {
+        return None;
+    }
+    let hardpoints = pairs(&m.hardpoints, |h| &h.0)?;
+    let joints = pairs(&m.joints, |j| &j.name)?;
+    let is_image = !joints.is_empty()
+        && hardpoints.iter().all(|(l, r)| mirror.is_place(l.1, r.1))
+        && pairs(&m.bodies, |b| &b.name)?.iter().all(|(l, r)| mirror.is_body(l, r))
+        && pairs(&m.drivers, |d| &d.name)?.iter().all(|(l, r)| mirror.is_driver(l, r))
+        && pairs(&m.masses, |m| &m.name)?.iter().all(|(l, r)| mirror.is_mass(l, r))
+        && pairs(&m.forces, |f| &f.name)?.iter().all(|(l, r)| mirror.is_force(l, r))
+        && pairs(&m.points, |p| &p.name)?.iter().all(|(l, r)| mirror.is_point(l, r))
+        && pairs(&m.wheels, |w| &w.name)?.iter().all(|(l, r)| mirror.is_wheel(l, r));
+    let differs = joints.iter().filter(|(l, r)| !mirror.is_joint(l, r));
+    is_image.then(|| differs.map(|(_, right)| right.name.as_str()).collect())
+}
+
+/// The things of the left side with those of the right one; none if any is on one side only.
+fn pairs<T>(list: &[T], name: impl Fn(&T) -> &String) -> Option<Vec<(&T, &T)>> {
+    let of = |side: usize| list.iter().filter(|t| side_of(name(t)) == Some(side)).collect::<Vec<_>>();
+    let (left, right) = (of(0), of(1));
+    let counterpart = |l: &T| right.iter().copied().find(|r| *name(r) == other(name(l)));
+    let pairs: Option<Vec<_>> = left.iter().map(|l| Some((*l, counterpart(l)?))).collect();
+    pairs.filter(|_| left.len() == right.len())
+}
+
+/// Images of the bodies of a mechanism, and tests whether other things are images.
+struct Mirror<'m> {
+    m: &'m Mechanism,
+    /// The image of each body.
+    bodies: Vec<usize>,
+    /// Distance of places that are the same.
+    near: f64,
+}
+
+impl Mirror<'_> {
+    fn is_place(&self, left: Vec3, right: Vec3) -> bool {
+        (over(left, -1.0) - right).norm() <= self.near
+    }
+
+    fn is_direction(left: Vec3, right: Vec3) -> bool {
+        let apart = |l: Vec3, r: Vec3| (over(l, -1.0) - r).norm() <= SAME_PLACE;
+        left.unit().zip(right.unit()).is_some_and(|(l, r)| apart(l, r))
+    }
+
+    /// Returns whether one axis is the other's image up to its sign, or both are none: an axis that turns is one either way round.
+    fn is_axis(left: Option<Vec3>, right: Option<Vec3>) -> bool {
+        match (left, right) {
+            (Some(l), Some(r)) => Self::is_direction(l, r) || Self::is_direction(l, -r),
+            (None, None) => true,
+            (Some(_), None) | (None, Some(_)) => false,
+        }
+    }
+
+    fn is_at(&self, (l, left): (usize, Vec3), (r, right): (usize, Vec3)) -> bool {
+        self.bodies[l] == r && self.is_place(left, right)
+    }
+
+    fn are_at(&self, left: Option<[(usize, Vec3); 2]>, right: Option<[(usize, Vec3); 2]>) -> bool {
+        match (left, right) {
+            (Some(l), Some(r)) => l.into_iter().zip(r).all(|(l, r)| self.is_at(l, r)),
+            (None, None) => true,
+            (Some(_), None) | (None, Some(_)) => false,
+        }
+    }
+
+    fn is_body(&self, left: &Body, right: &Body) -> bool {
+        let is_upright = |rot: Mat3| rot.cols == Mat3::IDENTITY.cols;
+        match (left.pose, right.pose) {
+            (Some(l), Some(r)) => self.is_place(l.r, r.r) && is_upright(l.rot) && is_upright(r.rot),
+            (None, None) => true,
+            (Some(_), None) | (None, Some(_)) => false,
+        }
+    }
+
+    fn is_joint(&self, left: &Joint, right: &Joint) -> bool {
+        let places = left.at.iter().zip(&right.at).all(|(l, r)| self.is_place(*l, *r));
+        left.kind == right.kind
+            && left.bodies.map(|b| self.bodies[b]) == right.bodies
+            && left.at.len() == right.at.len()
+            && places
+            && left.through.is_some() == right.through.is_some()
+            && Self::is_axis(left.axis, right.axis)
+            && Self::is_axis(left.axis2, right.axis2)
+            && (left.lead, left.length, left.draw) == (right.lead, right.length, right.draw)
+    }
+
+    fn is_driver(&self, left: &Driver, right: &Driver) -> bool {
+        let held = left.law == Law::Held && right.law == Law::Held;
+        match (left.drives, right.drives) {
+            (Drives::Coordinate(l), Drives::Coordinate(r)) => {
+                let [one, two] = [l, r].map(|c| &self.m.joints[c.joint].name);
+                held && l.name == r.name && *two == other(one)
+            }
+            (
+                Drives::Way { body: l, at: from, along: way },
+                Drives::Way { body: r, at: to, along: other_way },
+            ) => {
+                self.is_at((l, from), (r, to)) && Self::is_direction(way, other_way) && left.law == right.law
+            }
+            (
+                Drives::Heading { body: l, about, relative_to: base },
+                Drives::Heading { body: r, about: other_about, relative_to: other_base },
+            ) => {
+                held && self.bodies[l] == r
+                    && self.bodies[base] == other_base
+                    && Self::is_axis(Some(about), Some(other_about))
+            }
+            (Drives::Coordinate(_) | Drives::Way { .. } | Drives::Heading { .. }, _) => false,
+        }
+    }
+
+    fn is_mass(&self, left: &Mass, right: &Mass) -> bool {
+        let same = match (left.inertia, right.inertia) {
+            (Some(l), Some(r)) => {
+                let most = l.cols.iter().chain(&r.cols).map(|c| c.norm()).fold(0.0, f64::max);
+                let near =
+                    |c: usize| (over(if c == 1 { -l.cols[c] } else { l.cols[c] }, -1.0) - r.cols[c]).norm();
+                (0..3).all(|c| near(c) <= SAME_PLACE * most)
+            }
+            (None, None) => true,
+            (Some(_), None) | (None, Some(_)) => false,
+        };
+        same && left.mass == right.mass && self.is_at((left.body, left.centre), (right.body, right.centre))
+    }
+
+    fn is_force(&self, left: &Force, right: &Force) -> bool {
+        let ends = |on| match on {
+            ForceOn::Points(ends) => Some(ends),
+            // Its sign on the other side depends on the joint.
+            ForceOn::Coordinate(_) => None,
+        };
+        let (l, r) = (ends(left.on), ends(right.on));
+        l.is_some() && self.are_at(l, r) && left.spring == right.spring
+    }
+
+    fn is_point(&self, left: &Point, right: &Point) -> bool {
+        self.is_at((left.body, left.at), (right.body, right.at))
+    }
+
+    fn is_wheel(&self, left: &Wheel, right: &Wheel) -> bool {
+        let [l, r] = [left, right].map(|w| &self.m.drivers[w.bump].name);
+        let spindles = match (left.spindle, right.spindle) {
+            (Some(l), Some(r)) => self.is_place(l, r),
+            (None, None) => true,
+            (Some(_), None) | (None, Some(_)) => false,
+        };
+        self.is_at((left.body, left.centre), (right.body, right.centre))
+            && Self::is_direction(left.spin_axis, right.spin_axis)
+            && spindles
+            && (left.radius, left.is_steered, left.end) == (right.radius, right.is_steered, right.end)
+            && self.are_at(left.kingpin, right.kingpin)
+            && self.are_at(left.spring, right.spring)
+            && *r == other(l)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_side_is_the_last_word_of_a_name_and_is_exchanged_anywhere_in_it() {
+        assert_eq!(with_word("tie_rod_left", "inner"), "tie_rod_inner_left");
+        assert_eq!(with_word("rack", "slide"), "rack_slide");
+        assert_eq!(other("left_arm-right"), "right_arm-left");
+        assert_eq!(other("leftover_left"), "leftover_right");
+        assert_eq!(base("lca_front_left").as_deref(), Some("lca_front"));
+        assert_eq!(base("left_lca").as_deref(), Some("lca"));
+        assert_eq!((base("lca_right"), base("left"), base("leftover")), (None, None, None));
+    }
+}
