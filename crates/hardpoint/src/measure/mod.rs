@@ -108,7 +108,15 @@ impl Measured {
     /// Their derivatives by variable b; those of a variable that the mechanism cannot follow are NaN and
     /// mean nothing: ask [`Sensitivities::admissibility`] first.
     pub fn d(&self, k: usize, b: VariableId, m: usize) -> [f64; 3] {
-        [0, 1, 2].map(|order| self.derivative(k, b, m, order))
+        if self.unknown[b.0] {
+            return [f64::NAN; 3];
+        }
+        let Some(place) = self.places[b.0 * self.outputs.len() + m] else {
+            let orders = self.outputs[m].known.orders;
+            return std::array::from_fn(|order| if order < orders { 0.0 } else { f64::NAN });
+        };
+        let row = self.d.row(k);
+        std::array::from_fn(|order| finite(row.get(place + order)))
     }
 
     /// One of them: of the value (`order` 0), the rate (1) or the acceleration (2).
