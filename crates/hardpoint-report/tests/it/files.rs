@@ -17,7 +17,7 @@ use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
 use serde_json::Value;
 
-const SLIDER: &str = include_str!("../../hardpoint-cli/tests/models/slider.toml");
+const SLIDER: &str = include_str!("../../../hardpoint-cli/tests/models/slider.toml");
 const DEGREES: f64 = 180.0 / PI;
 
 fn file() -> ModelFile {
@@ -92,7 +92,7 @@ fn motion_file_holds_every_number_in_the_units_of_its_header() {
 
 #[test]
 fn angles_beside_the_quaternions_turn_every_body_to_where_it_is() {
-    let file = hardpoint_file::parse(include_str!("../../../models/hooke.toml"), "hooke.toml").unwrap();
+    let file = hardpoint_file::parse(include_str!("../../../../models/hooke.toml"), "hooke.toml").unwrap();
     let solution = Analysis::new(&file.model).unwrap().run();
     for (kind, names) in [
         (Angles::Euler, ["euler_1", "euler_2", "euler_3"]),
@@ -183,7 +183,7 @@ fn facts_tell_the_three_answers_apart() {
 
 #[test]
 fn a_rod_that_keeps_its_length_is_reassembled() {
-    let text = include_str!("../../../models/rssr.toml");
+    let text = include_str!("../../../../models/rssr.toml");
     let file = hardpoint_file::parse(text, "rssr.toml").unwrap();
     let (_, _, summary) = solved(&file);
     let of = |name: &str| summary.model.variables.iter().find(|v| v.name == name).unwrap();
@@ -259,7 +259,7 @@ fn page_holds_all_quantities_and_their_comparison() {
 
 /// The columns that `docs/results.md` lists for a file, with their units, names filled in.
 fn documented(file: &ModelFile, table: &str) -> Vec<(String, String)> {
-    let text = include_str!("../../../docs/results.md");
+    let text = include_str!("../../../../docs/results.md");
     let (_, after) =
         text.split_once(&format!("<!-- columns of {table} -->\n\n")).expect("a table in the page");
     let rows = after.lines().take_while(|line| line.starts_with('|')).skip(2);
@@ -316,7 +316,7 @@ fn every_column_is_documented_in_its_order() {
 fn every_key_of_the_summary_is_documented() {
     let file = file();
     let (_, _, summary) = solved(&file);
-    let text = include_str!("../../../docs/results.md");
+    let text = include_str!("../../../../docs/results.md");
     let (_, after) = text.split_once("## summary.json").unwrap();
     let (table, _) = after.split_once("## ").unwrap();
     let documented: Vec<&str> =

@@ -12,10 +12,8 @@ use hardpoint_report::course::Course;
 use hardpoint_report::page::{Payload, html};
 use hardpoint_report::payload::{Request, report};
 use hardpoint_report::summary::Summary;
-use rockers::rockers;
 
-#[path = "support/rockers.rs"]
-mod rockers;
+use crate::rockers::rockers;
 
 /// The payload of a run's page and the page itself; it compares with differences where `compared`.
 fn page(file: &ModelFile, compared: bool) -> (Payload, String) {

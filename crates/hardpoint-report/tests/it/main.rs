@@ -1,0 +1,11 @@
+//! Pages, tables and facts of solved models, as users see them.
+
+mod accidents;
+mod drawing;
+mod files;
+mod mesh;
+mod rockers;
+mod shown;
+mod weight;
+mod whatif;
+mod windows;
