@@ -27,7 +27,7 @@ cargo fmt --all --check
 cargo clippy --release --workspace --all-targets --quiet -- -D warnings
 
 echo "== Rust tests"
-cargo test --release --workspace
+.ci/rust-tests --release --workspace
 
 echo "== instruction counts"
 bench/instructions

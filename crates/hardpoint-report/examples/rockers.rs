@@ -3,7 +3,7 @@
 
 use std::{env, error::Error, fs};
 
-#[path = "../tests/support/rockers.rs"]
+#[path = "../tests/it/rockers.rs"]
 mod rockers;
 
 /// Two bodies and six design variables each.
