@@ -26,6 +26,7 @@ metrics.top = { of = "A.y", take = "max" }
 metrics.left = { of = "A.x", take = "min" }
 metrics.span = { of = "A.y", take = "range" }
 metrics.top_near_start = { of = "A.y", over = "A.x", take = "max", window = [50, 1000] }
+metrics.span_near_start = { of = "A.y", over = "A.x", take = "range", window = [50, 1000] }
 metrics.height = { of = "A.y", over = "A.x", take = "value", at = 30 }
 metrics.slope = { of = "A.y", over = "A.x", take = "slope", at = 30 }
 metrics.at_one = { of = "A.y", take = "value", at = 1 }
@@ -179,6 +180,13 @@ fn metrics_of_coarse_curves_are_those_of_the_curve() {
         }
         let mean = file.model.metrics.iter().position(|m| m.name == "mean").unwrap();
         assert_eq!(found[mean].error, None);
+        // The window is left at 60 deg and entered again at 300 deg: y = sqrt(a^2 - x^2) there, and its opposite.
+        {
+            let m = &found[file.model.metrics.iter().position(|m| m.name == "span_near_start").unwrap()];
+            let (exact, d) = (3.0_f64.sqrt() * a, 4.0 / 3.0_f64.sqrt());
+            assert!((m.value.unwrap() - exact).abs() <= 1e-7 * 2.0 * a, "{steps} steps: {:?}", m.value);
+            assert!((m.d[0] - d).abs() <= 1e-5, "{steps} steps: {}", m.d[0]);
+        }
     }
 }
 

@@ -145,7 +145,8 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
         let Some((value, Some(time))) = found else { return Vec::new() };
         let mut times = vec![time];
         if sign != 0.0 && finer && y.orders > 1 {
-            // Of turns that are about as far out as the farthest, as of a motion that repeats itself, any may be the one.
+            // Of turns and ends of the window that are about as far out as the farthest, as of a motion that repeats itself, any may be
+            // the one.
             let far_out = sign * value - ALIKE * range;
             let near = (0..y.values.len() - 1).filter(|k| y.bound(*k, sign) >= far_out);
             let turns = near.flat_map(|k| y.turns(k).into_iter().map(move |t| (k, t)));
@@ -153,6 +154,8 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
                 sign * y.number(*k, *t) >= far_out && within_window(metric, along(&x, *k, *t))
             });
             times.extend(alike.map(|(_, t)| t));
+            let cuts = metric.window.into_iter().flatten().flat_map(|end| crossings(&y, &x, end));
+            times.extend(cuts.filter(|(k, t)| sign * y.number(*k, *t) >= far_out).map(|(_, t)| t));
         }
         times
     };
@@ -606,11 +609,11 @@ fn take<T: Real>(
             ends.map(|((most, _), (least, _))| (most - least, None))
         }
         Reduction::Value(at) => {
-            let (k, t) = reach(y, x, *at)?;
+            let (k, t) = crossings(y, x, *at).next()?;
             Some((y.at(k, t)[0], Some(y.within(k, t))))
         }
         Reduction::Slope(at) => {
-            let (k, t) = reach(y, x, *at)?;
+            let (k, t) = crossings(y, x, *at).next()?;
             // dy/dx = y. / x.
             let by = x.as_ref().map_or(T::one(), |x| x.at(k, t)[1]);
             Some((y.at(k, t)[1] / by, Some(y.within(k, t))))
@@ -669,18 +672,34 @@ fn take_at_single_time<T: Real>(
 /// for its last digit.
 const THERE: f64 = 1e-9;
 
-/// The interval where the abscissa first is `at`, and the time of that, which moves with the design.
-fn reach<T: Real>(y: &SampledCurve<'_, T>, x: &Option<SampledCurve<'_, T>>, at: f64) -> Option<(usize, T)> {
-    let times = y.times;
-    let last = y.values.len().checked_sub(2)?;
+/// The intervals where the abscissa is `at`, in their order, and the time of each, which moves with the design.
+fn crossings<'c, T: Real>(
+    y: &'c SampledCurve<'_, T>,
+    x: &'c Option<SampledCurve<'_, T>>,
+    at: f64,
+) -> impl Iterator<Item = (usize, T)> + 'c {
+    let distances = x.iter().flat_map(|x| &x.values).map(move |x| (x[0].value() - at).abs());
+    let span = distances.fold(0.0, f64::max);
+    let intervals = 0..y.values.len().saturating_sub(1);
+    intervals.filter_map(move |k| Some((k, crossing(y.times, x.as_ref(), k, at, THERE * span)?)))
+}
+
+/// The time at which the abscissa is `at` in interval k; none where it is not.
+fn crossing<T: Real>(
+    times: &[f64],
+    x: Option<&SampledCurve<'_, T>>,
+    k: usize,
+    at: f64,
+    near: f64,
+) -> Option<T> {
     let Some(x) = x else {
-        let k = (0..=last).find(|&k| times[k] <= at && at <= times[k + 1])?;
-        return Some((k, T::constant(at)));
+        return (times[k] <= at && at <= times[k + 1]).then(|| T::constant(at));
     };
     let miss = |k: usize| x.values[k][0].value() - at;
-    let span = x.values.iter().map(|x| (x[0].value() - at).abs()).fold(0.0, f64::max);
-    let there = |k: usize| miss(k).abs() <= THERE * span;
-    let k = (0..=last).find(|&k| there(k) || there(k + 1) || miss(k) * miss(k + 1) <= 0.0)?;
+    let there = |k: usize| miss(k).abs() <= near;
+    if !(there(k) || there(k + 1) || miss(k) * miss(k + 1) <= 0.0) {
+        return None;
+    }
     let [mut low, mut high] = match [there(k), there(k + 1)] {
         [true, _] => [times[k]; 2],
         [false, true] => [times[k + 1]; 2],
@@ -695,7 +714,7 @@ fn reach<T: Real>(y: &SampledCurve<'_, T>, x: &Option<SampledCurve<'_, T>>, at: 
     let t = T::constant(0.5 * (low + high));
     let [value, rate] = x.at(k, t);
     // x(t, b) = at:  t_b = -x_b / x.,  which the dual of one Newton step t - (x - at) / x. carries
-    Some((k, t - (value - T::constant(at)) / rate))
+    Some(t - (value - T::constant(at)) / rate)
 }
 
 /// Whether this part of the curve counts.
@@ -743,11 +762,9 @@ fn extreme<T: Real>(
             }
         }
     }
-    // Where the window cuts the curve, its end stays and the time moves.
-    for end in metric.window.into_iter().flatten() {
-        if let Some((k, t)) = reach(y, x, end) {
-            offer(y.at(k, t)[0], t.value());
-        }
+    // Wherever the window cuts the curve, its end stays and the time moves.
+    for (k, t) in metric.window.into_iter().flatten().flat_map(|end| crossings(y, x, end)) {
+        offer(y.at(k, t)[0], t.value());
     }
     best
 }
