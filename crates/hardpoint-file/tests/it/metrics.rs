@@ -360,6 +360,54 @@ metrics.vx_rms = { of = "vx", take = "rms" }
     }
 }
 
+/// Ackermann's error has a kink where the axle steers across straight ahead: in bump somewhere on its way, while the axle only steers at its
+/// least value.
+#[test]
+fn ackermann_extremes_and_means_do_not_depend_on_output_times() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/front_axle.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    let more = r#"
+        [metrics.ackermann_most]
+        of = "front.ackermann_error"
+        take = "max"
+        [metrics.ackermann_least]
+        of = "front.ackermann_error"
+        take = "min"
+        [metrics.ackermann_mean]
+        of = "front.ackermann_error"
+        take = "mean"
+        [metrics.least_ahead]
+        of = "front.ackermann_error"
+        take = "min"
+        window = [0.4, 0.46]
+    "#;
+    let laws = ["15*sin(2*pi*t)", "60*sin(4*pi*t)", "60*sin(6*pi*t)"];
+    let steers = ["15*sin(2*pi*t + 0.5)", "0*t", "0*t"];
+    for with in [laws, steers] {
+        let text =
+            laws.iter().zip(with).fold(text.clone() + more, |text, (law, with)| text.replace(law, with));
+        let of = |steps: usize| {
+            let file = parsed(&text.replace("steps = 200", &format!("steps = {steps}")));
+            let solution = Analysis::new(&file.model).unwrap().run();
+            let found = metrics(&file.model, &solution).into_iter().zip(file.model.metrics);
+            found.map(|(value, metric)| (metric.name, value)).collect::<Vec<_>>()
+        };
+        let exact = of(2000);
+        for steps in [7, 10, 33, 100, 200, 501] {
+            for ((name, m), (_, exact)) in of(steps).iter().zip(&exact) {
+                let off = (m.value.unwrap() - exact.value.unwrap()).abs();
+                // The wheels have one travel all the time where the axle only steers.
+                if name.contains("ackermann") || name == "least_ahead" {
+                    let at = format!("{steps} steps, {name}: {off:e} {:?}", m.error);
+                    // Round-off of the headings, which are some tenths of a radian
+                    assert!(off <= m.error.unwrap_or(1e-9 * m.range) + 1e-13, "{at}");
+                    assert!(off <= 1e-7 * m.range, "{at}");
+                }
+            }
+        }
+    }
+}
+
 /// The end of a crank goes with its radius in proportion; that of a rod between a crank and a slide does not.
 #[test]
 fn what_is_exactly_linear_is_not_given_a_limit_by_its_round_off() {

@@ -75,7 +75,8 @@ impl Analysis<'_> {
         })
     }
 
-    /// Solves the motion of a design between its output times, where metrics ask for it; `solution` is that at the output times, all of them.
+    /// Solves the motion of a design between its output times, where metrics ask for it; `solution` is that at the output times, or at the
+    /// last of them: then only the whole motion, solved once more, shows whether they are enough.
     pub(super) fn solve_between(
         &self,
         design: &PreparedDesign,
@@ -92,6 +93,10 @@ impl Analysis<'_> {
         }
         let mut times = self.times_between().to_vec();
         let mut found: Option<Solution> = None;
+        let is_whole = solution.motion.len() == model.times.len();
+        if !is_whole && model.times.len() > Footprint::of(model, true).rows(BYTES) {
+            return;
+        }
         if times.len() > model.times.len() {
             times.extend(model.metrics.iter().flat_map(window_times));
         }
@@ -99,7 +104,7 @@ impl Analysis<'_> {
         let mut go_on =
             |_: Progress| progress(Progress { done: model.times.len() - 1, total: model.times.len() });
         for _ in 0..MOST_PASSES {
-            if times.len() > model.times.len() {
+            if times.len() > model.times.len() || !is_whole {
                 let [start, end] = [model.times[0], model.times[model.times.len() - 1]];
                 times.retain(|t| start <= *t && *t <= end);
                 times.sort_by(f64::total_cmp);

@@ -80,8 +80,14 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
         let found = varied_curves(solution, metric, VariableId(v));
         found.and_then(|(y, x)| take(metric, &y, &x)).map_or(f64::NAN, |(value, _)| value.d)
     };
-    // Solved between output times, it is taken at times that were solved; no integral is.
-    let resolved = !is_integral(metric)
+    // Solved between output times, it is taken at times that were solved; no integral is, nor an extremum that lies between times for
+    // which no rates are known.
+    let hidden = match metric.take {
+        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => true,
+        Reduction::Least | Reduction::Greatest | Reduction::Range => y.orders == 1,
+        Reduction::RmsAtPoints(_) | Reduction::Value(_) | Reduction::Slope(_) => false,
+    };
+    let resolved = !hidden
         && solution.between.is_some()
         && unresolved_times(solution_of(solution), metric, true).is_empty();
     let error = if resolved { None } else { interpolation_error(metric, &y, &x, value, time) };
@@ -111,19 +117,6 @@ const ALIKE: f64 = 1e-4;
 const RESOLVED: f64 = 1e-10;
 /// ... and where the output times show the curve by themselves: metrics are read to some digits, and many designs are solved for them.
 const RESOLVED_BY_OUTPUTS: f64 = 1e-7;
-
-/// Returns whether a metric is an integral over the path.
-fn is_integral(metric: &Metric) -> bool {
-    match metric.take {
-        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => true,
-        Reduction::Least
-        | Reduction::Greatest
-        | Reduction::Range
-        | Reduction::RmsAtPoints(_)
-        | Reduction::Value(_)
-        | Reduction::Slope(_) => false,
-    }
-}
 
 /// The greatest less the least value of a curve at its times.
 fn range_of(y: &SampledCurve<'_, f64>) -> f64 {

@@ -76,10 +76,7 @@ impl Analysis<'_> {
         let design = self.prepare(run.design, run.scope);
         let first = self.walk(&design, rows, &mut *run.progress, &mut solution, &mut each);
         each(first, &solution);
-        // Only the whole motion shows whether its output times are enough.
-        if first == 0 || self.has_times_between() {
-            self.solve_between(&design, &mut *run.progress, &mut solution);
-        }
+        self.solve_between(&design, &mut *run.progress, &mut solution);
         solution
     }
 
