@@ -193,6 +193,9 @@ fn what(model: &Model, units: Units, metric: &Metric) -> String {
         Reduction::Mean => format!("mean of {of}{mean_over}{within}"),
         Reduction::Rms(target) if target.is_empty() => format!("root mean square of {of}{mean_over}{within}"),
         Reduction::Rms(_) => format!("root mean square of {of} beyond its target{mean_over}{within}"),
+        Reduction::RmsAtPoints(_) => {
+            format!("root mean square of {of} beyond the points of its target{mean_over}{within}")
+        }
         Reduction::Value(at) => format!("{of} where {over} is {}", place(*at)),
         Reduction::Slope(at) => format!("slope of {of} over {over} at {}", place(*at)),
     }

@@ -2,9 +2,7 @@
 
 use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
-use hardpoint::model::{
-    Change, DesignVariable, Dimension, Limited, Model, Optimization, OutputSource, Reduction,
-};
+use hardpoint::model::{Change, DesignVariable, Dimension, Limited, Model, Optimization, OutputSource};
 use hardpoint::study::{
     Binding, Iteration, Judged, LIMIT_KEPT, Motions, Optimized, Refused, Search, Status, judge,
 };
@@ -724,7 +722,7 @@ fn goals(
             metric: metric.name.clone(),
             case: case_name(model, *motion),
             unit: unit(units, dimension),
-            target: goal.target.or(matches!(metric.take, Reduction::Rms(_)).then_some(0.0)).map(shown),
+            target: goal.target.or(metric.take.target().map(|_| 0.0)).map(shown),
             weight: goal.weight * unit_in_si(units, dimension),
             value: BeforeAfter { before: value(found.drawn.as_ref()), after: value(judged) },
         }

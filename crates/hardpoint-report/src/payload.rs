@@ -16,9 +16,7 @@ pub use designs::Changed;
 use std::path::Path;
 
 use hardpoint::joint::Quantity as Kind;
-use hardpoint::model::{
-    BodyId, Dimension, Driver, DriverId, Metric, Model, OutputSource, Reduction, VariableId,
-};
+use hardpoint::model::{BodyId, Dimension, Driver, DriverId, Metric, Model, OutputSource, VariableId};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 use hardpoint::study::{Comparison, Difference, DriverRates};
@@ -508,7 +506,7 @@ impl<'a> Compose<'a> {
     /// The target curve of the first metric that has one for this output.
     fn wanted(&self, of: OutputSource, kind: Dimension) -> Curve {
         let (measured, times) = (&self.solution.measured, &self.solution.motion.times);
-        let has = |m: &&Metric| m.of == of && matches!(&m.take, Reduction::Rms(target) if !target.is_empty());
+        let has = |m: &&Metric| m.of == of && m.take.target_points().is_some();
         let Some(metric) = self.model.metrics.iter().find(has) else { return Curve::default() };
         let over = metric.over.and_then(|over| measured.outputs.iter().position(|o| o.source == over));
         let at = |k: usize| over.map_or(times[k], |m| measured.value(k, m)[0]);

@@ -1,8 +1,6 @@
 //! What a study may choose, and what the text chooses.
 
-use hardpoint::model::{
-    Dimension, Goal, Limit, Limited, Model, Optimization, Reduction, Tolerancing, VariableId,
-};
+use hardpoint::model::{Dimension, Goal, Limit, Limited, Model, Optimization, Tolerancing, VariableId};
 use hardpoint::study::{Motions, metrics};
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, Units};
@@ -37,7 +35,7 @@ pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, Refusal> {
             value: values.get(k).copied().flatten().map(|x| units.from_si(dimension, x)),
             weight: goal.map_or(1.0, |goal| goal.weight / units.from_si(dimension, 1.0)),
             target: goal.and_then(|goal| goal.target).map(|x| units.from_si(dimension, x)),
-            curve: matches!(&metric.take, Reduction::Rms(target) if !target.is_empty()),
+            curve: metric.take.target_points().is_some(),
             chosen: goal.is_some(),
         }
     };

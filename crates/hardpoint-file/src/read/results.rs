@@ -89,7 +89,7 @@ pub(crate) const METRIC: Table = table! {
     /// The part of the curve that counts, from where to where its abscissa goes. Default: all of it.
     may "window": TWO_NUMBERS, "[-20, 20]";
     /// For `rms`: points `[abscissa, value]` of the curve to compare with, straight lines between them; or the name of a CSV file that
-    /// holds them. Default: zero.
+    /// holds them. Default: zero. For `rms_at_points`: the points, required.
     may "target": TARGET, "[[-50, 0.1], [50, -0.1]]";
     /// The case whose motion it sums up. Default: each, one number for every case.
     may "case": CASE, "\"bump\"";
@@ -124,12 +124,16 @@ const TAKE: Shape = Shape::Any(
         ("min", "The least value."),
         ("max", "The greatest value."),
         ("range", "The greatest less the least value."),
-        ("mean", "The mean over the output times."),
+        ("mean", "The mean over time, or over the travel of the abscissa to and fro."),
         (
             "integral",
             "The integral over the abscissa: of a power over time the work in J, and of a force or a moment over its way or angle.",
         ),
-        ("rms", "The root of the mean square of what is left beyond the target."),
+        ("rms", "The root of the mean, as for `mean`, of the square of what is left beyond the target."),
+        (
+            "rms_at_points",
+            "The root of the mean square of what is left beyond the target at its points, where the abscissa first is that of each.",
+        ),
         ("value", "The value where the abscissa first is `at`."),
         ("slope", "The change per change of the abscissa where that first is `at`."),
     ])],
@@ -481,8 +485,9 @@ impl Reader<'_> {
     /// What a metric takes, in the file's units.
     fn take(&mut self, fields: &Fields<'_>) -> Option<Reduction> {
         let word = Reduction::NAMES[self.word_of(fields, "take")?];
-        if word != "rms" {
-            self.out_of_place(fields, "target", "only `take = \"rms\"` compares with a target");
+        if word != "rms" && word != "rms_at_points" {
+            let why = "only `take = \"rms\"` and `\"rms_at_points\"` compare with a target";
+            self.out_of_place(fields, "target", why);
         }
         if word != "value" && word != "slope" {
             self.out_of_place(fields, "at", "only `take = \"value\"` and `\"slope\"` are taken at one place");
@@ -500,6 +505,10 @@ impl Reader<'_> {
                 Some(f) => self.target(fields, f)?,
                 None => Vec::new(),
             }),
+            "rms_at_points" => {
+                let field = self.need(fields, "target")?;
+                Reduction::RmsAtPoints(self.target(fields, field)?)
+            }
             "value" => Reduction::Value(self.number_of(fields, "at")?),
             _ => Reduction::Slope(self.number_of(fields, "at")?),
         })

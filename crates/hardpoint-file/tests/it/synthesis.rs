@@ -62,7 +62,9 @@ fn published_error(file: &ModelFile, design: &[f64], points: usize) -> f64 {
     let measured = &found.solutions[0].measured;
     assert!(measured.len() >= points);
     let square = |name: &str| {
-        let Reduction::Rms(target) = &file.model.metrics.iter().find(|m| m.name == name).unwrap().take else {
+        let Reduction::RmsAtPoints(target) =
+            &file.model.metrics.iter().find(|m| m.name == name).unwrap().take
+        else {
             panic!("{name} has a target");
         };
         let m = measured.index(name).unwrap();

@@ -54,6 +54,22 @@ pub(crate) fn least_squares(
     right.iter().map(solution).collect()
 }
 
+/// As many rows as columns, for which products of columns are those of a matrix with any number of rows: the factor R of
+/// `A P = Q R` with its columns where they were.
+pub(crate) fn folded_rows(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let n = columns.len();
+    let mut rows = vec![vec![0.0; n]; n];
+    let q = Triangular::of(columns, 0.0);
+    for (column, &place) in q.columns.iter().zip(&q.order) {
+        rows.iter_mut().zip(column).for_each(|(row, entry)| row[place] = *entry);
+    }
+    // Below the diagonal stands nothing that means something.
+    for (k, &place) in q.order.iter().enumerate() {
+        rows[k + 1..].iter_mut().for_each(|row| row[place] = 0.0);
+    }
+    rows
+}
+
 /// A matrix made upper triangular by reflections, its columns exchanged so that the longest comes first.
 struct Triangular {
     /// Meaningless below the diagonal.
@@ -154,6 +170,20 @@ mod tests {
     }
 
     proptest! {
+        /// More rows than columns, and fewer.
+        #[test]
+        fn folded_rows_have_the_same_products_of_columns(
+            a in (1_usize..9, 1_usize..6).prop_flat_map(|(m, n)| {
+                prop::collection::vec(prop::collection::vec(-1.0..1.0_f64, n), m)
+            }),
+        ) {
+            let n = a[0].len();
+            let folded = folded_rows(transposed(&a, n));
+            prop_assert_eq!([folded.len(), folded[0].len()], [n, n]);
+            let gram = |a: &Matrix| product(&transposed(a, n), a);
+            prop_assert!(apart(&gram(&a), &gram(&folded)) <= 1e-14 * a.len() as f64);
+        }
+
         /// A product of an m x rank and a rank x n matrix, as small or as large as numbers are.
         #[test]
         fn what_is_found_is_the_pseudo_inverse_whatever_the_rank_and_size(

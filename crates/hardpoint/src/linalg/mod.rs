@@ -12,7 +12,7 @@ mod spline;
 pub(crate) mod svd;
 
 pub(crate) use factors::{Factors, LARGEST_DENSE};
-pub(crate) use least_squares::least_squares;
+pub(crate) use least_squares::{folded_rows, least_squares};
 pub(crate) use matrix::{Elimination, MOST_GROWTH, Watched};
 pub(crate) use monotone::monotone;
 pub(crate) use rank::FullPivot;

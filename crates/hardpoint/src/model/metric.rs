@@ -37,6 +37,9 @@ pub enum Reduction {
     /// The root of the mean square of what is left beyond a target curve: points `[abscissa, value]`, in SI, with straight lines
     /// between and beyond them; beyond zero where there are none.
     Rms(Vec<[f64; 2]>),
+    /// The root of the mean square of what is left beyond points `[abscissa, value]`, in SI, where the abscissa first is that of each: each
+    /// point counts once, and nothing between them.
+    RmsAtPoints(Vec<[f64; 2]>),
     /// The value where the abscissa first is this, in SI.
     Value(f64),
     /// The change per change of the abscissa there.
@@ -45,7 +48,8 @@ pub enum Reduction {
 
 impl Reduction {
     /// The names of all of them, as model files write them.
-    pub const NAMES: [&str; 8] = ["min", "max", "range", "mean", "integral", "rms", "value", "slope"];
+    pub const NAMES: [&str; 9] =
+        ["min", "max", "range", "mean", "integral", "rms", "rms_at_points", "value", "slope"];
 
     /// As model files write it.
     pub fn name(&self) -> &'static str {
@@ -56,9 +60,29 @@ impl Reduction {
             Self::Mean => 3,
             Self::Integral => 4,
             Self::Rms(_) => 5,
-            Self::Value(_) => 6,
-            Self::Slope(_) => 7,
+            Self::RmsAtPoints(_) => 6,
+            Self::Value(_) => 7,
+            Self::Slope(_) => 8,
         }]
+    }
+
+    /// The target of an `rms` or `rms_at_points`, empty where an `rms` is beyond zero.
+    pub fn target(&self) -> Option<&[[f64; 2]]> {
+        match self {
+            Self::Rms(target) | Self::RmsAtPoints(target) => Some(target),
+            Self::Least
+            | Self::Greatest
+            | Self::Range
+            | Self::Mean
+            | Self::Integral
+            | Self::Value(_)
+            | Self::Slope(_) => None,
+        }
+    }
+
+    /// The target, if there are points of it.
+    pub fn target_points(&self) -> Option<&[[f64; 2]]> {
+        self.target().filter(|target| !target.is_empty())
     }
 }
 
@@ -66,10 +90,7 @@ impl Metric {
     /// The target curve at an abscissa, in SI; `None` where the metric has none, or where the abscissa is beyond its window.
     pub fn target_at(&self, at: f64) -> Option<f64> {
         let counts = self.window.is_none_or(|[low, high]| low <= at && at <= high);
-        match &self.take {
-            Reduction::Rms(target) if counts && !target.is_empty() => Some(on_target(target, at)),
-            _ => None,
-        }
+        self.take.target_points().filter(|_| counts).map(|target| on_target(target, at))
     }
 }
 

@@ -1,10 +1,9 @@
 //! The motion between output times, as far as metrics need it.
 //!
-//! A metric that is taken at a certain time (a greatest or least value, a value or a slope where something else has a value) is that of the
-//! curve, not of its output times. Where these are too few to show the curve, the same motion is solved once more at more times: so many
-//! that no driver goes far between two of them and that each law is the polynomial through its ends; and at last at the times that the
-//! metrics are taken at. There the value is exact, and so is its derivative: an extremum moves with the design, but its value does not
-//! change by that, `dm/db = dy/db` at `t*`.
+//! A metric is that of the curve, not of its output times. Where these are too few to show the curve, the same motion is solved once more
+//! at more times: so many that no driver goes far between two of them and that each law is the polynomial through its ends; and at last at
+//! the times that the metrics are taken at, or in the middle of intervals where an integral is off. At its own time a value is exact, and
+//! so is its derivative: an extremum moves with the design, but its value does not change by that, `dm/db = dy/db` at `t*`.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -30,19 +29,25 @@ const LAW_RESOLVED: f64 = 1e-8;
 const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
 /// An interval is halved so often at most.
 const MOST_HALVINGS: u32 = 40;
-/// The times that metrics are taken at are solved so often at most, each time nearer to where they are.
+/// The times that metrics ask for are solved so often at most, each time nearer to where they are.
 const MOST_PASSES: usize = 4;
 /// Just before a jump of a law is this part of the run earlier: far more than times are told apart by, far less than anything moves in.
 const JUST_BEFORE: f64 = 1e-12;
 /// Memory for the motion between output times.
 const BYTES: usize = 128 << 20;
 
-/// Returns whether a metric is taken at times of the curve that are not among the output times, or may not be.
-fn is_located(metric: &Metric, times: &[f64]) -> bool {
+/// Returns whether a metric depends on the curve at times that are not among the output times, or may.
+fn is_between_outputs(metric: &Metric, times: &[f64]) -> bool {
     match metric.take {
-        Reduction::Least | Reduction::Greatest | Reduction::Range => true,
-        Reduction::Value(at) | Reduction::Slope(at) => metric.over.is_some() || !times.contains(&at),
-        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => false,
+        Reduction::Least
+        | Reduction::Greatest
+        | Reduction::Range
+        | Reduction::Mean
+        | Reduction::Integral
+        | Reduction::Rms(_) => true,
+        Reduction::Value(_) | Reduction::Slope(_) | Reduction::RmsAtPoints(_) => {
+            metric.over.is_some() || !window_times(metric).iter().all(|t| times.contains(t))
+        }
     }
 }
 
@@ -56,7 +61,7 @@ impl Analysis<'_> {
     fn times_between(&self) -> &[f64] {
         self.between.get_or_init(|| {
             let model = self.model();
-            if !model.metrics.iter().any(|m| is_located(m, &model.times)) {
+            if !model.metrics.iter().any(|m| is_between_outputs(m, &model.times)) {
                 return model.times.clone();
             }
             let units = driver_units(model, self.topology());
@@ -70,7 +75,8 @@ impl Analysis<'_> {
         })
     }
 
-    /// Solves the motion of a design between its output times, where metrics ask for it; `solution` is that at the output times, all of them.
+    /// Solves the motion of a design between its output times, where metrics ask for it; `solution` is that at the output times, or at the
+    /// last of them: then only the whole motion, solved once more, shows whether they are enough.
     pub(super) fn solve_between(
         &self,
         design: &PreparedDesign,
@@ -81,12 +87,16 @@ impl Analysis<'_> {
         let model = self.model();
         if !design.scope.measures
             || solution.stop.is_some()
-            || !model.metrics.iter().any(|m| is_located(m, &model.times))
+            || !model.metrics.iter().any(|m| is_between_outputs(m, &model.times))
         {
             return;
         }
         let mut times = self.times_between().to_vec();
         let mut found: Option<Solution> = None;
+        let is_whole = solution.motion.len() == model.times.len();
+        if !is_whole && model.times.len() > Footprint::of(model, true).rows(BYTES) {
+            return;
+        }
         if times.len() > model.times.len() {
             times.extend(model.metrics.iter().flat_map(window_times));
         }
@@ -94,7 +104,7 @@ impl Analysis<'_> {
         let mut go_on =
             |_: Progress| progress(Progress { done: model.times.len() - 1, total: model.times.len() });
         for _ in 0..MOST_PASSES {
-            if times.len() > model.times.len() {
+            if times.len() > model.times.len() || !is_whole {
                 let [start, end] = [model.times[0], model.times[model.times.len() - 1]];
                 times.retain(|t| start <= *t && *t <= end);
                 times.sort_by(f64::total_cmp);
@@ -109,9 +119,9 @@ impl Analysis<'_> {
                 found = Some(next);
             }
             let now = found.as_ref().unwrap_or(solution);
-            let located = model.metrics.iter().filter(|m| is_located(m, &model.times));
+            let metrics = model.metrics.iter().filter(|m| is_between_outputs(m, &model.times));
             let add: Vec<f64> =
-                located.flat_map(|metric| unresolved_times(now, metric, found.is_some())).collect();
+                metrics.flat_map(|metric| unresolved_times(now, metric, found.is_some())).collect();
             if add.is_empty() {
                 break;
             }
@@ -133,7 +143,7 @@ fn times_of(model: &Model, laws: &[(&Law, f64)], coarser: f64, most: usize) -> O
     for (law, _) in laws {
         let jumps = law.jumps(start, end);
         // The curve before a jump ends there with other rates than it goes on with.
-        let sharp = jumps.iter().filter(|jump| jump.order <= 1 && jump.time > start);
+        let sharp = jumps.iter().filter(|jump| jump.time > start);
         ends.extend(sharp.flat_map(|jump| [jump.time - JUST_BEFORE * (end - start), jump.time]));
     }
     ends.retain(|t| start <= *t && *t <= end);

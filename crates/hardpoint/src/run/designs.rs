@@ -78,7 +78,9 @@ impl Analysis<'_> {
             solution.sensitivities = Sensitivities::default();
             (solution.stop, solution.between) = (None, None);
             if scope.measures {
-                self.measure(&self.prepare(design, scope), &StepValues::default(), solution);
+                let design = self.prepare(design, scope);
+                self.measure(&design, &StepValues::default(), solution);
+                self.solve_between(&design, &mut |_| ControlFlow::Continue(()), solution);
             } else {
                 solution.measured = Measured::default();
             }

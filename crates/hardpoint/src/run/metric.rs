@@ -3,6 +3,7 @@
 //! A metric is written once over any number; its derivatives are the same lines run on duals. Between output times, curves
 //! are the polynomials that have their values, rates and accelerations at both ends.
 
+use super::quadrature::{PathNode, Stretch, path_nodes, path_stretches};
 use super::solution::Solution;
 use crate::measure::Measured;
 use crate::model::{Metric, Model, OutputSource, Reduction, VariableId, on_target};
@@ -15,10 +16,11 @@ pub struct MetricValue {
     pub value: Option<f64>,
     /// When it is taken, s; `None` for what is taken of the whole curve.
     pub time: Option<f64>,
-    /// How far interpolation between output times may be off, in SI; `None` for a mean, and where there are not enough output
-    /// times to say.
+    /// How far interpolation between output times may be off, in SI; `None` where the metric was solved at its own time, and where there
+    /// are not enough output times to estimate it.
     pub error: Option<f64>,
-    /// What the error is to be compared with, in SI: greatest less least value of the curve, for a slope its own size.
+    /// Scale of the error, in SI: greatest less least value of the curve, for an integral times the travel of its abscissa, for a slope
+    /// its own size.
     pub range: f64,
     /// Its derivative by every design variable; NaN for those that the mechanism cannot follow, and all of them where no
     /// sensitivities were solved.
@@ -34,7 +36,9 @@ pub fn metrics(model: &Model, solution: &Solution) -> Vec<MetricValue> {
 /// whole curve is not known: a part of the curve says nothing of the rest.
 pub fn metrics_beside(model: &Model, today: &Solution, other: &Solution) -> Vec<Option<f64>> {
     let whole = other.motion.len() >= today.motion.len();
-    let known = |metric: &Metric| whole || matches!(metric.take, Reduction::Value(_) | Reduction::Slope(_));
+    let known = |metric: &Metric| {
+        whole || matches!(metric.take, Reduction::Value(_) | Reduction::Slope(_) | Reduction::RmsAtPoints(_))
+    };
     let values = model.metrics.iter().zip(metrics(model, other));
     values.map(|(metric, found)| found.value.filter(|_| known(metric))).collect()
 }
@@ -76,14 +80,27 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
         let found = varied_curves(solution, metric, VariableId(v));
         found.and_then(|(y, x)| take(metric, &y, &x)).map_or(f64::NAN, |(value, _)| value.d)
     };
-    // Solved between output times, it is taken at a time that was solved.
-    let resolved = solution.between.is_some()
-        && unresolved_times(solution_of(solution, metric), metric, true).is_empty();
+    // Solved between output times, it is taken at times that were solved; no integral is, nor an extremum that lies between times for
+    // which no rates are known.
+    let hidden = match metric.take {
+        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => true,
+        Reduction::Least | Reduction::Greatest | Reduction::Range => y.orders == 1,
+        Reduction::RmsAtPoints(_) | Reduction::Value(_) | Reduction::Slope(_) => false,
+    };
+    let resolved = !hidden
+        && solution.between.is_some()
+        && unresolved_times(solution_of(solution), metric, true).is_empty();
     let error = if resolved { None } else { interpolation_error(metric, &y, &x, value, time) };
-    let finite = || y.values.iter().map(|v| v[0]).filter(|x| x.is_finite());
     let range = match metric.take {
         Reduction::Slope(_) => value.abs(),
-        _ => finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min),
+        Reduction::Integral => range_of(&y) * travel(metric, &y, &x),
+        Reduction::Least
+        | Reduction::Greatest
+        | Reduction::Range
+        | Reduction::Mean
+        | Reduction::Rms(_)
+        | Reduction::RmsAtPoints(_)
+        | Reduction::Value(_) => range_of(&y),
     };
     MetricValue {
         value: Some(value),
@@ -101,98 +118,193 @@ const RESOLVED: f64 = 1e-10;
 /// ... and where the output times show the curve by themselves: metrics are read to some digits, and many designs are solved for them.
 const RESOLVED_BY_OUTPUTS: f64 = 1e-7;
 
-/// The times at which a window of a metric over time ends.
+/// The greatest less the least value of a curve at its times.
+fn range_of(y: &SampledCurve<'_, f64>) -> f64 {
+    let finite = || y.values.iter().map(|v| v[0]).filter(|x| x.is_finite());
+    finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min)
+}
+
+/// The times at which a metric over time is taken, or its window ends.
 pub(crate) fn window_times(metric: &Metric) -> Vec<f64> {
-    let at = match metric.take {
-        Reduction::Value(at) | Reduction::Slope(at) => Some(at),
+    if metric.over.is_some() {
+        return Vec::new();
+    }
+    let at = match &metric.take {
+        Reduction::Value(at) | Reduction::Slope(at) => vec![*at],
+        Reduction::RmsAtPoints(points) => points.iter().map(|p| p[0]).collect(),
         Reduction::Least
         | Reduction::Greatest
         | Reduction::Range
         | Reduction::Mean
         | Reduction::Integral
-        | Reduction::Rms(_) => None,
+        | Reduction::Rms(_) => Vec::new(),
     };
-    let ends = metric.window.into_iter().flatten().chain(at);
-    if metric.over.is_none() { ends.collect() } else { Vec::new() }
+    metric.window.into_iter().flatten().chain(at).collect()
 }
 
-/// The times between those of a solution at which a metric is taken by interpolation that may be off; `finer` says that these are times
-/// between the output times.
+/// The times between those of a solution that a metric needs: those that it is taken at by interpolation that may be off, and for an
+/// integral those that halve the intervals where it is off; `finer` says that the solution has times between the output times.
 pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool) -> Vec<f64> {
     let Some((y, x)) = curves_at(solution, metric) else { return Vec::new() };
-    let ends = match metric.take {
-        Reduction::Range => vec![Reduction::Greatest, Reduction::Least],
-        Reduction::Greatest | Reduction::Least | Reduction::Value(_) | Reduction::Slope(_) => {
-            vec![metric.take.clone()]
+    let range = range_of(&y);
+    let located = match &metric.take {
+        Reduction::Greatest => far_out_times(metric, &y, &x, 1.0, finer),
+        Reduction::Least => far_out_times(metric, &y, &x, -1.0, finer),
+        Reduction::Range => [1.0, -1.0].map(|sign| far_out_times(metric, &y, &x, sign, finer)).concat(),
+        Reduction::Value(at) | Reduction::Slope(at) => {
+            crossings(&y, &x, *at).map(|(_, t)| t).take(1).collect()
         }
-        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => Vec::new(),
+        Reduction::RmsAtPoints(points) => {
+            let counting = points.iter().filter(|p| within_window(metric, p[0]));
+            counting.filter_map(|p| crossings(&y, &x, p[0]).next()).map(|(k, t)| y.within(k, t)).collect()
+        }
+        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => {
+            return coarse_middles(metric, &y, &x, RESOLVED_BY_OUTPUTS * range);
+        }
     };
-    let finite = || y.values.iter().map(|v| v[0]).filter(|x| x.is_finite());
-    let range = finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min);
     let part = if finer { RESOLVED } else { RESOLVED_BY_OUTPUTS };
-    let times_of = |end: Reduction| -> Vec<f64> {
-        let sign = match end {
-            Reduction::Greatest => 1.0,
-            Reduction::Least => -1.0,
-            Reduction::Range
-            | Reduction::Value(_)
-            | Reduction::Slope(_)
-            | Reduction::Mean
-            | Reduction::Integral
-            | Reduction::Rms(_) => 0.0,
-        };
-        let found = take(&Metric { take: end, ..metric.clone() }, &y, &x);
-        let Some((value, Some(time))) = found else { return Vec::new() };
-        let mut times = vec![time];
-        if sign != 0.0 && finer && y.orders > 1 {
-            // Of turns and ends of the window that are about as far out as the farthest, as of a motion that repeats itself, any may be
-            // the one.
-            let far_out = sign * value - ALIKE * range;
-            let near = (0..y.values.len() - 1).filter(|k| y.bound(*k, sign) >= far_out);
-            let turns = near.flat_map(|k| y.turns(k).into_iter().map(move |t| (k, t)));
-            let alike = turns.filter(|(k, t)| {
-                sign * y.number(*k, *t) >= far_out && within_window(metric, along(&x, *k, *t))
-            });
-            times.extend(alike.map(|(_, t)| t));
-            let cuts = metric.window.into_iter().flatten().flat_map(|end| crossings(&y, &x, end));
-            times.extend(cuts.filter(|(k, t)| sign * y.number(*k, *t) >= far_out).map(|(_, t)| t));
+    let unresolved = |time: &f64| {
+        if y.times.contains(time) {
+            return false;
         }
-        times
-    };
-    let unresolved = |time: f64| {
-        let time = Some(time).filter(|t| !y.times.contains(t))?;
-        let k =
-            y.times[..y.values.len()].partition_point(|end| *end <= time).clamp(1, y.values.len() - 1) - 1;
-        let off = |curve: &SampledCurve<'_, f64>| {
-            let wide = WidePolynomial::new(curve, k)?.at(time)[0];
-            Some((wide - curve.at(k, time)[0]).abs())
-        };
+        let k = y.interval(*time);
         // Where too little is known to say, it may be off.
-        let late =
-            x.as_ref().map_or(Some(0.0), |x| Some(off(x)? * (y.at(k, time)[1] / x.at(k, time)[1]).abs()));
-        let error = off(&y).zip(late).map_or(f64::INFINITY, |(y, late)| y + late);
-        (!(error <= part * range)).then_some(time)
+        let error = time_error(&y, &x, k, *time).unwrap_or(f64::INFINITY);
+        !(error <= part * range)
     };
-    ends.into_iter().flat_map(times_of).filter_map(unresolved).collect()
+    located.into_iter().filter(unresolved).collect()
 }
 
-/// The solution that a metric is taken of: that between output times, where there is one, for what is taken at certain times.
-fn solution_of<'s>(solution: &'s Solution, metric: &Metric) -> &'s Solution {
-    match metric.take {
+/// The time of the greatest (sign 1) or the least value (-1); where the motion is known at `finer` times, those of all turns and ends of
+/// the window that are about as far out, too: of a motion that repeats itself, any may be the one.
+fn far_out_times(
+    metric: &Metric,
+    y: &SampledCurve<'_, f64>,
+    x: &Option<SampledCurve<'_, f64>>,
+    sign: f64,
+    finer: bool,
+) -> Vec<f64> {
+    if y.values.len() < 2 {
+        return Vec::new();
+    }
+    let Some((value, time)) = extreme(metric, y, x, sign) else { return Vec::new() };
+    let mut times = vec![time];
+    if finer {
+        let far_out = sign * value - ALIKE * range_of(y);
+        let near = (0..y.values.len() - 1).filter(|k| y.bound(*k, sign) >= far_out);
+        let turns = near.flat_map(|k| y.turns(k).into_iter().map(move |t| (k, t)));
+        let turns = turns.filter(|(k, t)| within_window(metric, along(x, *k, *t)));
+        let cuts = metric.window.into_iter().flatten().flat_map(|end| crossings(y, x, end));
+        let alike = turns.chain(cuts).filter(|(k, t)| sign * y.number(*k, *t) >= far_out);
+        times.extend(alike.map(|(_, t)| t));
+    }
+    times
+}
+
+/// The middles of those parts of the path that contribute most to the error of an integral, if that is more than `tolerance` (of `rms` and
+/// `mean`; of `integral` as a part of the travel). None where rates are unknown: there the error falls with the square of the steps only.
+fn coarse_middles(
+    metric: &Metric,
+    y: &SampledCurve<'_, f64>,
+    x: &Option<SampledCurve<'_, f64>>,
+    tolerance: f64,
+) -> Vec<f64> {
+    let Some((value, _)) = take(metric, y, x).filter(|_| y.orders > 1) else { return Vec::new() };
+    let scale = if metric.take == Reduction::Integral { travel(metric, y, x) } else { 1.0 };
+    let errors = integral_errors(metric, y, x, value);
+    if integral_error(metric, y, x, value, &errors).is_some_and(|error| error <= tolerance * scale) {
+        return Vec::new();
+    }
+    // Where too little is known to say, it may be off.
+    let size = |error: &Option<f64>| error.unwrap_or(f64::INFINITY);
+    let most = errors.iter().map(|(_, error)| size(error)).fold(0.0, f64::max);
+    let large = errors.iter().filter(|(_, error)| size(error) >= COARSE * most);
+    large.map(|(stretch, _)| 0.5 * (y.times[stretch.k] + y.times[stretch.k + 1])).collect()
+}
+
+/// Parts of the path with at least this part of the largest contribution to the error of an integral are halved: of a smooth curve many,
+/// of one with a kink the one where that is.
+const COARSE: f64 = 1.0 / 64.0;
+
+/// The contribution of each part of the path to the error of an integral: the difference between the polynomials through more times
+/// ([`WidePolynomial`]) and the interval's own; `None` where too little is known.
+fn integral_errors(
+    metric: &Metric,
+    y: &SampledCurve<'_, f64>,
+    x: &Option<SampledCurve<'_, f64>>,
+    value: f64,
+) -> Vec<(Stretch<f64>, Option<f64>)> {
+    // What is integrated, less its mean: an error of the travel counts for that much less.
+    let integrand = |at: f64, y: f64| match &metric.take {
+        Reduction::Mean => y - value,
+        Reduction::Rms(target) => (y - on_target(target, at)).powi(2) - value * value,
         Reduction::Least
         | Reduction::Greatest
         | Reduction::Range
+        | Reduction::Integral
+        | Reduction::RmsAtPoints(_)
         | Reduction::Value(_)
-        | Reduction::Slope(_) => solution.between.as_deref().unwrap_or(solution),
-        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => solution,
-    }
+        | Reduction::Slope(_) => y,
+    };
+    let error = |stretch: &Stretch<f64>| {
+        let k = stretch.k;
+        let wide_y = WidePolynomial::new(y, k)?;
+        let wide_x = x.as_ref().map_or(Some(None), |x| WidePolynomial::new(x, k).map(Some))?;
+        let along = |t: f64| wide_x.as_ref().map_or([t, 1.0], |x| x.at(t));
+        let apart = stretch.nodes(y, x).map(|node| {
+            let [at, rate] = along(node.t);
+            integrand(at, wide_y.at(node.t)[0]) * rate * node.dt - integrand(node.x, node.y) * node.dx
+        });
+        // Where the window cuts the curve, an error of the abscissa moves the cut.
+        let moved = [stretch.from, stretch.to].into_iter().filter(|t| !y.times.contains(t)).map(|t| {
+            let own = x.as_ref().map_or(t, |x| x.number(k, t));
+            (integrand(own, y.number(k, t)) * (along(t)[0] - own)).abs()
+        });
+        Some(apart.sum::<f64>().abs() + moved.sum::<f64>())
+    };
+    let stretches = path_stretches(metric, y, x);
+    stretches.into_iter().map(|stretch| (stretch, error(&stretch))).collect()
+}
+
+/// The error of an integral over the path from the contributions to it.
+fn integral_error(
+    metric: &Metric,
+    y: &SampledCurve<'_, f64>,
+    x: &Option<SampledCurve<'_, f64>>,
+    value: f64,
+    errors: &[(Stretch<f64>, Option<f64>)],
+) -> Option<f64> {
+    let sum: f64 = errors.iter().map(|(_, error)| *error).sum::<Option<f64>>()?;
+    let mean = || sum / travel(metric, y, x);
+    Some(match metric.take {
+        Reduction::Mean => mean(),
+        // sqrt(rms^2 + error of the mean square) - rms
+        Reduction::Rms(_) => (value * value + mean()).sqrt() - value,
+        Reduction::Least
+        | Reduction::Greatest
+        | Reduction::Range
+        | Reduction::Integral
+        | Reduction::RmsAtPoints(_)
+        | Reduction::Value(_)
+        | Reduction::Slope(_) => sum,
+    })
+}
+
+/// The travel of the abscissa within the window, to and fro.
+fn travel<T: Real>(metric: &Metric, y: &SampledCurve<'_, T>, x: &Option<SampledCurve<'_, T>>) -> T {
+    path_nodes(metric, y, x).fold(T::zero(), |sum, node| sum + node.dx.abs())
+}
+
+/// The solution that metrics are taken of: that between output times, where there is one.
+fn solution_of(solution: &Solution) -> &Solution {
+    solution.between.as_deref().unwrap_or(solution)
 }
 
 /// The curve that a metric is taken of, and the one that it goes over where that is not time.
 type Curves<'t, T> = (SampledCurve<'t, T>, Option<SampledCurve<'t, T>>);
 
 fn curves<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f64>> {
-    curves_at(solution_of(solution, metric), metric)
+    curves_at(solution_of(solution), metric)
 }
 
 /// The same at the times of a solution itself.
@@ -212,7 +324,7 @@ fn varied_curves<'s>(
     metric: &Metric,
     variable: VariableId,
 ) -> Option<Curves<'s, Dual<f64>>> {
-    let Solution { motion, measured, sensitivities, .. } = solution_of(solution, metric);
+    let Solution { motion, measured, sensitivities, .. } = solution_of(solution);
     if sensitivities.variables == 0 {
         return None;
     }
@@ -258,33 +370,38 @@ impl MetricParts {
     }
 }
 
-/// What is left beyond the target of an `rms` metric, one part for each output time, so weighted that the sum of their squares is that of
-/// the metric; `None` for other metrics, and where the metric has no value.
+/// What is left beyond the target of an `rms` metric, one part for each node of the integral or each point of the target, so weighted that
+/// the sum of their squares is that of the metric; `None` for other metrics, and where the metric has no value.
 ///
 /// ```text
-/// r_k = sqrt(w_k) (y_k - target(x_k)),    w_k = (abs(x_k - x_k-1) + abs(x_k+1 - x_k)) / 2 / sum abs(x_k - x_k-1)
+/// r_g = sqrt(abs(dx_g) / sum abs(dx_g)) (y_g - target(x_g)),        r_p = sqrt(1 / points) (y(x_p) - y_p)
 /// ```
 pub fn misfits(model: &Model, solution: &Solution, metric: &Metric) -> Option<MetricParts> {
-    let Reduction::Rms(target) = &metric.take else { return None };
+    metric.take.target()?;
     curves(solution, metric).and_then(|(y, x)| take(metric, &y, &x))?;
-    fn parts<T: Real>((y, x): &Curves<'_, T>, metric: &Metric, target: &[[f64; 2]]) -> Vec<T> {
-        let (weights, way) = weights(metric, y, x);
-        let part = |(k, weight): (usize, T)| {
-            // The root has no derivative where there is no weight.
-            if weight.value() <= 0.0 {
-                return T::zero();
+    fn parts<T: Real>((y, x): &Curves<'_, T>, metric: &Metric) -> Vec<T> {
+        match &metric.take {
+            Reduction::Rms(target) => {
+                let travel = travel(metric, y, x);
+                // The root has no derivative where the abscissa rests.
+                let moving = path_nodes(metric, y, x).filter(|node| node.dx.value() != 0.0);
+                moving.map(|n| (n.dx.abs() / travel).sqrt() * (n.y - on_target(target, n.x))).collect()
             }
-            (weight / way).sqrt() * (y.values[k][0] - on_target(target, abscissa_at(y, x, k)))
-        };
-        weights.into_iter().enumerate().map(part).collect()
+            Reduction::RmsAtPoints(points) => {
+                let left = left_at_points(metric, points, y, x).unwrap_or_default();
+                let weight = T::constant((left.len() as f64).sqrt().recip());
+                left.into_iter().map(|left| weight * left).collect()
+            }
+            Reduction::Least
+            | Reduction::Greatest
+            | Reduction::Range
+            | Reduction::Mean
+            | Reduction::Integral
+            | Reduction::Value(_)
+            | Reduction::Slope(_) => Vec::new(),
+        }
     }
-    MetricParts::of(
-        model,
-        solution,
-        metric,
-        |curves| parts(curves, metric, target),
-        |curves| parts(curves, metric, target),
-    )
+    MetricParts::of(model, solution, metric, |curves| parts(curves, metric), |curves| parts(curves, metric))
 }
 
 /// The greatest value (for `sign` 1) or the least (for -1) of the curve of a metric in each interval between output times; in those beyond
@@ -341,29 +458,59 @@ fn abscissa<C>(metric: &Metric, curve: impl Fn(OutputSource) -> Option<C>) -> Op
 }
 
 /// A curve over time: at each time so many of its value, rate and acceleration.
-struct SampledCurve<'t, T> {
-    times: &'t [f64],
+pub(super) struct SampledCurve<'t, T> {
+    pub(super) times: &'t [f64],
     orders: usize,
-    values: Vec<[T; 3]>,
+    pub(super) values: Vec<[T; 3]>,
+}
+
+/// The polynomial of a curve in one interval.
+pub(super) struct Polynomial<T> {
+    from: f64,
+    length: f64,
+    /// Coefficients in the part of the interval that has passed.
+    c: [T; 6],
+}
+
+impl<T: Real> Polynomial<T> {
+    /// Value and rate at a time.
+    pub(super) fn at(&self, t: T) -> [T; 2] {
+        let (c, h) = (T::constant, self.length);
+        let s = (t - c(self.from)) / c(h);
+        let [c0, c1, c2, c3, c4, c5] = self.c;
+        let value = c0 + s * (c1 + s * (c2 + s * (c3 + s * (c4 + s * c5))));
+        let slope = c1 + s * (c(2.0) * c2 + s * (c(3.0) * c3 + s * (c(4.0) * c4 + s * c(5.0) * c5)));
+        [value, slope / c(h)]
+    }
 }
 
 impl<T: Real> SampledCurve<'_, T> {
-    /// The polynomial of interval k with the values, rates and accelerations that are known at its ends: its coefficients in the
-    /// part of the interval that has passed.
-    fn coefficients(&self, k: usize) -> [T; 6] {
+    /// The number of orders that are known at a time: at a kink the value alone.
+    fn known(&self, k: usize) -> usize {
+        self.values[k][..self.orders].iter().take_while(|x| x.value().is_finite()).count()
+    }
+
+    /// The interval of a time.
+    fn interval(&self, t: f64) -> usize {
+        let after = self.times[..self.values.len()].partition_point(|end| *end <= t);
+        after.clamp(1, self.values.len() - 1) - 1
+    }
+
+    /// The polynomial of interval k with the values, rates and accelerations that are known at its ends.
+    pub(super) fn polynomial(&self, k: usize) -> Polynomial<T> {
+        let length = self.times[k + 1] - self.times[k];
+        Polynomial { from: self.times[k], length, c: self.coefficients(k, length) }
+    }
+
+    fn coefficients(&self, k: usize, h: f64) -> [T; 6] {
         let ([a, b], c) = ([&self.values[k], &self.values[k + 1]], T::constant);
         // p(s) = c0 + c1 s + ... + c5 s^5,  s = (t - t_k) / h,  with y, h y., h^2 y.. at s = 0 and s = 1
-        let (h, zero) = (self.times[k + 1] - self.times[k], c(0.0));
+        let zero = c(0.0);
         // Newton's form on [0, 0, 0, 1, 1, 1], or with fewer ends of each.
         let [a0, a1, a2] = [a[0], a[1] * c(h), a[2] * c(0.5 * h * h)];
         let [b0, b1, b2] = [b[0], b[1] * c(h), b[2] * c(0.5 * h * h)];
-        match self.orders {
-            1 => [a0, b0 - a0, zero, zero, zero, zero],
-            2 => {
-                let rise = b0 - a0;
-                [a0, a1, c(3.0) * rise - c(2.0) * a1 - b1, a1 + b1 - c(2.0) * rise, zero, zero]
-            }
-            _ => {
+        match [self.known(k), self.known(k + 1)] {
+            [3, 3] => {
                 // What is left of value, rate and half the acceleration at s = 1.
                 let p = b0 - a0 - a1 - a2;
                 let q = b1 - a1 - c(2.0) * a2;
@@ -372,39 +519,58 @@ impl<T: Real> SampledCurve<'_, T> {
                 let c4 = c(-15.0) * p + c(7.0) * q - c(2.0) * r;
                 [a0, a1, a2, c3, c4, c(6.0) * p - c(3.0) * q + r]
             }
+            [2 | 3, 2 | 3] => {
+                let rise = b0 - a0;
+                [a0, a1, c(3.0) * rise - c(2.0) * a1 - b1, a1 + b1 - c(2.0) * rise, zero, zero]
+            }
+            // A kink at one end: all that is known at the other.
+            [3, _] => [a0, a1, a2, b0 - a0 - a1 - a2, zero, zero],
+            [2, _] => [a0, a1, b0 - a0 - a1, zero, zero, zero],
+            [_, 3] => {
+                // b0 - b1 u + b2 u^2 + q u^3,  u = 1 - s
+                let q = a0 - b0 + b1 - b2;
+                [a0, b1 - c(2.0) * b2 - c(3.0) * q, b2 + c(3.0) * q, -q, zero, zero]
+            }
+            [_, 2] => {
+                let q = a0 - b0 + b1;
+                [a0, b1 - c(2.0) * q, q, zero, zero, zero]
+            }
+            [_, _] => [a0, b0 - a0, zero, zero, zero, zero],
         }
     }
 
     /// Value and rate at a time of interval k.
     fn at(&self, k: usize, t: T) -> [T; 2] {
-        let c = T::constant;
-        let h = self.times[k + 1] - self.times[k];
-        let s = (t - c(self.times[k])) / c(h);
-        let [c0, c1, c2, c3, c4, c5] = self.coefficients(k);
-        let value = c0 + s * (c1 + s * (c2 + s * (c3 + s * (c4 + s * c5))));
-        let slope = c1 + s * (c(2.0) * c2 + s * (c(3.0) * c3 + s * (c(4.0) * c4 + s * c(5.0) * c5)));
-        [value, slope / c(h)]
+        self.polynomial(k).at(t)
+    }
+
+    /// The times at which interval k begins and ends, and between them those where the curve turns.
+    pub(super) fn monotone(times: &[f64], curve: Option<&Self>, k: usize) -> Vec<f64> {
+        let mut ends = vec![times[k]];
+        ends.extend(curve.into_iter().flat_map(|curve| curve.turns(k)));
+        ends.push(times[k + 1]);
+        ends
     }
 
     /// The times inside interval k where the curve turns.
     fn turns(&self, k: usize) -> Vec<f64> {
-        let c = self.coefficients(k).map(|c| c.value());
+        let Polynomial { from, length, c } = self.polynomial(k);
+        let c = c.map(|c| c.value());
         let rate = [c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4], 5.0 * c[5]];
-        let (from, h) = (self.times[k], self.times[k + 1] - self.times[k]);
-        roots(&rate).into_iter().map(|s| from + s * h).collect()
+        roots(&rate).into_iter().map(|s| from + s * length).collect()
     }
 
     /// What the polynomial of interval k nowhere exceeds, times `sign`: the greatest of its coefficients in Bernstein's form.
     fn bound(&self, k: usize, sign: f64) -> f64 {
         let h = self.times[k + 1] - self.times[k];
         let [a, b] = [k, k + 1].map(|k| self.values[k].map(|x| x.value()));
-        let coefficients = match self.orders {
-            1 => [a[0], b[0], a[0], b[0], a[0], b[0]],
-            2 => {
+        let coefficients = match [self.known(k), self.known(k + 1)] {
+            [1, 1] => [a[0], b[0], a[0], b[0], a[0], b[0]],
+            [2, 2] => {
                 let [inner, outer] = [a[0] + h * a[1] / 3.0, b[0] - h * b[1] / 3.0];
                 [a[0], inner, inner, outer, outer, b[0]]
             }
-            _ => [
+            [3, 3] => [
                 a[0],
                 a[0] + h * a[1] / 5.0,
                 a[0] + h * (2.0 * a[1] / 5.0 + h * a[2] / 20.0),
@@ -412,6 +578,8 @@ impl<T: Real> SampledCurve<'_, T> {
                 b[0] - h * b[1] / 5.0,
                 b[0],
             ],
+            // Beside a kink or a gap nothing is said.
+            [_, _] => return f64::INFINITY,
         };
         coefficients.into_iter().fold(f64::NEG_INFINITY, |most, c| most.max(sign * c))
     }
@@ -423,7 +591,15 @@ impl<T: Real> SampledCurve<'_, T> {
         if (t - end).abs() < THERE * (high - low) { end } else { t.clamp(low, high) }
     }
 
-    fn number(&self, k: usize, t: f64) -> f64 {
+    /// A time of interval k at which the curve is `at`, with the derivative of one step of Newton's method.
+    fn moved(&self, k: usize, t: f64, at: f64) -> T {
+        let t = T::constant(t);
+        let [value, rate] = self.at(k, t);
+        // x(t, b) = at:  t_b = -x_b / x.,  which the dual of one Newton step t - (x - at) / x. carries
+        t - (value - T::constant(at)) / rate
+    }
+
+    pub(super) fn number(&self, k: usize, t: f64) -> f64 {
         self.at(k, T::constant(t))[0].value()
     }
 }
@@ -473,15 +649,21 @@ struct WidePolynomial {
 impl WidePolynomial {
     /// `None` where nothing is known beside the interval.
     fn new(y: &SampledCurve<'_, f64>, k: usize) -> Option<Self> {
-        let known = |i: &usize| y.values[*i][..y.orders].iter().all(|x| x.is_finite());
+        let last = y.values.len() - 1;
+        let h = y.times[k + 1] - y.times[k];
+        // Beyond a kink or a jump (a pair of times) the curve is another.
+        let smooth = |end: usize| y.known(end) == y.orders;
+        let goes_on = |end: usize, other: usize| {
+            smooth(end) && y.known(other) > 0 && (y.times[end] - y.times[other]).abs() > THERE * h
+        };
         // The interval's own ends first.
-        let beside = [k.checked_sub(1), Some(k + 2).filter(|i| *i < y.values.len())];
-        let at: Vec<usize> =
-            [k, k + 1].into_iter().chain(beside.into_iter().flatten().filter(known)).collect();
-        if at.len() == 2 || !(known(&k) && known(&(k + 1))) {
+        let before = k.checked_sub(1).filter(|other| goes_on(k, *other));
+        let after = Some(k + 2).filter(|other| *other <= last && goes_on(k + 1, *other));
+        let at: Vec<usize> = [k, k + 1].into_iter().chain(before).chain(after).collect();
+        if at.len() == 2 || !(y.known(k) > 0 && y.known(k + 1) > 0) {
             return None;
         }
-        let nodes: Vec<usize> = at.iter().flat_map(|i| std::iter::repeat_n(*i, y.orders)).collect();
+        let nodes: Vec<usize> = at.iter().flat_map(|i| std::iter::repeat_n(*i, y.known(*i))).collect();
         let mut c: Vec<f64> = nodes.iter().map(|i| y.values[*i][0]).collect();
         for order in 1..c.len() {
             for i in (order..c.len()).rev() {
@@ -504,6 +686,22 @@ impl WidePolynomial {
     }
 }
 
+/// Value and rate of the polynomial through more times less those of the interval's own.
+fn apart(curve: &SampledCurve<'_, f64>, k: usize, t: f64) -> Option<[f64; 2]> {
+    let (own, wide) = (curve.at(k, t), WidePolynomial::new(curve, k)?.at(t));
+    Some([wide[0] - own[0], wide[1] - own[1]])
+}
+
+/// How far the value may be off at a time of interval k that the abscissa decides about: its error moves the time, and that the value.
+fn time_error(y: &SampledCurve<'_, f64>, x: &Option<SampledCurve<'_, f64>>, k: usize, t: f64) -> Option<f64> {
+    let late = match x {
+        Some(x) => (apart(x, k, t)?[0] / x.at(k, t)[1]).abs(),
+        None => 0.0,
+    };
+    // abs(dy) + abs(dx / x.) abs(y.)
+    Some(apart(y, k, t)?[0].abs() + late * y.at(k, t)[1].abs())
+}
+
 /// How far the metric may be from that of the curve itself, because that is interpolated between output times. The curve is taken
 /// for what the polynomials through more output times ([`WidePolynomial`]) make of it.
 fn interpolation_error(
@@ -513,25 +711,8 @@ fn interpolation_error(
     value: f64,
     time: Option<f64>,
 ) -> Option<f64> {
-    let interval = |t: f64| {
-        let after = y.times[..y.values.len()].partition_point(|end| *end <= t);
-        (y.values.len() > 1).then(|| after.clamp(1, y.values.len() - 1) - 1)
-    };
-    // Of value and rate at a time, by how much they differ.
-    let apart = |curve: &SampledCurve<'_, f64>, k: usize, t: f64| {
-        let (own, wide) = (curve.at(k, t), WidePolynomial::new(curve, k)?.at(t));
-        Some([wide[0] - own[0], wide[1] - own[1]])
-    };
-    // Where the abscissa decides about the time, its error moves the time, and that the value.
-    let at_place = |t: f64| {
-        let Some(k) = interval(t) else { return Some(0.0) };
-        let late = match x {
-            Some(x) => (apart(x, k, t)?[0] / x.at(k, t)[1]).abs(),
-            None => 0.0,
-        };
-        // abs(dy) + abs(dx / x.) abs(y.)
-        Some(apart(y, k, t)?[0].abs() + late * y.at(k, t)[1].abs())
-    };
+    let interval = |t: f64| (y.values.len() > 1).then(|| y.interval(t));
+    let at_place = |t: f64| interval(t).map_or(Some(0.0), |k| time_error(y, x, k, t));
     match &metric.take {
         Reduction::Value(_) => at_place(time?),
         Reduction::Slope(_) => {
@@ -579,7 +760,16 @@ fn interpolation_error(
             };
             Some(of(Reduction::Greatest)? + of(Reduction::Least)?)
         }
-        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => None,
+        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => {
+            integral_error(metric, y, x, value, &integral_errors(metric, y, x, value))
+        }
+        Reduction::RmsAtPoints(points) => {
+            // The root mean square of the errors at the points
+            let counting = points.iter().filter(|p| within_window(metric, p[0]));
+            let errors = counting.map(|p| crossings(y, x, p[0]).next().and_then(|(_, t)| at_place(t)));
+            let errors: Vec<f64> = errors.collect::<Option<_>>()?;
+            Some((errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt())
+        }
     }
 }
 
@@ -619,13 +809,22 @@ fn take<T: Real>(
             Some((y.at(k, t)[1] / by, Some(y.within(k, t))))
         }
         Reduction::Mean => mean(metric, y, x, |_, value| value).map(|value| (value, None)),
-        Reduction::Integral => integral(metric, y, x).map(|value| (value, None)),
+        Reduction::Integral => {
+            // sum y_g dx_g;  what the abscissa goes back counts down
+            let parts = path_nodes(metric, y, x).map(|node| node.y * node.dx);
+            parts.reduce(|sum, part| sum + part).map(|value| (value, None))
+        }
         Reduction::Rms(target) => {
             let square = |at: T, value: T| {
                 let left = value - on_target(target, at);
                 left * left
             };
             mean(metric, y, x, square).map(|value| (value.sqrt(), None))
+        }
+        Reduction::RmsAtPoints(points) => {
+            let left = left_at_points(metric, points, y, x)?;
+            let squares = left.iter().fold(T::zero(), |sum, left| sum + *left * *left);
+            Some(((squares * T::constant((left.len() as f64).recip())).sqrt(), None))
         }
     }
 }
@@ -664,7 +863,8 @@ fn take_at_single_time<T: Real>(
         | Reduction::Range
         | Reduction::Mean
         | Reduction::Integral
-        | Reduction::Rms(_) => None,
+        | Reduction::Rms(_)
+        | Reduction::RmsAtPoints(_) => None,
     }
 }
 
@@ -678,43 +878,57 @@ fn crossings<'c, T: Real>(
     x: &'c Option<SampledCurve<'_, T>>,
     at: f64,
 ) -> impl Iterator<Item = (usize, T)> + 'c {
-    let distances = x.iter().flat_map(|x| &x.values).map(move |x| (x[0].value() - at).abs());
-    let span = distances.fold(0.0, f64::max);
+    let x = x.as_ref();
+    let distances = x.into_iter().flat_map(|x| &x.values).map(move |x| (x[0].value() - at).abs());
+    let near = THERE * distances.fold(0.0, f64::max);
     let intervals = 0..y.values.len().saturating_sub(1);
-    intervals.filter_map(move |k| Some((k, crossing(y.times, x.as_ref(), k, at, THERE * span)?)))
+    intervals.flat_map(move |k| {
+        let there = |end: usize| x.is_some_and(|x| (x.values[end][0].value() - at).abs() <= near);
+        let located = |t: f64| x.map(|x| x.moved(k, t, at));
+        if let Some(end) = [k, k + 1].into_iter().find(|end| there(*end)) {
+            return Vec::from_iter(located(y.times[end]).map(|t| (k, t)));
+        }
+        let ends = SampledCurve::monotone(y.times, x, k);
+        let parts = ends.windows(2);
+        parts.filter_map(|part| Some((k, crossing(x, k, [part[0], part[1]], at)?))).collect()
+    })
 }
 
-/// The time at which the abscissa is `at` in interval k; none where it is not.
-fn crossing<T: Real>(
-    times: &[f64],
+/// The time at which the abscissa is `at` in a part of interval k where it rises or falls all along, which moves with the design; none
+/// where it is not.
+pub(super) fn crossing<T: Real>(
     x: Option<&SampledCurve<'_, T>>,
     k: usize,
+    [mut low, mut high]: [f64; 2],
     at: f64,
-    near: f64,
 ) -> Option<T> {
-    let Some(x) = x else {
-        return (times[k] <= at && at <= times[k + 1]).then(|| T::constant(at));
-    };
-    let miss = |k: usize| x.values[k][0].value() - at;
-    let there = |k: usize| miss(k).abs() <= near;
-    if !(there(k) || there(k + 1) || miss(k) * miss(k + 1) <= 0.0) {
+    let Some(x) = x else { return (low <= at && at <= high).then(|| T::constant(at)) };
+    let miss = |t: f64| x.number(k, t) - at;
+    if !(miss(low) * miss(high) <= 0.0) {
         return None;
     }
-    let [mut low, mut high] = match [there(k), there(k + 1)] {
-        [true, _] => [times[k]; 2],
-        [false, true] => [times[k + 1]; 2],
-        _ => [times[k], times[k + 1]],
-    };
-    let rising = miss(k + 1) > miss(k);
+    let rising = miss(high) > miss(low);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        if (x.number(k, middle) < at) == rising { low = middle } else { high = middle }
+        if (miss(middle) < 0.0) == rising { low = middle } else { high = middle }
     }
-    // One step of Newton's method more gives the derivative of the time.
-    let t = T::constant(0.5 * (low + high));
-    let [value, rate] = x.at(k, t);
-    // x(t, b) = at:  t_b = -x_b / x.,  which the dual of one Newton step t - (x - at) / x. carries
-    Some(t - (value - T::constant(at)) / rate)
+    Some(x.moved(k, 0.5 * (low + high), at))
+}
+
+/// What is left beyond a target at each of its points within the window, where the abscissa first is there; `None` where there is no such
+/// point, or one that is not reached.
+fn left_at_points<T: Real>(
+    metric: &Metric,
+    points: &[[f64; 2]],
+    y: &SampledCurve<'_, T>,
+    x: &Option<SampledCurve<'_, T>>,
+) -> Option<Vec<T>> {
+    let left = |[at, target]: &[f64; 2]| {
+        let (k, t) = crossings(y, x, *at).next()?;
+        Some(y.at(k, t)[0] - T::constant(*target))
+    };
+    let counting = points.iter().filter(|p| within_window(metric, p[0]));
+    counting.map(left).collect::<Option<Vec<T>>>().filter(|left| !left.is_empty())
 }
 
 /// Whether this part of the curve counts.
@@ -769,56 +983,20 @@ fn extreme<T: Real>(
     best
 }
 
-/// The mean of a function of abscissa and value over the output times in the window, by the trapezoidal rule: over time, or
-/// over the way of the abscissa to and fro.
+/// The mean of a function of abscissa and value over the travel of the abscissa, to and fro, within the window.
 fn mean<T: Real>(
     metric: &Metric,
     y: &SampledCurve<'_, T>,
     x: &Option<SampledCurve<'_, T>>,
     of: impl Fn(T, T) -> T,
 ) -> Option<T> {
-    // sum w_k f_k  over  sum abs(x_k - x_k-1)
-    let (weights, way) = weights(metric, y, x);
-    let mut sum = T::zero();
-    for (k, weight) in weights.into_iter().enumerate() {
-        if weight.value() > 0.0 {
-            sum += of(abscissa_at(y, x, k), y.values[k][0]) * weight;
-        }
-    }
-    (way.value() > 0.0).then(|| sum / way)
-}
-
-/// The integral over the output times in the window, by the trapezoidal rule; what the abscissa goes back counts down.
-fn integral<T: Real>(metric: &Metric, y: &SampledCurve<'_, T>, x: &Option<SampledCurve<'_, T>>) -> Option<T> {
-    let counts = |k: usize| within_window(metric, abscissa_at(y, x, k).value());
-    let steps = (1..y.values.len()).filter(|&k| counts(k - 1) && counts(k));
-    // (y_k + y_k-1) (x_k - x_k-1) / 2
-    let part = |k: usize| {
-        let step = abscissa_at(y, x, k) - abscissa_at(y, x, k - 1);
-        (y.values[k][0] + y.values[k - 1][0]) * step * T::constant(0.5)
+    // sum f_g abs(dx_g)  over  sum abs(dx_g)
+    let add = |[sum, travel]: [T; 2], node: PathNode<T>| {
+        let travelled = node.dx.abs();
+        [sum + of(node.x, node.y) * travelled, travel + travelled]
     };
-    steps.map(part).reduce(|sum, part| sum + part)
-}
-
-/// The weight of each output time in a mean over the way of the abscissa, and the sum of all of them: half of the way on either side of it,
-/// in the window.
-fn weights<T: Real>(
-    metric: &Metric,
-    y: &SampledCurve<'_, T>,
-    x: &Option<SampledCurve<'_, T>>,
-) -> (Vec<T>, T) {
-    let counts = |k: usize| within_window(metric, abscissa_at(y, x, k).value());
-    let (mut weights, mut way) = (vec![T::zero(); y.values.len()], T::zero());
-    for k in 1..y.values.len() {
-        if counts(k - 1) && counts(k) {
-            let step = (abscissa_at(y, x, k) - abscissa_at(y, x, k - 1)).abs();
-            let half = step * T::constant(0.5);
-            weights[k - 1] += half;
-            weights[k] += half;
-            way += step;
-        }
-    }
-    (weights, way)
+    let [sum, travel] = path_nodes(metric, y, x).fold([T::zero(); 2], add);
+    (travel.value() > 0.0).then(|| sum / travel)
 }
 
 /// The abscissa at an output time.

@@ -6,6 +6,7 @@ mod analysis;
 mod between;
 mod designs;
 pub(crate) mod metric;
+mod quadrature;
 mod request;
 mod sink;
 mod solution;

@@ -76,9 +76,7 @@ impl Analysis<'_> {
         let design = self.prepare(run.design, run.scope);
         let first = self.walk(&design, rows, &mut *run.progress, &mut solution, &mut each);
         each(first, &solution);
-        if self.has_times_between() {
-            self.solve_between(&design, &mut *run.progress, &mut solution);
-        }
+        self.solve_between(&design, &mut *run.progress, &mut solution);
         solution
     }
 

@@ -144,12 +144,12 @@ impl Checker<'_> {
         };
         let x = |c: &Self| over.map_or(Dimension::NUMBER, |over| c.model.dimension(over));
         let (x, y) = (x(self), self.model.dimension(of));
+        let points = |target: &[[f64; 2]]| target.iter().map(|p| [si(x, p[0]), si(y, p[1])]).collect();
         let take = match &m.take {
             Reduction::Value(at) => Reduction::Value(si(x, *at)),
             Reduction::Slope(at) => Reduction::Slope(si(x, *at)),
-            Reduction::Rms(target) => {
-                Reduction::Rms(target.iter().map(|p| [si(x, p[0]), si(y, p[1])]).collect())
-            }
+            Reduction::Rms(target) => Reduction::Rms(points(target)),
+            Reduction::RmsAtPoints(target) => Reduction::RmsAtPoints(points(target)),
             take => take.clone(),
         };
         let rises = |points: &mut dyn Iterator<Item = f64>| {
@@ -163,10 +163,16 @@ impl Checker<'_> {
             self.fault("HP0234", here.key("window"), message).help("give the lower and the upper end");
             return None;
         }
-        if let Reduction::Rms(target) = &take
+        if let Some(target) = take.target()
             && !(rises(&mut target.iter().map(|p| p[0])) && target.iter().all(|p| p[1].is_finite()))
         {
             let message = format!("the target of metric `{}` does not go on from point to point", m.name);
+            self.fault("HP0234", here.key("target"), message)
+                .help("list points `[abscissa, value]` in the order of their abscissa");
+            return None;
+        }
+        if take == Reduction::RmsAtPoints(Vec::new()) {
+            let message = format!("the target of metric `{}` has no points", m.name);
             self.fault("HP0234", here.key("target"), message)
                 .help("list points `[abscissa, value]` in the order of their abscissa");
             return None;

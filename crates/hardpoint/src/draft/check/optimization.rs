@@ -6,9 +6,7 @@ use crate::design::Effect;
 use crate::draft::{
     ChangeDraft, GoalDraft, LimitDraft, LimitedDraft, Locus, OptimizationDraft, Section, VariableDraft,
 };
-use crate::model::{
-    Dimension, Goal, JointId, Limit, Limited, Optimization, Reduction, Source, Target, VariableId,
-};
+use crate::model::{Dimension, Goal, JointId, Limit, Limited, Optimization, Source, Target, VariableId};
 
 use super::formulas::AXES;
 use super::{Checker, Here, LISTED_NAMES};
@@ -178,7 +176,7 @@ impl Checker<'_> {
         }
         let metric = self.metric(&g.metric, here.key("metric"))?;
         let m = &self.model.metrics[metric];
-        if let (Reduction::Rms(_), Some(_)) = (&m.take, g.target) {
+        if m.take.target().is_some() && g.target.is_some() {
             let message =
                 format!("goal `{}` cannot have a target: its metric `{}` is an `rms`", g.name, g.metric);
             let help =

@@ -266,7 +266,7 @@ impl<'m> Problem<'m> {
         let (model, solution) = (self.motions.model(taken.motion), &found.solutions[taken.motion]);
         let peaks = |sign: f64| parts(peaks(model, solution, metric, sign), sign);
         match (&metric.take, goal.target) {
-            (Reduction::Rms(_), _) => {
+            (Reduction::Rms(_) | Reduction::RmsAtPoints(_), _) => {
                 let Rows { values, d } = parts(misfits(model, solution, metric), 1.0);
                 point.misfits.values.extend(values);
                 point.misfits.d.extend(d);
@@ -481,10 +481,12 @@ mod tests {
         }
     }
 
-    /// All numbers of a point with their derivatives.
+    /// All numbers of a point with their derivatives; of the misfits the sum of their squares, since their nodes are where the design's
+    /// own path turns.
     fn numbers(point: &Point) -> Vec<(f64, Vec<f64>)> {
         let rows = |rows: &Rows| rows.values.iter().copied().zip(rows.d.iter().cloned()).collect::<Vec<_>>();
-        let mut all = rows(&point.misfits);
+        let squares = Point { misfits: point.misfits.clone(), ..Point::default() };
+        let mut all = vec![(squares.misfit().powi(2), squares.gradient(point.misfits.d[0].len()))];
         all.extend(rows(&point.plain));
         all.extend(point.peaks.iter().flat_map(rows));
         all.extend(point.limits.iter().map(|l| (l.exceeds, l.d.clone())));

@@ -10,6 +10,7 @@ use basin::{
     Stepper,
 };
 
+use crate::linalg::folded_rows;
 use crate::study::evaluation::Cost;
 use crate::study::trust_region::{Recent, TrustRegion, next};
 
@@ -86,21 +87,29 @@ pub(super) fn least_squares<'p>(
     let spans = memory.spans();
     let size = point.misfits.values.iter().map(|r| r * r).sum::<f64>().sqrt();
     let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
-    let rows = point.misfits.values.len();
+    let same = spans.clone();
     let residuals = move |x: &[f64]| {
-        memory.at(x, |found| match found {
-            Ok(point) => point.misfits.values.iter().map(|r| scale * r).collect(),
-            Err(_) => vec![f64::NAN; rows],
-        })
+        let rows = folded_misfits(memory, &spans, scale, x);
+        rows.iter().map(|row| row[x.len()]).collect()
     };
     let derivatives = move |x: &[f64]| {
-        memory.at(x, |found| {
-            DenseMatrix::from_fn(rows, x.len(), |row, v| {
-                found.as_ref().map_or(f64::NAN, |point| scale * spans[v] * point.misfits.d[row][v])
-            })
-        })
+        let rows = folded_misfits(memory, &same, scale, x);
+        DenseMatrix::from_fn(rows.len(), x.len(), |row, v| rows[row][v])
     };
     TrustRegion::new(start.to_vec(), [0.0, 1.0], Box::new(residuals), Box::new(derivatives))
+}
+
+/// The misfits of a design after their derivatives, `[J r]`, as one row for every variable and one more with the same squares and
+/// products: the number of misfits themselves depends on the times at which a design was solved.
+fn folded_misfits(memory: &Memory<'_>, spans: &[f64], scale: f64, x: &[f64]) -> Vec<Vec<f64>> {
+    memory.at(x, |found| {
+        let Ok(point) = found else { return vec![vec![f64::NAN; x.len() + 1]; x.len() + 1] };
+        let Rows { values, d } = &point.misfits;
+        let by = |v: usize| d.iter().map(|d| scale * spans[v] * d[v]).collect();
+        let mut columns: Vec<Vec<f64>> = (0..x.len()).map(by).collect();
+        columns.push(values.iter().map(|r| scale * r).collect());
+        folded_rows(columns)
+    })
 }
 
 impl Solver for TrustRegion<'_> {
