@@ -109,7 +109,7 @@ mod tests {
         table.text("-x").unwrap();
         table.numbers([1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.1, 1e-7, 2.5e20]).unwrap();
         table.end_row().unwrap();
-        assert_eq!(String::from_utf8(table.end().unwrap()).unwrap(), "'-x,1.0,,,,-0.1,1e-7,2.5e20\n");
+        assert_eq!(String::from_utf8(table.end().unwrap()).unwrap(), "'-x,1.0,,,,-0.1,1e-7,2.5e+20\n");
     }
 
     #[test]
