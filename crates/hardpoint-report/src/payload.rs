@@ -297,8 +297,15 @@ impl Detail {
 
 /// Of so many output times that are shown, differences are drawn at each of these, rounded, so that the marks are nearest to the number
 /// that is wanted.
-fn stride_of_marks(steps: usize) -> usize {
+pub fn stride_of_marks(steps: usize) -> usize {
     ((steps + MARKS / 2) / MARKS).max(1)
+}
+
+/// The same among the steps that are shown, each of `shown` that were kept, where differences are known at each of `known` of those.
+fn shown_stride_of_marks(known: usize, shown: usize, steps: usize) -> usize {
+    // The first step that is shown and known, and each of so many from there
+    let common = (1..=known).find(|n| n * shown % known == 0).unwrap_or(known);
+    stride_of_marks(steps).div_ceil(common) * common
 }
 
 fn file_name(file: &str) -> String {
@@ -566,7 +573,9 @@ impl<'a> Compose<'a> {
         let mut list = Vec::new();
         for (m, output) in measured.outputs.iter().enumerate() {
             let overlay = difference.zip(comparison.as_ref()).map(|(d, comparison)| {
-                (d, comparison.of_output(m), move |k: usize, order: usize| d.outputs[k * columns + m][order])
+                (d, comparison.of_output(m), move |k: usize, order: usize| {
+                    d.outputs[k / d.stride * columns + m][order]
+                })
             });
             let exact = |k: usize, order: usize| measured.derivative(k, VariableId(b), m, order);
             list.push(self.sensitivity(
@@ -585,7 +594,7 @@ impl<'a> Compose<'a> {
             let overlay = difference.zip(comparison.as_ref()).filter(|_| self.detail.body_differences);
             let overlay = overlay.map(|(d, comparison)| {
                 (d, comparison.of_origin(BodyId(body)), move |k: usize, order: usize| {
-                    of(&d.bodies[k * bodies + body], order)
+                    of(&d.bodies[k / d.stride * bodies + body], order)
                 })
             });
             let exact = |k: usize, order: usize| match order {
@@ -610,7 +619,7 @@ impl<'a> Compose<'a> {
         let shown = self.derivatives_shown(b, kind);
         let [value, rate, accel] = self.curves(orders, |k, order| shown(order, exact(k, order)));
         let fd = overlay.map(|(d, worst, difference)| {
-            let stride = stride_of_marks(self.steps.len());
+            let stride = shown_stride_of_marks(d.stride, self.detail.stride, self.steps.len());
             let marks = |order: usize| {
                 let of = |&k: &usize| shown(order, difference(k, order));
                 let steps = self.steps.iter().step_by(stride).filter(|_| order < orders);
@@ -665,6 +674,18 @@ mod tests {
             let marks = steps.div_ceil(stride_of_marks(steps));
             assert!(marks >= steps.min(2 * MARKS / 3) && 2 * marks <= 3 * MARKS, "{marks} of {steps}");
         }
+    }
+
+    #[test]
+    fn marks_are_where_differences_are_known() {
+        for (known, shown, steps) in
+            [(1, 1, 501), (13, 1, 501), (13, 2, 251), (13, 4, 126), (7, 3, 90), (1, 5, 9)]
+        {
+            let stride = shown_stride_of_marks(known, shown, steps);
+            assert_eq!(stride * shown % known, 0);
+            assert!(stride >= stride_of_marks(steps), "{stride}");
+        }
+        assert_eq!(shown_stride_of_marks(13, 1, 501), 13);
     }
 
     #[test]

@@ -180,10 +180,19 @@ impl<'m> Analysis<'m> {
 
     /// The same analysis at other output times, of which the first is its own: what is planned and recorded serves for these as well.
     pub(super) fn at_times(&self, times: Vec<f64>) -> Analysis<'static> {
-        let model = Arc::new(Model { times, ..self.model().clone() });
+        self.with_model(Model { times, ..self.model().clone() })
+    }
+
+    /// The same, for who asks for no metric.
+    pub(crate) fn without_metrics(&self, times: Vec<f64>) -> Analysis<'static> {
+        self.with_model(Model { times, metrics: Vec::new(), ..self.model().clone() })
+    }
+
+    /// Of a model that differs in what is asked for alone.
+    fn with_model(&self, model: Model) -> Analysis<'static> {
         Analysis {
             topology: self.topology.clone(),
-            design_map: DesignMap::of(model),
+            design_map: DesignMap::of(Arc::new(model)),
             opens: self.opens.clone(),
             between: Arc::default(),
             programs: self.programs.clone(),

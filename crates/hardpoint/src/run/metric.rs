@@ -3,7 +3,7 @@
 //! A metric is written once over any number; its derivatives are the same lines run on duals. Between output times, curves
 //! are the polynomials that have their values, rates and accelerations at both ends.
 
-use super::quadrature::{PathNode, Stretch, path_nodes, path_stretches};
+use super::quadrature::{NODES, PathNode, Stretch, path_nodes, path_stretches};
 use super::solution::Solution;
 use crate::measure::Measured;
 use crate::model::{Metric, Model, OutputSource, Reduction, VariableId, on_target};
@@ -210,9 +210,9 @@ fn coarse_middles(
     tolerance: f64,
 ) -> Vec<f64> {
     let Some((value, _)) = take(metric, y, x).filter(|_| y.orders > 1) else { return Vec::new() };
-    let scale = if metric.take == Reduction::Integral { travel(metric, y, x) } else { 1.0 };
-    let errors = integral_errors(metric, y, x, value);
-    if integral_error(metric, y, x, value, &errors).is_some_and(|error| error <= tolerance * scale) {
+    let IntegralErrors { of: errors, travel } = integral_errors(metric, y, x, value);
+    let scale = if metric.take == Reduction::Integral { travel } else { 1.0 };
+    if integral_error(metric, value, &errors, travel).is_some_and(|error| error <= tolerance * scale) {
         return Vec::new();
     }
     // Where too little is known to say, it may be off.
@@ -226,14 +226,21 @@ fn coarse_middles(
 /// of one with a kink the one where that is.
 const COARSE: f64 = 1.0 / 64.0;
 
+/// What parts of the path contribute to the error of an integral; `None` where too little is known.
+struct IntegralErrors {
+    of: Vec<(Stretch<f64>, Option<f64>)>,
+    /// Of the abscissa within the window, to and fro.
+    travel: f64,
+}
+
 /// The contribution of each part of the path to the error of an integral: the difference between the polynomials through more times
-/// ([`WidePolynomial`]) and the interval's own; `None` where too little is known.
+/// ([`WidePolynomial`]) and the interval's own.
 fn integral_errors(
     metric: &Metric,
     y: &SampledCurve<'_, f64>,
     x: &Option<SampledCurve<'_, f64>>,
     value: f64,
-) -> Vec<(Stretch<f64>, Option<f64>)> {
+) -> IntegralErrors {
     // What is integrated, less its mean: an error of the travel counts for that much less.
     let integrand = |at: f64, y: f64| match &metric.take {
         Reduction::Mean => y - value,
@@ -246,12 +253,15 @@ fn integral_errors(
         | Reduction::Value(_)
         | Reduction::Slope(_) => y,
     };
-    let error = |stretch: &Stretch<f64>| {
+    let mut travel = 0.0;
+    let mut error = |stretch: &Stretch<f64>| {
         let k = stretch.k;
+        let nodes: [PathNode<f64>; NODES] = stretch.nodes(y, x);
+        travel += nodes.iter().map(|node| node.dx.abs()).sum::<f64>();
         let wide_y = WidePolynomial::new(y, k)?;
         let wide_x = x.as_ref().map_or(Some(None), |x| WidePolynomial::new(x, k).map(Some))?;
         let along = |t: f64| wide_x.as_ref().map_or([t, 1.0], |x| x.at(t));
-        let apart = stretch.nodes(y, x).map(|node| {
+        let apart = nodes.iter().map(|node| {
             let [at, rate] = along(node.t);
             integrand(at, wide_y.at(node.t)[0]) * rate * node.dt - integrand(node.x, node.y) * node.dx
         });
@@ -263,23 +273,23 @@ fn integral_errors(
         Some(apart.sum::<f64>().abs() + moved.sum::<f64>())
     };
     let stretches = path_stretches(metric, y, x);
-    stretches.into_iter().map(|stretch| (stretch, error(&stretch))).collect()
+    let of = stretches.into_iter().map(|stretch| (stretch, error(&stretch))).collect();
+    IntegralErrors { of, travel }
 }
 
 /// The error of an integral over the path from the contributions to it.
 fn integral_error(
     metric: &Metric,
-    y: &SampledCurve<'_, f64>,
-    x: &Option<SampledCurve<'_, f64>>,
     value: f64,
     errors: &[(Stretch<f64>, Option<f64>)],
+    travel: f64,
 ) -> Option<f64> {
     let sum: f64 = errors.iter().map(|(_, error)| *error).sum::<Option<f64>>()?;
-    let mean = || sum / travel(metric, y, x);
+    let mean = sum / travel;
     Some(match metric.take {
-        Reduction::Mean => mean(),
+        Reduction::Mean => mean,
         // sqrt(rms^2 + error of the mean square) - rms
-        Reduction::Rms(_) => (value * value + mean()).sqrt() - value,
+        Reduction::Rms(_) => (value * value + mean).sqrt() - value,
         Reduction::Least
         | Reduction::Greatest
         | Reduction::Range
@@ -604,15 +614,23 @@ impl<T: Real> SampledCurve<'_, T> {
     }
 }
 
+/// Binomial coefficients C(n, k).
+const CHOOSE: [[f64; 5]; 5] = [
+    [1.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0, 0.0, 0.0],
+    [1.0, 2.0, 1.0, 0.0, 0.0],
+    [1.0, 3.0, 3.0, 1.0, 0.0],
+    [1.0, 4.0, 6.0, 4.0, 1.0],
+];
+
 /// Where a polynomial, of degree 4 at most, changes its sign between 0 and 1. Between the places where its derivative does, it
 /// does so once at most.
 fn roots(c: &[f64]) -> Vec<f64> {
     let value = |s: f64| c.iter().rev().fold(0.0, |sum, c| sum * s + c);
     // In Bernstein's form the coefficients enclose the polynomial.
     let n = c.len() - 1;
-    let choose = |n: usize, k: usize| (0..k).fold(1.0, |x, i| x * (n - i) as f64 / (i + 1) as f64);
     // b_i = sum_{j<=i} C(i,j) / C(n,j) c_j                                                                (31)
-    let enclosing = (0..=n).map(|i| (0..=i).map(|j| choose(i, j) / choose(n, j) * c[j]).sum::<f64>());
+    let enclosing = (0..=n).map(|i| (0..=i).map(|j| CHOOSE[i][j] / CHOOSE[n][j] * c[j]).sum::<f64>());
     let [low, high] = enclosing.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], b| [l.min(b), h.max(b)]);
     if n == 0 || !(low < 0.0 && high > 0.0) {
         return Vec::new();
@@ -640,11 +658,16 @@ fn roots(c: &[f64]) -> Vec<f64> {
 /// The polynomial with what is known at the ends of an interval and at the next output time to either side, in Newton's form:
 /// twice the degree of the interval's own. How far the two are apart is how far that may be from the curve.
 struct WidePolynomial {
+    /// How many numbers are known.
+    count: usize,
     /// Each time as often as something is known there.
-    nodes: Vec<f64>,
+    nodes: [f64; MOST_KNOWN],
     /// Divided differences.
-    c: Vec<f64>,
+    c: [f64; MOST_KNOWN],
 }
+
+/// Value, rate and acceleration at four times.
+const MOST_KNOWN: usize = 12;
 
 impl WidePolynomial {
     /// `None` where nothing is known beside the interval.
@@ -656,32 +679,35 @@ impl WidePolynomial {
         let goes_on = |end: usize, other: usize| {
             smooth(end) && y.known(other) > 0 && (y.times[end] - y.times[other]).abs() > THERE * h
         };
-        // The interval's own ends first.
         let before = k.checked_sub(1).filter(|other| goes_on(k, *other));
         let after = Some(k + 2).filter(|other| *other <= last && goes_on(k + 1, *other));
-        let at: Vec<usize> = [k, k + 1].into_iter().chain(before).chain(after).collect();
-        if at.len() == 2 || !(y.known(k) > 0 && y.known(k + 1) > 0) {
+        if before.or(after).is_none() || !(y.known(k) > 0 && y.known(k + 1) > 0) {
             return None;
         }
-        let nodes: Vec<usize> = at.iter().flat_map(|i| std::iter::repeat_n(*i, y.known(*i))).collect();
-        let mut c: Vec<f64> = nodes.iter().map(|i| y.values[*i][0]).collect();
-        for order in 1..c.len() {
-            for i in (order..c.len()).rev() {
-                let (from, to) = (nodes[i - order], nodes[i]);
-                c[i] = if from == to {
+        // The interval's own ends first.
+        let (mut count, mut at) = (0, [0; MOST_KNOWN]);
+        for i in [k, k + 1].into_iter().chain(before).chain(after) {
+            let known = y.known(i);
+            at[count..count + known].fill(i);
+            count += known;
+        }
+        let (nodes, mut c) = (at.map(|i| y.times[i]), at.map(|i| y.values[i][0]));
+        for order in 1..count {
+            for i in (order..count).rev() {
+                c[i] = if at[i - order] == at[i] {
                     // Half the acceleration, or the rate.
-                    y.values[to][order] / order as f64
+                    y.values[at[i]][order] / order as f64
                 } else {
-                    (c[i] - c[i - 1]) / (y.times[to] - y.times[from])
+                    (c[i] - c[i - 1]) / (nodes[i] - nodes[i - order])
                 };
             }
         }
-        Some(Self { nodes: nodes.into_iter().map(|i| y.times[i]).collect(), c })
+        Some(Self { count, nodes, c })
     }
 
     /// Value and rate.
     fn at(&self, t: f64) -> [f64; 2] {
-        let ends = self.nodes.iter().zip(&self.c).rev();
+        let ends = self.nodes[..self.count].iter().zip(&self.c[..self.count]).rev();
         ends.fold([0.0; 2], |[value, rate], (node, c)| [value * (t - node) + c, rate * (t - node) + value])
     }
 }
@@ -761,7 +787,8 @@ fn interpolation_error(
             Some(of(Reduction::Greatest)? + of(Reduction::Least)?)
         }
         Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => {
-            integral_error(metric, y, x, value, &integral_errors(metric, y, x, value))
+            let IntegralErrors { of, travel } = integral_errors(metric, y, x, value);
+            integral_error(metric, value, &of, travel)
         }
         Reduction::RmsAtPoints(points) => {
             // The root mean square of the errors at the points

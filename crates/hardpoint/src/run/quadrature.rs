@@ -8,8 +8,11 @@ use crate::number::Real;
 
 use super::metric::{SampledCurve, crossing};
 
+/// How many nodes there are.
+pub(super) const NODES: usize = 5;
+
 /// Nodes and weights of Gauss's rule on [0, 1]: exact to degree 9, as is `y x.` of two polynomials of degree 5.
-const GAUSS: [[f64; 2]; 5] = [
+const GAUSS: [[f64; 2]; NODES] = [
     [0.046_910_077_030_668_004, 0.118_463_442_528_094_54],
     [0.230_765_344_947_158_45, 0.239_314_335_249_683_23],
     [0.5, 0.284_444_444_444_444_44],
@@ -43,10 +46,10 @@ impl<T: Real> Stretch<T> {
         &self,
         y: &SampledCurve<'_, T>,
         x: &Option<SampledCurve<'_, T>>,
-    ) -> impl Iterator<Item = PathNode<T>> + use<T> {
+    ) -> [PathNode<T>; NODES] {
         let (y, x) = (y.polynomial(self.k), x.as_ref().map(|x| x.polynomial(self.k)));
         let (from, length) = (self.from, self.to - self.from);
-        GAUSS.into_iter().map(move |[s, weight]| {
+        GAUSS.map(|[s, weight]| {
             let (t, dt) = (from + length * T::constant(s), length * T::constant(weight));
             // dx = x. dt
             let (at, dx) = x.as_ref().map_or((t, dt), |x| {

@@ -16,7 +16,7 @@ const NEGLIGIBLE: f64 = 1e-3;
 pub struct StepError {
     /// The step, m, rad, or units of tau.
     pub step: f64,
-    /// Largest deviation over all times, relative as [`Comparison::of`] says; infinite where there is no sensitivity.
+    /// Largest deviation over all times of the difference, relative as [`Comparison::of`] says; infinite where there is no sensitivity.
     pub error: f64,
     /// The quantity: `knuckle acceleration`, `toe rate`, ...
     pub quantity: String,
@@ -240,39 +240,50 @@ impl<'a> Comparing<'a> {
         Self { model, solution, d, magnitude, natural: model.natural_step(d.variable), errors: Vec::new() }
     }
 
+    /// The output times that the difference is of.
+    fn times(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
+        (0..self.solution.motion.len()).step_by(self.d.stride)
+    }
+
     fn bodies(&mut self) {
         let (solution, d) = (self.solution, self.d);
-        let (n, steps) = (solution.motion.bodies, solution.motion.len());
-        // Time by time and body by body, like the difference; nothing where the mechanism cannot follow the variable.
-        let exact = (0..steps).filter_map(|k| solution.sensitivities.at(k, d.variable.0));
+        let n = solution.motion.bodies;
+        // Row by row and body by body, like the difference; nothing where the mechanism cannot follow the variable.
+        let exact = self.times().filter_map(|k| solution.sensitivities.at(k, d.variable.0));
         let exact: Vec<BodySensitivity> = exact.flat_map(|bodies| bodies.iter()).collect();
         for kind in KINDS {
             let of = kind.of;
-            let analytic = |k: usize, i: usize| exact.get(k * n + i).map(of);
+            let analytic = |row: usize, i: usize| exact.get(row * n + i).map(of);
             let largest = exact.iter().map(|s| of(s).norm()).fold(0.0, f64::max);
             let scale = largest.max(self.negligible(kind.dimension, kind.order));
             for i in 1..n {
                 let name = format!("{} {}", self.model.bodies[i].name, kind.name);
-                let deviation =
-                    |k: usize| analytic(k, i).map_or(f64::NAN, |a| (a - of(&d.bodies[k * n + i])).norm());
-                self.push(name, scale, (0..steps).map(deviation));
+                let deviation = |row: usize| {
+                    analytic(row, i).map_or(f64::NAN, |a| (a - of(&d.bodies[row * n + i])).norm())
+                };
+                self.push(name, scale, (0..self.times().len()).map(deviation));
             }
         }
     }
 
     fn outputs(&mut self, undecided: &Undecided) {
-        let (measured, d, steps) = (&self.solution.measured, self.d, self.solution.motion.len());
+        let (measured, d) = (&self.solution.measured, self.d);
         let columns = measured.outputs.len();
         for (m, output) in measured.outputs.iter().enumerate() {
             let compared: Vec<bool> =
-                (0..steps).map(|k| self.is_defined(k, m) && !undecided.at(k, m)).collect();
+                self.times().map(|k| self.is_defined(k, m) && !undecided.at(k, m)).collect();
             for order in 0..output.known.orders {
-                let analytic = |k: usize| measured.derivative(k, d.variable, m, order);
                 let scale = self.scale_of(m, order);
-                let deviation = |k: usize| (analytic(k) - d.outputs[k * columns + m][order]).abs();
+                let deviation = |row: usize| {
+                    let analytic = measured.derivative(row * d.stride, d.variable, m, order);
+                    (analytic - d.outputs[row * columns + m][order]).abs()
+                };
                 let name = output.order_name(order);
                 let name = if order == 0 { format!("{name} value") } else { name };
-                self.push(name, scale, (0..steps).map(|k| if compared[k] { deviation(k) } else { 0.0 }));
+                let rows = compared.iter().enumerate();
+                let deviations: Vec<f64> =
+                    rows.map(|(row, compared)| if *compared { deviation(row) } else { 0.0 }).collect();
+                self.push(name, scale, deviations.into_iter());
             }
         }
     }
@@ -298,13 +309,13 @@ impl<'a> Comparing<'a> {
     }
 
     fn push(&mut self, quantity: String, scale: f64, deviations: impl Iterator<Item = f64>) {
-        let (k, most) = deviations.enumerate().fold((0, 0.0), |best, (k, x)| {
+        let (row, most) = deviations.enumerate().fold((0, 0.0), |best, (row, x)| {
             // A NaN deviation must win.
-            if !(x <= best.1) { (k, x) } else { best }
+            if !(x <= best.1) { (row, x) } else { best }
         });
         let error = if most == 0.0 { 0.0 } else { most / scale };
         let error = if error.is_nan() { f64::INFINITY } else { error };
-        let time = self.solution.motion.times[k];
+        let time = self.solution.motion.times[row * self.d.stride];
         self.errors.push(StepError { step: self.d.step, error, quantity, time });
     }
 }

@@ -36,11 +36,13 @@ pub struct Difference {
     pub variable: VariableId,
     /// From the nominal design to a moved one, m, rad, or units of tau.
     pub step: f64,
-    /// `bodies[k * n + i]`: of body i at time k.
+    /// Of so many output times, the first and each of these; row k is output time `k * stride`.
+    pub stride: usize,
+    /// `bodies[k * n + i]`: of body i in row k.
     pub bodies: Vec<BodySensitivity>,
-    /// `outputs[k * m + j]`: of value, rate and acceleration of output j at time k.
+    /// `outputs[k * m + j]`: of value, rate and acceleration of output j in row k.
     pub outputs: Vec<[f64; 3]>,
-    /// `bends[k * m + j]`: of the value of output j at time k `y(b + h) - 2 y(b) + y(b - h)`, which is far above h^2 where it has a kink
+    /// `bends[k * m + j]`: of the value of output j in row k `y(b + h) - 2 y(b) + y(b - h)`, which is far above h^2 where it has a kink
     /// between the moved designs; NaN of one-sided differences.
     pub bends: Vec<f64>,
 }
@@ -56,7 +58,23 @@ pub fn finite_differences(
     scheme: Scheme,
     steps: &[(VariableId, f64)],
 ) -> Vec<Result<Difference, Stop>> {
+    finite_differences_each(analysis, nominal, scheme, steps, 1)
+}
+
+/// The same at the first output time and each of so many from there.
+///
+/// # Errors
+/// As [`finite_differences`].
+pub fn finite_differences_each(
+    analysis: &Analysis<'_>,
+    nominal: &Solution,
+    scheme: Scheme,
+    steps: &[(VariableId, f64)],
+    stride: usize,
+) -> Vec<Result<Difference, Stop>> {
     let moves = scheme.moves();
+    let analysis =
+        &analysis.without_metrics(analysis.model().times.iter().step_by(stride).copied().collect());
     let mut out = Vec::with_capacity(steps.len());
     // Few at a time: a solution holds its whole motion.
     for group in steps.chunks(8 / moves.len()) {
@@ -69,15 +87,17 @@ pub fn finite_differences(
         analysis.solve_designs(run, &designs, |k, solution| solutions[k] = std::mem::take(solution));
         for (&(variable, step), moved) in group.iter().zip(solutions.chunks(moves.len())) {
             let stop = moved.iter().find_map(|s| s.stop.clone());
+            let (nominal, plus) =
+                (Rows { solution: nominal, stride }, Rows { solution: &moved[0], stride: 1 });
             let [plus, minus] = match scheme {
-                Scheme::Central => [&moved[0], &moved[1]],
-                Scheme::Forward => [&moved[0], nominal],
-                Scheme::Backward => [nominal, &moved[0]],
+                Scheme::Central => [plus, Rows { solution: &moved[1], stride: 1 }],
+                Scheme::Forward => [plus, nominal],
+                Scheme::Backward => [nominal, plus],
             };
             out.push(match stop {
                 Some(stop) => Err(stop),
                 None => {
-                    let mut d = quotient(variable, step, plus, minus, moves.len() as f64 * step);
+                    let mut d = quotient((variable, step, stride), plus, minus, moves.len() as f64 * step);
                     if let Scheme::Central = scheme {
                         bend(&mut d.bends, [plus, nominal, minus]);
                     }
@@ -89,18 +109,49 @@ pub fn finite_differences(
     out
 }
 
+/// Each of so many output times of a solution.
+#[derive(Clone, Copy)]
+struct Rows<'s> {
+    solution: &'s Solution,
+    stride: usize,
+}
+
+impl Rows<'_> {
+    fn count(self) -> usize {
+        self.solution.motion.len().div_ceil(self.stride)
+    }
+
+    fn states(self, row: usize) -> impl Iterator<Item = BodyState> {
+        self.solution.motion.at(row * self.stride).iter()
+    }
+
+    /// Value, rate and acceleration of output m.
+    fn output(self, row: usize, m: usize) -> [f64; 3] {
+        self.solution.measured.value(row * self.stride, m)
+    }
+}
+
 /// `apart`: how far the two designs are from each other.
-fn quotient(variable: VariableId, step: f64, plus: &Solution, minus: &Solution, apart: f64) -> Difference {
+fn quotient(
+    (variable, step, stride): (VariableId, f64, usize),
+    plus: Rows<'_>,
+    minus: Rows<'_>,
+    apart: f64,
+) -> Difference {
     // (y(b + h) - y(b - h)) / 2h = y_b + O(h^2);  (y(b + h) - y(b)) / h = y_b + O(h)
     let k = 1.0 / apart;
-    let bodies =
-        plus.motion.states().zip(minus.motion.states()).map(|(p, m)| body_quotient(&p, &m, k)).collect();
-    let outputs: Vec<[f64; 3]> = (0..plus.measured.len())
-        .flat_map(|t| (0..plus.measured.outputs.len()).map(move |m| (t, m)))
-        .map(|(t, m)| {
-            let (p, q) = (plus.measured.value(t, m), minus.measured.value(t, m));
+    let rows = plus.count();
+    let bodies = (0..rows)
+        .flat_map(|row| plus.states(row).zip(minus.states(row)))
+        .map(|(p, m)| body_quotient(&p, &m, k))
+        .collect();
+    let kinds = &plus.solution.measured.outputs;
+    let outputs: Vec<[f64; 3]> = (0..rows)
+        .flat_map(|row| (0..kinds.len()).map(move |m| (row, m)))
+        .map(|(row, m)| {
+            let (p, q) = (plus.output(row, m), minus.output(row, m));
             let mut d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-            if plus.measured.outputs[m].dimension == Dimension::ANGLE {
+            if kinds[m].dimension == Dimension::ANGLE {
                 // Both designs' angles may have been counted through different turns.
                 let turn = 2.0 * std::f64::consts::PI;
                 d[0] -= turn * (d[0] / turn).round();
@@ -109,15 +160,15 @@ fn quotient(variable: VariableId, step: f64, plus: &Solution, minus: &Solution, 
         })
         .collect();
     let bends = vec![f64::NAN; outputs.len()];
-    Difference { variable, step, bodies, outputs, bends }
+    Difference { variable, step, stride, bodies, outputs, bends }
 }
 
 /// Second differences of all outputs' values.
-fn bend(bends: &mut [f64], [plus, nominal, minus]: [&Solution; 3]) {
-    let columns = nominal.measured.outputs.len();
+fn bend(bends: &mut [f64], [plus, nominal, minus]: [Rows<'_>; 3]) {
+    let columns = nominal.solution.measured.outputs.len();
     for (place, bend) in bends.iter_mut().enumerate() {
-        let (k, m) = (place / columns, place % columns);
-        let [p, y, q] = [plus, nominal, minus].map(|s| s.measured.value(k, m)[0]);
+        let (row, m) = (place / columns, place % columns);
+        let [p, y, q] = [plus, nominal, minus].map(|s| s.output(row, m)[0]);
         *bend = p - 2.0 * y + q;
     }
 }

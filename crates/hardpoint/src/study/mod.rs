@@ -30,7 +30,7 @@ pub use calibrate::{
     Next, NotReached, Reading, Untold, calibrate, values_in_postures,
 };
 pub use comparison::{Comparison, StepError};
-pub use difference::{Difference, Scheme, finite_differences};
+pub use difference::{Difference, Scheme, finite_differences, finite_differences_each};
 pub use evaluation::{Cost, Evaluated, Motions, Rejection};
 pub use gradient::{Gradients, Method};
 pub use grid::{GridMap, GridStop};

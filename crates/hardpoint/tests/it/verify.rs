@@ -8,7 +8,8 @@ use hardpoint::motion::{Stop, StopKind};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 use hardpoint::study::{
-    CheckOutcome, Comparison, Method, Scheme, Verification, VerifyOptions, finite_differences, verify,
+    CheckOutcome, Comparison, Method, Scheme, Verification, VerifyOptions, finite_differences,
+    finite_differences_each, verify,
 };
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint::{
@@ -26,6 +27,50 @@ const NOISE: f64 = 1e-12;
 
 fn verified(analysis: &Analysis<'_>, solution: &Solution, scheme: Scheme) -> Verification {
     verify(analysis, solution, &VerifyOptions::new(scheme), |_| ControlFlow::Continue(()))
+}
+
+/// Two ways to one position differ by this part of it, which the step of a difference magnifies.
+const TWO_WAYS: f64 = 1e-8;
+
+#[test]
+fn differences_at_some_output_times_are_those_at_all_of_them() {
+    for (name, stride) in [("slider_crank", 7), ("macpherson", 13), ("jansen", 5)] {
+        let model = reference(name);
+        let (analysis, variables) = (Analysis::new(&model).unwrap(), model.variables.len());
+        let solution = analysis.run();
+        let follows = |b: &usize| solution.sensitivities.at(0, *b).is_some();
+        let steps: Vec<_> = (0..variables)
+            .filter(follows)
+            .map(VariableId)
+            .map(|b| (b, 1e-3 * model.natural_step(b)))
+            .collect();
+        for scheme in SCHEMES {
+            let all = finite_differences(&analysis, &solution, scheme, &steps);
+            let some = finite_differences_each(&analysis, &solution, scheme, &steps, stride);
+            for (all, some) in all.iter().zip(&some).map(|(a, b)| (a.as_ref().unwrap(), b.as_ref().unwrap()))
+            {
+                let columns = solution.measured.outputs.len();
+                assert_eq!(some.outputs.len(), solution.motion.len().div_ceil(stride) * columns);
+                let largest = |order: usize, m: usize| {
+                    let column = all.outputs.iter().skip(m).step_by(columns);
+                    column.map(|x| x[order].abs()).fold(1.0, f64::max)
+                };
+                for (place, found) in some.outputs.iter().enumerate() {
+                    let (row, m) = (place / columns, place % columns);
+                    let expected = all.outputs[row * stride * columns + m];
+                    for order in 0..solution.measured.outputs[m].known.orders {
+                        let apart = (found[order] - expected[order]).abs();
+                        assert!(
+                            apart <= TWO_WAYS * largest(order, m),
+                            "{name} {scheme:?} {row} {m} {order}: {apart}"
+                        );
+                    }
+                }
+                let worst = |d| Comparison::of(&model, &solution, d).worst().unwrap().error;
+                assert!(worst(some) <= worst(all) + TWO_WAYS);
+            }
+        }
+    }
 }
 
 /// With the square of the step for central differences, with the step for one-sided ones.
