@@ -41,8 +41,6 @@ const CRATES: &[(&str, &[&str])] = &[
     ("hardpoint-bench", &["hardpoint", "hardpoint-file"]),
     ("hardpoint-python", &["hardpoint", "hardpoint-file", "hardpoint-report"]),
     ("hardpoint-studio", &["hardpoint", "hardpoint-file", "hardpoint-report"]),
-    ("hardpoint-wasm", &["hardpoint-studio"]),
-    ("web-time", &[]),
 ];
 
 fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
@@ -149,7 +147,7 @@ fn crates_depend_towards_the_core_only() {
     assert_eq!(packages.len(), CRATES.len());
 }
 
-/// The crates that may hold `unsafe`, and where in them (`docs/machine-code.md`): the second only says that functions have names outside.
+/// The crate that may hold `unsafe`, and where in it (`docs/machine-code.md`). The page's engine only exports functions by name.
 #[test]
 fn unsafe_stands_where_the_safety_argument_says() {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
@@ -164,7 +162,7 @@ fn unsafe_stands_where_the_safety_argument_says() {
     with_lints_of_their_own.sort();
     assert_eq!(
         with_lints_of_their_own,
-        ["hardpoint-code", "hardpoint-wasm"],
+        ["hardpoint-code"],
         "all others forbid `unsafe` as the workspace does"
     );
 
@@ -177,8 +175,36 @@ fn unsafe_stands_where_the_safety_argument_says() {
     holding.sort();
     assert_eq!(holding, ["x86_64/memory.rs", "x86_64/mod.rs"]);
 
-    let wasm = std::fs::read_to_string(crates.join("hardpoint-wasm/src/lib.rs")).unwrap();
+    let wasm = std::fs::read_to_string(crates.join("../web/engine/src/lib.rs")).unwrap();
     assert!(!wasm.contains("unsafe {"), "the engine of the page has no block that is unsafe");
+}
+
+/// Package names and versions of a lock file.
+fn locked(path: &Path) -> Vec<(String, String)> {
+    let text = std::fs::read_to_string(path).unwrap();
+    let value = |entry: &str, key: &str| {
+        let line = entry.lines().find_map(|l| l.strip_prefix(key)).unwrap();
+        line.trim_matches(['"', ' ', '=']).to_string()
+    };
+    text.split("[[package]]").skip(1).map(|entry| (value(entry, "name"), value(entry, "version"))).collect()
+}
+
+/// The page's engine has the dependencies of the command, so that both give the same results.
+#[test]
+fn the_engine_of_the_page_has_the_same_dependencies() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let all = locked(&root.join("Cargo.lock"));
+    let engine = locked(&root.join("web/engine/Cargo.lock"));
+    assert!(engine.len() > 50, "only {} packages in web/engine/Cargo.lock", engine.len());
+    for (name, version) in engine.into_iter().filter(|(name, _)| name != "hardpoint-wasm") {
+        let package = (name, version);
+        assert!(
+            all.contains(&package),
+            "web/engine/Cargo.lock has {} {}, Cargo.lock has not: run `cp Cargo.lock web/engine/`, then `cargo metadata` in web/engine",
+            package.0,
+            package.1
+        );
+    }
 }
 
 /// Every CSV file is written by the one writer that marks texts which begin like a formula.
