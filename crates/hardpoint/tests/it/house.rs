@@ -118,8 +118,8 @@ fn the_core_does_no_input_or_output() {
     }
 }
 
-#[test]
-fn crates_depend_towards_the_core_only() {
+/// Manifests of all crates of the workspace, as `cargo metadata` lists them.
+fn manifests() -> Vec<serde_json::Value> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
     let output = std::process::Command::new(cargo)
         .args(["metadata", "--no-deps", "--format-version", "1", "--offline"])
@@ -127,8 +127,13 @@ fn crates_depend_towards_the_core_only() {
         .output()
         .expect("cargo metadata runs");
     let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).expect("cargo metadata is JSON");
-    let packages = metadata["packages"].as_array().unwrap();
-    for package in packages {
+    metadata["packages"].as_array().unwrap().clone()
+}
+
+#[test]
+fn crates_depend_towards_the_core_only() {
+    let packages = manifests();
+    for package in &packages {
         let name = package["name"].as_str().unwrap();
         let allowed = CRATES
             .iter()
@@ -145,6 +150,76 @@ fn crates_depend_towards_the_core_only() {
         }
     }
     assert_eq!(packages.len(), CRATES.len());
+}
+
+/// Published crates have what a registry shows, depend on published crates only, and embed no file from outside their folder.
+#[test]
+fn published_crates_are_complete() {
+    let all = manifests();
+    let is_published = |package: &serde_json::Value| package["publish"].is_null();
+    let published: Vec<_> = all.iter().filter(|p| is_published(p)).collect();
+    assert_eq!(published.len(), 8);
+    for package in published {
+        let name = package["name"].as_str().unwrap();
+        let folder = Path::new(package["manifest_path"].as_str().unwrap()).parent().unwrap();
+        for key in ["keywords", "categories"] {
+            let count = package[key].as_array().unwrap().len();
+            assert!((1..=5).contains(&count), "`{name}` has {count} {key}");
+        }
+        assert!(package["description"].is_string(), "`{name}` has no description");
+        for file in ["README.md", "LICENSE-APACHE", "LICENSE-MIT"] {
+            assert!(folder.join(file).is_file(), "`{name}` has no {file}");
+        }
+        for dependency in package["dependencies"].as_array().unwrap() {
+            let on = all.iter().find(|p| p["name"] == dependency["name"]);
+            assert!(on.is_none_or(is_published), "`{name}` depends on {}, not published", dependency["name"]);
+        }
+        for (path, text) in sources(&folder.join("src")) {
+            let embedding = ["include_str!(\"", "include_bytes!(\""];
+            for embedded in embedding.iter().flat_map(|call| text.split(call).skip(1)) {
+                let Some((file, _)) = embedded.split_once("\")") else { continue };
+                let Ok(file) = path.parent().unwrap().join(file).canonicalize() else { continue };
+                assert!(
+                    file.starts_with(folder.canonicalize().unwrap()),
+                    "{} embeds {}",
+                    path.display(),
+                    file.display()
+                );
+            }
+        }
+    }
+}
+
+/// Every file that names the version of the next release names the same.
+#[test]
+fn the_version_is_the_same_everywhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let version = env!("CARGO_PKG_VERSION");
+    for (file, line) in [
+        ("web/engine/Cargo.toml", format!("version = \"{version}\"\n")),
+        ("web/package.json", format!("\"version\": \"{version}\"")),
+        ("CITATION.cff", format!("\nversion: {version}\n")),
+        ("CHANGELOG.md", format!("\n## {version} (")),
+    ] {
+        let text = std::fs::read_to_string(root.join(file)).unwrap();
+        assert!(text.contains(&line), "{file} has no version {version}");
+    }
+}
+
+/// `docs/development.md` lists the direct dependencies.
+#[test]
+fn the_table_of_dependencies_is_complete() {
+    let table = include_str!("../../../../docs/development.md");
+    let table = table.split("## Direct dependencies").nth(1).unwrap().split("\n## ").next().unwrap();
+    let first_cells = table.lines().filter(|l| l.starts_with("| `")).map(|l| l.split('|').nth(1).unwrap());
+    let mut listed: Vec<&str> = first_cells.flat_map(|cell| cell.split('`').skip(1).step_by(2)).collect();
+    let manifest = include_str!("../../../../Cargo.toml");
+    let declared = manifest.split("[workspace.dependencies]").nth(1).unwrap().split("\n[").next().unwrap();
+    let names = declared.lines().filter_map(|l| l.split_once(" = ")).map(|(name, _)| name);
+    let mut declared: Vec<&str> = names.filter(|name| !name.starts_with("hardpoint")).collect();
+    listed.sort_unstable();
+    declared.sort_unstable();
+    assert_eq!(listed, declared, "docs/development.md is not up to date");
 }
 
 /// The crate that may hold `unsafe`, and where in it (`docs/machine-code.md`). The page's engine only exports functions by name.
