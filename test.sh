@@ -25,6 +25,8 @@ python3 -c 'import ensurepip' 2>/dev/null || install python3-venv
 echo "== format and lints"
 cargo fmt --all --check
 cargo clippy --release --workspace --all-targets --quiet -- -D warnings
+cargo fmt --manifest-path web/engine/Cargo.toml -p hardpoint-wasm -p web-time --check
+cargo clippy --manifest-path web/engine/Cargo.toml --workspace --locked --target-dir target/engine --quiet -- -D warnings
 
 echo "== Rust tests"
 .ci/rust-tests --release --workspace

@@ -1,4 +1,4 @@
-"""The build backend: that of maturin, once it is known that there is a Rust toolchain."""
+"""Build backend: maturin, after a check for a Rust toolchain."""
 
 from __future__ import annotations
 
@@ -8,29 +8,29 @@ import shutil
 import maturin
 
 MISSING = (
-    "error: hardpoint is built from its sources, and that takes a Rust toolchain, but there is no `cargo` on the path: "
-    "install Rust from https://rustup.rs, open a new shell, and run the same command again"
+    "error: hardpoint is built from source and needs a Rust toolchain, but `cargo` was not found on the PATH: install Rust from "
+    "https://rustup.rs, open a new shell, and run the same command again"
 )
 
 
-def _need_cargo() -> None:
-    """Ends the build with one sentence where there is no Rust, in place of a download or a page of output."""
+def _require_cargo() -> None:
+    """Ends the build with one sentence if Rust is missing, instead of a download or a page of output."""
     if shutil.which(os.environ.get("CARGO", "cargo")) is None:
         raise SystemExit(MISSING)
 
 
 def get_requires_for_build_wheel(config_settings=None):
-    _need_cargo()
+    _require_cargo()
     return maturin.get_requires_for_build_wheel(config_settings)
 
 
 def get_requires_for_build_editable(config_settings=None):
-    _need_cargo()
+    _require_cargo()
     return maturin.get_requires_for_build_editable(config_settings)
 
 
 def get_requires_for_build_sdist(config_settings=None):
-    _need_cargo()
+    _require_cargo()
     return maturin.get_requires_for_build_sdist(config_settings)
 
 

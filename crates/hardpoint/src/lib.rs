@@ -75,3 +75,8 @@ pub mod study;
 pub mod topology;
 
 pub use run::{Analysis, Footprint, Keep, Kept, Progress, Run, Sink, Solution, Streamed};
+
+/// The example of the readme compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,6 +1,6 @@
 import type { Request, Told } from './protocol'
 
-/** What the engine's binary offers: see `crates/hardpoint-wasm`. */
+/** What the engine's binary offers: see `web/engine`. */
 interface Exports {
   memory: WebAssembly.Memory
   room(length: number): number

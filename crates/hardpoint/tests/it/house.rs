@@ -41,8 +41,6 @@ const CRATES: &[(&str, &[&str])] = &[
     ("hardpoint-bench", &["hardpoint", "hardpoint-file"]),
     ("hardpoint-python", &["hardpoint", "hardpoint-file", "hardpoint-report"]),
     ("hardpoint-studio", &["hardpoint", "hardpoint-file", "hardpoint-report"]),
-    ("hardpoint-wasm", &["hardpoint-studio"]),
-    ("web-time", &[]),
 ];
 
 fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
@@ -120,8 +118,8 @@ fn the_core_does_no_input_or_output() {
     }
 }
 
-#[test]
-fn crates_depend_towards_the_core_only() {
+/// Manifests of all crates of the workspace, as `cargo metadata` lists them.
+fn manifests() -> Vec<serde_json::Value> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
     let output = std::process::Command::new(cargo)
         .args(["metadata", "--no-deps", "--format-version", "1", "--offline"])
@@ -129,8 +127,13 @@ fn crates_depend_towards_the_core_only() {
         .output()
         .expect("cargo metadata runs");
     let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).expect("cargo metadata is JSON");
-    let packages = metadata["packages"].as_array().unwrap();
-    for package in packages {
+    metadata["packages"].as_array().unwrap().clone()
+}
+
+#[test]
+fn crates_depend_towards_the_core_only() {
+    let packages = manifests();
+    for package in &packages {
         let name = package["name"].as_str().unwrap();
         let allowed = CRATES
             .iter()
@@ -149,7 +152,77 @@ fn crates_depend_towards_the_core_only() {
     assert_eq!(packages.len(), CRATES.len());
 }
 
-/// The crates that may hold `unsafe`, and where in them (`docs/machine-code.md`): the second only says that functions have names outside.
+/// Published crates have what a registry shows, depend on published crates only, and embed no file from outside their folder.
+#[test]
+fn published_crates_are_complete() {
+    let all = manifests();
+    let is_published = |package: &serde_json::Value| package["publish"].is_null();
+    let published: Vec<_> = all.iter().filter(|p| is_published(p)).collect();
+    assert_eq!(published.len(), 8);
+    for package in published {
+        let name = package["name"].as_str().unwrap();
+        let folder = Path::new(package["manifest_path"].as_str().unwrap()).parent().unwrap();
+        for key in ["keywords", "categories"] {
+            let count = package[key].as_array().unwrap().len();
+            assert!((1..=5).contains(&count), "`{name}` has {count} {key}");
+        }
+        assert!(package["description"].is_string(), "`{name}` has no description");
+        for file in ["README.md", "LICENSE-APACHE", "LICENSE-MIT"] {
+            assert!(folder.join(file).is_file(), "`{name}` has no {file}");
+        }
+        for dependency in package["dependencies"].as_array().unwrap() {
+            let on = all.iter().find(|p| p["name"] == dependency["name"]);
+            assert!(on.is_none_or(is_published), "`{name}` depends on {}, not published", dependency["name"]);
+        }
+        for (path, text) in sources(&folder.join("src")) {
+            let embedding = ["include_str!(\"", "include_bytes!(\""];
+            for embedded in embedding.iter().flat_map(|call| text.split(call).skip(1)) {
+                let Some((file, _)) = embedded.split_once("\")") else { continue };
+                let Ok(file) = path.parent().unwrap().join(file).canonicalize() else { continue };
+                assert!(
+                    file.starts_with(folder.canonicalize().unwrap()),
+                    "{} embeds {}",
+                    path.display(),
+                    file.display()
+                );
+            }
+        }
+    }
+}
+
+/// Every file that names the version of the next release names the same.
+#[test]
+fn the_version_is_the_same_everywhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let version = env!("CARGO_PKG_VERSION");
+    for (file, line) in [
+        ("web/engine/Cargo.toml", format!("version = \"{version}\"\n")),
+        ("web/package.json", format!("\"version\": \"{version}\"")),
+        ("CITATION.cff", format!("\nversion: {version}\n")),
+        ("CHANGELOG.md", format!("\n## {version} (")),
+    ] {
+        let text = std::fs::read_to_string(root.join(file)).unwrap();
+        assert!(text.contains(&line), "{file} has no version {version}");
+    }
+}
+
+/// `docs/development.md` lists the direct dependencies.
+#[test]
+fn the_table_of_dependencies_is_complete() {
+    let table = include_str!("../../../../docs/development.md");
+    let table = table.split("## Direct dependencies").nth(1).unwrap().split("\n## ").next().unwrap();
+    let first_cells = table.lines().filter(|l| l.starts_with("| `")).map(|l| l.split('|').nth(1).unwrap());
+    let mut listed: Vec<&str> = first_cells.flat_map(|cell| cell.split('`').skip(1).step_by(2)).collect();
+    let manifest = include_str!("../../../../Cargo.toml");
+    let declared = manifest.split("[workspace.dependencies]").nth(1).unwrap().split("\n[").next().unwrap();
+    let names = declared.lines().filter_map(|l| l.split_once(" = ")).map(|(name, _)| name);
+    let mut declared: Vec<&str> = names.filter(|name| !name.starts_with("hardpoint")).collect();
+    listed.sort_unstable();
+    declared.sort_unstable();
+    assert_eq!(listed, declared, "docs/development.md is not up to date");
+}
+
+/// The crate that may hold `unsafe`, and where in it (`docs/machine-code.md`). The page's engine only exports functions by name.
 #[test]
 fn unsafe_stands_where_the_safety_argument_says() {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
@@ -164,7 +237,7 @@ fn unsafe_stands_where_the_safety_argument_says() {
     with_lints_of_their_own.sort();
     assert_eq!(
         with_lints_of_their_own,
-        ["hardpoint-code", "hardpoint-wasm"],
+        ["hardpoint-code"],
         "all others forbid `unsafe` as the workspace does"
     );
 
@@ -177,8 +250,36 @@ fn unsafe_stands_where_the_safety_argument_says() {
     holding.sort();
     assert_eq!(holding, ["x86_64/memory.rs", "x86_64/mod.rs"]);
 
-    let wasm = std::fs::read_to_string(crates.join("hardpoint-wasm/src/lib.rs")).unwrap();
+    let wasm = std::fs::read_to_string(crates.join("../web/engine/src/lib.rs")).unwrap();
     assert!(!wasm.contains("unsafe {"), "the engine of the page has no block that is unsafe");
+}
+
+/// Package names and versions of a lock file.
+fn locked(path: &Path) -> Vec<(String, String)> {
+    let text = std::fs::read_to_string(path).unwrap();
+    let value = |entry: &str, key: &str| {
+        let line = entry.lines().find_map(|l| l.strip_prefix(key)).unwrap();
+        line.trim_matches(['"', ' ', '=']).to_string()
+    };
+    text.split("[[package]]").skip(1).map(|entry| (value(entry, "name"), value(entry, "version"))).collect()
+}
+
+/// The page's engine has the dependencies of the command, so that both give the same results.
+#[test]
+fn the_engine_of_the_page_has_the_same_dependencies() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let all = locked(&root.join("Cargo.lock"));
+    let engine = locked(&root.join("web/engine/Cargo.lock"));
+    assert!(engine.len() > 50, "only {} packages in web/engine/Cargo.lock", engine.len());
+    for (name, version) in engine.into_iter().filter(|(name, _)| name != "hardpoint-wasm") {
+        let package = (name, version);
+        assert!(
+            all.contains(&package),
+            "web/engine/Cargo.lock has {} {}, Cargo.lock has not: run `cp Cargo.lock web/engine/`, then `cargo metadata` in web/engine",
+            package.0,
+            package.1
+        );
+    }
 }
 
 /// Every CSV file is written by the one writer that marks texts which begin like a formula.
