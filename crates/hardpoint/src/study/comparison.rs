@@ -254,7 +254,9 @@ impl<'a> Comparing<'a> {
         for kind in KINDS {
             let of = kind.of;
             let analytic = |row: usize, i: usize| exact.get(row * n + i).map(of);
-            let largest = exact.iter().map(|s| of(s).norm()).fold(0.0, f64::max);
+            let all = (0..solution.motion.len()).filter_map(|k| solution.sensitivities.at(k, d.variable.0));
+            let sizes = all.flat_map(|bodies| bodies.iter()).map(|s| of(&s).norm());
+            let largest = sizes.fold(0.0, f64::max);
             let scale = largest.max(self.negligible(kind.dimension, kind.order));
             for i in 1..n {
                 let name = format!("{} {}", self.model.bodies[i].name, kind.name);
