@@ -209,11 +209,24 @@ fn coarse_middles(
     x: &Option<SampledCurve<'_, f64>>,
     tolerance: f64,
 ) -> Vec<f64> {
-    let Some((value, _)) = take(metric, y, x).filter(|_| y.orders > 1) else { return Vec::new() };
-    let IntegralErrors { of: errors, travel } = integral_errors(metric, y, x, value);
-    let scale = if metric.take == Reduction::Integral { travel } else { 1.0 };
-    if integral_error(metric, value, &errors, travel).is_some_and(|error| error <= tolerance * scale) {
+    if y.orders == 1 {
         return Vec::new();
+    }
+    let stretches = path_stretches(metric, y, x);
+    let Some(value) = integral(metric, stretches.iter().flat_map(|s| s.nodes(y, x))) else {
+        return Vec::new();
+    };
+    // Most curves are resolved by far, and so are their polynomials of lower degree.
+    let mut errors = Vec::new();
+    for other in [lower, wide] {
+        let found = integral_errors(metric, (y, x), &stretches, value, other);
+        let scale = if metric.take == Reduction::Integral { found.travel } else { 1.0 };
+        if integral_error(metric, value, &found.of, found.travel)
+            .is_some_and(|error| error <= tolerance * scale)
+        {
+            return Vec::new();
+        }
+        errors = found.of;
     }
     // Where too little is known to say, it may be off.
     let size = |error: &Option<f64>| error.unwrap_or(f64::INFINITY);
@@ -233,13 +246,41 @@ struct IntegralErrors {
     travel: f64,
 }
 
-/// The contribution of each part of the path to the error of an integral: the difference between the polynomials through more times
-/// ([`WidePolynomial`]) and the interval's own.
+/// A polynomial that says how far the one of an interval may be from the curve.
+enum OtherPolynomial {
+    Lower(Polynomial<f64>),
+    Wide(WidePolynomial),
+}
+
+impl OtherPolynomial {
+    /// Value and rate.
+    fn at(&self, t: f64) -> [f64; 2] {
+        match self {
+            Self::Lower(polynomial) => polynomial.at(t),
+            Self::Wide(polynomial) => polynomial.at(t),
+        }
+    }
+}
+
+/// The polynomial of interval k without the highest order that is known at its ends: farther from the curve than its own.
+fn lower(curve: &SampledCurve<'_, f64>, k: usize) -> Option<OtherPolynomial> {
+    let known = usize::min(curve.known(k), curve.known(k + 1));
+    (known > 1).then(|| OtherPolynomial::Lower(curve.polynomial_of(k, known - 1)))
+}
+
+/// The polynomial through more times: nearer to the curve than the interval's own.
+fn wide(curve: &SampledCurve<'_, f64>, k: usize) -> Option<OtherPolynomial> {
+    WidePolynomial::new(curve, k).map(OtherPolynomial::Wide)
+}
+
+/// The contribution of each part of the path to the error of an integral: the difference between other polynomials ([`wide`] or
+/// [`lower`]) and the interval's own.
 fn integral_errors(
     metric: &Metric,
-    y: &SampledCurve<'_, f64>,
-    x: &Option<SampledCurve<'_, f64>>,
+    (y, x): (&SampledCurve<'_, f64>, &Option<SampledCurve<'_, f64>>),
+    stretches: &[Stretch<f64>],
     value: f64,
+    other: fn(&SampledCurve<'_, f64>, usize) -> Option<OtherPolynomial>,
 ) -> IntegralErrors {
     // What is integrated, less its mean: an error of the travel counts for that much less.
     let integrand = |at: f64, y: f64| match &metric.take {
@@ -258,12 +299,12 @@ fn integral_errors(
         let k = stretch.k;
         let nodes: [PathNode<f64>; NODES] = stretch.nodes(y, x);
         travel += nodes.iter().map(|node| node.dx.abs()).sum::<f64>();
-        let wide_y = WidePolynomial::new(y, k)?;
-        let wide_x = x.as_ref().map_or(Some(None), |x| WidePolynomial::new(x, k).map(Some))?;
-        let along = |t: f64| wide_x.as_ref().map_or([t, 1.0], |x| x.at(t));
+        let other_y = other(y, k)?;
+        let other_x = x.as_ref().map_or(Some(None), |x| other(x, k).map(Some))?;
+        let along = |t: f64| other_x.as_ref().map_or([t, 1.0], |x| x.at(t));
         let apart = nodes.iter().map(|node| {
             let [at, rate] = along(node.t);
-            integrand(at, wide_y.at(node.t)[0]) * rate * node.dt - integrand(node.x, node.y) * node.dx
+            integrand(at, other_y.at(node.t)[0]) * rate * node.dt - integrand(node.x, node.y) * node.dx
         });
         // Where the window cuts the curve, an error of the abscissa moves the cut.
         let moved = [stretch.from, stretch.to].into_iter().filter(|t| !y.times.contains(t)).map(|t| {
@@ -272,8 +313,7 @@ fn integral_errors(
         });
         Some(apart.sum::<f64>().abs() + moved.sum::<f64>())
     };
-    let stretches = path_stretches(metric, y, x);
-    let of = stretches.into_iter().map(|stretch| (stretch, error(&stretch))).collect();
+    let of = stretches.iter().map(|stretch| (*stretch, error(stretch))).collect();
     IntegralErrors { of, travel }
 }
 
@@ -508,18 +548,24 @@ impl<T: Real> SampledCurve<'_, T> {
 
     /// The polynomial of interval k with the values, rates and accelerations that are known at its ends.
     pub(super) fn polynomial(&self, k: usize) -> Polynomial<T> {
-        let length = self.times[k + 1] - self.times[k];
-        Polynomial { from: self.times[k], length, c: self.coefficients(k, length) }
+        self.polynomial_of(k, self.orders)
     }
 
-    fn coefficients(&self, k: usize, h: f64) -> [T; 6] {
+    /// The polynomial with so many of them at most.
+    fn polynomial_of(&self, k: usize, orders: usize) -> Polynomial<T> {
+        let length = self.times[k + 1] - self.times[k];
+        let known = [k, k + 1].map(|end| self.known(end).min(orders));
+        Polynomial { from: self.times[k], length, c: self.coefficients(k, length, known) }
+    }
+
+    fn coefficients(&self, k: usize, h: f64, known: [usize; 2]) -> [T; 6] {
         let ([a, b], c) = ([&self.values[k], &self.values[k + 1]], T::constant);
         // p(s) = c0 + c1 s + ... + c5 s^5,  s = (t - t_k) / h,  with y, h y., h^2 y.. at s = 0 and s = 1
         let zero = c(0.0);
         // Newton's form on [0, 0, 0, 1, 1, 1], or with fewer ends of each.
         let [a0, a1, a2] = [a[0], a[1] * c(h), a[2] * c(0.5 * h * h)];
         let [b0, b1, b2] = [b[0], b[1] * c(h), b[2] * c(0.5 * h * h)];
-        match [self.known(k), self.known(k + 1)] {
+        match known {
             [3, 3] => {
                 // What is left of value, rate and half the acceleration at s = 1.
                 let p = b0 - a0 - a1 - a2;
@@ -554,12 +600,15 @@ impl<T: Real> SampledCurve<'_, T> {
         self.polynomial(k).at(t)
     }
 
-    /// The times at which interval k begins and ends, and between them those where the curve turns.
-    pub(super) fn monotone(times: &[f64], curve: Option<&Self>, k: usize) -> Vec<f64> {
-        let mut ends = vec![times[k]];
-        ends.extend(curve.into_iter().flat_map(|curve| curve.turns(k)));
-        ends.push(times[k + 1]);
-        ends
+    /// The parts of interval k in which the curve rises or falls all along.
+    pub(super) fn monotone(
+        times: &[f64],
+        curve: Option<&Self>,
+        k: usize,
+    ) -> impl Iterator<Item = [f64; 2]> + use<T> {
+        let turns = curve.map_or(Vec::new(), |curve| curve.turns(k));
+        let mut from = times[k];
+        turns.into_iter().chain([times[k + 1]]).map(move |to| [std::mem::replace(&mut from, to), to])
     }
 
     /// The times inside interval k where the curve turns.
@@ -797,7 +846,8 @@ fn interpolation_error(
             Some(of(Reduction::Greatest)? + of(Reduction::Least)?)
         }
         Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => {
-            let IntegralErrors { of, travel } = integral_errors(metric, y, x, value);
+            let stretches = path_stretches(metric, y, x);
+            let IntegralErrors { of, travel } = integral_errors(metric, (y, x), &stretches, value, wide);
             integral_error(metric, value, &of, travel)
         }
         Reduction::RmsAtPoints(points) => {
@@ -845,18 +895,8 @@ fn take<T: Real>(
             let by = x.as_ref().map_or(T::one(), |x| x.at(k, t)[1]);
             Some((y.at(k, t)[1] / by, Some(y.within(k, t))))
         }
-        Reduction::Mean => mean(metric, y, x, |_, value| value).map(|value| (value, None)),
-        Reduction::Integral => {
-            // sum y_g dx_g;  what the abscissa goes back counts down
-            let parts = path_nodes(metric, y, x).map(|node| node.y * node.dx);
-            parts.reduce(|sum, part| sum + part).map(|value| (value, None))
-        }
-        Reduction::Rms(target) => {
-            let square = |at: T, value: T| {
-                let left = value - on_target(target, at);
-                left * left
-            };
-            mean(metric, y, x, square).map(|value| (value.sqrt(), None))
+        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => {
+            integral(metric, path_nodes(metric, y, x)).map(|value| (value, None))
         }
         Reduction::RmsAtPoints(points) => {
             let left = left_at_points(metric, points, y, x)?;
@@ -925,9 +965,8 @@ fn crossings<'c, T: Real>(
         if let Some(end) = [k, k + 1].into_iter().find(|end| there(*end)) {
             return Vec::from_iter(located(y.times[end]).map(|t| (k, t)));
         }
-        let ends = SampledCurve::monotone(y.times, x, k);
-        let parts = ends.windows(2);
-        parts.filter_map(|part| Some((k, crossing(x, k, [part[0], part[1]], at)?))).collect()
+        let parts = SampledCurve::monotone(y.times, x, k);
+        parts.filter_map(|part| Some((k, crossing(x, k, part, at)?))).collect()
     })
 }
 
@@ -1020,19 +1059,36 @@ fn extreme<T: Real>(
     best
 }
 
-/// The mean of a function of abscissa and value over the travel of the abscissa, to and fro, within the window.
-fn mean<T: Real>(
-    metric: &Metric,
-    y: &SampledCurve<'_, T>,
-    x: &Option<SampledCurve<'_, T>>,
-    of: impl Fn(T, T) -> T,
-) -> Option<T> {
+/// A metric that is an integral, from the nodes of its path.
+fn integral<T: Real>(metric: &Metric, nodes: impl Iterator<Item = PathNode<T>>) -> Option<T> {
+    match &metric.take {
+        Reduction::Mean => mean(nodes, |_, value| value),
+        // sum y_g dx_g;  what the abscissa goes back counts down
+        Reduction::Integral => nodes.map(|node| node.y * node.dx).reduce(|sum, part| sum + part),
+        Reduction::Rms(target) => {
+            let square = |at: T, value: T| {
+                let left = value - on_target(target, at);
+                left * left
+            };
+            mean(nodes, square).map(T::sqrt)
+        }
+        Reduction::Least
+        | Reduction::Greatest
+        | Reduction::Range
+        | Reduction::RmsAtPoints(_)
+        | Reduction::Value(_)
+        | Reduction::Slope(_) => None,
+    }
+}
+
+/// The mean of a function of abscissa and value over the travel of the abscissa, to and fro.
+fn mean<T: Real>(nodes: impl Iterator<Item = PathNode<T>>, of: impl Fn(T, T) -> T) -> Option<T> {
     // sum f_g abs(dx_g)  over  sum abs(dx_g)
     let add = |[sum, travel]: [T; 2], node: PathNode<T>| {
         let travelled = node.dx.abs();
         [sum + of(node.x, node.y) * travelled, travel + travelled]
     };
-    let [sum, travel] = path_nodes(metric, y, x).fold([T::zero(); 2], add);
+    let [sum, travel] = nodes.fold([T::zero(); 2], add);
     (travel.value() > 0.0).then(|| sum / travel)
 }
 

@@ -92,8 +92,7 @@ pub(super) fn path_stretches<T: Real>(
     };
     let mut stretches = Vec::new();
     for k in 0..y.values.len().saturating_sub(1) {
-        let ends = SampledCurve::monotone(y.times, x, k);
-        for part in ends.windows(2).map(|part| [part[0], part[1]]) {
+        for part in SampledCurve::monotone(y.times, x, k) {
             let along = part.map(|t| x.map_or(t, |x| x.number(k, t)));
             let [least, most] = [along[0].min(along[1]), along[0].max(along[1])];
             // Written so that an abscissa without a value is in no window, but on the path of a metric without one.
