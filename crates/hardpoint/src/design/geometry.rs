@@ -24,6 +24,8 @@ pub struct Geometry<T = f64> {
     pub spin_axes: Vec<Vec3<T>>,
     /// Per number of the model's masses and forces, its value, SI.
     pub numbers: Vec<T>,
+    /// [`Model::size`](crate::model::Model::size), m, which is compared with at every step.
+    pub size: f64,
 }
 
 /// What measures go by, fixed in the bodies.
@@ -35,6 +37,8 @@ pub(crate) struct BodyFixed<T> {
     pub directions: Vec<[Option<Vec3<T>>; 2]>,
     /// Per measure of a joint's coordinate, marker i in body i and marker j in body j.
     pub markers: Vec<Option<[Pose<T>; 2]>>,
+    /// As in [`Geometry`].
+    pub size: f64,
 }
 
 impl<T: Copy> BodyFixed<T> {
@@ -45,6 +49,7 @@ impl<T: Copy> BodyFixed<T> {
             points: self.points.iter().map(|p| p.map(f)).collect(),
             directions: self.directions.iter().map(|d| d.map(|d| d.map(|d| d.map(f)))).collect(),
             markers: self.markers.iter().map(|m| m.map(|m| m.map(pose))).collect(),
+            size: self.size,
         }
     }
 }

@@ -91,6 +91,7 @@ impl<'m> DesignMap<'m> {
             points: (0..model.points.len()).map(|k| design.point(k)).collect(),
             spin_axes: model.wheels.iter().map(|w| design.in_body(w.body, w.spin_axis)).collect(),
             numbers: (0..model.numbers.len()).map(|k| design.number(k)).collect(),
+            size: model.size(),
         }
     }
 
@@ -111,6 +112,7 @@ impl<'m> DesignMap<'m> {
             points: (0..model.points.len()).map(|k| design.point(k)).collect(),
             directions: model.measures.iter().map(|m| design.directions(m)).collect(),
             markers: model.measures.iter().map(markers).collect(),
+            size: model.size(),
         }
     }
 

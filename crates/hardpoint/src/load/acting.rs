@@ -120,7 +120,7 @@ impl<T: Real> Acting<'_, T> {
     /// Length of the line between the ends of a spring, for its direction; NaN where they meet, for then it has none.
     fn apart(&self, d: Vec3<T>) -> T {
         let length = d.norm();
-        let limit = T::constant(ENDS_MEET * self.model.size());
+        let limit = T::constant(ENDS_MEET * self.geometry.size);
         if length.exceeds(limit) { length } else { T::constant(f64::NAN) }
     }
 

@@ -77,6 +77,7 @@ impl<T: Real> SpatialInertia<T> {
     }
 
     /// f = M (A - [0; g0]) + ad*(V) M V,    ad*(X) l = -ad(X)^T l;    of static loads  f = -M [0; g0]
+    #[inline]
     fn needed(&self, model: &Model, Moving { v, a, .. }: &Moving<T>) -> Wrench<T> {
         let gravity: Vec3<T> = model.gravity.spread();
         match model.load_mode {

@@ -738,7 +738,7 @@ impl<'a, T: Real> Instant<'a, T> {
                 // n . (v x a) / abs(v)^3,  or abs(v x a) / abs(v)^3; none where v^2 <= 1e-12 abs(a) size, a point that comes from rest
                 let (turn, speed) = (v.cross(a), v.norm());
                 let turn = about.map_or_else(|| turn.norm(), |about| about.spread().dot(turn));
-                let (way, far) = (speed * speed, a.norm() * T::constant(RESTS * self.model.size()));
+                let (way, far) = (speed * speed, a.norm() * T::constant(RESTS * self.fixed.size));
                 let way = if way.exceeds(far) { way } else { unknown() };
                 turn / (way * speed)
             }
