@@ -24,9 +24,11 @@ impl Bench {
         bench
     }
 
-    /// With a file of this text.
+    /// With a file of this text, which is there as a whole at once: a server that watches it never reads half of it.
     pub fn put(&self, name: &str, text: &str) {
-        std::fs::write(self.path(name), text).unwrap();
+        let beside = self.folder.path().with_extension("put");
+        std::fs::write(&beside, text).unwrap();
+        std::fs::rename(&beside, self.path(name)).unwrap();
     }
 
     pub fn path(&self, name: &str) -> PathBuf {
