@@ -377,7 +377,7 @@ fn compare(session: &Session, analysis: &Analysis<'_>, solution: &Solution) -> V
         .filter(|b| solution.sensitivities.at(0, *b).is_some())
         .map(VariableId)
         .collect();
-    // The page shows so many marks; `verify` compares at all output times.
+    // Only at the output times that the page marks; `verify` compares at all of them.
     let stride = stride_of_marks(solution.motion.len());
     let mut meter = session.meter("comparing with re-solved designs", "variables");
     // Four at a time fill the lanes of the core.

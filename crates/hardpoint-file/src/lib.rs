@@ -42,6 +42,7 @@ mod measured;
 mod places;
 mod read;
 mod schema;
+pub mod side_names;
 mod tree;
 mod units;
 mod walk;

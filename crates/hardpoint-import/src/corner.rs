@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use hardpoint::model::VehicleEnd;
 use hardpoint::space::Vec3;
 
 use crate::markers::Called;
-use crate::mechanism::{
-    Coordinate, Drives, End, Force, ForceOn, GROUND, Joint, Law, Mechanism, Spring, Wheel,
-};
+use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mechanism, Spring, Wheel};
 use crate::report::{At, Notes};
 use crate::sides::over;
 use crate::turn::{X, Y, from_z_and_x};
@@ -409,7 +408,7 @@ pub struct Corner {
     /// Characteristics of its coilover, spring and damper, by these words, and their places in the source.
     pub springs: BTreeMap<&'static str, (Spring, At)>,
     /// The end of the vehicle that it is at.
-    pub end: Option<End>,
+    pub end: Option<VehicleEnd>,
     /// The driver that moves its wheel up and down, where there is one already.
     pub bump: Option<usize>,
     /// Where its file begins to tell of it.

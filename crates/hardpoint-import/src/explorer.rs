@@ -1,9 +1,10 @@
 //! Geometry files of suspension-explorer (YAML): corners and axles by the names of their hardpoints.
 
+use hardpoint::model::{Vehicle, VehicleEnd};
 use hardpoint::space::Vec3;
 
 use crate::corner::{Corner, Link, Mount, plain, role_of};
-use crate::mechanism::{End, Mechanism, Vehicle};
+use crate::mechanism::{Mechanism, end_named};
 use crate::report::{At, Notes};
 use crate::sides::{self, over};
 use crate::tree::{self, Tree};
@@ -173,7 +174,7 @@ fn settings(root: &Tree, per_mm: f64, notes: &mut Notes) -> Corner {
             notes.refused(key, "", Some(*at), why);
         }
     }
-    let end = config.and_then(|c| c.text_of("axle_position")).and_then(End::named);
+    let end = config.and_then(|c| c.text_of("axle_position")).and_then(end_named);
     Corner { rack: steered && !kind.eq_ignore_ascii_case("none"), radius, end, ..Corner::default() }
 }
 
@@ -196,9 +197,9 @@ fn vehicle(root: &Tree, m: &mut Mechanism, notes: &mut Notes) {
     let is_length = |x: f64| x > 0.0;
     let is_share = |x: f64| (0.0..=1.0).contains(&x);
     let driven = |tree: &Tree| {
-        Some(match End::named(tree.text()?)? {
-            End::Front => 1.0,
-            End::Rear => 0.0,
+        Some(match end_named(tree.text()?)? {
+            VehicleEnd::Front => 1.0,
+            VehicleEnd::Rear => 0.0,
         })
     };
     let road = m.wheels.first().map_or(0.0, |wheel| {

@@ -3,7 +3,7 @@
 use hardpoint::space::Vec3;
 
 use crate::corner::{Corner, Role, role_of};
-use crate::mechanism::{End, Mechanism};
+use crate::mechanism::{Mechanism, end_named};
 use crate::report::{At, Notes};
 use crate::{Format, Input};
 
@@ -120,7 +120,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         let why = "the file does not name what it is";
         notes.refused("number", &format!("{number}"), Some(*at), why);
     }
-    let end = lines[*block].text.split_whitespace().next().and_then(End::named);
+    let end = lines[*block].text.split_whitespace().next().and_then(end_named);
     let mut corner = Corner { at: Some(lines[*block].at), rack: true, radius, end, ..Corner::default() };
     for (name, (place, at)) in names.iter().zip(&places) {
         if name.contains("C of G") {

@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use hardpoint::model::{Vehicle, VehicleEnd};
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 /// The body that does not move: the first of every mechanism.
@@ -30,7 +31,7 @@ pub struct Mechanism {
     pub points: Vec<Point>,
     /// Road wheels.
     pub wheels: Vec<Wheel>,
-    /// Figures of the vehicle.
+    /// Figures of the vehicle; lengths are in the mechanism's unit.
     pub vehicle: Vehicle,
     /// The driver that steers the wheels.
     pub steering: Option<usize>,
@@ -88,19 +89,6 @@ pub struct Mass {
     pub mass: f64,
     /// Inertia matrix, kg m^2; none of a point mass.
     pub inertia: Option<Mat3>,
-}
-
-/// Figures of the vehicle that measures use, in the mechanism's unit of length.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Vehicle {
-    /// Distance of the axles.
-    pub wheelbase: Option<f64>,
-    /// Height of the centre of gravity above the ground.
-    pub centre_of_gravity: Option<f64>,
-    /// Part of the braking force at the front wheels, 0 to 1.
-    pub front_brake_share: Option<f64>,
-    /// Part of the driving force at the front wheels, 0 to 1.
-    pub front_drive_share: Option<f64>,
 }
 
 /// A motion of some drivers while all others are held.
@@ -330,35 +318,12 @@ pub struct Wheel {
     /// The ends of its spring.
     pub spring: Option<[(usize, Vec3); 2]>,
     /// The end of the vehicle that it is at.
-    pub end: Option<End>,
+    pub end: Option<VehicleEnd>,
 }
 
-/// An end of the vehicle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// The front axle.
-    Front,
-    /// The rear axle.
-    Rear,
-}
-
-impl End {
-    /// The end that a word names, whatever its case.
-    pub fn named(word: &str) -> Option<Self> {
-        match word.trim().to_ascii_lowercase().as_str() {
-            "front" => Some(Self::Front),
-            "rear" => Some(Self::Rear),
-            _ => None,
-        }
-    }
-
-    /// The word of model files.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Front => "front",
-            Self::Rear => "rear",
-        }
-    }
+/// The end of the vehicle that a word names, whatever its case.
+pub fn end_named(word: &str) -> Option<VehicleEnd> {
+    VehicleEnd::ALL.into_iter().find(|end| word.trim().eq_ignore_ascii_case(end.name()))
 }
 
 impl Mechanism {

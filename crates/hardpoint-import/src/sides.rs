@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use hardpoint::space::{Mat3, Vec3};
+use hardpoint_file::side_names::{WORDS, exchanged, is_original, pieces};
 
 use crate::mechanism::{Body, Driver, Drives, Force, ForceOn, Joint, Law, Mass, Mechanism, Point, Wheel};
 use crate::write::SAME_PLACE;
@@ -10,8 +11,8 @@ use crate::write::SAME_PLACE;
 /// Sign of y and ending of names, left and right.
 pub const SIDES: [(f64, &str); 2] = [(1.0, "_left"), (-1.0, "_right")];
 
-/// The words of both sides in names.
-const WORDS: [&str; 2] = ["left", "right"];
+/// The words of both sides, as a mirror has them by default.
+const BOTH: [(&str, &str); 1] = [(WORDS[0], WORDS[1])];
 
 /// A place or direction of the left side, on the left (1) or on the right (-1).
 pub fn over(v: Vec3, side: f64) -> Vec3 {
@@ -27,49 +28,23 @@ pub fn with_word(name: &str, word: &str) -> String {
     }
 }
 
-/// The pieces of a name: words, and what is between them.
-fn pieces(name: &str) -> Vec<&str> {
-    let mut out = Vec::new();
-    let mut rest = name;
-    while let Some(first) = rest.chars().next() {
-        let end = if first.is_alphanumeric() {
-            rest.find(|c: char| !c.is_alphanumeric()).unwrap_or(rest.len())
-        } else {
-            first.len_utf8()
-        };
-        let (piece, after) = rest.split_at(end);
-        out.push(piece);
-        rest = after;
-    }
-    out
-}
-
-/// Side of a name by its first word of a side, as an index of [`SIDES`].
-fn side_of(name: &str) -> Option<usize> {
-    pieces(name).into_iter().find_map(|piece| WORDS.iter().position(|word| *word == piece))
-}
-
 /// Returns whether a name is of the right side.
 pub fn is_right(name: &str) -> bool {
-    side_of(name) == Some(1)
+    is_original(name, &BOTH) == Some(false)
 }
 
 /// The name of the same thing on the other side, of a name that has one; the name itself of all others.
 pub fn other(name: &str) -> String {
-    let exchanged = |piece| match WORDS.iter().position(|word| *word == piece) {
-        Some(side) => WORDS[1 - side],
-        None => piece,
-    };
-    pieces(name).into_iter().map(exchanged).collect()
+    exchanged(name, &BOTH).unwrap_or_else(|| name.to_owned())
 }
 
 /// The name without its side, of the left one of a pair.
 pub fn base(name: &str) -> Option<String> {
-    if side_of(name) != Some(0) {
+    if is_original(name, &BOTH) != Some(true) {
         return None;
     }
     let words: Vec<&str> = name.split('_').filter(|word| *word != WORDS[0]).collect();
-    Some(words.join("_")).filter(|base| !base.is_empty() && side_of(base).is_none())
+    Some(words.join("_")).filter(|base| !base.is_empty() && is_original(base, &BOTH).is_none())
 }
 
 /// The joints of the right side that are no images of their counterparts, if all else of it is the image of the left side; none if it is
@@ -77,7 +52,7 @@ pub fn base(name: &str) -> Option<String> {
 pub fn symmetry(m: &Mechanism) -> Option<HashSet<&str>> {
     let is_sided = |c: &crate::mechanism::Coupler| {
         let joints = c.terms.iter().map(|(c, _)| m.joints[c.joint].name.as_str());
-        joints.chain([c.name.as_str()]).any(|name| side_of(name).is_some())
+        joints.chain([c.name.as_str()]).any(|name| is_original(name, &BOTH).is_some())
     };
     if m.couplers.iter().any(is_sided) || !m.turned.is_empty() || m.bodies.iter().any(|b| b.mesh.is_some()) {
         return None;
@@ -85,7 +60,7 @@ pub fn symmetry(m: &Mechanism) -> Option<HashSet<&str>> {
     let image = |b: &Body| m.bodies.iter().position(|other| other.name == self::other(&b.name));
     let bodies = m.bodies.iter().map(image).collect::<Option<Vec<usize>>>()?;
     let mirror = Mirror { m, bodies, near: SAME_PLACE * m.size() };
-    let both = |name: &str| WORDS.iter().all(|word| pieces(name).contains(word));
+    let both = |name: &str| WORDS.iter().all(|word| pieces(name).any(|piece| piece == *word));
     let names = m.bodies.iter().map(|b| &b.name).chain(m.joints.iter().map(|j| &j.name));
     if names.chain(m.hardpoints.iter().map(|h| &h.0)).any(|name| both(name)) {
         return None;
@@ -106,8 +81,9 @@ pub fn symmetry(m: &Mechanism) -> Option<HashSet<&str>> {
 
 /// The things of the left side with those of the right one; none if any is on one side only.
 fn pairs<T>(list: &[T], name: impl Fn(&T) -> &String) -> Option<Vec<(&T, &T)>> {
-    let of = |side: usize| list.iter().filter(|t| side_of(name(t)) == Some(side)).collect::<Vec<_>>();
-    let (left, right) = (of(0), of(1));
+    let of =
+        |left: bool| list.iter().filter(|t| is_original(name(t), &BOTH) == Some(left)).collect::<Vec<_>>();
+    let (left, right) = (of(true), of(false));
     let counterpart = |l: &T| right.iter().copied().find(|r| *name(r) == other(name(l)));
     let pairs: Option<Vec<_>> = left.iter().map(|l| Some((*l, counterpart(l)?))).collect();
     pairs.filter(|_| left.len() == right.len())

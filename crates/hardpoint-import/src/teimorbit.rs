@@ -7,7 +7,7 @@ use hardpoint::space::Vec3;
 use crate::corner::{Corner, Link, plain, role_of, spin_axis};
 use crate::live_axle::{self, Places};
 use crate::lotus::half_round;
-use crate::mechanism::{End, Mechanism};
+use crate::mechanism::{Mechanism, end_named};
 use crate::report::{At, Notes};
 use crate::sides::SIDES;
 use crate::{Format, Input, teimorbit_blocks};
@@ -104,7 +104,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
         Some(block),
         "turned half round about z, so that x points forward and y left",
     );
-    let end = blocks.iter().find_map(|b| End::named(b.value("MINOR_ROLE")?));
+    let end = blocks.iter().find_map(|b| end_named(b.value("MINOR_ROLE")?));
     let places = sides.each_ref().map(|side| side.places.clone());
     let [left, right, single] = sides.map(Side::corner);
     let mut rack = None;

@@ -164,7 +164,7 @@ impl<'m> Writer<'m> {
             axle.insert("left", left.name.as_str().into());
             axle.insert("right", right.name.as_str().into());
             axle.insert("measures", "all".into());
-            table[left.end.map_or("axle", |end| end.word())] = value(axle);
+            table[left.end.map_or("axle", |end| end.name())] = value(axle);
         }
         table
     }
@@ -483,7 +483,7 @@ impl<'m> Writer<'m> {
                     value(ends.into_iter().map(|(body, at)| self.point(body, at)).collect::<Array>());
             }
             if let Some(end) = wheel.end {
-                t["end"] = value(end.word());
+                t["end"] = value(end.name());
             }
             t["bump"] = value(m.drivers[wheel.bump].name.as_str());
             if let Some(steering) = m.steering.filter(|_| wheel.is_steered) {

@@ -303,7 +303,7 @@ pub fn stride_of_marks(steps: usize) -> usize {
 
 /// The same among the steps that are shown, each of `shown` that were kept, where differences are known at each of `known` of those.
 fn shown_stride_of_marks(known: usize, shown: usize, steps: usize) -> usize {
-    // The first step that is shown and known, and each of so many from there
+    // The distance of steps that are both shown and known
     let common = (1..=known).find(|n| (n * shown).is_multiple_of(known)).unwrap_or(known);
     stride_of_marks(steps).div_ceil(common) * common
 }

@@ -15,6 +15,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::diagnostic::shown;
 use crate::format::{Shape, Table, table};
+use crate::side_names::{WORDS, exchanged, is_original};
 use crate::tree::{Reader, Value, axis_named};
 use crate::walk::{Leaf, in_expression, table_of, walk};
 
@@ -56,8 +57,6 @@ pub(crate) const SECTIONS: [&str; 14] = [
     "measures",
     "metrics",
 ];
-/// The words of the two sides where nothing else is said.
-const WORDS: [&str; 2] = ["left", "right"];
 /// More words than these say no sides.
 const MOST_WORDS: usize = 20;
 
@@ -145,40 +144,6 @@ fn turned_about(key: &str, k: usize) -> usize {
         (_, 1) => 0,
         _ => 2,
     }
-}
-
-/// The pieces of a name: words, and what is between them.
-fn pieces(name: &str) -> impl Iterator<Item = &str> {
-    let mut rest = name;
-    std::iter::from_fn(move || {
-        let first = rest.chars().next()?;
-        let end = match first.is_alphanumeric() {
-            true => rest.find(|c: char| !c.is_alphanumeric()).unwrap_or(rest.len()),
-            false => first.len_utf8(),
-        };
-        let (piece, after) = rest.split_at(end);
-        rest = after;
-        Some(piece)
-    })
-}
-
-/// A name with every word of a side exchanged for its counterpart, if it has any. Done twice it gives the name back, so that two names
-/// never become the same one, unless two words have one counterpart.
-fn exchanged(name: &str, words: &[(String, String)]) -> Option<String> {
-    let counterpart = |piece: &str| {
-        let there = words.iter().find(|(one, _)| one == piece).map(|w| &w.1);
-        there.or_else(|| words.iter().find(|(_, other)| other == piece).map(|w| &w.0))
-    };
-    let is_sided = pieces(name).any(|piece| counterpart(piece).is_some());
-    is_sided.then(|| pieces(name).map(|piece| counterpart(piece).map_or(piece, String::as_str)).collect())
-}
-
-/// Returns whether a name belongs to the side that is written: the first word of a side in it decides. None if it has no such word.
-fn is_original(name: &str, words: &[(String, String)]) -> Option<bool> {
-    pieces(name).find_map(|piece| {
-        let is_one = words.iter().any(|(one, _)| one == piece);
-        (is_one || words.iter().any(|(_, other)| other == piece)).then_some(is_one)
-    })
 }
 
 /// The name of the image of something on the side that is written.

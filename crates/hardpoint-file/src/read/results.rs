@@ -88,8 +88,7 @@ pub(crate) const METRIC: Table = table! {
     may "at": NUMBER, "0";
     /// The part of the curve that counts, from where to where its abscissa goes. Default: all of it.
     may "window": TWO_NUMBERS, "[-20, 20]";
-    /// For `rms`: points `[abscissa, value]` of the curve to compare with, straight lines between them; or the name of a CSV file that
-    /// holds them. Default: zero. For `rms_at_points`: the points, required.
+    /// Points `[abscissa, value]`, or the name of a CSV file of them; for `rms` a polyline. Default: zero.
     may "target": TARGET, "[[-50, 0.1], [50, -0.1]]";
     /// The case whose motion it sums up. Default: each, one number for every case.
     may "case": CASE, "\"bump\"";

@@ -93,7 +93,6 @@ pub(crate) const AXLE: Table = table! {
     may "measures": Shape::Any("AxleMeasures", "", &[ALL, Shape::list(&AXLE_MEASURE)]), "[\"track\", \"ackermann\"]";
 };
 const SIDES: [Side; 2] = [Side::Left, Side::Right];
-const ENDS: [VehicleEnd; 2] = [VehicleEnd::Front, VehicleEnd::Rear];
 
 impl Reader<'_> {
     pub(super) fn vehicle(&mut self, model: &Fields<'_>, raw: &mut Raw) {
@@ -156,7 +155,7 @@ impl Reader<'_> {
             let spin = self.spin(&fields, &mut place);
             let radius = self.number_of(&fields, "radius");
             let side = self.word_of(&fields, "side").map(|k| SIDES[k]);
-            let end = self.word_of(&fields, "end").map(|k| ENDS[k]);
+            let end = self.word_of(&fields, "end").map(|k| VehicleEnd::ALL[k]);
             let [drive, brakes] =
                 ["drive", "brakes"].map(|key| self.word_of(&fields, key).map(|k| TorqueReaction::ALL[k]));
             let bump = self.name_of(&fields, "bump");

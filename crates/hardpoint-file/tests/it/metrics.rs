@@ -325,8 +325,7 @@ metrics.points = { of = "A.y", over = "A.x", take = "rms_at_points", target = [[
     }
 }
 
-/// Of an acceleration the rate is not known, of a velocity no more than the rate: what is stated as the error of an integral is no less
-/// than it is.
+/// The rate of an acceleration is not known, of a velocity only the rate: the stated error of an integral is not below the true one.
 #[test]
 fn the_error_of_integrals_without_rates_is_stated() {
     let head = &CRANK[..CRANK.find("metrics.top").unwrap()];

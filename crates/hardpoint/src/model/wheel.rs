@@ -127,6 +127,9 @@ pub enum VehicleEnd {
 }
 
 impl VehicleEnd {
+    /// Both of them.
+    pub const ALL: [Self; 2] = [Self::Front, Self::Rear];
+
     /// As model files write it.
     pub fn name(self) -> &'static str {
         match self {

@@ -188,7 +188,7 @@ impl<'m> Analysis<'m> {
         self.with_model(Model { times, metrics: Vec::new(), ..self.model().clone() })
     }
 
-    /// Of a model that differs in what is asked for alone.
+    /// The same analysis of a model that differs only in its output times and metrics.
     fn with_model(&self, model: Model) -> Analysis<'static> {
         Analysis {
             topology: self.topology.clone(),

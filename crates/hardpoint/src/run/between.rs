@@ -1,7 +1,7 @@
 //! The motion between output times, as far as metrics need it.
 //!
 //! A metric is that of the curve, not of its output times. Where these are too few to show the curve, the same motion is solved once more
-//! at more times: so many that no driver goes far between two of them and that each law is the polynomial through its ends; and at last at
+//! at more times, close enough that no driver goes far between two of them and that each law is the polynomial through its ends; and at last at
 //! the times that the metrics are taken at, or in the middle of intervals where an integral is off. At its own time a value is exact, and
 //! so is its derivative: an extremum moves with the design, but its value does not change by that, `dm/db = dy/db` at `t*`.
 

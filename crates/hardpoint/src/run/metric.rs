@@ -3,7 +3,8 @@
 //! A metric is written once over any number; its derivatives are the same lines run on duals. Between output times, curves
 //! are the polynomials that have their values, rates and accelerations at both ends.
 
-use super::quadrature::{NODES, PathNode, Stretch, path_nodes, path_stretches};
+use super::curve::{SampledCurve, THERE, WidePolynomial, abscissa_at, along, apart, crossings};
+use super::quadrature::{PathIntegral, coarse_middles, path_error, path_nodes, travel};
 use super::solution::Solution;
 use crate::measure::Measured;
 use crate::model::{Metric, Model, OutputSource, Reduction, VariableId, on_target};
@@ -16,7 +17,7 @@ pub struct MetricValue {
     pub value: Option<f64>,
     /// When it is taken, s; `None` for what is taken of the whole curve.
     pub time: Option<f64>,
-    /// How far interpolation between output times may be off, in SI; `None` where the metric was solved at its own time, and where there
+    /// Estimate of the error of interpolation between output times, in SI; `None` where the metric was solved at its own time, and where there
     /// are not enough output times to estimate it.
     pub error: Option<f64>,
     /// Scale of the error, in SI: greatest less least value of the curve, for an integral times the travel of its abscissa, for a slope
@@ -201,150 +202,6 @@ fn far_out_times(
     times
 }
 
-/// The middles of those parts of the path that contribute most to the error of an integral, if that is more than `tolerance` (of `rms` and
-/// `mean`; of `integral` as a part of the travel). None where rates are unknown: there the error falls with the square of the steps only.
-fn coarse_middles(
-    metric: &Metric,
-    y: &SampledCurve<'_, f64>,
-    x: &Option<SampledCurve<'_, f64>>,
-    tolerance: f64,
-) -> Vec<f64> {
-    if y.orders == 1 {
-        return Vec::new();
-    }
-    let stretches = path_stretches(metric, y, x);
-    let Some(value) = integral(metric, stretches.iter().flat_map(|s| s.nodes(y, x))) else {
-        return Vec::new();
-    };
-    // Most curves are resolved by far, and so are their polynomials of lower degree.
-    let mut errors = Vec::new();
-    for other in [lower, wide] {
-        let found = integral_errors(metric, (y, x), &stretches, value, other);
-        let scale = if metric.take == Reduction::Integral { found.travel } else { 1.0 };
-        if integral_error(metric, value, &found.of, found.travel)
-            .is_some_and(|error| error <= tolerance * scale)
-        {
-            return Vec::new();
-        }
-        errors = found.of;
-    }
-    // Where too little is known to say, it may be off.
-    let size = |error: &Option<f64>| error.unwrap_or(f64::INFINITY);
-    let most = errors.iter().map(|(_, error)| size(error)).fold(0.0, f64::max);
-    let large = errors.iter().filter(|(_, error)| size(error) >= COARSE * most);
-    large.map(|(stretch, _)| 0.5 * (y.times[stretch.k] + y.times[stretch.k + 1])).collect()
-}
-
-/// Parts of the path with at least this part of the largest contribution to the error of an integral are halved: of a smooth curve many,
-/// of one with a kink the one where that is.
-const COARSE: f64 = 1.0 / 64.0;
-
-/// What parts of the path contribute to the error of an integral; `None` where too little is known.
-struct IntegralErrors {
-    of: Vec<(Stretch<f64>, Option<f64>)>,
-    /// Of the abscissa within the window, to and fro.
-    travel: f64,
-}
-
-/// A polynomial that says how far the one of an interval may be from the curve.
-enum OtherPolynomial {
-    Lower(Polynomial<f64>),
-    Wide(WidePolynomial),
-}
-
-impl OtherPolynomial {
-    /// Value and rate.
-    fn at(&self, t: f64) -> [f64; 2] {
-        match self {
-            Self::Lower(polynomial) => polynomial.at(t),
-            Self::Wide(polynomial) => polynomial.at(t),
-        }
-    }
-}
-
-/// The polynomial of interval k without the highest order that is known at its ends: farther from the curve than its own.
-fn lower(curve: &SampledCurve<'_, f64>, k: usize) -> Option<OtherPolynomial> {
-    let known = usize::min(curve.known(k), curve.known(k + 1));
-    (known > 1).then(|| OtherPolynomial::Lower(curve.polynomial_of(k, known - 1)))
-}
-
-/// The polynomial through more times: nearer to the curve than the interval's own.
-fn wide(curve: &SampledCurve<'_, f64>, k: usize) -> Option<OtherPolynomial> {
-    WidePolynomial::new(curve, k).map(OtherPolynomial::Wide)
-}
-
-/// The contribution of each part of the path to the error of an integral: the difference between other polynomials ([`wide`] or
-/// [`lower`]) and the interval's own.
-fn integral_errors(
-    metric: &Metric,
-    (y, x): (&SampledCurve<'_, f64>, &Option<SampledCurve<'_, f64>>),
-    stretches: &[Stretch<f64>],
-    value: f64,
-    other: fn(&SampledCurve<'_, f64>, usize) -> Option<OtherPolynomial>,
-) -> IntegralErrors {
-    // What is integrated, less its mean: an error of the travel counts for that much less.
-    let integrand = |at: f64, y: f64| match &metric.take {
-        Reduction::Mean => y - value,
-        Reduction::Rms(target) => (y - on_target(target, at)).powi(2) - value * value,
-        Reduction::Least
-        | Reduction::Greatest
-        | Reduction::Range
-        | Reduction::Integral
-        | Reduction::RmsAtPoints(_)
-        | Reduction::Value(_)
-        | Reduction::Slope(_) => y,
-    };
-    let mut travel = 0.0;
-    let mut error = |stretch: &Stretch<f64>| {
-        let k = stretch.k;
-        let nodes: [PathNode<f64>; NODES] = stretch.nodes(y, x);
-        travel += nodes.iter().map(|node| node.dx.abs()).sum::<f64>();
-        let other_y = other(y, k)?;
-        let other_x = x.as_ref().map_or(Some(None), |x| other(x, k).map(Some))?;
-        let along = |t: f64| other_x.as_ref().map_or([t, 1.0], |x| x.at(t));
-        let apart = nodes.iter().map(|node| {
-            let [at, rate] = along(node.t);
-            integrand(at, other_y.at(node.t)[0]) * rate * node.dt - integrand(node.x, node.y) * node.dx
-        });
-        // Where the window cuts the curve, an error of the abscissa moves the cut.
-        let moved = [stretch.from, stretch.to].into_iter().filter(|t| !y.times.contains(t)).map(|t| {
-            let own = x.as_ref().map_or(t, |x| x.number(k, t));
-            (integrand(own, y.number(k, t)) * (along(t)[0] - own)).abs()
-        });
-        Some(apart.sum::<f64>().abs() + moved.sum::<f64>())
-    };
-    let of = stretches.iter().map(|stretch| (*stretch, error(stretch))).collect();
-    IntegralErrors { of, travel }
-}
-
-/// The error of an integral over the path from the contributions to it.
-fn integral_error(
-    metric: &Metric,
-    value: f64,
-    errors: &[(Stretch<f64>, Option<f64>)],
-    travel: f64,
-) -> Option<f64> {
-    let sum: f64 = errors.iter().map(|(_, error)| *error).sum::<Option<f64>>()?;
-    let mean = sum / travel;
-    Some(match metric.take {
-        Reduction::Mean => mean,
-        // sqrt(rms^2 + error of the mean square) - rms
-        Reduction::Rms(_) => (value * value + mean).sqrt() - value,
-        Reduction::Least
-        | Reduction::Greatest
-        | Reduction::Range
-        | Reduction::Integral
-        | Reduction::RmsAtPoints(_)
-        | Reduction::Value(_)
-        | Reduction::Slope(_) => sum,
-    })
-}
-
-/// The travel of the abscissa within the window, to and fro.
-fn travel<T: Real>(metric: &Metric, y: &SampledCurve<'_, T>, x: &Option<SampledCurve<'_, T>>) -> T {
-    path_nodes(metric, y, x).fold(T::zero(), |sum, node| sum + node.dx.abs())
-}
-
 /// The solution that metrics are taken of: that between output times, where there is one.
 fn solution_of(solution: &Solution) -> &Solution {
     solution.between.as_deref().unwrap_or(solution)
@@ -420,7 +277,7 @@ impl MetricParts {
     }
 }
 
-/// What is left beyond the target of an `rms` metric, one part for each node of the integral or each point of the target, so weighted that
+/// The differences from the target of an `rms` metric, one part for each node of the integral or each point of the target, so weighted that
 /// the sum of their squares is that of the metric; `None` for other metrics, and where the metric has no value.
 ///
 /// ```text
@@ -507,277 +364,7 @@ fn abscissa<C>(metric: &Metric, curve: impl Fn(OutputSource) -> Option<C>) -> Op
     metric.over.map_or(Some(None), |over| curve(over).map(Some))
 }
 
-/// A curve over time: at each time so many of its value, rate and acceleration.
-pub(super) struct SampledCurve<'t, T> {
-    pub(super) times: &'t [f64],
-    orders: usize,
-    pub(super) values: Vec<[T; 3]>,
-}
-
-/// The polynomial of a curve in one interval.
-pub(super) struct Polynomial<T> {
-    from: f64,
-    length: f64,
-    /// Coefficients in the part of the interval that has passed.
-    c: [T; 6],
-}
-
-impl<T: Real> Polynomial<T> {
-    /// Value and rate at a time.
-    pub(super) fn at(&self, t: T) -> [T; 2] {
-        let (c, h) = (T::constant, self.length);
-        let s = (t - c(self.from)) / c(h);
-        let [c0, c1, c2, c3, c4, c5] = self.c;
-        let value = c0 + s * (c1 + s * (c2 + s * (c3 + s * (c4 + s * c5))));
-        let slope = c1 + s * (c(2.0) * c2 + s * (c(3.0) * c3 + s * (c(4.0) * c4 + s * c(5.0) * c5)));
-        [value, slope / c(h)]
-    }
-}
-
-impl<T: Real> SampledCurve<'_, T> {
-    /// The number of orders that are known at a time: at a kink the value alone.
-    fn known(&self, k: usize) -> usize {
-        self.values[k][..self.orders].iter().take_while(|x| x.value().is_finite()).count()
-    }
-
-    /// The interval of a time.
-    fn interval(&self, t: f64) -> usize {
-        let after = self.times[..self.values.len()].partition_point(|end| *end <= t);
-        after.clamp(1, self.values.len() - 1) - 1
-    }
-
-    /// The polynomial of interval k with the values, rates and accelerations that are known at its ends.
-    pub(super) fn polynomial(&self, k: usize) -> Polynomial<T> {
-        self.polynomial_of(k, self.orders)
-    }
-
-    /// The polynomial with so many of them at most.
-    fn polynomial_of(&self, k: usize, orders: usize) -> Polynomial<T> {
-        let length = self.times[k + 1] - self.times[k];
-        let known = [k, k + 1].map(|end| self.known(end).min(orders));
-        Polynomial { from: self.times[k], length, c: self.coefficients(k, length, known) }
-    }
-
-    fn coefficients(&self, k: usize, h: f64, known: [usize; 2]) -> [T; 6] {
-        let ([a, b], c) = ([&self.values[k], &self.values[k + 1]], T::constant);
-        // p(s) = c0 + c1 s + ... + c5 s^5,  s = (t - t_k) / h,  with y, h y., h^2 y.. at s = 0 and s = 1
-        let zero = c(0.0);
-        // Newton's form on [0, 0, 0, 1, 1, 1], or with fewer ends of each.
-        let [a0, a1, a2] = [a[0], a[1] * c(h), a[2] * c(0.5 * h * h)];
-        let [b0, b1, b2] = [b[0], b[1] * c(h), b[2] * c(0.5 * h * h)];
-        match known {
-            [3, 3] => {
-                // What is left of value, rate and half the acceleration at s = 1.
-                let p = b0 - a0 - a1 - a2;
-                let q = b1 - a1 - c(2.0) * a2;
-                let r = b2 - a2;
-                let c3 = c(10.0) * p - c(4.0) * q + r;
-                let c4 = c(-15.0) * p + c(7.0) * q - c(2.0) * r;
-                [a0, a1, a2, c3, c4, c(6.0) * p - c(3.0) * q + r]
-            }
-            [2 | 3, 2 | 3] => {
-                let rise = b0 - a0;
-                [a0, a1, c(3.0) * rise - c(2.0) * a1 - b1, a1 + b1 - c(2.0) * rise, zero, zero]
-            }
-            // A kink at one end: all that is known at the other.
-            [3, _] => [a0, a1, a2, b0 - a0 - a1 - a2, zero, zero],
-            [2, _] => [a0, a1, b0 - a0 - a1, zero, zero, zero],
-            [_, 3] => {
-                // b0 - b1 u + b2 u^2 + q u^3,  u = 1 - s
-                let q = a0 - b0 + b1 - b2;
-                [a0, b1 - c(2.0) * b2 - c(3.0) * q, b2 + c(3.0) * q, -q, zero, zero]
-            }
-            [_, 2] => {
-                let q = a0 - b0 + b1;
-                [a0, b1 - c(2.0) * q, q, zero, zero, zero]
-            }
-            [_, _] => [a0, b0 - a0, zero, zero, zero, zero],
-        }
-    }
-
-    /// Value and rate at a time of interval k.
-    fn at(&self, k: usize, t: T) -> [T; 2] {
-        self.polynomial(k).at(t)
-    }
-
-    /// The parts of interval k in which the curve rises or falls all along.
-    pub(super) fn monotone(
-        times: &[f64],
-        curve: Option<&Self>,
-        k: usize,
-    ) -> impl Iterator<Item = [f64; 2]> + use<T> {
-        let turns = curve.map_or(Vec::new(), |curve| curve.turns(k));
-        let mut from = times[k];
-        turns.into_iter().chain([times[k + 1]]).map(move |to| [std::mem::replace(&mut from, to), to])
-    }
-
-    /// The times inside interval k where the curve turns.
-    fn turns(&self, k: usize) -> Vec<f64> {
-        // Where the coefficients in Bernstein's form rise or fall all along, so does the polynomial.
-        let coefficients = self.bernstein(k);
-        if coefficients.is_some_and(|b| b.is_sorted() || b.iter().rev().is_sorted()) {
-            return Vec::new();
-        }
-        let Polynomial { from, length, c } = self.polynomial(k);
-        let c = c.map(|c| c.value());
-        let rate = [c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4], 5.0 * c[5]];
-        roots(&rate).into_iter().map(|s| from + s * length).collect()
-    }
-
-    /// What the polynomial of interval k nowhere exceeds, times `sign`: the greatest of its coefficients in Bernstein's form.
-    fn bound(&self, k: usize, sign: f64) -> f64 {
-        // Beside a kink or a gap nothing is said.
-        let Some(coefficients) = self.bernstein(k) else { return f64::INFINITY };
-        coefficients.into_iter().fold(f64::NEG_INFINITY, |most, c| most.max(sign * c))
-    }
-
-    /// The coefficients of the polynomial of interval k in Bernstein's form, of a cubic the inner ones twice; none beside a kink or a gap.
-    fn bernstein(&self, k: usize) -> Option<[f64; 6]> {
-        let h = self.times[k + 1] - self.times[k];
-        let [a, b] = [k, k + 1].map(|k| self.values[k].map(|x| x.value()));
-        Some(match [self.known(k), self.known(k + 1)] {
-            [1, 1] => [a[0], a[0], a[0], b[0], b[0], b[0]],
-            [2, 2] => {
-                let [inner, outer] = [a[0] + h * a[1] / 3.0, b[0] - h * b[1] / 3.0];
-                [a[0], inner, inner, outer, outer, b[0]]
-            }
-            [3, 3] => [
-                a[0],
-                a[0] + h * a[1] / 5.0,
-                a[0] + h * (2.0 * a[1] / 5.0 + h * a[2] / 20.0),
-                b[0] - h * (2.0 * b[1] / 5.0 - h * b[2] / 20.0),
-                b[0] - h * b[1] / 5.0,
-                b[0],
-            ],
-            [_, _] => return None,
-        })
-    }
-
-    /// A time of interval k without its round-off.
-    fn within(&self, k: usize, t: T) -> f64 {
-        let (t, [low, high]) = (t.value(), [self.times[k], self.times[k + 1]]);
-        let end = if t - low < high - t { low } else { high };
-        if (t - end).abs() < THERE * (high - low) { end } else { t.clamp(low, high) }
-    }
-
-    /// A time of interval k at which the curve is `at`, with the derivative of one step of Newton's method.
-    fn moved(&self, k: usize, t: f64, at: f64) -> T {
-        let t = T::constant(t);
-        let [value, rate] = self.at(k, t);
-        // x(t, b) = at:  t_b = -x_b / x.,  which the dual of one Newton step t - (x - at) / x. carries
-        t - (value - T::constant(at)) / rate
-    }
-
-    pub(super) fn number(&self, k: usize, t: f64) -> f64 {
-        self.at(k, T::constant(t))[0].value()
-    }
-}
-
-/// Binomial coefficients C(n, k).
-const CHOOSE: [[f64; 5]; 5] = [
-    [1.0, 0.0, 0.0, 0.0, 0.0],
-    [1.0, 1.0, 0.0, 0.0, 0.0],
-    [1.0, 2.0, 1.0, 0.0, 0.0],
-    [1.0, 3.0, 3.0, 1.0, 0.0],
-    [1.0, 4.0, 6.0, 4.0, 1.0],
-];
-
-/// Where a polynomial, of degree 4 at most, changes its sign between 0 and 1. Between the places where its derivative does, it
-/// does so once at most.
-fn roots(c: &[f64]) -> Vec<f64> {
-    let value = |s: f64| c.iter().rev().fold(0.0, |sum, c| sum * s + c);
-    // In Bernstein's form the coefficients enclose the polynomial.
-    let n = c.len() - 1;
-    // b_i = sum_{j<=i} C(i,j) / C(n,j) c_j                                                                (31)
-    let enclosing = (0..=n).map(|i| (0..=i).map(|j| CHOOSE[i][j] / CHOOSE[n][j] * c[j]).sum::<f64>());
-    let [low, high] = enclosing.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], b| [l.min(b), h.max(b)]);
-    if n == 0 || !(low < 0.0 && high > 0.0) {
-        return Vec::new();
-    }
-    let derivative: Vec<f64> = (1..=n).map(|k| k as f64 * c[k]).collect();
-    let mut ends = vec![0.0];
-    ends.extend(roots(&derivative));
-    ends.push(1.0);
-    let mut found = Vec::new();
-    for pair in ends.windows(2) {
-        let [mut low, mut high] = [pair[0], pair[1]];
-        let rising = value(low) < 0.0;
-        if rising == (value(high) < 0.0) {
-            continue;
-        }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if (value(middle) < 0.0) == rising { low = middle } else { high = middle }
-        }
-        found.push(0.5 * (low + high));
-    }
-    found
-}
-
-/// The polynomial with what is known at the ends of an interval and at the next output time to either side, in Newton's form:
-/// twice the degree of the interval's own. How far the two are apart is how far that may be from the curve.
-struct WidePolynomial {
-    /// How many numbers are known.
-    count: usize,
-    /// Each time as often as something is known there.
-    nodes: [f64; MOST_KNOWN],
-    /// Divided differences.
-    c: [f64; MOST_KNOWN],
-}
-
-/// Value, rate and acceleration at four times.
-const MOST_KNOWN: usize = 12;
-
-impl WidePolynomial {
-    /// `None` where nothing is known beside the interval.
-    fn new(y: &SampledCurve<'_, f64>, k: usize) -> Option<Self> {
-        let last = y.values.len() - 1;
-        let h = y.times[k + 1] - y.times[k];
-        // Beyond a kink or a jump (a pair of times) the curve is another.
-        let smooth = |end: usize| y.known(end) == y.orders;
-        let goes_on = |end: usize, other: usize| {
-            smooth(end) && y.known(other) > 0 && (y.times[end] - y.times[other]).abs() > THERE * h
-        };
-        let before = k.checked_sub(1).filter(|other| goes_on(k, *other));
-        let after = Some(k + 2).filter(|other| *other <= last && goes_on(k + 1, *other));
-        if before.or(after).is_none() || !(y.known(k) > 0 && y.known(k + 1) > 0) {
-            return None;
-        }
-        // The interval's own ends first.
-        let (mut count, mut at) = (0, [0; MOST_KNOWN]);
-        for i in [k, k + 1].into_iter().chain(before).chain(after) {
-            let known = y.known(i);
-            at[count..count + known].fill(i);
-            count += known;
-        }
-        let (nodes, mut c) = (at.map(|i| y.times[i]), at.map(|i| y.values[i][0]));
-        for order in 1..count {
-            for i in (order..count).rev() {
-                c[i] = if at[i - order] == at[i] {
-                    // Half the acceleration, or the rate.
-                    y.values[at[i]][order] / order as f64
-                } else {
-                    (c[i] - c[i - 1]) / (nodes[i] - nodes[i - order])
-                };
-            }
-        }
-        Some(Self { count, nodes, c })
-    }
-
-    /// Value and rate.
-    fn at(&self, t: f64) -> [f64; 2] {
-        let ends = self.nodes[..self.count].iter().zip(&self.c[..self.count]).rev();
-        ends.fold([0.0; 2], |[value, rate], (node, c)| [value * (t - node) + c, rate * (t - node) + value])
-    }
-}
-
-/// Value and rate of the polynomial through more times less those of the interval's own.
-fn apart(curve: &SampledCurve<'_, f64>, k: usize, t: f64) -> Option<[f64; 2]> {
-    let (own, wide) = (curve.at(k, t), WidePolynomial::new(curve, k)?.at(t));
-    Some([wide[0] - own[0], wide[1] - own[1]])
-}
-
-/// How far the value may be off at a time of interval k that the abscissa decides about: its error moves the time, and that the value.
+/// Estimate of the error of the value at a time of interval k that the abscissa decides about: its error moves the time, and that the value.
 fn time_error(y: &SampledCurve<'_, f64>, x: &Option<SampledCurve<'_, f64>>, k: usize, t: f64) -> Option<f64> {
     let late = match x {
         Some(x) => (apart(x, k, t)?[0] / x.at(k, t)[1]).abs(),
@@ -845,11 +432,7 @@ fn interpolation_error(
             };
             Some(of(Reduction::Greatest)? + of(Reduction::Least)?)
         }
-        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => {
-            let stretches = path_stretches(metric, y, x);
-            let IntegralErrors { of, travel } = integral_errors(metric, (y, x), &stretches, value, wide);
-            integral_error(metric, value, &of, travel)
-        }
+        Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => path_error(metric, y, x, value),
         Reduction::RmsAtPoints(points) => {
             // The root mean square of the errors at the points
             let counting = points.iter().filter(|p| within_window(metric, p[0]));
@@ -862,9 +445,6 @@ fn interpolation_error(
 
 /// Parts of an interval at whose ends a curve between output times is looked at.
 const PLACES: u32 = 8;
-
-/// Bisections of an interval: to the last bit of a time.
-const HALVINGS: usize = 60;
 
 /// What a metric takes, and when.
 fn take<T: Real>(
@@ -896,7 +476,7 @@ fn take<T: Real>(
             Some((y.at(k, t)[1] / by, Some(y.within(k, t))))
         }
         Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => {
-            integral(metric, path_nodes(metric, y, x)).map(|value| (value, None))
+            PathIntegral::of(&metric.take)?.value(path_nodes(metric, y, x)).map(|value| (value, None))
         }
         Reduction::RmsAtPoints(points) => {
             let left = left_at_points(metric, points, y, x)?;
@@ -945,53 +525,7 @@ fn take_at_single_time<T: Real>(
     }
 }
 
-/// An abscissa this near, as a part of its span, is there: a motion that starts at the place must not be said to come by later,
-/// for its last digit.
-const THERE: f64 = 1e-9;
-
-/// The intervals where the abscissa is `at`, in their order, and the time of each, which moves with the design.
-fn crossings<'c, T: Real>(
-    y: &'c SampledCurve<'_, T>,
-    x: &'c Option<SampledCurve<'_, T>>,
-    at: f64,
-) -> impl Iterator<Item = (usize, T)> + 'c {
-    let x = x.as_ref();
-    let distances = x.into_iter().flat_map(|x| &x.values).map(move |x| (x[0].value() - at).abs());
-    let near = THERE * distances.fold(0.0, f64::max);
-    let intervals = 0..y.values.len().saturating_sub(1);
-    intervals.flat_map(move |k| {
-        let there = |end: usize| x.is_some_and(|x| (x.values[end][0].value() - at).abs() <= near);
-        let located = |t: f64| x.map(|x| x.moved(k, t, at));
-        if let Some(end) = [k, k + 1].into_iter().find(|end| there(*end)) {
-            return Vec::from_iter(located(y.times[end]).map(|t| (k, t)));
-        }
-        let parts = SampledCurve::monotone(y.times, x, k);
-        parts.filter_map(|part| Some((k, crossing(x, k, part, at)?))).collect()
-    })
-}
-
-/// The time at which the abscissa is `at` in a part of interval k where it rises or falls all along, which moves with the design; none
-/// where it is not.
-pub(super) fn crossing<T: Real>(
-    x: Option<&SampledCurve<'_, T>>,
-    k: usize,
-    [mut low, mut high]: [f64; 2],
-    at: f64,
-) -> Option<T> {
-    let Some(x) = x else { return (low <= at && at <= high).then(|| T::constant(at)) };
-    let miss = |t: f64| x.number(k, t) - at;
-    if !(miss(low) * miss(high) <= 0.0) {
-        return None;
-    }
-    let rising = miss(high) > miss(low);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if (miss(middle) < 0.0) == rising { low = middle } else { high = middle }
-    }
-    Some(x.moved(k, 0.5 * (low + high), at))
-}
-
-/// What is left beyond a target at each of its points within the window, where the abscissa first is there; `None` where there is no such
+/// The differences from a target at each of its points within the window, where the abscissa first is there; `None` where there is no such
 /// point, or one that is not reached.
 fn left_at_points<T: Real>(
     metric: &Metric,
@@ -1010,11 +544,6 @@ fn left_at_points<T: Real>(
 /// Whether this part of the curve counts.
 fn within_window(metric: &Metric, at: f64) -> bool {
     metric.window.is_none_or(|[low, high]| low <= at && at <= high)
-}
-
-/// The abscissa at a time of interval k.
-fn along<T: Real>(x: &Option<SampledCurve<'_, T>>, k: usize, t: f64) -> f64 {
-    x.as_ref().map_or(t, |x| x.number(k, t))
 }
 
 /// The greatest value (sign 1) or the least (-1) where the abscissa is in the window, and its time.
@@ -1059,93 +588,9 @@ fn extreme<T: Real>(
     best
 }
 
-/// A metric that is an integral, from the nodes of its path.
-fn integral<T: Real>(metric: &Metric, nodes: impl Iterator<Item = PathNode<T>>) -> Option<T> {
-    match &metric.take {
-        Reduction::Mean => mean(nodes, |_, value| value),
-        // sum y_g dx_g;  what the abscissa goes back counts down
-        Reduction::Integral => nodes.map(|node| node.y * node.dx).reduce(|sum, part| sum + part),
-        Reduction::Rms(target) => {
-            let square = |at: T, value: T| {
-                let left = value - on_target(target, at);
-                left * left
-            };
-            mean(nodes, square).map(T::sqrt)
-        }
-        Reduction::Least
-        | Reduction::Greatest
-        | Reduction::Range
-        | Reduction::RmsAtPoints(_)
-        | Reduction::Value(_)
-        | Reduction::Slope(_) => None,
-    }
-}
-
-/// The mean of a function of abscissa and value over the travel of the abscissa, to and fro.
-fn mean<T: Real>(nodes: impl Iterator<Item = PathNode<T>>, of: impl Fn(T, T) -> T) -> Option<T> {
-    // sum f_g abs(dx_g)  over  sum abs(dx_g)
-    let add = |[sum, travel]: [T; 2], node: PathNode<T>| {
-        let travelled = node.dx.abs();
-        [sum + of(node.x, node.y) * travelled, travel + travelled]
-    };
-    let [sum, travel] = nodes.fold([T::zero(); 2], add);
-    (travel.value() > 0.0).then(|| sum / travel)
-}
-
-/// The abscissa at an output time.
-fn abscissa_at<T: Real>(y: &SampledCurve<'_, T>, x: &Option<SampledCurve<'_, T>>, k: usize) -> T {
-    x.as_ref().map_or(T::constant(y.times[k]), |x| x.values[k][0])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// x = sin t, y = t^5, at uneven times.
-    fn curves(times: &[f64]) -> [SampledCurve<'_, f64>; 2] {
-        let of = |f: fn(f64) -> [f64; 3]| SampledCurve {
-            times,
-            orders: 3,
-            values: times.iter().map(|t| f(*t)).collect(),
-        };
-        [of(|t| [t.sin(), t.cos(), -t.sin()]), of(|t| [t.powi(5), 5.0 * t.powi(4), 20.0 * t.powi(3)])]
-    }
-
-    #[test]
-    fn no_polynomial_exceeds_its_bound_and_bounds_are_near() {
-        let times = [0.0, 0.3, 1.1, 1.4];
-        for curve in curves(&times) {
-            for orders in [2, 3] {
-                let curve = SampledCurve { orders, times: &times, values: curve.values.clone() };
-                for k in 0..3 {
-                    for sign in [1.0, -1.0] {
-                        let h = times[k + 1] - times[k];
-                        let at = |j: u32| sign * curve.number(k, times[k] + h * f64::from(j) / 64.0);
-                        let most = (0..=64).map(at).fold(f64::NEG_INFINITY, f64::max);
-                        let bound = curve.bound(k, sign);
-                        // The ends' rates and accelerations are what Bernstein's coefficients lie apart by.
-                        let ends = [curve.values[k], curve.values[k + 1]];
-                        let apart = ends.map(|[_, v, a]| h * v.abs() + h * h * a.abs() / 10.0);
-                        assert!(
-                            bound > most - 1e-14 && bound < most + apart[0].max(apart[1]) / 2.0,
-                            "{orders} {k} {sign}: {bound} {most}"
-                        );
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_polynomial_of_degree_five_is_its_own_interpolation() {
-        let times = [0.0, 0.3, 1.1];
-        let [x, y] = curves(&times);
-        for t in [0.35_f64, 0.8, 1.05] {
-            let [value, rate] = y.at(1, t);
-            assert!((value - t.powi(5)).abs() < 1e-14 && (rate - 5.0 * t.powi(4)).abs() < 1e-13);
-            assert!((x.at(1, t)[0] - t.sin()).abs() < 1e-5);
-        }
-    }
 
     #[test]
     fn the_target_goes_on_in_straight_lines() {

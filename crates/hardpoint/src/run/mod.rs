@@ -4,6 +4,7 @@
 
 mod analysis;
 mod between;
+mod curve;
 mod designs;
 pub(crate) mod metric;
 mod quadrature;

@@ -3,13 +3,94 @@
 //! The path is cut where the window ends (these cuts move with the design), where the abscissa turns, and where the target of an `rms` has
 //! a corner; between the cuts all is smooth. Kinks and jumps of laws are times that were solved (`between.rs`).
 
-use crate::model::{Metric, Reduction};
+use super::curve::{Polynomial, SampledCurve, WidePolynomial, crossing};
+use crate::model::{Metric, Reduction, on_target};
 use crate::number::Real;
 
-use super::metric::{SampledCurve, crossing};
+/// A metric that is an integral over the path.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum PathIntegral<'m> {
+    /// Over the travel of the abscissa, to and fro.
+    Mean,
+    /// Over the abscissa: the way back counts down.
+    Integral,
+    /// Root of the mean square of the difference from this target.
+    Rms(&'m [[f64; 2]]),
+}
 
-/// How many nodes there are.
-pub(super) const NODES: usize = 5;
+impl<'m> PathIntegral<'m> {
+    /// The integral that a metric is, if it is one.
+    pub(super) fn of(take: &'m Reduction) -> Option<Self> {
+        match take {
+            Reduction::Mean => Some(Self::Mean),
+            Reduction::Integral => Some(Self::Integral),
+            Reduction::Rms(target) => Some(Self::Rms(target)),
+            Reduction::Least
+            | Reduction::Greatest
+            | Reduction::Range
+            | Reduction::RmsAtPoints(_)
+            | Reduction::Value(_)
+            | Reduction::Slope(_) => None,
+        }
+    }
+
+    /// The function of abscissa and value that is integrated.
+    fn integrand<T: Real>(self, at: T, value: T) -> T {
+        match self {
+            Self::Mean | Self::Integral => value,
+            Self::Rms(target) => {
+                let left = value - on_target(target, at);
+                left * left
+            }
+        }
+    }
+
+    /// The mean of the integrand over the travel, where the metric is made of that.
+    fn mean_of_integrand(self, value: f64) -> f64 {
+        match self {
+            Self::Mean => value,
+            Self::Rms(_) => value * value,
+            Self::Integral => 0.0,
+        }
+    }
+
+    /// The metric from the nodes of its path.
+    pub(super) fn value<T: Real>(self, nodes: impl Iterator<Item = PathNode<T>>) -> Option<T> {
+        let nodes = nodes.map(|node| (self.integrand(node.x, node.y), node.dx));
+        match self {
+            // sum f_g dx_g
+            Self::Integral => nodes.map(|(f, dx)| f * dx).reduce(|sum, part| sum + part),
+            Self::Mean => mean(nodes),
+            Self::Rms(_) => mean(nodes).map(T::sqrt),
+        }
+    }
+
+    /// The error of the metric from the contributions to it.
+    fn error(self, value: f64, errors: &IntegralErrors) -> Option<f64> {
+        let sum: f64 = errors.parts.iter().map(|(_, error)| *error).sum::<Option<f64>>()?;
+        let mean = sum / errors.travel;
+        Some(match self {
+            Self::Integral => sum,
+            Self::Mean => mean,
+            // sqrt(rms^2 + error of the mean square) - rms
+            Self::Rms(_) => (value * value + mean).sqrt() - value,
+        })
+    }
+}
+
+/// The mean of a function over the travel of the abscissa, to and fro, from its values and steps of the abscissa.
+fn mean<T: Real>(nodes: impl Iterator<Item = (T, T)>) -> Option<T> {
+    // sum f_g abs(dx_g)  over  sum abs(dx_g)
+    let add = |[sum, travel]: [T; 2], (f, dx): (T, T)| {
+        let travelled = dx.abs();
+        [sum + f * travelled, travel + travelled]
+    };
+    let [sum, travel] = nodes.fold([T::zero(); 2], add);
+    (travel.value() > 0.0).then(|| sum / travel)
+}
+
+/// Nodes of [`GAUSS`].
+const NODES: usize = 5;
 
 /// Nodes and weights of Gauss's rule on [0, 1]: exact to degree 9, as is `y x.` of two polynomials of degree 5.
 const GAUSS: [[f64; 2]; NODES] = [
@@ -78,17 +159,9 @@ pub(super) fn path_stretches<T: Real>(
 ) -> Vec<Stretch<T>> {
     let x = x.as_ref();
     let [low, high] = metric.window.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-    let corners = match &metric.take {
-        Reduction::Rms(target) if target.len() > 2 => &target[1..target.len() - 1],
-        Reduction::Rms(_)
-        | Reduction::Least
-        | Reduction::Greatest
-        | Reduction::Range
-        | Reduction::Mean
-        | Reduction::Integral
-        | Reduction::RmsAtPoints(_)
-        | Reduction::Value(_)
-        | Reduction::Slope(_) => &[],
+    let corners = match PathIntegral::of(&metric.take) {
+        Some(PathIntegral::Rms(target)) if target.len() > 2 => &target[1..target.len() - 1],
+        Some(PathIntegral::Rms(_) | PathIntegral::Mean | PathIntegral::Integral) | None => &[],
     };
     let mut stretches = Vec::new();
     for k in 0..y.values.len().saturating_sub(1) {
@@ -118,4 +191,128 @@ pub(super) fn path_stretches<T: Real>(
         }
     }
     stretches
+}
+
+/// The middles of those parts of the path that contribute most to the error of an integral, if that is more than `tolerance` (of `rms` and
+/// `mean`; of `integral` as a part of the travel). None where rates are unknown: there the error falls with the square of the steps only.
+pub(super) fn coarse_middles(
+    metric: &Metric,
+    y: &SampledCurve<'_, f64>,
+    x: &Option<SampledCurve<'_, f64>>,
+    tolerance: f64,
+) -> Vec<f64> {
+    if y.orders == 1 {
+        return Vec::new();
+    }
+    let Some(of) = PathIntegral::of(&metric.take) else { return Vec::new() };
+    let stretches = path_stretches(metric, y, x);
+    let Some(value) = of.value(stretches.iter().flat_map(|s| s.nodes(y, x))) else { return Vec::new() };
+    // Most curves are resolved by far, and so are their polynomials of lower degree.
+    let mut parts = Vec::new();
+    for other in [lower, wide] {
+        let errors = integral_errors(of, (y, x), &stretches, value, other);
+        let scale = if matches!(of, PathIntegral::Integral) { errors.travel } else { 1.0 };
+        if of.error(value, &errors).is_some_and(|error| error <= tolerance * scale) {
+            return Vec::new();
+        }
+        parts = errors.parts;
+    }
+    // Where too little is known to say, it may be off.
+    let size = |error: &Option<f64>| error.unwrap_or(f64::INFINITY);
+    let most = parts.iter().map(|(_, error)| size(error)).fold(0.0, f64::max);
+    let large = parts.iter().filter(|(_, error)| size(error) >= COARSE * most);
+    large.map(|(stretch, _)| 0.5 * (y.times[stretch.k] + y.times[stretch.k + 1])).collect()
+}
+
+/// Parts of the path with at least this part of the largest contribution to the error of an integral are halved: of a smooth curve many,
+/// of one with a kink the one where that is.
+const COARSE: f64 = 1.0 / 64.0;
+
+/// Contributions of the parts of the path to the error of an integral; `None` if too little is known.
+struct IntegralErrors {
+    parts: Vec<(Stretch<f64>, Option<f64>)>,
+    /// Travel of the abscissa within the window, to and fro.
+    travel: f64,
+}
+
+/// A polynomial that says how far the one of an interval may be from the curve.
+enum OtherPolynomial {
+    Lower(Polynomial<f64>),
+    Wide(WidePolynomial),
+}
+
+impl OtherPolynomial {
+    /// Value and rate.
+    fn at(&self, t: f64) -> [f64; 2] {
+        match self {
+            Self::Lower(polynomial) => polynomial.at(t),
+            Self::Wide(polynomial) => polynomial.at(t),
+        }
+    }
+}
+
+/// The polynomial of interval k without the highest order that is known at its ends: farther from the curve than its own.
+fn lower(curve: &SampledCurve<'_, f64>, k: usize) -> Option<OtherPolynomial> {
+    let known = usize::min(curve.known(k), curve.known(k + 1));
+    (known > 1).then(|| OtherPolynomial::Lower(curve.polynomial_of(k, known - 1)))
+}
+
+/// The polynomial through more times: nearer to the curve than the interval's own.
+fn wide(curve: &SampledCurve<'_, f64>, k: usize) -> Option<OtherPolynomial> {
+    WidePolynomial::new(curve, k).map(OtherPolynomial::Wide)
+}
+
+/// The contribution of each part of the path to the error of an integral: the difference between other polynomials ([`wide`] or
+/// [`lower`]) and the interval's own.
+fn integral_errors(
+    of: PathIntegral<'_>,
+    (y, x): (&SampledCurve<'_, f64>, &Option<SampledCurve<'_, f64>>),
+    stretches: &[Stretch<f64>],
+    value: f64,
+    other: fn(&SampledCurve<'_, f64>, usize) -> Option<OtherPolynomial>,
+) -> IntegralErrors {
+    // An error of the travel counts for as much less as the mean of the integrand is.
+    let mean = of.mean_of_integrand(value);
+    let integrand = |at: f64, y: f64| of.integrand(at, y) - mean;
+    let mut travel = 0.0;
+    let mut error = |stretch: &Stretch<f64>| {
+        let k = stretch.k;
+        let nodes: [PathNode<f64>; NODES] = stretch.nodes(y, x);
+        travel += nodes.iter().map(|node| node.dx.abs()).sum::<f64>();
+        let other_y = other(y, k)?;
+        let other_x = x.as_ref().map_or(Some(None), |x| other(x, k).map(Some))?;
+        let along = |t: f64| other_x.as_ref().map_or([t, 1.0], |x| x.at(t));
+        let apart = nodes.iter().map(|node| {
+            let [at, rate] = along(node.t);
+            integrand(at, other_y.at(node.t)[0]) * rate * node.dt - integrand(node.x, node.y) * node.dx
+        });
+        // Where the window cuts the curve, an error of the abscissa moves the cut.
+        let moved = [stretch.from, stretch.to].into_iter().filter(|t| !y.times.contains(t)).map(|t| {
+            let own = x.as_ref().map_or(t, |x| x.number(k, t));
+            (integrand(own, y.number(k, t)) * (along(t)[0] - own)).abs()
+        });
+        Some(apart.sum::<f64>().abs() + moved.sum::<f64>())
+    };
+    let parts = stretches.iter().map(|stretch| (*stretch, error(stretch))).collect();
+    IntegralErrors { parts, travel }
+}
+
+/// The travel of the abscissa within the window, to and fro.
+pub(super) fn travel<T: Real>(
+    metric: &Metric,
+    y: &SampledCurve<'_, T>,
+    x: &Option<SampledCurve<'_, T>>,
+) -> T {
+    path_nodes(metric, y, x).fold(T::zero(), |sum, node| sum + node.dx.abs())
+}
+
+/// The estimate of the error of an integral with that value, from the polynomials through more times; `None` if too little is known.
+pub(super) fn path_error(
+    metric: &Metric,
+    y: &SampledCurve<'_, f64>,
+    x: &Option<SampledCurve<'_, f64>>,
+    value: f64,
+) -> Option<f64> {
+    let of = PathIntegral::of(&metric.take)?;
+    of.error(value, &integral_errors(of, (y, x), &path_stretches(metric, y, x), value, wide))
 }

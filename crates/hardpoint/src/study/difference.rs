@@ -36,7 +36,7 @@ pub struct Difference {
     pub variable: VariableId,
     /// From the nominal design to a moved one, m, rad, or units of tau.
     pub step: f64,
-    /// Of so many output times, the first and each of these; row k is output time `k * stride`.
+    /// Distance of its output times: row k is output time `k * stride`.
     pub stride: usize,
     /// `bodies[k * n + i]`: of body i in row k.
     pub bodies: Vec<BodySensitivity>,
@@ -61,7 +61,7 @@ pub fn finite_differences(
     finite_differences_each(analysis, nominal, scheme, steps, 1)
 }
 
-/// The same at the first output time and each of so many from there.
+/// The same at every `stride`-th output time, from the first on.
 ///
 /// # Errors
 /// As [`finite_differences`].
@@ -109,7 +109,7 @@ pub fn finite_differences_each(
     out
 }
 
-/// Each of so many output times of a solution.
+/// Every `stride`-th output time of a solution.
 #[derive(Clone, Copy)]
 struct Rows<'s> {
     solution: &'s Solution,

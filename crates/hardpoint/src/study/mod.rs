@@ -61,3 +61,25 @@ pub use whatif::{
     Foresight, WhatIf, add_coordinates, add_tilts, coordinate, repeats_coordinate, value_beside,
     variable_named, variable_names, what_if,
 };
+
+#[cfg(test)]
+mod test_models {
+    use crate::draft::{Draft, JointDraft};
+    use crate::law::Law;
+
+    /// A crank-rocker in the plane z = 0, its coupler a distance joint, with a point on the rocker.
+    pub fn crank_rocker() -> Draft {
+        let rod = JointDraft::new("rod", "distance", ["crank", "rocker"]).at("B").at("C");
+        Draft::new("four-bar")
+            .hardpoint("A", [0.0, 0.0, 0.0])
+            .hardpoint("B", [0.04, 0.2, 0.0])
+            .hardpoint("C", [0.36, 0.6, 0.0])
+            .hardpoint("D", [0.5, 0.0, 0.0])
+            .bodies(["crank", "rocker"])
+            .revolute("bearing", ["ground", "crank"], "A", [0.0, 0.0, 1.0])
+            .revolute("pivot", ["ground", "rocker"], "D", [0.0, 0.0, 1.0])
+            .joint(rod)
+            .driver("motor", "bearing", Law::parse("2*t").unwrap())
+            .point("tip", "rocker", [0.3, 0.5, 0.0])
+    }
+}

@@ -178,9 +178,8 @@ fn check_variable(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draft::{Draft, JointDraft};
-    use crate::law::Law;
     use crate::model::Model;
+    use crate::study::test_models::crank_rocker;
 
     /// A derivative of an output that is wrong by this part of the largest of its kind.
     const WRONG: f64 = 1e-4;
@@ -188,20 +187,11 @@ mod tests {
     /// The spread of differences allows for truncation and round-off, which are far less than this on a crank-rocker.
     #[test]
     fn a_derivative_of_an_output_that_is_wrong_at_one_time_fails() {
-        let rod = JointDraft::new("rod", "distance", ["crank", "rocker"]).at("B").at("C");
-        let draft = Draft::new("four-bar")
-            .hardpoint("A", [0.0, 0.0, 0.0])
-            .hardpoint("B", [0.04, 0.2, 0.0])
-            .hardpoint("C", [0.36, 0.6, 0.0])
-            .hardpoint("D", [0.5, 0.0, 0.0])
-            .bodies(["crank", "rocker"])
-            .revolute("bearing", ["ground", "crank"], "A", [0.0, 0.0, 1.0])
-            .revolute("pivot", ["ground", "rocker"], "D", [0.0, 0.0, 1.0])
-            .joint(rod)
-            .driver("motor", "bearing", Law::parse("2*t").unwrap())
-            .point("tip", "rocker", [0.3, 0.5, 0.0])
-            .times((0..=20).map(|k| 0.1 * f64::from(k)))
-            .variable_moving("C", "C", [1.0, 0.3, 0.0]);
+        let draft = crank_rocker().times((0..=20).map(|k| 0.1 * f64::from(k))).variable_moving(
+            "C",
+            "C",
+            [1.0, 0.3, 0.0],
+        );
         let model = Model::from_draft(&draft).unwrap();
         let analysis = Analysis::new(&model).unwrap();
         let right = analysis.run();

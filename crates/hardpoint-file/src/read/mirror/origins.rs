@@ -3,8 +3,7 @@
 use std::collections::{BTreeMap, HashSet};
 
 use crate::diagnostic::Diagnostic;
-
-use super::{exchanged, is_original};
+use crate::side_names::{exchanged, is_original};
 
 /// Where a mirror's images come from.
 #[derive(Clone, Debug, Default)]

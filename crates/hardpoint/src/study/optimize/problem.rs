@@ -390,9 +390,9 @@ impl<'m> Problem<'m> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draft::{Draft, JointDraft};
     use crate::law::Law;
     use crate::model::{CaseId, Goal, HardpointId, JointId, Metric, OutputSource, PointId};
+    use crate::study::test_models::crank_rocker;
     use crate::topology::Formulation;
 
     /// Central differences of a smooth function at this step, as a part of the bounds, hold to this part of the largest number:
@@ -402,19 +402,7 @@ mod tests {
 
     /// A crank-rocker, its coupler with a point, its rod a distance joint, in two cases, and metrics of every kind.
     fn four_bar() -> Model {
-        let rod = JointDraft::new("rod", "distance", ["crank", "rocker"]).at("B").at("C");
-        let mut draft = Draft::new("four-bar")
-            .hardpoint("A", [0.0, 0.0, 0.0])
-            .hardpoint("B", [0.04, 0.2, 0.0])
-            .hardpoint("C", [0.36, 0.6, 0.0])
-            .hardpoint("D", [0.5, 0.0, 0.0])
-            .bodies(["crank", "rocker"])
-            .revolute("bearing", ["ground", "crank"], "A", [0.0, 0.0, 1.0])
-            .revolute("pivot", ["ground", "rocker"], "D", [0.0, 0.0, 1.0])
-            .joint(rod)
-            .driver("motor", "bearing", Law::parse("2*t").unwrap())
-            .point("tip", "rocker", [0.3, 0.5, 0.0])
-            .times((0..=40).map(|k| 0.05 * f64::from(k)));
+        let mut draft = crank_rocker().times((0..=40).map(|k| 0.05 * f64::from(k)));
         for (k, name) in ["A", "B", "C", "D"].into_iter().enumerate() {
             draft = draft.variable_moving(name, name, [1.0, 0.3 * k as f64, 0.0]);
         }
