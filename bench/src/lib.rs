@@ -5,7 +5,7 @@ use hardpoint::law::Law;
 use hardpoint::motion::Execution;
 use hardpoint::space::{Mat3, Pose, Vec3};
 use hardpoint::{
-    draft::{BodyDraft, Draft, DrivenDraft, FrameDraft, JointDraft, LineDraft, PlaceDraft},
+    draft::{BodyDraft, DirectionDraft, Draft, DrivenDraft, FrameDraft, JointDraft, LocationDraft},
     model::Model,
 };
 
@@ -100,7 +100,7 @@ pub fn chain_with_variables(n: usize, variables: usize, steps: usize) -> Draft {
     for k in (0..variables).map(|v| v * n / variables) {
         let (name, pivot) = (format!("P{k}"), format!("pivot{k}"));
         let joint = draft.joints.iter_mut().find(|j| j.name == pivot).expect("a pivot of the chain");
-        joint.at = vec![PlaceDraft::Hardpoint(name.clone())];
+        joint.at = vec![LocationDraft::Hardpoint(name.clone())];
         draft = draft.hardpoint(&name, [k as f64, 0.0, 0.0]).variable_moving(&name, &name, X);
     }
     draft
@@ -122,8 +122,8 @@ pub fn text(draft: &Draft) -> String {
     }
     text += "[joints]\n";
     for joint in &draft.joints {
-        let place = |place: &PlaceDraft| {
-            let PlaceDraft::At(at) = place else { unreachable!("joints are at coordinates") };
+        let place = |place: &LocationDraft| {
+            let LocationDraft::At(at) = place else { unreachable!("joints are at coordinates") };
             format!("{:?}", at.to_array())
         };
         let at = match joint.at.as_slice() {
@@ -131,7 +131,7 @@ pub fn text(draft: &Draft) -> String {
             more => format!("[{}]", more.iter().map(place).collect::<Vec<_>>().join(", ")),
         };
         let axis = match &joint.axis {
-            Some(LineDraft::Along(u)) => format!(", axis = {:?}", u.to_array()),
+            Some(DirectionDraft::Along(u)) => format!(", axis = {:?}", u.to_array()),
             _ => String::new(),
         };
         let (name, kind, [i, j]) = (&joint.name, &joint.kind, &joint.bodies);
@@ -169,8 +169,8 @@ pub fn truss_with_variables(n: usize, steps: usize) -> Draft {
     for k in 1..n {
         let name = format!("P{k}");
         for place in draft.joints.iter_mut().flat_map(|j| &mut j.at) {
-            if *place == PlaceDraft::At(at(k)) {
-                *place = PlaceDraft::Hardpoint(name.clone());
+            if *place == LocationDraft::At(at(k)) {
+                *place = LocationDraft::Hardpoint(name.clone());
             }
         }
         draft = draft

@@ -13,7 +13,7 @@ use hardpoint::model::{BodyId, GROUND, Model, VariableId};
 use hardpoint::motion::{BodyState, Motion};
 use hardpoint::sensitivity::{BodySensitivity, Sensitivities};
 use hardpoint::space::Vec3;
-use hardpoint::{Analysis, Run, Sink, Solution, Streamed};
+use hardpoint::{Analysis, Run, Sink, Solution, StreamSummary};
 
 use crate::designs::{DESIGNS, designs};
 
@@ -272,7 +272,7 @@ fn moved_designs_with_sensitivities(reference: Option<&[f64]>, once: bool) -> (D
     let model = strut(&[]);
     let analysis = crate::analysis(&model);
     let designs = designs();
-    let end = |design: usize, streamed: Streamed| {
+    let end = |design: usize, streamed: StreamSummary| {
         assert!(streamed.stop.is_none(), "design {design} stops: {:?}", streamed.stop);
     };
     let mut memory = Vec::new();

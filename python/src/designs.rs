@@ -5,10 +5,10 @@ use std::ops::ControlFlow;
 
 use hardpoint::Run as Asked;
 use hardpoint::Solution;
-use hardpoint::measure::Measured;
+use hardpoint::measure::MeasureResults;
 use hardpoint::model::Dimension;
 use hardpoint::sensitivity::Admissibility;
-use hardpoint::study::{BLOCK, Method, metric_numbers, metrics};
+use hardpoint::study::{BLOCK, GradientMethod, metric_numbers, metrics};
 use hardpoint_report::diagnose;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -43,7 +43,7 @@ impl Kept {
     fn values_of(
         &mut self,
         n: usize,
-        measured: &Measured,
+        measured: &MeasureResults,
         of: impl Fn(usize) -> Dimension,
         per_si: impl Fn(Dimension) -> f64,
     ) {
@@ -137,9 +137,9 @@ impl Model {
     ) -> PyResult<Bound<'py, PyDict>> {
         let (file, analysis, changes) = (&self.cases[case], self.analysis(case)?, self.changes(&design)?);
         let method = match method {
-            "auto" => Method::Auto,
-            "direct" => Method::Direct,
-            "adjoint" => Method::Adjoint,
+            "auto" => GradientMethod::Auto,
+            "direct" => GradientMethod::Direct,
+            "adjoint" => GradientMethod::Adjoint,
             _ => {
                 return Err(Failure::Misunderstood(format!(
                     "`{method}` is no method; there are auto, direct, adjoint"

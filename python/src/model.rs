@@ -9,7 +9,7 @@ use hardpoint::joint::Quantity::{Angle, Length};
 use hardpoint::measure::outputs;
 use hardpoint::model::{CaseId, Change, OutputSource, VariableId};
 use hardpoint::study::{Motions, add_coordinates, add_tilts};
-use hardpoint::topology::{Formulation, TopologyFault};
+use hardpoint::topology::{Formulation, TopologyError};
 use hardpoint_file::ModelFile;
 use hardpoint_report::diagnose;
 use hardpoint_report::facts::variable_unit;
@@ -27,7 +27,7 @@ pub(crate) struct Model {
     pub whole: ModelFile,
     /// The file in each of its cases, or as it is where there are none.
     pub cases: Vec<ModelFile>,
-    planned: OnceLock<Result<Motions<'static>, (usize, TopologyFault)>>,
+    planned: OnceLock<Result<Motions<'static>, (usize, TopologyError)>>,
 }
 
 impl Model {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use hardpoint::joint::Quantity::{Angle, Length};
-use hardpoint::measure::Measured;
+use hardpoint::measure::MeasureResults;
 use hardpoint::model::{BodyId, VariableId};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
@@ -289,7 +289,7 @@ impl Run {
 
 /// The derivatives of an order of output m by all variables at some output times: `[variable, time]`.
 pub(crate) fn derivatives(
-    measured: &Measured,
+    measured: &MeasureResults,
     file: &ModelFile,
     m: usize,
     order: usize,

@@ -5,11 +5,12 @@ use std::path::Path;
 
 use hardpoint::Analysis;
 use hardpoint::draft::did_you_mean;
-use hardpoint::model::{Allocating, AllocationRule, Tolerancing, VariableId};
+use hardpoint::model::{AllocationRule, AllocationSettings, ToleranceSettings, VariableId};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::study::{
-    Calibrating, CannotCalibrate, GridMap, Loss, Progress, Scheme, Searching, Stage, ToleranceFailure,
-    VerifyOptions, calibrate, optimize, tolerance, toleranced_designs, validity, verify, what_if,
+    CalibrationError, CalibrationRequest, DifferenceScheme, GridMap, Loss, OptimizationRequest,
+    SearchProgress, ToleranceError, ToleranceStage, VerifyOptions, calibrate, optimize, tolerance,
+    toleranced_designs, validity, verify, what_if,
 };
 use hardpoint::topology::Formulation;
 use hardpoint_report::calibrate::{CalibrateFacts, Calibrated};
@@ -89,16 +90,20 @@ impl Model {
         asked.iterations = iterations.unwrap_or(asked.iterations).max(1);
         let found = patiently(py, progress, |watch| {
             let mut ended = 0;
-            let mut told = |_: usize, told: Progress<'_>| match told {
-                Progress::Iteration(i) if asked.starts == 1 => watch.tell(i.number, asked.iterations),
-                Progress::End(_) if asked.starts > 1 => {
+            let mut told = |_: usize, told: SearchProgress<'_>| match told {
+                SearchProgress::Iteration(i) if asked.starts == 1 => watch.tell(i.number, asked.iterations),
+                SearchProgress::End(_) if asked.starts > 1 => {
                     ended += 1;
                     watch.tell(ended, asked.starts)
                 }
                 _ => flow(watch.more()),
             };
-            let searching =
-                Searching { progress: &mut told, more: &|| watch.more(), threads: threads(workers), first };
+            let searching = OptimizationRequest {
+                progress: &mut told,
+                more: &|| watch.more(),
+                threads: threads(workers),
+                first,
+            };
             optimize(&file.model, motions, &asked, searching)
         })?;
         let facts = OptimizeFacts::of(file, &asked, &found);
@@ -120,7 +125,7 @@ impl Model {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
         let (file, motions) = (&self.whole, self.motions()?);
-        let asked = file.model.tolerancing.clone().or_else(|| Tolerancing::of_variables(&file.model));
+        let asked = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
         let Some(mut asked) = asked else {
             return Err(Failure::of_study(
                 "the model does not say how far its design variables may be off; add `tolerance = 0.1` to those in `[design]` or \
@@ -133,7 +138,7 @@ impl Model {
         if let Some(rule) = allocate {
             let rule = match (rule, asked.allocation.map(|a| a.rule)) {
                 ("rss", Some(rule @ AllocationRule::Rss { .. })) => rule,
-                ("rss", _) => AllocationRule::Rss { sigmas: Tolerancing::SIGMAS },
+                ("rss", _) => AllocationRule::Rss { sigmas: ToleranceSettings::SIGMAS },
                 ("worst_case", _) => AllocationRule::Worst,
                 _ => {
                     return Err(Failure::Misunderstood(format!(
@@ -142,21 +147,23 @@ impl Model {
                     .into());
                 }
             };
-            asked.allocation = Some(Allocating { rule });
+            asked.allocation = Some(AllocationSettings { rule });
         }
         let numbers: Vec<usize> = (0..motions.len()).collect();
         let found = patiently(py, progress, |watch| {
-            let mut on = |stage: Stage| match stage {
-                Stage::Derivatives(done, of) | Stage::Designs(done, of) => watch.tell(done, of),
+            let mut on = |stage: ToleranceStage| match stage {
+                ToleranceStage::Derivatives(done, of) | ToleranceStage::Designs(done, of) => {
+                    watch.tell(done, of)
+                }
             };
             tolerance(&file.model, motions, &numbers, &asked, threads(workers), &mut on, &|| watch.more())
         })?;
         let found = found.map_err(|failure| match failure {
-            ToleranceFailure::Drawn(rejection) => {
+            ToleranceError::Drawn(rejection) => {
                 let case = &self.cases[rejection.motion];
                 Failure::of_model(Kind::Stopped, case, &diagnose::stop(case, &rejection.stop, 0, None))
             }
-            ToleranceFailure::NothingVaries => Failure::of_study(
+            ToleranceError::NothingVaries => Failure::of_study(
                 "the mechanism can follow none of the variables with a tolerance; give tolerances to variables that it can follow",
             ),
         })?;
@@ -173,7 +180,7 @@ impl Model {
         seed: Option<u64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (file, motions) = (&self.whole, self.motions()?);
-        let asked = file.model.tolerancing.clone().or_else(|| Tolerancing::of_variables(&file.model));
+        let asked = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
         let Some(mut asked) = asked else {
             return Err(Failure::of_study("the model has no design variables with tolerances").into());
         };
@@ -219,7 +226,7 @@ impl Model {
                 .into());
             }
         };
-        let asked = Calibrating {
+        let asked = CalibrationRequest {
             measured: &table.measurements,
             variables: &variables,
             loss,
@@ -233,12 +240,12 @@ impl Model {
             calibrate(&file.model, &asked, &mut told, &|| watch.more())
         })?;
         let found = found.map_err(|why| match why {
-            CannotCalibrate::Topology(fault) => Failure::of_model(Kind::Topology, file, &diagnose::topology_fault(file, &fault)),
-            CannotCalibrate::NothingReached(why) => {
+            CalibrationError::Topology(fault) => Failure::of_model(Kind::Topology, file, &diagnose::topology_fault(file, &fault)),
+            CalibrationError::NothingReached(why) => {
                 Failure::of_study(format!("no posture of the table can be compared; on the way to the first: {why}"))
             }
-            CannotCalibrate::NothingVaries => Failure::of_study("the mechanism can follow none of the variables that are sought"),
-            CannotCalibrate::TooFewReadings { readings, variables } => Failure::of_study(format!(
+            CalibrationError::NothingVaries => Failure::of_study("the mechanism can follow none of the variables that are sought"),
+            CalibrationError::TooFewReadings { readings, variables } => Failure::of_study(format!(
                 "{readings} readings without standard deviations cannot tell {variables} variables and how exact they are; give `sigma`, \
                  seek fewer variables, or measure more"
             )),
@@ -291,7 +298,7 @@ impl Model {
                 ));
             }
             let tell = |done: usize| watch.tell(done, file.model.variables.len());
-            Ok(verify(analysis, &solution, &VerifyOptions::new(Scheme::Central), tell))
+            Ok(verify(analysis, &solution, &VerifyOptions::new(DifferenceScheme::Central), tell))
         })??;
         let verdict = Verdict::new(file, analysis, &found, 0.0);
         Ok(outcome(&verdict, &[verdict.table()]))

@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use hardpoint::draft::did_you_mean;
-use hardpoint::model::{SweepMethod, SweepRange, Sweeping, VariableId};
-use hardpoint::study::{BLOCK, NoPlan, Sweep as Designs, SweptBlock};
+use hardpoint::model::{SweepMethod, SweepRange, SweepSettings, VariableId};
+use hardpoint::study::{BLOCK, Sweep as Designs, SweepPlanError, SweptBlock};
 use hardpoint_report::cells::Cells;
 use hardpoint_report::sweep::{Swept, Tally};
 use pyo3::prelude::*;
@@ -39,19 +39,19 @@ struct Asked {
 #[pyclass(frozen, module = "hardpoint._native")]
 pub(crate) struct Sweep {
     model: Py<Model>,
-    asked: Sweeping,
+    asked: SweepSettings,
     motions: hardpoint::study::Motions<'static>,
     numbers: Vec<usize>,
 }
 
 impl Model {
-    fn sweeping(&self, asked: &Asked) -> Result<Sweeping, Failure> {
+    fn sweeping(&self, asked: &Asked) -> Result<SweepSettings, Failure> {
         let model = &self.whole.model;
-        let mut all = model.sweeping.clone().unwrap_or_else(|| Sweeping::of_bounds(model));
+        let mut all = model.sweeping.clone().unwrap_or_else(|| SweepSettings::of_bounds(model));
         if let Some(path) = &asked.designs {
             let (ranges, listed) =
                 self.whole.designs(Path::new(path)).map_err(|found| Failure::of_text(&found))?;
-            all = Sweeping { method: SweepMethod::Listed, ranges, listed, ..all };
+            all = SweepSettings { method: SweepMethod::Listed, ranges, listed, ..all };
         }
         let refused = |why: String| Err(Failure::Misunderstood(why));
         if let Some(name) = &asked.method {
@@ -83,8 +83,10 @@ impl Model {
                 true => 0.0,
                 false => self.whole.units.to_si(model.variables[k].quantity, x) - model.drawn_value(variable),
             };
-            let levels =
-                asked.levels.or_else(|| all.ranges.first().map(|r| r.levels)).unwrap_or(Sweeping::LEVELS);
+            let levels = asked
+                .levels
+                .or_else(|| all.ranges.first().map(|r| r.levels))
+                .unwrap_or(SweepSettings::LEVELS);
             let one = SweepRange { variable, low: change(*from), high: change(*to), levels };
             match all.ranges.iter_mut().find(|r| r.variable == variable) {
                 Some(range) => *range = SweepRange { levels: range.levels, ..one },
@@ -134,10 +136,10 @@ impl Sweep {
         let file = &self.model.get().whole;
         let designs = Designs::new(&file.model, &self.motions, &self.numbers, &self.asked).map_err(|why| {
             Failure::Misunderstood(match why {
-                NoPlan::NoRanges => "the model does not say which design variables are to change; give `ranges`".into(),
-                NoPlan::NoDesigns => "there is no design to be solved; give at least one sample".into(),
-                NoPlan::TooMany => format!("that would be more than {} designs; give fewer levels or variables", Sweeping::MOST),
-                NoPlan::TooManyDimensions(most) => format!(
+                SweepPlanError::NoRanges => "the model does not say which design variables are to change; give `ranges`".into(),
+                SweepPlanError::NoDesigns => "there is no design to be solved; give at least one sample".into(),
+                SweepPlanError::TooMany => format!("that would be more than {} designs; give fewer levels or variables", SweepSettings::MOST),
+                SweepPlanError::TooManyDimensions(most) => format!(
                     "Sobol's sequence is known for {most} variables, and for indices for {}; sweep over fewer, or by latin_hypercube",
                     most / 2
                 ),

@@ -1,6 +1,6 @@
 import { valueAt, stepAt, type Curve } from './curve'
 import { effects, firstQuantity } from './effect'
-import type { Setting } from './engine/protocol'
+import type { VariableSetting } from './engine/protocol'
 import type { Design, Order, Report } from './report'
 import type { Part } from './scene/drawn'
 
@@ -87,7 +87,7 @@ export class State {
   }
 
   /** What is changed, by name. */
-  get settings(): Setting[] {
+  get settings(): VariableSetting[] {
     const changed = this.report.variables.flatMap(({ name }, index) => (this.changes[index] === 0 ? [] : [{ name, by: this.changes[index] }]))
     return [...changed, ...[...this.moves].map(([name, by]) => ({ name, by }))]
   }
@@ -207,13 +207,13 @@ export class State {
   }
 
   /** Changes coordinates and variables by name; others stay. */
-  adjust(settings: Setting[]): void {
+  adjust(settings: VariableSetting[]): void {
     this.#put(settings)
     this.#changed()
   }
 
   /** Makes the design that has these changes and no others. */
-  become(settings: Setting[]): void {
+  become(settings: VariableSetting[]): void {
     this.#clear()
     this.adjust(settings)
   }
@@ -225,7 +225,7 @@ export class State {
   }
 
   /** The design with these changes was solved: it is the present one. Later changes may be on their way already. */
-  solved(design: Design | undefined, settings: Setting[], refusal: string, last: boolean): void {
+  solved(design: Design | undefined, settings: VariableSetting[], refusal: string, last: boolean): void {
     if (last) {
       this.#clear()
       this.#put(settings)
@@ -237,7 +237,7 @@ export class State {
   }
 
   /** The report of the present design, with its own sensitivities. */
-  sense(report: Report | undefined, settings: Setting[]): void {
+  sense(report: Report | undefined, settings: VariableSetting[]): void {
     this.#sensed = report && { report, settings: JSON.stringify(settings) }
     this.choose({})
   }
@@ -253,7 +253,7 @@ export class State {
     this.moves.clear()
   }
 
-  #put(settings: Setting[]): void {
+  #put(settings: VariableSetting[]): void {
     for (const { name, by } of settings) {
       const variable = this.report.variables.find((variable) => variable.name === name)
       if (variable) this.changes[variable.index] = by

@@ -3,7 +3,7 @@ import { readdirSync, readFileSync } from 'node:fs'
 import { join } from 'node:path'
 import { expect, inject, test } from 'vitest'
 import { type Ask, instantiate } from '../src/engine/instance'
-import type { Opened, OptimizeOffer, Request, Solved, Studied, Told } from '../src/engine/protocol'
+import type { OpenReply, OptimizeOffer, Request, DesignReply, StudyReply, ProgressReply } from '../src/engine/protocol'
 import { answer } from '../src/engine/answer'
 import { design } from '../src/report'
 import type { Design, ModelText, Payload } from '../src/payload'
@@ -16,7 +16,7 @@ const ROOT = join(import.meta.dirname, '../..')
 const MODELS = join(ROOT, 'models')
 const files = readdirSync(MODELS).filter((file) => file.endsWith('.toml')).sort()
 
-async function engine(tell: (told: Told) => void = () => {}): Promise<Ask> {
+async function engine(tell: (told: ProgressReply) => void = () => {}): Promise<Ask> {
   const binary = readFileSync(join(ROOT, 'crates/hardpoint-report/page/engine.wasm'))
   return instantiate(await WebAssembly.compile(new Uint8Array(binary)), tell)
 }
@@ -54,14 +54,14 @@ test('the page has an engine that asks for nothing but to tell', async () => {
 test.each(files)('%s is understood and solved as the command does', async (file) => {
   const ask = await engine()
   const open: Request = { ask: 'open', model: model(file) }
-  const { grips } = answer<Opened>(ask(open)).json
+  const { grips } = answer<OpenReply>(ask(open)).json
   // One hardpoint goes a little, if the mechanism can follow.
   const size = Math.max(...grips.flatMap(({ place }) => place.map(Math.abs)))
   const change = grips.slice(0, 1).map(({ coordinates }) => ({ name: coordinates[0].variable, by: 1e-3 * size }))
   const requests: Request[] = [open, { ask: 'design', change, from: null }, { ask: 'page', model: model(file) }, { ask: 'text', change }]
   const wanted = native(requests)
   const found = requests.map((request) => ask(request))
-  const [a, b] = [found, wanted].map((blocks) => answer<Solved>(blocks[1]))
+  const [a, b] = [found, wanted].map((blocks) => answer<DesignReply>(blocks[1]))
   expect(a.json.why?.code).toBe(b.json.why?.code)
   if (a.json.design && b.json.design) {
     near(a.json.design.values, b.json.design.values, SAME, 'values')
@@ -79,7 +79,7 @@ test.each(files)('%s is understood and solved as the command does', async (file)
 })
 
 test('a search tells of its iterations and finds what the native one finds', async () => {
-  const told: Told[] = []
+  const told: ProgressReply[] = []
   const ask = await engine((news) => told.push(news))
   const strut = model('studies/strut_toe.toml')
   const offer = answer<OptimizeOffer>(ask({ ask: 'optimize_offer', model: strut })).json
@@ -91,7 +91,7 @@ test('a search tells of its iterations and finds what the native one finds', asy
     iterations: 30,
   }
   const request: Request = { ask: 'optimize', model: strut, asked }
-  const [found, wanted] = [ask(request), native([request])[0]].map((block) => answer<Studied>(block).json)
+  const [found, wanted] = [ask(request), native([request])[0]].map((block) => answer<StudyReply>(block).json)
   expect(told.length).toBeGreaterThan(2)
   expect(told.at(-1)!.change!.length).toBeGreaterThan(0)
   // Two machines walk there by other last digits: the ends agree as far as the search goes.

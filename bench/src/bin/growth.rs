@@ -16,7 +16,7 @@ use std::process::Command;
 use hardpoint::model::{BodyId, Model, VariableId};
 use hardpoint::motion::BodyState;
 use hardpoint::sensitivity::{Admissibility, BodySensitivity};
-use hardpoint::study::Method;
+use hardpoint::study::GradientMethod;
 use hardpoint::{Analysis, Run, Sink, Solution};
 use hardpoint_bench::workloads::{finished, timed};
 use hardpoint_bench::{chain_with_variables, truss_with_variables, workload_model};
@@ -234,7 +234,7 @@ fn gradients() -> Result<String> {
             model.variables = own.iter().cycle().take(v).cloned().collect();
             let analysis = Analysis::new(&model).expect("a mechanism that can be driven");
             let asked: Vec<usize> = (0..outputs).collect();
-            let us = |method: Method| {
+            let us = |method: GradientMethod| {
                 let time = timed(false, || {
                     let gradients = analysis.gradients(&[], &asked, method);
                     assert!(gradients.stop.is_none(), "the mechanism stops: {:?}", gradients.stop);
@@ -242,8 +242,8 @@ fn gradients() -> Result<String> {
                 });
                 1e6 * time.as_secs_f64() / model.times.len() as f64
             };
-            let [direct, adjoint] = [us(Method::Direct), us(Method::Adjoint)];
-            let auto = analysis.gradients(&[], &asked, Method::Auto).method;
+            let [direct, adjoint] = [us(GradientMethod::Direct), us(GradientMethod::Adjoint)];
+            let auto = analysis.gradients(&[], &asked, GradientMethod::Auto).method;
             let left_out = analysis.topology().redundant().count();
             let ratio = direct / adjoint;
             writeln!(

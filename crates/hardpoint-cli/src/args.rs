@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use hardpoint::space::Angles;
-use hardpoint::study::Scheme;
+use hardpoint::study::DifferenceScheme;
 use hardpoint::topology::Formulation;
 
 /// So many designs at most are drawn from tolerances, and swept over.
@@ -352,11 +352,11 @@ pub enum Differences {
 
 impl Differences {
     /// The same for the core.
-    pub fn scheme(self) -> Scheme {
+    pub fn scheme(self) -> DifferenceScheme {
         match self {
-            Self::Central => Scheme::Central,
-            Self::Forward => Scheme::Forward,
-            Self::Backward => Scheme::Backward,
+            Self::Central => DifferenceScheme::Central,
+            Self::Forward => DifferenceScheme::Forward,
+            Self::Backward => DifferenceScheme::Backward,
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use hardpoint::model::VariableId;
-use hardpoint::study::{Calibrating, Calibration, CannotCalibrate, FitStatus, Loss, calibrate};
+use hardpoint::study::{Calibration, CalibrationError, CalibrationRequest, FitStatus, Loss, calibrate};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::calibrate::{CalibrateFacts, Calibrated};
@@ -43,7 +43,7 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
         LossWord::Huber => Loss::Huber,
         LossWord::Cauchy => Loss::Cauchy,
     };
-    let asked = Calibrating {
+    let asked = CalibrationRequest {
         measured: &measured.measurements,
         variables: &variables,
         loss,
@@ -144,21 +144,25 @@ fn sigmas(session: &Session, given: &[String]) -> Result<Vec<(String, f64)>, Out
 }
 
 /// Fits, telling of every iteration.
-fn search(session: &Session, file: &ModelFile, asked: &Calibrating<'_>) -> Result<Calibration, Outcome> {
+fn search(
+    session: &Session,
+    file: &ModelFile,
+    asked: &CalibrationRequest<'_>,
+) -> Result<Calibration, Outcome> {
     session.line(&text::bold(&file.model.name));
     let mut progress = |k: usize, objective: f64| {
         session.line(&format!("{k:>4}  objective {}", number(objective)));
     };
     let more = || session.go_on().is_continue();
     calibrate(&file.model, asked, &mut progress, &more).map_err(|why| match why {
-        CannotCalibrate::Topology(fault) => session.cannot_be_driven(file, &fault),
-        CannotCalibrate::NothingReached(why) => {
+        CalibrationError::Topology(fault) => session.cannot_be_driven(file, &fault),
+        CalibrationError::NothingReached(why) => {
             session.misunderstood(&format!("no posture of the table can be compared; on the way to the first: {why}"))
         }
-        CannotCalibrate::NothingVaries => {
+        CalibrationError::NothingVaries => {
             session.misunderstood("the mechanism can follow none of the variables that are sought")
         }
-        CannotCalibrate::TooFewReadings { readings, variables } => session.misunderstood(&format!(
+        CalibrationError::TooFewReadings { readings, variables } => session.misunderstood(&format!(
             "{readings} readings without standard deviations cannot tell {variables} variables and how exact they are; give `--sigma`, seek fewer \
              with `--variable`, or measure more"
         )),

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use hardpoint_export::{Exported, FORMATS, Format};
+use hardpoint_export::{ExportedModel, FORMATS, Format};
 use hardpoint_report::GENERATOR;
 use serde_json::json;
 
@@ -62,7 +62,7 @@ fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Re
     Ok(Outcome::Done)
 }
 
-fn write(to: &Path, exported: &Exported) -> Result<(), NotWritten> {
+fn write(to: &Path, exported: &ExportedModel) -> Result<(), NotWritten> {
     let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let name = to.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let mut folder = Folder::open(parent)?;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run};
 use hardpoint_file::{LARGEST_FILE, ModelFile};
-use hardpoint_import::{Closing, Difference, FORMATS, Format, Imported, Options, Problems};
+use hardpoint_import::{Closing, Difference, FORMATS, Format, ImportErrors, ImportedModel, Options};
 use hardpoint_report::GENERATOR;
 use hardpoint_report::summary::Summary;
 use serde_json::json;
@@ -92,7 +92,7 @@ fn format_named(session: &Session, name: &str) -> Result<&'static Format, Outcom
 }
 
 /// Tells what is wrong with a source.
-fn refused(session: &Session, problems: &Problems) -> Outcome {
+fn refused(session: &Session, problems: &ImportErrors) -> Outcome {
     if session.is_json() {
         let list: Vec<_> = problems.list().collect();
         session.print_json(&json!({ "generator": GENERATOR, "status": "error", "diagnostics": list }));
@@ -112,7 +112,7 @@ fn beside(folder: &Path, path: &str) -> Option<Vec<u8>> {
 }
 
 /// The model and what it refers to; the model comes last, so that it never stands there without them.
-fn write(to: &Path, imported: &Imported) -> Result<(), NotWritten> {
+fn write(to: &Path, imported: &ImportedModel) -> Result<(), NotWritten> {
     let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     for (name, bytes) in &imported.files {
         let path = parent.join(name);
@@ -131,7 +131,7 @@ fn file_name(path: &Path) -> String {
 }
 
 /// What the source has stored beside what the model does.
-fn compared(file: &ModelFile, imported: &Imported) -> Option<Difference> {
+fn compared(file: &ModelFile, imported: &ImportedModel) -> Option<Difference> {
     let series = imported.series.as_ref()?;
     let analysis = Analysis::new(&file.model).ok()?;
     Some(series.compare(file, &analysis.solve(Run::new().without_sensitivities())))
@@ -140,7 +140,7 @@ fn compared(file: &ModelFile, imported: &Imported) -> Option<Difference> {
 fn told(
     file: &ModelFile,
     to: &Path,
-    imported: &Imported,
+    imported: &ImportedModel,
     summary: &Summary,
     difference: Option<&Difference>,
 ) -> String {

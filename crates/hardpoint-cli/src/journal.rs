@@ -7,7 +7,7 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use hardpoint::study::{Cost, SweptBlock, SweptCurves, SweptFailure};
+use hardpoint::study::{StudyCost, SweptBlock, SweptCurves, SweptFailure};
 
 /// What a journal begins with; another format gets another number.
 const HEAD: &[u8; 16] = b"hardpoint sweep1";
@@ -240,7 +240,7 @@ fn decoded(bytes: &[u8]) -> Option<SweptBlock> {
     let start = from.count()?;
     let [designs, motions, steps, metrics] = [from.count()?, from.count()?, from.count()?, from.count()?];
     let mut block = SweptBlock { numbers: start..start.checked_add(designs)?, ..SweptBlock::default() };
-    block.cost = Cost { designs, motions, steps };
+    block.cost = StudyCost { designs, motions, steps };
     for _ in 0..metrics {
         block.metrics.push(from.floats(designs)?);
     }
@@ -295,7 +295,7 @@ mod tests {
             metrics: vec![vec![first as f64, f64::MIN_POSITIVE, -0.0], vec![1e300, 0.1, f64::MAX]],
             curves: vec![SweptCurves { steps: vec![2, 0, 1], values: vec![0.5; 6] }],
             failures: (first == 3).then(|| failure(4)).into_iter().collect(),
-            cost: Cost { designs: 3, motions: 6, steps: 3 },
+            cost: StudyCost { designs: 3, motions: 6, steps: 3 },
         }
     }
 

@@ -6,8 +6,10 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use hardpoint::Solution;
-use hardpoint::model::Optimization;
-use hardpoint::study::{Judged, Motions, Optimized, Progress, Searching, judge, optimize};
+use hardpoint::model::OptimizationSettings;
+use hardpoint::study::{
+    DesignAssessment, Motions, OptimizationRequest, OptimizationResult, SearchProgress, judge, optimize,
+};
 use hardpoint_file::ModelFile;
 use hardpoint_report::optimize::{OptimizeFacts, iteration_line, start_line, to_save};
 
@@ -86,7 +88,11 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
 }
 
 /// The design of a saved file, read as it was written and solved once more.
-fn judged_as_written(to: &Path, options: &Optimize, asked: &Optimization) -> Result<Judged, String> {
+fn judged_as_written(
+    to: &Path,
+    options: &Optimize,
+    asked: &OptimizationSettings,
+) -> Result<DesignAssessment, String> {
     let mut file = hardpoint_file::read(to).map_err(|error| {
         let first = error.diagnostics().list().first().map_or(String::new(), |d| d.message.clone());
         format!("it cannot be read again: {first}")
@@ -107,7 +113,7 @@ pub fn asked(
     file: &ModelFile,
     case: Option<&str>,
     [starts, iterations]: [Option<usize>; 2],
-) -> Result<Optimization, Outcome> {
+) -> Result<OptimizationSettings, Outcome> {
     let Some(asked) = &file.model.optimization else {
         let why = format!(
             "`{}` does not say what to optimise; add `[optimize.goals]` with the metrics that are to be small, and `bounds` to the \
@@ -130,8 +136,8 @@ pub fn asked(
 pub struct Search<'a> {
     file: &'a ModelFile,
     motions: &'a Motions<'a>,
-    asked: &'a Optimization,
-    found: Optimized,
+    asked: &'a OptimizationSettings,
+    found: OptimizationResult,
     /// What it comes to.
     pub facts: OptimizeFacts,
 }
@@ -142,22 +148,24 @@ impl<'a> Search<'a> {
         session: &Session,
         file: &'a ModelFile,
         motions: &'a Motions<'a>,
-        asked: &'a Optimization,
+        asked: &'a OptimizationSettings,
         most_threads: Option<NonZero<usize>>,
     ) -> Self {
         let (model, units) = (&file.model, file.units);
         let many = asked.starts > 1;
         session.line(&text::bold(&model.name));
-        let mut progress = |k: usize, told: Progress<'_>| {
+        let mut progress = |k: usize, told: SearchProgress<'_>| {
             let line = match told {
-                Progress::Iteration(iteration) if !many => Some(iteration_line(model, units, iteration)),
-                Progress::End(search) if many => Some(start_line(k, search)),
+                SearchProgress::Iteration(iteration) if !many => {
+                    Some(iteration_line(model, units, iteration))
+                }
+                SearchProgress::End(search) if many => Some(start_line(k, search)),
                 _ => None,
             };
             line.iter().for_each(|line| session.line(line));
             session.go_on()
         };
-        let searching = Searching {
+        let searching = OptimizationRequest {
             progress: &mut progress,
             more: &|| session.go_on() == ControlFlow::Continue(()),
             threads: threads(most_threads),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use hardpoint::model::{Model, VariableId};
-use hardpoint::study::{Difference, Scheme, finite_differences_each, validity};
+use hardpoint::study::{Difference, DifferenceScheme, finite_differences_each, validity};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
@@ -387,7 +387,7 @@ fn compare(session: &Session, analysis: &Analysis<'_>, solution: &Solution) -> V
         }
         let steps: Vec<(VariableId, f64)> =
             group.iter().map(|v| (*v, STEP * model.natural_step(*v))).collect();
-        let found = finite_differences_each(analysis, solution, Scheme::Central, &steps, stride);
+        let found = finite_differences_each(analysis, solution, DifferenceScheme::Central, &steps, stride);
         for (variable, difference) in group.iter().zip(found) {
             differences[variable.0] = difference.ok();
         }

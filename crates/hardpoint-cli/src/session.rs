@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use hardpoint::draft::did_you_mean;
 use hardpoint::model::{CaseId, VariableId};
 use hardpoint::motion::Execution;
-use hardpoint::topology::{Formulation, TopologyFault};
+use hardpoint::topology::{Formulation, TopologyError};
 use hardpoint::{Analysis, Footprint, Run, Solution};
 use hardpoint_file::{Diagnostic, Diagnostics, ModelFile, ReadError};
 use hardpoint_report::course::{Course, Gathering};
@@ -379,7 +379,7 @@ impl Session {
     }
 
     /// Tells why the mechanism cannot be driven.
-    pub fn cannot_be_driven(&self, file: &ModelFile, fault: &TopologyFault) -> Outcome {
+    pub fn cannot_be_driven(&self, file: &ModelFile, fault: &TopologyError) -> Outcome {
         self.fail(file, &[diagnose::topology_fault(file, fault)]);
         Outcome::CannotBeDriven
     }

@@ -7,8 +7,8 @@ use std::path::Path;
 
 use hardpoint::Solution;
 use hardpoint::draft::did_you_mean;
-use hardpoint::model::{Model, SweepMethod, SweepRange, Sweeping, VariableId};
-use hardpoint::study::{Motions, NoPlan, Sweep as Designs};
+use hardpoint::model::{Model, SweepMethod, SweepRange, SweepSettings, VariableId};
+use hardpoint::study::{Motions, Sweep as Designs, SweepPlanError};
 use hardpoint_file::ModelFile;
 use hardpoint_report::figures::some_of;
 use hardpoint_report::page::SweepPlot;
@@ -96,15 +96,15 @@ fn swept<X>(
 }
 
 /// What is asked for, by the file and by the command line.
-fn asked(session: &Session, file: &ModelFile, options: &Sweep) -> Result<Sweeping, Outcome> {
+fn asked(session: &Session, file: &ModelFile, options: &Sweep) -> Result<SweepSettings, Outcome> {
     let model = &file.model;
-    let mut asked = model.sweeping.clone().unwrap_or_else(|| Sweeping::of_bounds(model));
+    let mut asked = model.sweeping.clone().unwrap_or_else(|| SweepSettings::of_bounds(model));
     if let Some(path) = &options.designs {
         let (ranges, listed) = file.designs(path).map_err(|found| {
             session.not_read(&found);
             Outcome::BadModel
         })?;
-        asked = Sweeping { method: SweepMethod::Listed, ranges, listed, ..asked };
+        asked = SweepSettings { method: SweepMethod::Listed, ranges, listed, ..asked };
     }
     if asked.method == SweepMethod::Listed && options.method.is_some() {
         let why = "`--method` chooses designs, and those of the list are chosen; leave out one of the two";
@@ -118,7 +118,12 @@ fn asked(session: &Session, file: &ModelFile, options: &Sweep) -> Result<Sweepin
     }
     let mut given: Vec<SweepRange> = Vec::new();
     for text in &options.range {
-        given.push(range(session, file, text, asked.ranges.first().map_or(Sweeping::LEVELS, |r| r.levels))?);
+        given.push(range(
+            session,
+            file,
+            text,
+            asked.ranges.first().map_or(SweepSettings::LEVELS, |r| r.levels),
+        )?);
     }
     if asked.method == SweepMethod::Listed && !given.is_empty() {
         return Err(session.misunderstood("`--range` has no say over a list of designs; leave it out"));
@@ -180,19 +185,21 @@ fn range(session: &Session, file: &ModelFile, text: &str, levels: usize) -> Resu
     Ok(SweepRange { variable, low, high, levels })
 }
 
-fn no_plan(why: NoPlan, file: &ModelFile) -> String {
+fn no_plan(why: SweepPlanError, file: &ModelFile) -> String {
     match why {
-        NoPlan::NoRanges => format!(
+        SweepPlanError::NoRanges => format!(
             "`{}` does not say which design variables are to change; give them `bounds` in `[design]` or `[parameters]`, ranges in \
              `[sweep.variables]`, or use `--range NAME=FROM..TO` (docs/sweep.md)",
             file.file_name()
         ),
-        NoPlan::NoDesigns => "there is no design to be solved; give at least one with `--samples`".into(),
-        NoPlan::TooMany => format!(
+        SweepPlanError::NoDesigns => {
+            "there is no design to be solved; give at least one with `--samples`".into()
+        }
+        SweepPlanError::TooMany => format!(
             "that would be more than {} designs; give fewer levels, fewer variables, or use `--method sobol --samples N`",
-            Sweeping::MOST
+            SweepSettings::MOST
         ),
-        NoPlan::TooManyDimensions(most) => format!(
+        SweepPlanError::TooManyDimensions(most) => format!(
             "Sobol's sequence is known for {most} variables, and for indices for {}; sweep over fewer, or use `--method latin-hypercube`",
             most / 2
         ),
@@ -200,7 +207,7 @@ fn no_plan(why: NoPlan, file: &ModelFile) -> String {
 }
 
 /// What makes two sweeps the same: the model in all that it means, the designs, what is kept of them, and the program.
-fn fingerprint(file: &ModelFile, numbers: &[usize], asked: &Sweeping, options: &Sweep) -> Fingerprint {
+fn fingerprint(file: &ModelFile, numbers: &[usize], asked: &SweepSettings, options: &Sweep) -> Fingerprint {
     let mut sum = Checksum::default();
     let of =
         (hardpoint_report::GENERATOR, &file.model, file.units, numbers, asked, options.common.formulation());

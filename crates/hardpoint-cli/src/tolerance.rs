@@ -4,8 +4,8 @@ use std::io::Write;
 use std::num::NonZero;
 
 use hardpoint::Solution;
-use hardpoint::model::{Allocating, AllocationRule, Limited, Model, Tolerancing};
-use hardpoint::study::{Examination, Motions, Stage, ToleranceFailure, tolerance};
+use hardpoint::model::{AllocationRule, AllocationSettings, LimitTarget, Model, ToleranceSettings};
+use hardpoint::study::{Motions, ToleranceError, ToleranceResult, ToleranceStage, tolerance};
 use hardpoint_file::ModelFile;
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::some_of;
@@ -71,8 +71,8 @@ pub struct Asking {
 }
 
 /// What is asked for, by the file and besides.
-pub fn asked(session: &Session, file: &ModelFile, options: &Asking) -> Result<Tolerancing, Outcome> {
-    let asked = file.model.tolerancing.clone().or_else(|| Tolerancing::of_variables(&file.model));
+pub fn asked(session: &Session, file: &ModelFile, options: &Asking) -> Result<ToleranceSettings, Outcome> {
+    let asked = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
     let Some(mut asked) = asked else {
         let why = format!(
             "`{}` does not say how far its design variables may be off; add `tolerance = 0.1` to those in `[design]` or \
@@ -87,10 +87,10 @@ pub fn asked(session: &Session, file: &ModelFile, options: &Asking) -> Result<To
         let given = asked.allocation.map(|a| a.rule);
         let rule = match (rule, given) {
             (Allocate::Rss, Some(rule @ AllocationRule::Rss { .. })) => rule,
-            (Allocate::Rss, _) => AllocationRule::Rss { sigmas: Tolerancing::SIGMAS },
+            (Allocate::Rss, _) => AllocationRule::Rss { sigmas: ToleranceSettings::SIGMAS },
             (Allocate::WorstCase, _) => AllocationRule::Worst,
         };
-        asked.allocation = Some(Allocating { rule });
+        asked.allocation = Some(AllocationSettings { rule });
     }
     if asked.metrics.is_empty() && asked.curves.is_empty() && !has_metric_limits(&asked) {
         let why =
@@ -100,8 +100,8 @@ pub fn asked(session: &Session, file: &ModelFile, options: &Asking) -> Result<To
     Ok(asked)
 }
 
-fn has_metric_limits(asked: &Tolerancing) -> bool {
-    asked.limits.iter().any(|limit| matches!(limit.of, Limited::Metric(_)))
+fn has_metric_limits(asked: &ToleranceSettings) -> bool {
+    asked.limits.iter().any(|limit| matches!(limit.of, LimitTarget::Metric(_)))
 }
 
 /// Studies, showing how far it is.
@@ -110,26 +110,26 @@ pub fn examine(
     file: &ModelFile,
     motions: &Motions<'_>,
     numbers: &[usize],
-    asked: &Tolerancing,
+    asked: &ToleranceSettings,
     most_threads: Option<NonZero<usize>>,
-) -> Result<Examination, Outcome> {
+) -> Result<ToleranceResult, Outcome> {
     let mut derivatives = session.meter("differentiating", "variables");
     let mut designs = session.meter("solving", "designs");
-    let mut tell = |stage: Stage| {
+    let mut tell = |stage: ToleranceStage| {
         match stage {
-            Stage::Derivatives(done, of) => derivatives.show(done, of),
-            Stage::Designs(done, of) => designs.show(done, of),
+            ToleranceStage::Derivatives(done, of) => derivatives.show(done, of),
+            ToleranceStage::Designs(done, of) => designs.show(done, of),
         }
         session.go_on()
     };
     let more = || session.go_on().is_continue();
     let found = tolerance(&file.model, motions, numbers, asked, threads(most_threads), &mut tell, &more);
     found.map_err(|failure| match failure {
-        ToleranceFailure::Drawn(rejection) if rejection.interrupted() => {
+        ToleranceError::Drawn(rejection) if rejection.interrupted() => {
             session.misunderstood("interrupted before the design as drawn was solved");
             Outcome::Interrupted
         }
-        ToleranceFailure::Drawn(rejection) => {
+        ToleranceError::Drawn(rejection) => {
             let mut one = file.clone();
             one.model = Model::clone(motions.model(rejection.motion));
             let mut diagnostic = diagnose::stop(&one, &rejection.stop, 0, None);
@@ -139,7 +139,7 @@ pub fn examine(
             session.fail(&one, &[diagnostic]);
             Outcome::Stopped
         }
-        ToleranceFailure::NothingVaries => {
+        ToleranceError::NothingVaries => {
             let names: Vec<&str> = asked.tolerances.iter().map(|t| t.name.as_str()).collect();
             session.misunderstood(&format!(
                 "the mechanism can follow none of the variables with a tolerance: {}",

@@ -6,7 +6,7 @@ use hardpoint_file::{LengthUnit, ModelFile};
 
 use crate::links::{lines, places, rods};
 use crate::tables::hardpoints;
-use crate::{Exported, Format};
+use crate::{ExportedModel, Format};
 
 mod drawing;
 
@@ -21,7 +21,7 @@ const HARDPOINTS: &str = "hardpoints";
 /// The height of names, as a part of the mechanism's size.
 const TEXT: f64 = 0.015;
 
-fn write(file: &ModelFile, out: &mut Exported) {
+fn write(file: &ModelFile, out: &mut ExportedModel) {
     let (model, units) = (&file.model, file.units);
     // Codes of $INSUNITS.
     let unit = match units.length {

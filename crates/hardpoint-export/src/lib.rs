@@ -34,16 +34,16 @@ pub use tables::hardpoints;
 
 /// A model as a file of another program.
 #[derive(Clone, Debug, Default)]
-pub struct Exported {
+pub struct ExportedModel {
     /// The file's text.
     pub text: String,
     /// What it does not say, or says only nearly.
-    pub unsaid: Vec<Unsaid>,
+    pub unsaid: Vec<UnsupportedFeature>,
 }
 
 /// Something that a format cannot say.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Unsaid {
+pub struct UnsupportedFeature {
     /// What it is in the model: `joint`, `driver`.
     pub kind: &'static str,
     /// Its name there.
@@ -61,7 +61,7 @@ pub struct Format {
     pub about: &'static str,
     /// How names of its files end.
     pub endings: &'static [&'static str],
-    write: fn(&ModelFile, &mut Exported),
+    write: fn(&ModelFile, &mut ExportedModel),
 }
 
 impl std::fmt::Debug for Format {
@@ -89,17 +89,17 @@ impl Format {
     }
 
     /// A model as a file of this format.
-    pub fn export(&self, file: &ModelFile) -> Exported {
-        let mut out = Exported::default();
+    pub fn export(&self, file: &ModelFile) -> ExportedModel {
+        let mut out = ExportedModel::default();
         let neutral = if QUOTES_NAMES.contains(&self.name) { None } else { names::neutral(file, &mut out) };
         (self.write)(neutral.as_ref().unwrap_or(file), &mut out);
         out
     }
 }
 
-impl Exported {
+impl ExportedModel {
     fn unsaid(&mut self, kind: &'static str, name: &str, why: impl Into<String>) {
-        self.unsaid.push(Unsaid { kind, name: name.to_owned(), why: why.into() });
+        self.unsaid.push(UnsupportedFeature { kind, name: name.to_owned(), why: why.into() });
     }
 
     /// Drivers, design variables, measures and the like, which no format of mechanisms has.

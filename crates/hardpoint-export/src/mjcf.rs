@@ -7,7 +7,7 @@ use hardpoint::space::Vec3;
 use hardpoint_file::ModelFile;
 
 use crate::skeleton::{Carrier, Skeleton, axis, followers, is_closed, places};
-use crate::{Exported, Format, escaped, number, numbers};
+use crate::{ExportedModel, Format, escaped, number, numbers};
 
 /// See the module.
 pub const FORMAT: Format = Format { name: "mjcf", about: "MuJoCo model", endings: &["xml", "mjcf"], write };
@@ -46,7 +46,7 @@ struct Site {
     at: Vec3,
 }
 
-fn write(file: &ModelFile, out: &mut Exported) {
+fn write(file: &ModelFile, out: &mut ExportedModel) {
     let model = &file.model;
     let tree = Skeleton::new(model, &TYPES.map(|(own, _)| own), &CLOSE, out);
     let mut sites = Vec::new();
@@ -68,7 +68,7 @@ fn write(file: &ModelFile, out: &mut Exported) {
 }
 
 /// What closes loops and couples joints, and the tendons that rods are.
-fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut Exported) -> (String, String) {
+fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut ExportedModel) -> (String, String) {
     let model = tree.model;
     let (mut equalities, mut tendons) = (String::new(), String::new());
     let body = |b: usize| if b == 0 { "world".to_owned() } else { escaped(&model.bodies[b].name) };
@@ -154,7 +154,7 @@ fn site_at(sites: &mut Vec<Site>, joint: &str, bodies: [usize; 2], at: [Vec3; 2]
 }
 
 /// The sites of a body, and the bodies that it carries.
-fn inside(tree: &Skeleton<'_>, sites: &[Site], outer: usize, depth: usize, out: &mut Exported) {
+fn inside(tree: &Skeleton<'_>, sites: &[Site], outer: usize, depth: usize, out: &mut ExportedModel) {
     let indent = "  ".repeat(depth);
     for site in sites.iter().filter(|s| s.body == outer) {
         let at = numbers((site.at - tree.origin(outer)).to_array());
@@ -178,7 +178,7 @@ fn inside(tree: &Skeleton<'_>, sites: &[Site], outer: usize, depth: usize, out: 
 }
 
 /// The joints of a body that one of the model's carries.
-fn joints(joint: &Joint, backward: bool, indent: &str, out: &mut Exported) {
+fn joints(joint: &Joint, backward: bool, indent: &str, out: &mut ExportedModel) {
     let parts = TYPES.iter().find(|(own, _)| *own == joint.kind.name).map_or(&[][..], |(_, parts)| parts);
     // Seen from the other body they come the other way round.
     let order: Vec<_> = if backward { parts.iter().rev().collect() } else { parts.iter().collect() };

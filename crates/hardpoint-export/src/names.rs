@@ -4,11 +4,11 @@ use std::collections::HashSet;
 
 use hardpoint_file::ModelFile;
 
-use crate::Exported;
+use crate::ExportedModel;
 
 /// The file with names that every format can hold, where some of its own cannot be: control characters, which XML has no way to write, and
 /// which would begin new lines elsewhere. What is written otherwise is named.
-pub fn neutral(file: &ModelFile, out: &mut Exported) -> Option<ModelFile> {
+pub fn neutral(file: &ModelFile, out: &mut ExportedModel) -> Option<ModelFile> {
     let model = &file.model;
     let names = model.bodies.iter().map(|b| &b.name).chain(model.joints.iter().map(|j| &j.name));
     let others = model.couplers.iter().map(|c| &c.name).chain(model.hardpoints.iter().map(|h| &h.name));
@@ -36,7 +36,7 @@ fn is_held(name: &str) -> bool {
 }
 
 /// Writes names of one kind so that they fit, and stay different.
-fn written<'n>(kind: &'static str, names: impl Iterator<Item = &'n mut String>, out: &mut Exported) {
+fn written<'n>(kind: &'static str, names: impl Iterator<Item = &'n mut String>, out: &mut ExportedModel) {
     let names: Vec<&mut String> = names.collect();
     let mut taken: HashSet<String> = names.iter().filter(|n| is_held(n)).map(|n| (*n).clone()).collect();
     for name in names.into_iter().filter(|n| !is_held(n)) {

@@ -3,7 +3,7 @@
 use hardpoint::model::{Joint, Model};
 use hardpoint::space::Vec3;
 
-use crate::Exported;
+use crate::ExportedModel;
 
 /// A tree over the bodies.
 pub struct Skeleton<'m> {
@@ -39,7 +39,7 @@ pub fn axis(joint: &Joint) -> Vec3 {
 
 impl<'m> Skeleton<'m> {
     /// Of a model; `carries` says which types of joints can carry a body, `closes` which can close a loop. What has neither is named.
-    pub fn new(model: &'m Model, carries: &[&str], closes: &[&str], out: &mut Exported) -> Self {
+    pub fn new(model: &'m Model, carries: &[&str], closes: &[&str], out: &mut ExportedModel) -> Self {
         let mut tree =
             Self { model, carrier: vec![None; model.bodies.len()], order: vec![0], loops: Vec::new() };
         let named: Vec<usize> = model.named_joints().map(|(id, _)| id.0).collect();

@@ -6,7 +6,7 @@ use std::io;
 use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{LengthUnit, ModelFile};
 
-use crate::{Exported, Format, number};
+use crate::{ExportedModel, Format, number};
 
 /// A table for spreadsheets.
 pub const CSV: Format =
@@ -33,7 +33,7 @@ fn shortest(unit: LengthUnit, metres: f64) -> f64 {
     (0..17).map(rounded).find(|x| unit.metres(*x) == metres).unwrap_or(value)
 }
 
-fn csv(file: &ModelFile, out: &mut Exported) {
+fn csv(file: &ModelFile, out: &mut ExportedModel) {
     let unit = file.units.length.symbol();
     let mut table = CsvWriter::new(Vec::new());
     let header = ["x", "y", "z"].map(|axis| format!("{axis} ({unit})"));
@@ -66,7 +66,7 @@ fn side_of(name: &str) -> (&str, &'static str) {
 }
 
 /// In Adams/Car's axes: from x forward, y left to x back, y right.
-fn teimorbit(file: &ModelFile, out: &mut Exported) {
+fn teimorbit(file: &ModelFile, out: &mut ExportedModel) {
     let unit = match file.units.length {
         LengthUnit::Metre => "meter",
         LengthUnit::Inch => "inch",

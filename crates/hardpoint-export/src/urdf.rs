@@ -5,7 +5,7 @@ use std::fmt::Write;
 use hardpoint_file::ModelFile;
 
 use crate::skeleton::{Carrier, Skeleton, axis, followers, places};
-use crate::{Exported, Format, escaped, numbers};
+use crate::{ExportedModel, Format, escaped, numbers};
 
 /// See the module.
 pub const FORMAT: Format =
@@ -18,7 +18,7 @@ const TYPES: [(&str, &str); 4] =
 /// Types that can close a loop.
 const CLOSE: [&str; 5] = ["spherical", "revolute", "translational", "fixed", "planar"];
 
-fn write(file: &ModelFile, out: &mut Exported) {
+fn write(file: &ModelFile, out: &mut ExportedModel) {
     let model = &file.model;
     let tree = Skeleton::new(model, &TYPES.map(|(own, _)| own), &CLOSE, out);
     let name = |body: usize| if body == 0 { "world".to_owned() } else { escaped(&model.bodies[body].name) };

@@ -6,7 +6,7 @@ use hardpoint::space::Vec3;
 
 /// What a file says of the looks of its mechanism, by places in the lists of the [`Model`](hardpoint::model::Model).
 #[derive(Clone, Debug, Default)]
-pub struct Drawing {
+pub struct Appearance {
     /// The shapes of bodies.
     pub bodies: BTreeMap<usize, Mesh>,
     /// The forms of joints.

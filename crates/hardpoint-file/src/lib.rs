@@ -51,15 +51,15 @@ use std::ops::Range;
 use std::path::Path;
 
 use hardpoint::{
-    draft::{Fault, Section},
-    model::{CaseId, Model, SweepRange, Sweeping, VariableId},
+    draft::{DraftError, Section},
+    model::{CaseId, Model, SweepRange, SweepSettings, VariableId},
 };
 use toml::de::DeTable;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, Source};
-pub use drawing::{Drawing, Form, Mesh, MeshFrame};
+pub use drawing::{Appearance, Form, Mesh, MeshFrame};
 pub use edit::{at_keys, hardpoint_in, hardpoints_in, placed, with_keys};
-pub use measured::Measured;
+pub use measured::MeasuredData;
 pub use read::planar::Plane;
 pub use read::triangles;
 pub use schema::schema;
@@ -89,7 +89,7 @@ pub struct ModelFile {
     /// What the file says about itself.
     pub description: Option<String>,
     /// What it says of how the mechanism is to be drawn.
-    pub drawing: Drawing,
+    pub drawing: Appearance,
     /// What the reader has to tell although nothing is wrong: warnings and notes, in the order of the text.
     pub remarks: Vec<Diagnostic>,
     /// The texts that the model names files of: tables of laws, curves that are wanted, lists of designs.
@@ -132,13 +132,13 @@ impl ModelFile {
     fn span(&self, section: Section, index: usize) -> Option<Range<usize>> {
         // Ground is the model's first body and is not in the file.
         let index = if section == Section::Bodies { index.checked_sub(1)? } else { index };
-        let at = hardpoint::draft::Locus { section, index, key: "", item: None };
+        let at = hardpoint::draft::DraftLocation { section, index, key: "", item: None };
         self.places.find(&at)
     }
 
     /// The designs that a CSV file lists, wherever it lies: its first line names design variables, each line below has their values, in the
     /// file's units; of a parameter its value, of all others a change. What comes out is changes in SI, as in
-    /// [`Sweeping`](hardpoint::model::Sweeping).
+    /// [`SweepSettings`](hardpoint::model::Sweeping).
     ///
     /// # Errors
     /// What is wrong with it.
@@ -175,7 +175,7 @@ impl ModelFile {
             variables.iter().zip(row).map(value).collect()
         };
         let rows: Vec<Vec<f64>> = rows.iter().map(in_si).collect();
-        Ok((Sweeping::spanned(&variables, &rows), rows))
+        Ok((SweepSettings::spanned(&variables, &rows), rows))
     }
 
     /// A diagnostic about an entry of the model, or about all of it, for [`render`](Self::render).
@@ -501,8 +501,8 @@ fn syntax_errors(source: &Source, errors: &[toml::de::Error], file: &Range<usize
     list
 }
 
-fn shown_fault(source: &Source, places: &Places, fault: Fault) -> Diagnostic {
-    let Fault { code, at, message, notes, help } = fault;
+fn shown_fault(source: &Source, places: &Places, fault: DraftError) -> Diagnostic {
+    let DraftError { code, at, message, notes, help } = fault;
     let span = places.find(&at);
     let mut d = source.diagnostic(Severity::Error, code, message, span);
     d = notes.into_iter().fold(d, Diagnostic::note);

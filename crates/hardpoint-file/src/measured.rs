@@ -12,7 +12,7 @@ use crate::read::measured::{Readings, readings_at};
 
 /// What a file of measurements holds.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Measured {
+pub struct MeasuredData {
     /// Postures and readings, in SI.
     pub measurements: Measurements,
     /// The line of the file that each posture is on.
@@ -58,7 +58,7 @@ impl ModelFile {
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn measured(&self, path: &Path, sigmas: &[(String, f64)]) -> Result<Measured, Diagnostics> {
+    pub fn measured(&self, path: &Path, sigmas: &[(String, f64)]) -> Result<MeasuredData, Diagnostics> {
         let name = path.display().to_string();
         let source = Source::new(&name, "");
         let told = |r: Refusal| {
@@ -76,14 +76,14 @@ impl ModelFile {
         table: &Readings,
         file: &str,
         sigmas: &[(String, f64)],
-    ) -> Result<Measured, Refusal> {
+    ) -> Result<MeasuredData, Refusal> {
         let holds = self.columns(table, file)?;
         let given = self.sigmas_given(sigmas)?;
         let drivers = &self.model.drivers;
         let has = |wanted: Holds| holds.iter().position(|h| *h == Some(wanted));
         let as_drawn =
             (0..drivers.len()).filter(|d| has(Holds::Driver(*d)).is_none()).map(DriverId).collect();
-        let mut found = Measured { measurements: Measurements::default(), lines: Vec::new(), as_drawn };
+        let mut found = MeasuredData { measurements: Measurements::default(), lines: Vec::new(), as_drawn };
         let drawn: Vec<f64> = (0..drivers.len()).map(|d| self.model.as_drawn(DriverId(d))).collect();
         let outputs = outputs(&self.model);
         for (line, cells) in &table.rows {
@@ -226,7 +226,7 @@ impl ModelFile {
     }
 
     /// HP0248, HP0249: readings of what stands still, all with standard deviations or all alike.
-    fn can_be_compared(&self, found: &Measured, file: &str) -> Result<(), Refusal> {
+    fn can_be_compared(&self, found: &MeasuredData, file: &str) -> Result<(), Refusal> {
         let outputs = outputs(&self.model);
         let readings = &found.measurements.readings;
         let moving = readings.iter().map(|r| &outputs[r.output]);

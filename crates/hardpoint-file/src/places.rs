@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use hardpoint::draft::{Locus, Section};
+use hardpoint::draft::{DraftLocation, Section};
 
 use crate::tree::{Fields, Value};
 
@@ -115,7 +115,7 @@ impl Places {
     }
 
     /// The range of the text that a locus of the draft means; none for what the file does not have.
-    pub fn find(&self, at: &Locus) -> Option<Range<usize>> {
+    pub fn find(&self, at: &DraftLocation) -> Option<Range<usize>> {
         Some(self.list(at.section).get(at.index)?.find(at.key, at.item))
     }
 }

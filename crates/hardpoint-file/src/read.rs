@@ -23,17 +23,17 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use hardpoint::draft::{
-    BodyDraft, CurveDraft, Draft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft, JointDraft, LineDraft,
-    Nominal, PlaceDraft, Section,
+    BodyDraft, CurveDraft, DirectionDraft, Draft, FormulaDraft, FormulaOf, FrameDraft, HardpointDraft,
+    JointDraft, LocationDraft, Nominal, Section,
 };
 use hardpoint::joint::{self, Freedom, JointType, Quantity};
 use hardpoint::law::Law;
-use hardpoint::model::{AtChangePoints, LoadMode};
+use hardpoint::model::{ChangePointPolicy, LoadMode};
 use hardpoint::space::{Angles, Pose, Quat, Vec3};
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{closest, shown};
-use crate::drawing::{Drawing, FORMS, Form};
+use crate::drawing::{Appearance, FORMS, Form};
 use crate::format::{self, ANGLE, HARDPOINT, Key, Kinds, LENGTH, NUMBER, Need, Shape, Table, table};
 use crate::places::{EntryPlace, Places};
 use crate::tree::{Field, Fields, LINE, MOST_ENTRIES, PLACE, Reader, Subject, Value, above_tables, quoted};
@@ -326,7 +326,7 @@ pub(crate) fn tables() -> [(&'static str, Shape); 39] {
 pub(crate) struct Raw {
     pub draft: Draft,
     pub description: Option<String>,
-    pub drawing: Drawing,
+    pub drawing: Appearance,
     pub places: Places,
     /// Which number a hardpoint and a joint have; of equal names, the first. Only looked up, never walked.
     hardpoint_numbers: HashMap<String, usize>,
@@ -381,7 +381,8 @@ impl Reader<'_> {
         self.metrics(&fields, &mut raw);
         self.time(&fields, &mut raw);
         let word = self.word_of(&fields, "at_change_points");
-        raw.draft.at_change_points = word.map_or(AtChangePoints::default(), |k| AtChangePoints::WORDS[k].1);
+        raw.draft.at_change_points =
+            word.map_or(ChangePointPolicy::default(), |k| ChangePointPolicy::WORDS[k].1);
         self.cases(&fields, &mut raw);
         self.optimize(&fields, &mut raw);
         self.tolerance(&fields, &mut raw);
@@ -610,8 +611,8 @@ impl Reader<'_> {
             let mut place = EntryPlace::at(at);
             place.key("position", value);
             let position = match self.written_place(value, &subject, "three coordinates") {
-                Some(PlaceDraft::At(position)) => position,
-                Some(PlaceDraft::Formula(coordinates)) => {
+                Some(LocationDraft::At(position)) => position,
+                Some(LocationDraft::Formula(coordinates)) => {
                     for (axis, expression) in coordinates.into_iter().enumerate() {
                         let of = FormulaOf::Coordinate(name.clone(), axis);
                         raw.draft.formulas.push(FormulaDraft { of, expression });
@@ -687,9 +688,9 @@ impl Reader<'_> {
         }
         let position = self.need(&fields, "position");
         let r = position.and_then(|f| match self.fixed_place(f.value, &fields.subject("position"))? {
-            PlaceDraft::At(r) => Some(r),
-            PlaceDraft::Hardpoint(name) => self.hardpoint_position(&name, f, raw),
-            PlaceDraft::Formula(_) => None,
+            LocationDraft::At(r) => Some(r),
+            LocationDraft::Hardpoint(name) => self.hardpoint_position(&name, f, raw),
+            LocationDraft::Formula(_) => None,
         });
         let angles = ANGLES.into_iter().find(|(key, ..)| fields.get(key).is_some());
         let rot = match (angles, fields.get("quaternion")) {
@@ -805,7 +806,7 @@ impl Reader<'_> {
         f: Field<'_>,
         place: &mut EntryPlace,
         raw: &Raw,
-    ) -> Option<Vec<PlaceDraft>> {
+    ) -> Option<Vec<LocationDraft>> {
         let subject = fields.subject("at");
         let is_number = |v: &Value<'_>| matches!(v.get_ref(), DeValue::Integer(_) | DeValue::Float(_));
         let is_hardpoint =
@@ -842,7 +843,7 @@ impl Reader<'_> {
     }
 
     /// A direction; the names in `through` become the items of the key.
-    fn line_of(&mut self, fields: &Fields<'_>, key: &str, place: &mut EntryPlace) -> Option<LineDraft> {
+    fn line_of(&mut self, fields: &Fields<'_>, key: &str, place: &mut EntryPlace) -> Option<DirectionDraft> {
         self.given(fields, key, |r, f| {
             let (line, items) = r.line(f.value, &fields.subject(f.key))?;
             place.items(f.key, items);
@@ -851,7 +852,7 @@ impl Reader<'_> {
     }
 
     /// A place; coordinates have no items of their own.
-    fn place_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<PlaceDraft> {
+    fn place_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<LocationDraft> {
         self.given(fields, key, |r, f| r.place(f.value, &fields.subject(f.key)))
     }
 

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 
-use hardpoint::draft::{LineDraft, Nominal, NotConstant, PlaceDraft};
+use hardpoint::draft::{ConstantError, DirectionDraft, LocationDraft, Nominal};
 use hardpoint::expression::Expression;
 use hardpoint::joint::Quantity;
 use hardpoint::space::Vec3;
@@ -541,19 +541,19 @@ impl Reader<'_> {
     }
 
     /// HP0204, HP0230: an expression that has no value here.
-    pub fn no_constant(&mut self, value: &Value<'_>, subject: &Subject, why: NotConstant) {
+    pub fn no_constant(&mut self, value: &Value<'_>, subject: &Subject, why: ConstantError) {
         let at = value.span();
         match why {
-            NotConstant::Unknown(name) if name.contains('.') => {
+            ConstantError::Unknown(name) if name.contains('.') => {
                 let message = format!("{} cannot use `{name}`, a coordinate of a hardpoint", subject.name);
                 self.report("HP0230", at, message).help =
                     Some("coordinates can be used in places of hardpoints and joints, in lengths of rods, and in parameters".into());
             }
-            NotConstant::Unknown(name) => {
+            ConstantError::Unknown(name) => {
                 let close = closest(&name, self.nominal.names()).map(|c| format!("did you mean `{c}`?"));
                 self.report("HP0204", at, format!("there is no parameter named `{name}`")).help = close;
             }
-            NotConstant::Follows(name, what) => {
+            ConstantError::Follows(name, what) => {
                 let message = format!("{} cannot follow parameter `{name}`", subject.name);
                 let d = self.report("HP0230", at, message);
                 d.notes.push(format!(
@@ -562,11 +562,11 @@ impl Reader<'_> {
                 d.help =
                     Some("write `design = false` for the parameter that changes, or a number here".into());
             }
-            NotConstant::NotFinite => {
+            ConstantError::NotFinite => {
                 self.senseless(at, format!("{} is not a finite number", subject.name));
             }
             // What is wrong with it is reported where it stands.
-            NotConstant::Faulty => {}
+            ConstantError::Faulty => {}
         }
     }
 
@@ -649,21 +649,23 @@ impl Reader<'_> {
     }
 
     /// The name of a hardpoint, or coordinates.
-    pub fn place(&mut self, value: &Value<'_>, subject: &Subject) -> Option<PlaceDraft> {
+    pub fn place(&mut self, value: &Value<'_>, subject: &Subject) -> Option<LocationDraft> {
         let expected = "a hardpoint's name or three coordinates";
         match value.get_ref() {
-            DeValue::String(name) => self.short(name, value.span(), &subject.name).map(PlaceDraft::Hardpoint),
+            DeValue::String(name) => {
+                self.short(name, value.span(), &subject.name).map(LocationDraft::Hardpoint)
+            }
             _ => self.written_place(value, subject, expected),
         }
     }
 
     /// As [`place`](Self::place), where no change of the design is felt.
-    pub fn fixed_place(&mut self, value: &Value<'_>, subject: &Subject) -> Option<PlaceDraft> {
+    pub fn fixed_place(&mut self, value: &Value<'_>, subject: &Subject) -> Option<LocationDraft> {
         match value.get_ref() {
             DeValue::String(_) => self.place(value, subject),
             _ => self
                 .coordinates(value, subject, "a hardpoint's name or three coordinates")
-                .map(PlaceDraft::At),
+                .map(LocationDraft::At),
         }
     }
 
@@ -673,10 +675,10 @@ impl Reader<'_> {
         value: &Value<'_>,
         subject: &Subject,
         expected: &str,
-    ) -> Option<PlaceDraft> {
+    ) -> Option<LocationDraft> {
         let list = value.get_ref().as_array().filter(|list| list.len() == 3);
         let Some(list) = list.filter(|list| list.iter().any(|v| v.get_ref().is_str())) else {
-            return self.coordinates(value, subject, expected).map(PlaceDraft::At);
+            return self.coordinates(value, subject, expected).map(LocationDraft::At);
         };
         let per_metre = self.units.length.per_metre();
         let coordinates = [0, 1, 2].map(|k| {
@@ -687,7 +689,7 @@ impl Reader<'_> {
             }
         });
         let [x, y, z] = coordinates;
-        Some(PlaceDraft::Formula(Box::new([x?, y?, z?])))
+        Some(LocationDraft::Formula(Box::new([x?, y?, z?])))
     }
 
     /// A direction by name or vector, of any length.
@@ -714,14 +716,18 @@ impl Reader<'_> {
     }
 
     /// A direction, or `{ through = [...] }`; with the places of the two hardpoints' names.
-    pub fn line(&mut self, value: &Value<'_>, subject: &Subject) -> Option<(LineDraft, Vec<Range<usize>>)> {
+    pub fn line(
+        &mut self,
+        value: &Value<'_>,
+        subject: &Subject,
+    ) -> Option<(DirectionDraft, Vec<Range<usize>>)> {
         let Some(table) = value.get_ref().as_table() else {
-            return self.vector(value, subject).map(|v| (LineDraft::Along(v), Vec::new()));
+            return self.vector(value, subject).map(|v| (DirectionDraft::Along(v), Vec::new()));
         };
         let fields = self.fields(subject.name.clone(), value.span(), table, THROUGH.keys());
         let [a, b] = self.names_of::<2>(&fields, "through")?;
         let items = fields.get("through").and_then(|f| f.value.get_ref().as_array());
-        Some((LineDraft::Through(a, b), items.into_iter().flatten().map(Spanned::span).collect()))
+        Some((DirectionDraft::Through(a, b), items.into_iter().flatten().map(Spanned::span).collect()))
     }
 }
 

@@ -11,7 +11,7 @@ use crate::adams_statement::{SEAM, SHORTEST, Statement, number, statements};
 use crate::law::{self, Language};
 use crate::markers::{Joined, Marker, carrying, counted, join, offset, way};
 use crate::mechanism::{Coordinate, Drives, GROUND, Law, Mechanism};
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 use crate::turn::{from_z_and_x, home, sequence};
 use crate::{Format, Input};
 
@@ -33,7 +33,7 @@ pub const FORMAT: Format = Format {
     binary: false,
 };
 
-fn read(source: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+fn read(source: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let statements = statements(source.text);
     let (scale, length, time) = units(&statements, notes);
     let title = source.text.lines().next().unwrap_or_default();
@@ -60,7 +60,7 @@ fn read(source: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     let loads = reader.loads(&statements);
     reader.rest(&statements, &loads);
     if !source.text.lines().rev().any(|l| l.trim().eq_ignore_ascii_case("END")) {
-        let at = At { text: 0, start: source.text.len(), end: source.text.len() };
+        let at = SourceSpan { text: 0, start: source.text.len(), end: source.text.len() };
         reader.notes.approximated(
             "END",
             "",
@@ -73,7 +73,7 @@ fn read(source: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
 }
 
 /// The factor of lengths, the length unit of the model, and the time of functions.
-fn units(statements: &[Statement], notes: &mut Notes) -> (f64, &'static str, &'static str) {
+fn units(statements: &[Statement], notes: &mut ImportLog) -> (f64, &'static str, &'static str) {
     let mut out = (1.0, "mm", "t");
     let Some(units) = statements.iter().find(|s| s.name == "UNITS") else {
         notes.approximated(
@@ -153,7 +153,7 @@ fn summed(text: &str, order: usize, scale: f64, begin: f64, rate: f64) -> Result
 
 struct Reader<'n> {
     m: Mechanism,
-    notes: &'n mut Notes,
+    notes: &'n mut ImportLog,
     scale: f64,
     time: &'static str,
     parts: BTreeMap<String, usize>,

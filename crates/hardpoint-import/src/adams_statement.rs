@@ -3,7 +3,7 @@
 use hardpoint::space::Vec3;
 
 use crate::markers::Called;
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 
 /// Words may be cut short to so many letters.
 pub const SHORTEST: usize = 3;
@@ -22,7 +22,7 @@ pub struct Statement {
     /// The number behind the stroke.
     pub id: String,
     /// Where it stands.
-    pub at: At,
+    pub at: SourceSpan,
     /// What the modeller calls it, from the comment before it.
     pub label: String,
     /// In capital letters, with what stands behind the equals sign; flags with nothing.
@@ -53,7 +53,7 @@ impl Statement {
     }
 
     /// Numbers behind a key; angles in rad. What is wrong with them is told.
-    pub fn numbers(&self, key: &str, notes: &mut Notes) -> Option<Vec<f64>> {
+    pub fn numbers(&self, key: &str, notes: &mut ImportLog) -> Option<Vec<f64>> {
         let text = self.text(key)?;
         let words =
             text.split(|c: char| c == ',' || c == SEAM || c.is_whitespace()).filter(|w| !w.is_empty());
@@ -70,7 +70,7 @@ impl Statement {
     }
 
     /// Three numbers behind a key.
-    pub fn vector(&self, key: &str, notes: &mut Notes) -> Option<Vec3> {
+    pub fn vector(&self, key: &str, notes: &mut ImportLog) -> Option<Vec3> {
         let list = self.numbers(key, notes)?;
         match <[f64; 3]>::try_from(list) {
             Ok(v) => Some(v.into()),
@@ -102,13 +102,13 @@ pub fn number(word: &str) -> Option<f64> {
 
 /// The statements of a dataset: comments and continuations resolved.
 pub fn statements(text: &str) -> Vec<Statement> {
-    let mut lines: Vec<(At, String, String)> = Vec::new();
+    let mut lines: Vec<(SourceSpan, String, String)> = Vec::new();
     let mut label = String::new();
     let mut start = 0;
     for (k, whole) in text.split_inclusive('\n').enumerate() {
         let line = whole.trim_end_matches(['\n', '\r']);
         let from = start + line.len() - line.trim_start().len();
-        let at = At { text: 0, start: from, end: start + line.trim_end().len() };
+        let at = SourceSpan { text: 0, start: from, end: start + line.trim_end().len() };
         start += whole.len();
         let (code, remark) = line.split_once('!').unwrap_or((line, ""));
         if let Some((_, name)) = remark.split_once("adams_view_name=") {
@@ -136,7 +136,7 @@ pub fn statements(text: &str) -> Vec<Statement> {
     lines.iter().filter_map(|(at, code, label)| statement(*at, code, label)).collect()
 }
 
-fn statement(at: At, code: &str, label: &str) -> Option<Statement> {
+fn statement(at: SourceSpan, code: &str, label: &str) -> Option<Statement> {
     let code = code.trim_end_matches([';', ' ']);
     let end = code.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(code.len());
     let (name, rest) = code.split_at(end);

@@ -8,8 +8,8 @@ use crate::chain;
 use crate::law::{self, Language};
 use crate::markers::{Called, Joined, Marker, carrying, counted, is_drawn, join, linked, offset, screw, way};
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Times};
-use crate::report::{At, Notes};
-use crate::series::{Series, Stored};
+use crate::report::{ImportLog, SourceSpan};
+use crate::series::{Series, StoredPose};
 use crate::turn::{home, none, sequence};
 use crate::{Format, Input};
 
@@ -35,13 +35,13 @@ const MOST_TIMES: f64 = 100_000.0;
 const OFF: f64 = 1e-12;
 
 /// Lines as they are, and where they stand.
-type Lines<'t> = Vec<(&'t str, At)>;
+type Lines<'t> = Vec<(&'t str, SourceSpan)>;
 
 /// A line and what is indented under it.
 #[derive(Debug)]
 struct Node<'t> {
     text: &'t str,
-    at: At,
+    at: SourceSpan,
     children: Vec<Node<'t>>,
 }
 
@@ -51,7 +51,7 @@ impl<'t> Node<'t> {
     }
 
     /// The text on the line below a heading.
-    fn value(&self, name: &str) -> Option<(&'t str, At)> {
+    fn value(&self, name: &str) -> Option<(&'t str, SourceSpan)> {
         let below = self.child(name)?.children.first()?;
         Some((below.text, below.at))
     }
@@ -61,7 +61,7 @@ impl<'t> Node<'t> {
     }
 
     /// Numbers on the lines below a heading.
-    fn numbers<const N: usize>(&self, name: &str, notes: &mut Notes) -> Option<[f64; N]> {
+    fn numbers<const N: usize>(&self, name: &str, notes: &mut ImportLog) -> Option<[f64; N]> {
         let list = self.child(name)?;
         let words = list.children.iter().flat_map(|c| c.text.split_whitespace());
         let numbers: Option<Vec<f64>> = words.map(number).collect();
@@ -82,7 +82,7 @@ impl<'t> Node<'t> {
     }
 
     /// A frame by its position and its rotation matrix; home where none is given.
-    fn pose(&self, notes: &mut Notes) -> Pose {
+    fn pose(&self, notes: &mut ImportLog) -> Pose {
         let r = self.numbers::<3>("Position3D", notes).unwrap_or_default();
         let rows = self.numbers::<9>("RotationMatrix", notes);
         let rot = rows.map_or_else(none, |[a, b, c, d, e, f, g, h, i]| Mat3 {
@@ -109,7 +109,7 @@ fn number(word: &str) -> Option<f64> {
     word.parse().ok().filter(|x: &f64| x.is_finite())
 }
 
-fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let (nodes, lines) = tree(input.text, notes)?;
     let Some(assembly) = nodes.iter().find(|n| n.text == "Assembly") else {
         let help = "export the assembly as .asmt again";
@@ -163,15 +163,15 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
 }
 
 /// The lines by their tabs, and where the stored series begin.
-fn tree<'t>(text: &'t str, notes: &mut Notes) -> Option<(Vec<Node<'t>>, Option<Lines<'t>>)> {
-    let mut open: Vec<Node<'t>> = vec![Node { text: "", at: At::default(), children: Vec::new() }];
+fn tree<'t>(text: &'t str, notes: &mut ImportLog) -> Option<(Vec<Node<'t>>, Option<Lines<'t>>)> {
+    let mut open: Vec<Node<'t>> = vec![Node { text: "", at: SourceSpan::default(), children: Vec::new() }];
     let mut series: Option<Lines<'_>> = None;
     let mut start = 0;
     for whole in text.split_inclusive('\n') {
         let line = whole.trim_end();
         let tabs = line.len() - line.trim_start_matches('\t').len();
         let from = start + tabs;
-        let at = At { text: 0, start: from, end: start + line.len() };
+        let at = SourceSpan { text: 0, start: from, end: start + line.len() };
         let code = &line[tabs..];
         start += whole.len();
         if code.trim().is_empty() {
@@ -208,7 +208,7 @@ fn fold(open: &mut Vec<Node<'_>>, depth: usize) {
     }
 }
 
-fn times(assembly: &Node<'_>, notes: &mut Notes) -> Option<Times> {
+fn times(assembly: &Node<'_>, notes: &mut ImportLog) -> Option<Times> {
     let s = assembly.child("SimulationParameters")?;
     let [start, end, step] = ["tstart", "tend", "hout"].map(|k| s.numbers::<1>(k, notes).map(|[x]| x));
     let (start, end, step) = (start.unwrap_or(0.0), end?, step?);
@@ -229,7 +229,7 @@ fn times(assembly: &Node<'_>, notes: &mut Notes) -> Option<Times> {
 
 struct Reader<'n> {
     m: Mechanism,
-    notes: &'n mut Notes,
+    notes: &'n mut ImportLog,
     /// By their paths.
     markers: BTreeMap<String, Marker>,
     joints: BTreeMap<String, Joined>,
@@ -416,7 +416,7 @@ impl Reader<'_> {
             }
         };
         let Some([i, j]) = self.pair(joint) else { return };
-        let place = |m: &mut Mechanism, notes: &mut Notes, made: Joint| {
+        let place = |m: &mut Mechanism, notes: &mut ImportLog, made: Joint| {
             notes.taken(joint.text, joint.name(), Some(joint.at));
             m.joint(made)
         };
@@ -581,7 +581,7 @@ impl Reader<'_> {
             if path.is_empty() {
                 return Ok(());
             }
-            if self.notes.report.of(crate::Fate::Refused).any(|e| e.name == wanted) {
+            if self.notes.report.of(crate::ElementOutcome::Refused).any(|e| e.name == wanted) {
                 return Err(format!("the joint `{wanted}` is refused"));
             }
             let message = format!("`{}` drives the joint `{path}`, which is not there", motion.name());
@@ -686,13 +686,13 @@ impl Reader<'_> {
 /// What the file has stored of a part.
 struct Told<'t> {
     path: &'t str,
-    at: At,
+    at: SourceSpan,
     /// One for each of the times, or none where a number is missing.
-    states: Option<Vec<Stored>>,
+    states: Option<Vec<StoredPose>>,
 }
 
 /// The stored times, and the series of the parts: the column of the input, and then one for each output time.
-fn stored<'t>(lines: &[(&'t str, At)], notes: &mut Notes) -> (Vec<f64>, Vec<Told<'t>>) {
+fn stored<'t>(lines: &[(&'t str, SourceSpan)], notes: &mut ImportLog) -> (Vec<f64>, Vec<Told<'t>>) {
     let row = |line: &str| -> Vec<Option<f64>> { line.split_whitespace().skip(1).map(number).collect() };
     let nothing = (Vec::new(), Vec::new());
     let is_times = |l: &str| l.starts_with("Time") && !l.starts_with("TimeSeries");
@@ -728,7 +728,7 @@ fn stored<'t>(lines: &[(&'t str, At)], notes: &mut Notes) -> (Vec<f64>, Vec<Told
                 ["AX", "AY", "AZ"],
                 ["AlphaX", "AlphaY", "AlphaZ"],
             ];
-            Some(Stored {
+            Some(StoredPose {
                 pose: Pose { rot: sequence("xyz", angles.to_array()), r },
                 rates: rates.map(|names| vector(names, step)),
             })
@@ -743,7 +743,7 @@ fn series(
     (times, told): (Vec<f64>, Vec<Told<'_>>),
     m: &Mechanism,
     parts: &BTreeMap<String, usize>,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
 ) -> Option<Series> {
     let mut series = Series { times, bodies: Vec::new() };
     for Told { path, at, states } in told {

@@ -3,7 +3,7 @@
 use hardpoint::space::{Pose, Vec3};
 
 use crate::mechanism::{Joint, Mechanism};
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 use crate::sides::with_word;
 
 /// A body whose frame has its origin there and is parallel to the global one.
@@ -20,11 +20,11 @@ pub fn ends(m: &mut Mechanism, name: &str, ends: [Vec3; 2], words: [&str; 2]) {
 /// A rod between two bodies.
 pub fn rod(
     m: &mut Mechanism,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
     name: &str,
     bodies: [usize; 2],
     [i, j]: [Vec3; 2],
-    at: Option<At>,
+    at: Option<SourceSpan>,
 ) {
     if i == j {
         let message = format!("both ends of `{name}` are at one place");
@@ -38,12 +38,12 @@ pub fn rod(
 /// A spring or a damper as a leg, which holds nothing and has a length that is worth knowing.
 pub fn leg(
     m: &mut Mechanism,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
     name: &str,
     bodies: [usize; 2],
     [i, j]: [Vec3; 2],
     draw: &'static str,
-    at: Option<At>,
+    at: Option<SourceSpan>,
 ) {
     let mut leg = Joint::new(name, String::new(), "leg", bodies, i).between(i, j);
     leg.draw = Some(draw);

@@ -2,7 +2,7 @@
 
 use crate::finish;
 use crate::mechanism::{Case, Law, Mechanism};
-use crate::report::Notes;
+use crate::report::ImportLog;
 
 /// Travel of the wheels, mm: in heave or bump, in roll, and of the rack.
 const HEAVE: f64 = 60.0;
@@ -13,7 +13,7 @@ const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 
 /// Adds the motions that a vehicle has: of both wheels up and down together and against each other, and of the steering. A single motion
 /// needs no case.
-pub fn of_vehicle(m: &mut Mechanism, notes: &mut Notes) {
+pub fn of_vehicle(m: &mut Mechanism, notes: &mut ImportLog) {
     let mut bumps: Vec<usize> = m.wheels.iter().map(|w| w.bump).collect();
     bumps.dedup();
     let mut wanted: Vec<(&'static str, Vec<(usize, f64)>)> = match bumps[..] {

@@ -7,7 +7,7 @@ use hardpoint::space::{Mat3, Pose, Vec3};
 use crate::law;
 use crate::markers::{Called, Marker};
 use crate::mechanism::{Coordinate, Drives, Joint, Law, Mechanism};
-use crate::report::Notes;
+use crate::report::ImportLog;
 use crate::turn::{X, Y, Z};
 
 /// Numbers of the source that differ by less than this from what is drawn, in the file's unit or rad, say the same.
@@ -27,7 +27,7 @@ struct Step {
 /// Why it cannot be.
 pub fn drive(
     m: &mut Mechanism,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
     called: Called<'_>,
     [i, j]: [Marker; 2],
     ways: [String; 3],

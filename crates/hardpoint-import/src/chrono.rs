@@ -5,7 +5,7 @@ use hardpoint::space::Vec3;
 use crate::chrono_part::{self, Masses};
 use crate::corner::{Corner, Link, Mount, Role, plain, spin_axis};
 use crate::mechanism::Mechanism;
-use crate::report::Notes;
+use crate::report::ImportLog;
 use crate::tree::{self, Tree};
 use crate::{Format, Input, chrono_axle, chrono_generic, robot};
 
@@ -36,7 +36,7 @@ const GENERIC: &str = "GenericWheeledSuspension";
 /// The static angles of the wheel.
 const ANGLES: [&str; 2] = ["Camber Angle (deg)", "Toe Angle (deg)"];
 
-fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let root = tree::json(input.text, notes)?;
     let kind = root.text_of("Type").unwrap_or_default();
     let template = root.get("Template");
@@ -191,7 +191,7 @@ const PARTS: &[&str] = &[
 ];
 
 /// The masses of the parts, on the bodies that they are of, or at the ends of rods, along the axes that Chrono gives each part.
-fn masses(root: &Tree, m: &mut Mechanism, template: &str, corner: &Corner, notes: &mut Notes) {
+fn masses(root: &Tree, m: &mut Mechanism, template: &str, corner: &Corner, notes: &mut ImportLog) {
     let point = |part: &str, key: &str| root.get(part).and_then(|p| p.get(key)?.vector()).map(Vec3::from);
     let outer = |part: &str| point(part, "Location Upright").or_else(|| point(part, "Location Arm"));
     let ends = |part: &str| point(part, "Location Chassis").zip(outer(part)).map(<[Vec3; 2]>::from);
@@ -240,7 +240,7 @@ fn masses(root: &Tree, m: &mut Mechanism, template: &str, corner: &Corner, notes
 struct Reader<'r> {
     root: &'r Tree,
     m: &'r mut Mechanism,
-    notes: &'r mut Notes,
+    notes: &'r mut ImportLog,
     corner: Corner,
 }
 

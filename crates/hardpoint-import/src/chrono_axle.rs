@@ -6,7 +6,7 @@ use hardpoint::space::Vec3;
 use crate::chrono_part::{self, Masses};
 use crate::corner::{Corner, Role, plain, spin_axis};
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism};
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 use crate::sides::{SIDES, over};
 use crate::tree::Tree;
 use crate::{axle, robot};
@@ -24,7 +24,7 @@ pub const TEMPLATES: [&str; 6] = [
 struct Axle<'r> {
     root: &'r Tree,
     m: Mechanism,
-    notes: &'r mut Notes,
+    notes: &'r mut ImportLog,
     /// Parts of the file that were read.
     read: Vec<&'static str>,
 }
@@ -35,7 +35,7 @@ pub fn read(
     m: Mechanism,
     template: &str,
     angles: [f64; 2],
-    notes: &mut Notes,
+    notes: &mut ImportLog,
 ) -> Option<Mechanism> {
     let mut axle = Axle { root, m, notes, read: Vec::new() };
     axle.build(template, angles);
@@ -45,7 +45,7 @@ pub fn read(
 }
 
 impl Axle<'_> {
-    fn at(&self, part: &str) -> Option<At> {
+    fn at(&self, part: &str) -> Option<SourceSpan> {
         self.root.get(part).map(|t| t.at)
     }
 
@@ -81,7 +81,14 @@ impl Axle<'_> {
     }
 
     /// A rod between two bodies; both its ends are hardpoints.
-    fn rod(&mut self, name: &str, bodies: [usize; 2], ends: [Vec3; 2], words: [&str; 2], at: Option<At>) {
+    fn rod(
+        &mut self,
+        name: &str,
+        bodies: [usize; 2],
+        ends: [Vec3; 2],
+        words: [&str; 2],
+        at: Option<SourceSpan>,
+    ) {
         axle::ends(&mut self.m, name, ends, words);
         axle::rod(&mut self.m, self.notes, name, bodies, ends, at);
     }

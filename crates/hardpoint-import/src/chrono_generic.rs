@@ -9,7 +9,7 @@ use crate::chrono_part::{self, Inertial, Masses};
 use crate::corner::{Corner, spin_axis};
 use crate::markers::Called;
 use crate::mechanism::{Force, ForceOn, GROUND, Joint, Mechanism, Spring};
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 use crate::robot;
 use crate::sides::{SIDES, over};
 use crate::tree::{Tree, Value};
@@ -23,7 +23,12 @@ const STEERING: &str = "Steering";
 const LISTS: [&str; 4] = ["Bodies", "Joints", "Distance Constraints", "TSDAs"];
 
 /// See the module.
-pub fn read(root: &Tree, mut m: Mechanism, [camber, toe]: [f64; 2], notes: &mut Notes) -> Option<Mechanism> {
+pub fn read(
+    root: &Tree,
+    mut m: Mechanism,
+    [camber, toe]: [f64; 2],
+    notes: &mut ImportLog,
+) -> Option<Mechanism> {
     let bodies = list(root, "Bodies");
     let between = bodies.iter().any(|b| !is_mirrored(b));
     let mut rack = None;
@@ -68,7 +73,7 @@ pub fn read(root: &Tree, mut m: Mechanism, [camber, toe]: [f64; 2], notes: &mut 
 struct Side<'r> {
     root: &'r Tree,
     m: &'r mut Mechanism,
-    notes: &'r mut Notes,
+    notes: &'r mut ImportLog,
     /// 1 on the left, -1 on the right.
     side: f64,
     suffix: &'static str,
@@ -333,6 +338,6 @@ fn quaternion(tree: &Tree) -> Option<Mat3> {
     crate::turn::quaternion(numbers?.try_into().ok()?)
 }
 
-fn note(kind: &str, name: &str, at: At, notes: &Notes) -> String {
+fn note(kind: &str, name: &str, at: SourceSpan, notes: &ImportLog) -> String {
     Called { kind, name, at: Some(at) }.note(notes)
 }

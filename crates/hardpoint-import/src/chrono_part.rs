@@ -7,7 +7,7 @@ use hardpoint::space::{Mat3, Pose, Vec3};
 use crate::corner::plain;
 use crate::markers::Called;
 use crate::mechanism::{GROUND, Mechanism, Spring};
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 use crate::robot;
 use crate::sides::{over, with_word};
 use crate::tree::{Tree, Value};
@@ -79,7 +79,7 @@ pub struct Masses<'r> {
     /// Mechanism that they go to.
     pub m: &'r mut Mechanism,
     /// Report of what becomes of them.
-    pub notes: &'r mut Notes,
+    pub notes: &'r mut ImportLog,
     /// 1 on the left, where the file has them, and -1 on the right.
     pub side: f64,
     /// Ending of names of that side.
@@ -96,7 +96,7 @@ impl Masses<'_> {
         self.m.bodies.iter().position(|b| b.name == name)
     }
 
-    fn at(&self, part: &str) -> Option<At> {
+    fn at(&self, part: &str) -> Option<SourceSpan> {
         self.root.get(part).map(|t| t.at)
     }
 
@@ -178,8 +178,8 @@ pub fn level_axes(along: Vec3) -> Option<Mat3> {
 pub fn springs(
     root: &Tree,
     parts: &[(&str, &'static str)],
-    notes: &mut Notes,
-) -> BTreeMap<&'static str, (Spring, At)> {
+    notes: &mut ImportLog,
+) -> BTreeMap<&'static str, (Spring, SourceSpan)> {
     let mut found = BTreeMap::new();
     for (part, member) in parts {
         let Some(tree) = root.get(part) else { continue };
@@ -190,7 +190,7 @@ pub fn springs(
 
 /// The characteristic of a spring or damper, if it has one that the model can have. It pushes its ends apart with
 /// `Preload - Coefficient (length - Free Length)`.
-pub fn spring(part: &Tree, name: &str, notes: &mut Notes) -> Option<Spring> {
+pub fn spring(part: &Tree, name: &str, notes: &mut ImportLog) -> Option<Spring> {
     let number = |key: &str| part.get(key).and_then(Tree::number);
     let at = |key: &str| part.get(key).map(|t| t.at);
     let [stiffness, damping, preload] =
@@ -269,7 +269,7 @@ fn points(list: &Tree) -> Option<Vec<[f64; 2]>> {
 }
 
 /// Accounts for all keys of the file besides the parts that were read: those that hold something else, and keys that are not known.
-pub fn account(root: &Tree, read: &[&str], notes: &mut Notes) {
+pub fn account(root: &Tree, read: &[&str], notes: &mut ImportLog) {
     for (key, at, value) in root.entries() {
         match key.as_str() {
             "Name" | "Type" | "Template" | "Vehicle-Frame Inertia" | "Independent" | "Steerable" => {}
@@ -297,7 +297,7 @@ pub fn account(root: &Tree, read: &[&str], notes: &mut Notes) {
 }
 
 /// Accounts for the keys of a part.
-pub fn part(name: &str, part: &Tree, notes: &mut Notes) {
+pub fn part(name: &str, part: &Tree, notes: &mut ImportLog) {
     for (key, at, _) in part.entries() {
         let known = |list: &[&str]| list.contains(&key.as_str());
         if key.starts_with("Location")

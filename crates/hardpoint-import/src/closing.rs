@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use crate::markers::{Called, Marker, join};
 use crate::mechanism::{Mechanism, NamedFrame};
-use crate::report::Notes;
+use crate::report::ImportLog;
 use crate::robot;
 use crate::turn::home;
 
@@ -86,7 +86,7 @@ fn end(text: &str) -> Option<(String, [f64; 3])> {
 }
 
 /// Closes loops between frames that the user has named.
-pub fn close(m: &mut Mechanism, notes: &mut Notes, closings: &[Closing]) {
+pub fn close(m: &mut Mechanism, notes: &mut ImportLog, closings: &[Closing]) {
     for closing in closings {
         let ends = closing.frames.each_ref().map(|name| {
             let found = m.frames.iter().find(|f| f.name == *name).cloned();
@@ -119,7 +119,7 @@ pub fn close(m: &mut Mechanism, notes: &mut Notes, closings: &[Closing]) {
 
 fn connect(
     m: &mut Mechanism,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
     name: &str,
     kind: &'static str,
     axis: usize,
@@ -143,7 +143,7 @@ fn connect(
 }
 
 /// Closes the loops that onshape-to-robot has cut: it leaves two frames, `closing_NAME_1` and `closing_NAME_2`.
-pub fn of_exporters(m: &mut Mechanism, notes: &mut Notes) {
+pub fn of_exporters(m: &mut Mechanism, notes: &mut ImportLog) {
     let cut = |f: &NamedFrame| {
         Some(f.name.rsplit("::").next()?.strip_prefix("closing_")?.strip_suffix("_1")?.to_owned())
     };
@@ -164,7 +164,7 @@ pub fn of_exporters(m: &mut Mechanism, notes: &mut Notes) {
 }
 
 /// Names frames that look like the two ends of a loop that is cut there.
-pub fn pairs(m: &Mechanism, notes: &mut Notes) {
+pub fn pairs(m: &Mechanism, notes: &mut ImportLog) {
     let bare: Vec<&NamedFrame> = m.frames.iter().filter(|f| f.bare).take(MOST_FRAMES).collect();
     let group = groups(m);
     let near = SAME_PLACE * m.size();

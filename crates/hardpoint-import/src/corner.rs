@@ -7,7 +7,7 @@ use hardpoint::space::Vec3;
 
 use crate::markers::Called;
 use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mechanism, Spring, Wheel};
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 use crate::sides::over;
 use crate::turn::{X, Y, from_z_and_x};
 
@@ -370,7 +370,7 @@ pub struct Link {
     /// Both pins of the cross at its inner end, of the body's and of its own, where the source has one.
     pub pins: Option<[Vec3; 2]>,
     /// Where it stands.
-    pub at: Option<At>,
+    pub at: Option<SourceSpan>,
 }
 
 impl Link {
@@ -406,13 +406,13 @@ pub struct Corner {
     /// The spin axis, outboard, where no spindle point gives it.
     pub spin_axis: Option<Vec3>,
     /// Characteristics of its coilover, spring and damper, by these words, and their places in the source.
-    pub springs: BTreeMap<&'static str, (Spring, At)>,
+    pub springs: BTreeMap<&'static str, (Spring, SourceSpan)>,
     /// The end of the vehicle that it is at.
     pub end: Option<VehicleEnd>,
     /// The driver that moves its wheel up and down, where there is one already.
     pub bump: Option<usize>,
     /// Where its file begins to tell of it.
-    pub at: Option<At>,
+    pub at: Option<SourceSpan>,
 }
 
 /// The ends of a spring, each on a body.
@@ -426,9 +426,9 @@ const RADIUS: f64 = 330.0;
 /// A driver that moves a point of a body, such as a wheel's centre, up and down; its number.
 pub fn bump(
     m: &mut Mechanism,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
     suffix: &str,
-    at: Option<At>,
+    at: Option<SourceSpan>,
     body: usize,
     centre: Vec3,
 ) -> usize {
@@ -479,7 +479,7 @@ impl Corner {
     }
 
     /// Bodies, joints and the wheel of it; `rack` is that of the axle, once there is one. Whether its topology is known.
-    pub fn build(&self, m: &mut Mechanism, notes: &mut Notes, rack: &mut Option<usize>) -> bool {
+    pub fn build(&self, m: &mut Mechanism, notes: &mut ImportLog, rack: &mut Option<usize>) -> bool {
         use Role::*;
         let lower = self.all([LowerFront, LowerRear, LowerOuter]);
         let upper = self.all([UpperFront, UpperRear, UpperOuter]);
@@ -634,7 +634,13 @@ impl Corner {
     }
 
     /// The rack of the axle.
-    pub fn rack_of(&self, m: &mut Mechanism, notes: &mut Notes, rack: &mut Option<usize>, at: Vec3) -> usize {
+    pub fn rack_of(
+        &self,
+        m: &mut Mechanism,
+        notes: &mut ImportLog,
+        rack: &mut Option<usize>,
+        at: Vec3,
+    ) -> usize {
         if let Some(body) = *rack {
             return body;
         }
@@ -665,7 +671,7 @@ impl Corner {
     fn rocker(
         &self,
         m: &mut Mechanism,
-        notes: &mut Notes,
+        notes: &mut ImportLog,
         on: &dyn Fn(&Mount) -> Option<usize>,
     ) -> Option<usize> {
         use Role::*;
@@ -713,7 +719,7 @@ impl Corner {
     fn springs(
         &self,
         m: &mut Mechanism,
-        notes: &mut Notes,
+        notes: &mut ImportLog,
         on: &dyn Fn(&Mount) -> Option<usize>,
         rocker: Option<usize>,
         is_strut: bool,
@@ -751,7 +757,7 @@ impl Corner {
     }
 
     /// The force of a coilover, spring or damper, as far as the source gives its characteristic.
-    pub fn force(&self, m: &mut Mechanism, notes: &mut Notes, base: &str, ends: Ends) {
+    pub fn force(&self, m: &mut Mechanism, notes: &mut ImportLog, base: &str, ends: Ends) {
         let Some((spring, at)) = self.springs.get(base) else { return };
         let name = format!("{base}{}", self.suffix);
         let note = Called { kind: base, name: &name, at: Some(*at) }.note(notes);
@@ -763,7 +769,7 @@ impl Corner {
     pub fn wheel(
         &self,
         m: &mut Mechanism,
-        notes: &mut Notes,
+        notes: &mut ImportLog,
         upright: usize,
         centre: Vec3,
         spring: Option<Ends>,

@@ -5,7 +5,7 @@ use hardpoint::space::Vec3;
 
 use crate::corner::{Corner, Link, Mount, plain, role_of};
 use crate::mechanism::{Mechanism, end_named};
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 use crate::sides::{self, over};
 use crate::tree::{self, Tree};
 use crate::{FEW_DIGITS, Format, Input};
@@ -23,7 +23,7 @@ pub const FORMAT: Format = Format {
 /// Types whose parts follow from the names of their hardpoints.
 const TYPES: [&str; 5] = ["double_wishbone", "macpherson", "macpherson_strut", "multi_link", "trailing_arm"];
 
-fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let root = tree::yaml(input.text, notes)?;
     let points = root.get("hardpoints").or_else(|| root.get("hard_points"));
     let Some(points) = points.filter(|p| !p.entries().is_empty()) else {
@@ -104,7 +104,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     made.then_some(m)
 }
 
-fn units(root: &Tree, notes: &mut Notes) -> &'static str {
+fn units(root: &Tree, notes: &mut ImportLog) -> &'static str {
     let Some(units) = root.get("units") else {
         notes.approximated(
             "units",
@@ -138,7 +138,7 @@ fn config(root: &Tree) -> Option<&Tree> {
 }
 
 /// Steering, and the wheel.
-fn settings(root: &Tree, per_mm: f64, notes: &mut Notes) -> Corner {
+fn settings(root: &Tree, per_mm: f64, notes: &mut ImportLog) -> Corner {
     let config = config(root);
     let steering = config.and_then(|c| c.get("steering"));
     let kind = steering.and_then(|s| s.text_of("type").or(s.text())).unwrap_or("rack");
@@ -179,7 +179,7 @@ fn settings(root: &Tree, per_mm: f64, notes: &mut Notes) -> Corner {
 }
 
 /// Figures of the vehicle: of a corner they are among its settings.
-fn vehicle(root: &Tree, m: &mut Mechanism, notes: &mut Notes) {
+fn vehicle(root: &Tree, m: &mut Mechanism, notes: &mut ImportLog) {
     let found =
         |key: &str| [root.get("vehicle_config"), config(root)].into_iter().flatten().find_map(|c| c.get(key));
     let mut figure = |key: &str, value: &dyn Fn(&Tree) -> Option<f64>, is_valid: &dyn Fn(f64) -> bool| {
@@ -217,7 +217,7 @@ fn vehicle(root: &Tree, m: &mut Mechanism, notes: &mut Notes) {
 }
 
 /// Accounts for the settings besides the hardpoints.
-fn account(root: &Tree, notes: &mut Notes) {
+fn account(root: &Tree, notes: &mut ImportLog) {
     const READ: [&str; 16] = [
         "hardpoints",
         "hard_points",
@@ -292,10 +292,10 @@ fn collect(
     before: &str,
     corner: &mut Corner,
     m: &mut Mechanism,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
     suffix: &str,
 ) {
-    let mut links: Vec<(String, [Option<Vec3>; 2], At)> = Vec::new();
+    let mut links: Vec<(String, [Option<Vec3>; 2], SourceSpan)> = Vec::new();
     for (key, at, value) in list.entries() {
         let name = if before.is_empty() { key.clone() } else { format!("{before}_{key}") };
         let Some(v) = value.vector() else {

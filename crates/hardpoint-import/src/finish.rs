@@ -6,13 +6,13 @@ use hardpoint::joint::ALL;
 use hardpoint::model::JointId;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
-use hardpoint::topology::TopologyFault;
+use hardpoint::topology::TopologyError;
 use hardpoint::{Analysis, Run};
 
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism};
 use hardpoint_file::Diagnostic;
 
-use crate::report::Notes;
+use crate::report::ImportLog;
 use crate::straighten::straighten;
 use crate::turn::{X, Y, Z};
 use crate::write;
@@ -34,7 +34,7 @@ const MOST_HELD: usize = 400;
 /// the user to mend.
 ///
 /// Gaps of up to `closed` parts of its size are taken as closed where they stand, if what is held keeps them open.
-pub fn finish(m: &mut Mechanism, notes: &mut Notes, closed: f64) -> Option<Diagnostic> {
+pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<Diagnostic> {
     ground(m, notes);
     straightened(m, notes);
     let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Held | Law::Set(_)));
@@ -93,7 +93,7 @@ pub fn finish(m: &mut Mechanism, notes: &mut Notes, closed: f64) -> Option<Diagn
 }
 
 /// Says first of all where nothing moves: of a mechanism all of whose motions are held, mostly something is missing.
-pub fn remark(m: &Mechanism, notes: &mut Notes, closes: bool) {
+pub fn remark(m: &Mechanism, notes: &mut ImportLog, closes: bool) {
     let held = m.drivers.iter().filter(|d| d.law == Law::Held).count();
     let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Held | Law::Set(_)));
     if moves || held == 0 {
@@ -109,7 +109,7 @@ pub fn remark(m: &Mechanism, notes: &mut Notes, closes: bool) {
 }
 
 /// Takes as closed what is drawn open where it does not close, since what nothing drives is held as drawn.
-fn as_drawn(m: &mut Mechanism, notes: &mut Notes, closed: f64) {
+fn as_drawn(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
     let rods = ["distance", "leg", "revolute_spherical"];
     let is_open = |j: &Joint| j.length.is_some() || (j.at.len() > 1 && !rods.contains(&j.kind));
     let gap = |j: &Joint| match j.at[..] {
@@ -156,7 +156,7 @@ fn assembles(m: &Mechanism) -> bool {
 
 /// A point to look at first, where the source names none: of the last body of the longest chain of joints that move, at its place that
 /// is farthest from the joint that carries it.
-pub fn end_point(m: &mut Mechanism, notes: &mut Notes) {
+pub fn end_point(m: &mut Mechanism, notes: &mut ImportLog) {
     if !m.points.is_empty() || !m.wheels.is_empty() {
         return;
     }
@@ -205,7 +205,7 @@ pub fn end_point(m: &mut Mechanism, notes: &mut Notes) {
 }
 
 /// Leaves out the design variables that the mechanism cannot follow: a plane loop, say, whose hinge would leave the plane.
-fn unfollowed(m: &mut Mechanism, notes: &mut Notes) {
+fn unfollowed(m: &mut Mechanism, notes: &mut ImportLog) {
     let Ok(mut file) = parsed(m) else { return };
     let times = &mut file.model.times;
     if times.len() > MOST_TIMES {
@@ -226,7 +226,7 @@ fn unfollowed(m: &mut Mechanism, notes: &mut Notes) {
 }
 
 /// Joins to the ground what no joint connects with it.
-fn ground(m: &mut Mechanism, notes: &mut Notes) {
+fn ground(m: &mut Mechanism, notes: &mut ImportLog) {
     // `root[b]`: the lowest body that joints connect `b` with.
     let mut root: Vec<usize> = (0..m.bodies.len()).collect();
     fn find(root: &mut [usize], mut b: usize) -> usize {
@@ -255,7 +255,7 @@ fn ground(m: &mut Mechanism, notes: &mut Notes) {
 }
 
 /// Loops whose axes are nearly parallel, as far as that lets them move.
-fn straightened(m: &mut Mechanism, notes: &mut Notes) {
+fn straightened(m: &mut Mechanism, notes: &mut ImportLog) {
     let mut straight = m.clone();
     let Some(done) = straighten(&mut straight) else { return };
     let score = |m: &Mechanism| freedom(m, notes).ok().filter(|l| l.singular.is_none()).map(|l| l.count);
@@ -286,7 +286,7 @@ struct Left {
 }
 
 /// What nothing drives.
-fn freedom(m: &Mechanism, notes: &Notes) -> Result<Left, Box<Diagnostic>> {
+fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<Left, Box<Diagnostic>> {
     let refused = |message: String| {
         notes.diagnostic("HP0808", None, format!("the imported mechanism does not work: {message}"))
     };
@@ -309,10 +309,10 @@ fn freedom(m: &Mechanism, notes: &Notes) -> Result<Left, Box<Diagnostic>> {
                 (1..m.bodies.len()).filter(is).collect()
             };
             match &fault {
-                TopologyFault::UnderDriven { freedom, joints, bodies, .. } => {
+                TopologyError::UnderDriven { freedom, joints, bodies, .. } => {
                     Ok(Left { count: *freedom, joints: own(joints), bodies: named(bodies), singular: None })
                 }
-                TopologyFault::Singular { freedom, joints, bodies, .. } => Ok(Left {
+                TopologyError::Singular { freedom, joints, bodies, .. } => Ok(Left {
                     count: *freedom,
                     joints: own(joints),
                     bodies: named(bodies),
@@ -337,7 +337,7 @@ fn parsed(m: &Mechanism) -> Result<hardpoint_file::ModelFile, String> {
 
 /// What could be held, mostly by the joint's number.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-enum Held {
+enum SharedModel {
     /// A coordinate of it.
     Coordinate(usize, &'static str),
     /// Some of the angles between its bodies, these axes, together: to hold one turn of a body that else spins idly leaves as much to
@@ -356,7 +356,7 @@ enum Held {
 /// Global axes and their letters.
 const AXES: [(&str, [f64; 3]); 3] = [("x", X), ("y", Y), ("z", Z)];
 
-impl Held {
+impl SharedModel {
     /// The drivers that hold it.
     fn drivers(&self, m: &Mechanism) -> Vec<(String, Drives)> {
         let turn = |joint: usize, (letter, axis): (&str, [f64; 3])| {
@@ -403,24 +403,26 @@ const TOGETHER: [&[usize]; 4] = [ALL_AXES, &[0, 1], &[0, 2], &[1, 2]];
 
 /// What could be held, best first: coordinates of the joints that move, then turns and ways of their bodies, then of any body. A ball joint
 /// is held as a whole where it can be: the spin of a body between two of them is none of the freedoms that are counted.
-fn candidates<'m>(m: &'m Mechanism, left: &'m Left) -> impl Iterator<Item = Held> + 'm {
+fn candidates<'m>(m: &'m Mechanism, left: &'m Left) -> impl Iterator<Item = SharedModel> + 'm {
     let joints = &left.joints;
     let free = joints.iter().flat_map(move |&joint| {
         let constant = ["distance", "revolute_spherical"].contains(&m.joints[joint].kind);
         let all = coordinates(&m.joints[joint]).iter().filter(move |_| !constant);
         let open = all.filter(move |c| !m.is_driven(Coordinate { joint, name: c.name }));
-        open.map(move |c| Held::Coordinate(joint, c.name))
+        open.map(move |c| SharedModel::Coordinate(joint, c.name))
     });
     let balls = joints.iter().filter(|j| left.count > 1 && m.joints[**j].kind == "spherical");
-    fn each(list: &[usize], held: fn(usize, usize) -> Held) -> impl Iterator<Item = Held> {
+    fn each(list: &[usize], held: fn(usize, usize) -> SharedModel) -> impl Iterator<Item = SharedModel> {
         list.iter().flat_map(move |&k| (0..AXES.len()).map(move |axis| held(k, axis)))
     }
-    let together = joints.iter().flat_map(|&j| TOGETHER.map(|axes| Held::Turns(j, axes)));
-    let of_joints = each(joints, Held::Turn).chain(together).chain(each(joints, Held::Way));
-    let of = |list: &[usize]| each(list, Held::BodyWay).chain(each(list, Held::BodyTurn)).collect::<Vec<_>>();
+    let together = joints.iter().flat_map(|&j| TOGETHER.map(|axes| SharedModel::Turns(j, axes)));
+    let of_joints = each(joints, SharedModel::Turn).chain(together).chain(each(joints, SharedModel::Way));
+    let of = |list: &[usize]| {
+        each(list, SharedModel::BodyWay).chain(each(list, SharedModel::BodyTurn)).collect::<Vec<_>>()
+    };
     let others: Vec<usize> = (1..m.bodies.len()).filter(|b| !left.bodies.contains(b)).collect();
     let of_bodies = of(&left.bodies).into_iter().chain(of(&others));
-    free.chain(balls.map(|j| Held::Turns(*j, ALL_AXES))).chain(of_joints).chain(of_bodies)
+    free.chain(balls.map(|j| SharedModel::Turns(*j, ALL_AXES))).chain(of_joints).chain(of_bodies)
 }
 
 /// Returns whether it moves from end to end in the first second.
@@ -432,7 +434,7 @@ pub fn moves(m: &Mechanism) -> bool {
 }
 
 /// The one degree of freedom is plainly the input: it swings, as far as it can.
-fn swing(m: &mut Mechanism, notes: &mut Notes) {
+fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
     let Some(driver) = m.drivers.len().checked_sub(1) else { return };
     let name = m.drivers[driver].name.clone();
     let (is_angle, limits) = match m.drivers[driver].drives {

@@ -9,7 +9,7 @@ use roxmltree::Node;
 use crate::law::{self, Language};
 use crate::markers::{Called, Joined, Marker, carrying, counted, is_drawn, join, linked, offset, screw, way};
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Times};
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 use crate::turn::home;
 use crate::xml::{child, children, named};
 use crate::{Format, Input, LARGEST, xml};
@@ -45,7 +45,7 @@ const DRAWN: f64 = 1e-5;
 /// Groups are nested so deep at most.
 const DEEPEST: usize = 40;
 
-fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let text = match document(input.bytes) {
         Ok(text) => text,
         Err(why) => {
@@ -104,7 +104,7 @@ struct Object<'a, 'i> {
 }
 
 impl<'a, 'i> Object<'a, 'i> {
-    fn at(&self) -> Option<At> {
+    fn at(&self) -> Option<SourceSpan> {
         xml::attribute_at(self.text, self.node, "name")
     }
 
@@ -139,12 +139,12 @@ impl<'a, 'i> Object<'a, 'i> {
     }
 
     /// Where it stands in what it is in.
-    fn pose(&self, notes: &mut Notes) -> Pose {
+    fn pose(&self, notes: &mut ImportLog) -> Pose {
         let of_link = self.placement("LinkPlacement", notes);
         self.placement("Placement", notes).or(of_link).unwrap_or_else(home)
     }
 
-    fn placement(&self, property: &str, notes: &mut Notes) -> Option<Pose> {
+    fn placement(&self, property: &str, notes: &mut ImportLog) -> Option<Pose> {
         let node = self.value(property)?;
         let number =
             |key: &str| node.attribute(key).and_then(|v| v.parse().ok()).filter(|x: &f64| x.is_finite());
@@ -256,7 +256,7 @@ const OF_JOINTS: [&str; 42] = [
 
 struct Reader<'a, 'i, 'n> {
     m: Mechanism,
-    notes: &'n mut Notes,
+    notes: &'n mut ImportLog,
     objects: BTreeMap<&'a str, Object<'a, 'i>>,
     bodies: BTreeMap<&'a str, usize>,
     joints: BTreeMap<&'a str, Joined>,

@@ -57,15 +57,15 @@ mod xml;
 
 pub use closing::Closing;
 pub use mechanism::Mechanism;
-pub use report::{At, Entry, Fate, Notes, Place, Problems, Report};
-pub use series::{Difference, Series, Stored};
+pub use report::{ElementOutcome, Entry, ImportErrors, ImportLog, Report, SourceLocation, SourceSpan};
+pub use series::{Difference, Series, StoredPose};
 
 /// What a source says of other files: their bytes by the path that it names, where they can be read.
 pub type Resolve<'r> = &'r dyn Fn(&str) -> Option<Vec<u8>>;
 
 /// A mechanism of another program, as a model file.
 #[derive(Clone, Debug)]
-pub struct Imported {
+pub struct ImportedModel {
     /// The model file's text.
     pub text: String,
     /// What became of every element of the source.
@@ -75,7 +75,7 @@ pub struct Imported {
     /// The motion that the source has stored.
     pub series: Option<Series>,
     /// Why the model cannot be driven as it stands, if so. The text is there all the same, for somebody to mend it.
-    pub fault: Option<Problems>,
+    pub fault: Option<ImportErrors>,
 }
 
 /// A source under way through its importer.
@@ -106,7 +106,7 @@ pub struct Format {
     /// Whether a text (the first part of it) looks like it.
     looks: fn(&str) -> bool,
     /// Makes a mechanism of it; problems go to the notes.
-    read: fn(&mut Input<'_>, &mut Notes) -> Option<Mechanism>,
+    read: fn(&mut Input<'_>, &mut ImportLog) -> Option<Mechanism>,
     /// Whether it is no text.
     binary: bool,
 }
@@ -166,7 +166,7 @@ pub const LARGEST: usize = 64 << 20;
 ///
 /// # Errors
 /// Everything that is wrong with it.
-pub fn import(bytes: &[u8], name: &str, resolve: Resolve<'_>) -> Result<Imported, Problems> {
+pub fn import(bytes: &[u8], name: &str, resolve: Resolve<'_>) -> Result<ImportedModel, ImportErrors> {
     import_with(&Options::default(), bytes, name, resolve)
 }
 
@@ -188,11 +188,11 @@ pub fn import_with(
     bytes: &[u8],
     name: &str,
     resolve: Resolve<'_>,
-) -> Result<Imported, Problems> {
+) -> Result<ImportedModel, ImportErrors> {
     match options.format.as_ref().or_else(|| Format::of(bytes, name)) {
         Some(format) => read_as(format, &options.closings, bytes, name, resolve),
         None => {
-            let notes = Notes::new(name, "");
+            let notes = ImportLog::new(name, "");
             if let Some(sibling) = siblings::of(&decoded(&bytes[..bytes.len().min(LOOKED_AT)]), name) {
                 return Err(is_sibling(&notes, sibling));
             }
@@ -215,7 +215,7 @@ fn known() -> String {
 }
 
 /// HP0801: a file of a kind that is not read, with the file to export in place of it.
-fn is_sibling(notes: &Notes, sibling: &siblings::Sibling) -> Problems {
+fn is_sibling(notes: &ImportLog, sibling: &siblings::Sibling) -> ImportErrors {
     let message = format!("the file is {}: that is not read", sibling.what);
     notes.only(notes.diagnostic("HP0801", None, message).help(sibling.help))
 }
@@ -229,7 +229,7 @@ pub fn import_as(
     bytes: &[u8],
     name: &str,
     resolve: Resolve<'_>,
-) -> Result<Imported, Problems> {
+) -> Result<ImportedModel, ImportErrors> {
     read_as(format, &[], bytes, name, resolve)
 }
 
@@ -239,10 +239,10 @@ fn read_as(
     bytes: &[u8],
     name: &str,
     resolve: Resolve<'_>,
-) -> Result<Imported, Problems> {
+) -> Result<ImportedModel, ImportErrors> {
     let text = if format.binary { String::new() } else { decoded(bytes) };
-    let mut notes = Notes::new(name, &text);
-    let whole = |notes: &Notes, code, message: String, help: &str| {
+    let mut notes = ImportLog::new(name, &text);
+    let whole = |notes: &ImportLog, code, message: String, help: &str| {
         Err(notes.only(notes.diagnostic(code, None, message).help(help)))
     };
     if bytes.len() > LARGEST {
@@ -343,7 +343,13 @@ fn read_as(
     };
     let files = input.shapes.files(&mut m, &format!("{}_meshes", shapes::file_name(stem)));
     let fault = fault.map(|diagnostic| notes.only(diagnostic));
-    Ok(Imported { text: write::text(&m, &about), report: notes.report, files, series: input.series, fault })
+    Ok(ImportedModel {
+        text: write::text(&m, &about),
+        report: notes.report,
+        files,
+        series: input.series,
+        fault,
+    })
 }
 
 /// The text of a file: UTF-8 or UTF-16, or else Latin-1, as older programs write; without a byte order mark.
@@ -385,8 +391,8 @@ impl Input<'_> {
         scale: [f64; 3],
         path: &str,
         name: &str,
-        at: Option<At>,
-        notes: &mut Notes,
+        at: Option<SourceSpan>,
+        notes: &mut ImportLog,
     ) {
         let shown = match self.file(path) {
             Some(bytes) => self.shapes.file(body, place, scale, path, &bytes),

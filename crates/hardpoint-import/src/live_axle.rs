@@ -8,7 +8,7 @@ use hardpoint::space::Vec3;
 use crate::axle;
 use crate::corner::{Corner, Role, bump};
 use crate::mechanism::{GROUND, Joint, Mechanism};
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 use crate::sides::SIDES;
 use crate::turn::X;
 
@@ -103,10 +103,10 @@ fn rods(places: &[Places; 3]) -> (BTreeMap<(usize, &str), Rod>, Option<Vec3>) {
 /// Returns whether its rods leave it one or two freedoms.
 pub fn build(
     m: &mut Mechanism,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
     places: &[Places; 3],
     corners: &[Corner; 2],
-    at: Option<At>,
+    at: Option<SourceSpan>,
 ) -> bool {
     let centre = |k: usize| corners[k].points.get(&Role::WheelCentre).copied();
     let (Some(left), Some(right)) = (centre(0), centre(1)) else { return false };

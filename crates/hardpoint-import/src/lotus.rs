@@ -4,7 +4,7 @@ use hardpoint::space::Vec3;
 
 use crate::corner::{Corner, Role, role_of};
 use crate::mechanism::{Mechanism, end_named};
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 use crate::{Format, Input};
 
 /// See the module.
@@ -26,7 +26,7 @@ const MOST: usize = 500;
 #[derive(Clone, Copy)]
 struct Line<'t> {
     text: &'t str,
-    at: At,
+    at: SourceSpan,
 }
 
 impl Line<'_> {
@@ -39,7 +39,7 @@ impl Line<'_> {
     }
 }
 
-fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let mut start = 0;
     let lines: Vec<Line<'_>> = input
         .text
@@ -48,7 +48,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
             let text = whole.trim();
             let from = start + whole.len() - whole.trim_start().len();
             start += whole.len();
-            Line { text, at: At { text: 0, start: from, end: from + text.len() } }
+            Line { text, at: SourceSpan { text: 0, start: from, end: from + text.len() } }
         })
         .collect();
     let Some(settings) = lines.iter().position(|l| l.text == "TEMP_SETTINGS") else {
@@ -142,7 +142,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
 }
 
 /// The names of the points: behind the template's name, the numbers of parts and points, and the names of the parts.
-fn names<'t>(lines: &[Line<'t>], settings: usize, notes: &mut Notes) -> Option<Vec<&'t str>> {
+fn names<'t>(lines: &[Line<'t>], settings: usize, notes: &mut ImportLog) -> Option<Vec<&'t str>> {
     let header = lines.get(settings + 3);
     let counts = header.map(Line::numbers).unwrap_or_default();
     let (parts, points) = match counts[..] {

@@ -6,7 +6,7 @@ use hardpoint::joint::ALL;
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::mechanism::{Coordinate, Joint, Mechanism};
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 use crate::straighten::MEANT;
 use crate::turn::{angle_about, from_z_and_x, none};
 
@@ -62,12 +62,12 @@ pub struct Called<'s> {
     /// Its name.
     pub name: &'s str,
     /// Where it stands.
-    pub at: Option<At>,
+    pub at: Option<SourceSpan>,
 }
 
 impl Called<'_> {
     /// For a comment in the model file.
-    pub fn note(&self, notes: &Notes) -> String {
+    pub fn note(&self, notes: &ImportLog) -> String {
         match self.at.and_then(|at| notes.place(at)) {
             Some(place) => format!("{} {}, {place}", self.kind, self.name),
             None => format!("{} {}", self.kind, self.name),
@@ -78,7 +78,7 @@ impl Called<'_> {
 /// Adds a joint of a type whose geometry follows from two markers, body i's and body j's; its number. What is drawn open is told.
 pub fn join(
     m: &mut Mechanism,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
     called: Called<'_>,
     kind: &'static str,
     [i, j]: [Marker; 2],
@@ -200,7 +200,7 @@ pub fn is_drawn(m: &Mechanism, said: f64, drawn: f64) -> bool {
 /// point. The first joint, of body i, and the link's, are about z of the first marker; of the second the type is told.
 pub fn linked(
     m: &mut Mechanism,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
     called: Called<'_>,
     kinds: [&'static str; 2],
     [i, j]: [Marker; 2],
@@ -297,7 +297,7 @@ pub fn relative(joints: &[Joined], [i, j]: [usize; 2], axis: Vec3) -> Option<[Ve
 /// Couples what a screw couples, its parts held by other joints; none where no joints say how they slide and turn.
 pub fn screw(
     m: &mut Mechanism,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
     called: Called<'_>,
     joints: &[Joined],
     [i, j]: [Marker; 2],

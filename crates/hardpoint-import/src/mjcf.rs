@@ -11,7 +11,7 @@ use roxmltree::{Document, Node};
 
 use crate::markers::{Called, Marker, join};
 use crate::mechanism::{Coordinate, GROUND, Joint, Mechanism};
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 use crate::shapes::Solid;
 use crate::turn::{from_z_and_x, home};
 use crate::xml::{Vocabulary, children, exactly};
@@ -116,7 +116,7 @@ const DENSITY: f64 = 1000.0;
 /// An element, and the number of the text that it is in.
 type Element<'d> = (usize, Node<'d, 'd>);
 
-fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let texts = included(input, notes);
     let mut documents: Vec<Option<Document<'_>>> = Vec::new();
     for (number, (_, text)) in texts.iter().enumerate() {
@@ -172,7 +172,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
 /// Equalities of MuJoCo in a file of another format, whose bodies and joints are there.
 pub fn extension<'d>(
     m: Mechanism,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
     blocks: &[Node<'d, 'd>],
     text: usize,
     bodies: &BTreeMap<String, (usize, Pose)>,
@@ -195,7 +195,7 @@ pub fn extension<'d>(
 }
 
 /// The text itself and those that it includes, by the paths from the main file's folder.
-fn included(input: &Input<'_>, notes: &mut Notes) -> Vec<(String, String)> {
+fn included(input: &Input<'_>, notes: &mut ImportLog) -> Vec<(String, String)> {
     let mut texts = vec![(String::new(), xml::lenient(input.text))];
     let mut k = 0;
     while k < texts.len() && texts.len() < MOST_INCLUDED {
@@ -265,14 +265,14 @@ struct Jointed<'d> {
 /// A point in which two bodies meet.
 struct Meet {
     name: String,
-    at: Option<At>,
+    at: Option<SourceSpan>,
     ends: [Marker; 2],
 }
 
 /// A body that nothing but equalities may hold.
 struct Free {
     name: String,
-    at: Option<At>,
+    at: Option<SourceSpan>,
     bodies: [usize; 2],
     place: Vec3,
 }
@@ -293,7 +293,7 @@ struct Shown<'d> {
 
 struct Reader<'d, 'n> {
     m: Mechanism,
-    notes: &'n mut Notes,
+    notes: &'n mut ImportLog,
     paths: Vec<String>,
     documents: &'d [Option<Document<'d>>],
     compiler: Compiler,
@@ -335,7 +335,7 @@ struct Weighed {
 impl<'d, 'n> Reader<'d, 'n> {
     fn new(
         m: Mechanism,
-        notes: &'n mut Notes,
+        notes: &'n mut ImportLog,
         paths: Vec<String>,
         documents: &'d [Option<Document<'d>>],
     ) -> Self {
@@ -817,7 +817,7 @@ impl<'d, 'n> Reader<'d, 'n> {
 }
 
 /// Shows a geom.
-fn shown(input: &mut Input<'_>, notes: &mut Notes, shape: Shown<'_>) {
+fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: Shown<'_>) {
     let (text, node) = shape.element;
     let at = xml::at(text, node);
     match (shape.kind.as_str(), &shape.mesh) {

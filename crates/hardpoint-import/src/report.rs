@@ -18,7 +18,7 @@ const MARK: usize = 1024;
 /// What became of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Fate {
+pub enum ElementOutcome {
     /// The model says the same.
     Taken,
     /// The model says nearly the same.
@@ -33,7 +33,7 @@ pub enum Fate {
 
 /// Where something stands: bytes of one of the texts that a source consists of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct At {
+pub struct SourceSpan {
     /// Which text: the file itself is the first, what it includes follows.
     pub text: usize,
     /// Its first byte.
@@ -44,7 +44,7 @@ pub struct At {
 
 /// Where something stands, for people.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Place {
+pub struct SourceLocation {
     /// The file's name.
     pub file: String,
     /// The line, from 1.
@@ -57,13 +57,13 @@ pub struct Place {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Entry {
     /// What became of it.
-    pub fate: Fate,
+    pub fate: ElementOutcome,
     /// What it is in the source: `joint`, `PART`.
     pub kind: String,
     /// Its name there, or none.
     pub name: String,
     /// Where it stands in the source.
-    pub place: Option<Place>,
+    pub place: Option<SourceLocation>,
     /// Why, or how.
     pub why: String,
 }
@@ -82,7 +82,7 @@ pub struct Report {
 
 impl Report {
     /// The entries of one fate.
-    pub fn of(&self, fate: Fate) -> impl Iterator<Item = &Entry> {
+    pub fn of(&self, fate: ElementOutcome) -> impl Iterator<Item = &Entry> {
         self.entries.iter().filter(move |e| e.fate == fate)
     }
 }
@@ -93,8 +93,14 @@ impl fmt::Display for Report {
         for remark in &self.remarks {
             writeln!(f, "  note: {remark}")?;
         }
-        self.listed(f, Fate::NotUnderstood, "not understood, and left out; it may concern the motion")?;
-        for (fate, title) in [(Fate::Taken, "taken"), (Fate::Ignored, "does not concern the motion")] {
+        self.listed(
+            f,
+            ElementOutcome::NotUnderstood,
+            "not understood, and left out; it may concern the motion",
+        )?;
+        for (fate, title) in
+            [(ElementOutcome::Taken, "taken"), (ElementOutcome::Ignored, "does not concern the motion")]
+        {
             let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
             for e in self.of(fate) {
                 *counts.entry(&e.kind).or_default() += 1;
@@ -104,14 +110,14 @@ impl fmt::Display for Report {
                 writeln!(f, "  {title}: {}", list.join(", "))?;
             }
         }
-        self.listed(f, Fate::Approximated, "approximated or added")?;
-        self.listed(f, Fate::Refused, "refused")
+        self.listed(f, ElementOutcome::Approximated, "approximated or added")?;
+        self.listed(f, ElementOutcome::Refused, "refused")
     }
 }
 
 impl Report {
     /// Writes the entries of one fate, line by line.
-    fn listed(&self, f: &mut fmt::Formatter<'_>, fate: Fate, title: &str) -> fmt::Result {
+    fn listed(&self, f: &mut fmt::Formatter<'_>, fate: ElementOutcome, title: &str) -> fmt::Result {
         let list: Vec<&Entry> = self.of(fate).collect();
         if list.is_empty() {
             return Ok(());
@@ -127,7 +133,7 @@ impl Report {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for SourceLocation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}:{}", self.file, self.line, self.column)
     }
@@ -151,14 +157,14 @@ impl fmt::Display for Entry {
 
 /// Everything that is wrong with a source, in the order of its text.
 #[derive(Clone, Debug)]
-pub struct Problems {
+pub struct ImportErrors {
     sources: Vec<Source>,
     list: Vec<(usize, Diagnostic)>,
     /// Number of further ones.
     dropped: usize,
 }
 
-impl Problems {
+impl ImportErrors {
     /// The diagnostics, never none.
     pub fn list(&self) -> impl Iterator<Item = &Diagnostic> {
         self.list.iter().map(|(_, d)| d)
@@ -175,17 +181,17 @@ impl Problems {
     }
 }
 
-impl fmt::Display for Problems {
+impl fmt::Display for ImportErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.render(false))
     }
 }
 
-impl std::error::Error for Problems {}
+impl std::error::Error for ImportErrors {}
 
 /// What an importer tells while it reads.
 #[derive(Debug)]
-pub struct Notes {
+pub struct ImportLog {
     /// The texts that there are.
     sources: Vec<Source>,
     /// Places of the lines and characters of these texts.
@@ -241,7 +247,7 @@ fn begins(bytes: &[u8]) -> usize {
     bytes.iter().filter(|b| **b & 0xc0 != 0x80).count()
 }
 
-impl Notes {
+impl ImportLog {
     /// Of a file, as yet empty.
     pub fn new(file: &str, text: &str) -> Self {
         let sources = vec![Source::new(&printable(file), text)];
@@ -258,21 +264,26 @@ impl Notes {
     }
 
     /// Where that is, for people.
-    pub fn place(&self, at: At) -> Option<Place> {
+    pub fn place(&self, at: SourceSpan) -> Option<SourceLocation> {
         let source = self.sources.get(at.text)?;
         let (line, column) = self.indexes[at.text].line_column(&source.text, at.start);
-        Some(Place { file: source.file.to_string(), line, column })
+        Some(SourceLocation { file: source.file.to_string(), line, column })
     }
 
     /// A diagnostic about a place, or about the file as a whole.
-    pub fn diagnostic(&self, code: &'static str, at: Option<At>, message: impl AsRef<str>) -> Diagnostic {
+    pub fn diagnostic(
+        &self,
+        code: &'static str,
+        at: Option<SourceSpan>,
+        message: impl AsRef<str>,
+    ) -> Diagnostic {
         let source = &self.sources[at.map_or(0, |at| at.text)];
         let span = at.map(|at| at.start..at.end);
         source.diagnostic(Severity::Error, code, printable(message.as_ref()), span)
     }
 
     /// Something is wrong, and what to do is what one does about such.
-    pub fn problem(&mut self, code: &'static str, at: Option<At>, message: impl AsRef<str>) {
+    pub fn problem(&mut self, code: &'static str, at: Option<SourceSpan>, message: impl AsRef<str>) {
         let help = match code {
             "HP0803" => "correct the name, or export the file again",
             "HP0804" => "correct the value, or export the file again",
@@ -288,7 +299,13 @@ impl Notes {
     }
 
     /// The same, with what to do.
-    pub fn problem_with(&mut self, code: &'static str, at: Option<At>, message: impl AsRef<str>, help: &str) {
+    pub fn problem_with(
+        &mut self,
+        code: &'static str,
+        at: Option<SourceSpan>,
+        message: impl AsRef<str>,
+        help: &str,
+    ) {
         if self.problems.len() >= MOST_PROBLEMS {
             // To show its place would take time, and nobody sees it.
             self.dropped += 1;
@@ -311,39 +328,39 @@ impl Notes {
     }
 
     /// All that is wrong, if anything is.
-    pub fn problems(&mut self) -> Option<Problems> {
+    pub fn problems(&mut self) -> Option<ImportErrors> {
         if self.problems.is_empty() {
             return None;
         }
         let mut list = std::mem::take(&mut self.problems);
         list.sort_by_key(|(k, d)| (*k, d.line, d.column));
-        Some(Problems { sources: self.sources.clone(), list, dropped: self.dropped })
+        Some(ImportErrors { sources: self.sources.clone(), list, dropped: self.dropped })
     }
 
     /// One thing that is wrong with the file as a whole.
-    pub fn only(&self, diagnostic: Diagnostic) -> Problems {
-        Problems { sources: self.sources.clone(), list: vec![(0, diagnostic)], dropped: 0 }
+    pub fn only(&self, diagnostic: Diagnostic) -> ImportErrors {
+        ImportErrors { sources: self.sources.clone(), list: vec![(0, diagnostic)], dropped: 0 }
     }
 
-    fn entry(&mut self, fate: Fate, kind: &str, name: &str, at: Option<At>, why: &str) {
+    fn entry(&mut self, fate: ElementOutcome, kind: &str, name: &str, at: Option<SourceSpan>, why: &str) {
         let [kind, name, why] = [kind, name, why].map(printable);
         let place = at.and_then(|at| self.place(at));
         self.report.entries.push(Entry { fate, kind, name, place, why });
     }
 
     /// The model says the same.
-    pub fn taken(&mut self, kind: &str, name: &str, at: Option<At>) {
-        self.entry(Fate::Taken, kind, name, at, "");
+    pub fn taken(&mut self, kind: &str, name: &str, at: Option<SourceSpan>) {
+        self.entry(ElementOutcome::Taken, kind, name, at, "");
     }
 
     /// The model says nearly the same, or what the source leaves open.
-    pub fn approximated(&mut self, kind: &str, name: &str, at: Option<At>, why: impl AsRef<str>) {
-        self.entry(Fate::Approximated, kind, name, at, why.as_ref());
+    pub fn approximated(&mut self, kind: &str, name: &str, at: Option<SourceSpan>, why: impl AsRef<str>) {
+        self.entry(ElementOutcome::Approximated, kind, name, at, why.as_ref());
     }
 
     /// It does not concern how things move.
-    pub fn ignored(&mut self, kind: &str, at: Option<At>) {
-        self.entry(Fate::Ignored, kind, "", at, "");
+    pub fn ignored(&mut self, kind: &str, at: Option<SourceSpan>) {
+        self.entry(ElementOutcome::Ignored, kind, "", at, "");
     }
 
     /// A remark about the mechanism as a whole.
@@ -354,13 +371,13 @@ impl Notes {
     }
 
     /// The importer does not know it, and it may concern how things move.
-    pub fn not_understood(&mut self, kind: &str, name: &str, at: Option<At>, why: impl AsRef<str>) {
-        self.entry(Fate::NotUnderstood, kind, name, at, why.as_ref());
+    pub fn not_understood(&mut self, kind: &str, name: &str, at: Option<SourceSpan>, why: impl AsRef<str>) {
+        self.entry(ElementOutcome::NotUnderstood, kind, name, at, why.as_ref());
     }
 
     /// The model cannot say it.
-    pub fn refused(&mut self, kind: &str, name: &str, at: Option<At>, why: impl AsRef<str>) {
-        self.entry(Fate::Refused, kind, name, at, why.as_ref());
+    pub fn refused(&mut self, kind: &str, name: &str, at: Option<SourceSpan>, why: impl AsRef<str>) {
+        self.entry(ElementOutcome::Refused, kind, name, at, why.as_ref());
     }
 }
 

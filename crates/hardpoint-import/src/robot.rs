@@ -8,7 +8,7 @@ use crate::markers::{Called, Marker};
 use crate::mechanism::{
     Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mass, Mechanism, Spring, TurnedFrame,
 };
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 use crate::xml::{self, Vocabulary, child};
 
 /// Elements of a ball constraint, as Drake adds it to URDF and SDFormat.
@@ -133,7 +133,11 @@ pub fn is_mimic_plugin(node: Node<'_, '_>) -> bool {
 }
 
 /// Reads a plugin of Gazebo that makes a joint follow another, if it is one of those: in `mimicJoint` the one that follows.
-pub fn mimic_plugin<'a, 'i>(text: usize, node: Node<'a, 'i>, notes: &mut Notes) -> Option<Follower<'a, 'i>> {
+pub fn mimic_plugin<'a, 'i>(
+    text: usize,
+    node: Node<'a, 'i>,
+    notes: &mut ImportLog,
+) -> Option<Follower<'a, 'i>> {
     let words = |keys: &[&'static str]| {
         let found = keys.iter().find_map(|key| child(node, key))?;
         Some(found.text().unwrap_or_default().trim().to_owned())
@@ -182,7 +186,7 @@ pub fn mimic_plugin<'a, 'i>(text: usize, node: Node<'a, 'i>, notes: &mut Notes) 
 pub fn followers_of_control<'a, 'i>(
     text: usize,
     node: Node<'a, 'i>,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
 ) -> Vec<Follower<'a, 'i>> {
     let mut out = Vec::new();
     for joint in xml::named(node, "joint") {
@@ -208,7 +212,7 @@ pub fn followers_of_control<'a, 'i>(
 }
 
 /// Lists a plugin that is none of those that are read.
-pub fn plugin(text: usize, node: Node<'_, '_>, notes: &mut Notes) {
+pub fn plugin(text: usize, node: Node<'_, '_>, notes: &mut ImportLog) {
     let [name, file] = ["name", "filename"].map(|key| node.attribute(key).unwrap_or_default());
     let words = format!("{name} {file}").to_ascii_lowercase();
     let at = xml::at(text, node);
@@ -222,9 +226,9 @@ pub fn plugin(text: usize, node: Node<'_, '_>, notes: &mut Notes) {
 /// Couples a joint to the one that it follows: `own - factor master = constant`.
 pub fn follow(
     m: &mut Mechanism,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
     [name, other]: [&str; 2],
-    at: Option<At>,
+    at: Option<SourceSpan>,
     [own, master]: [Coordinate; 2],
     [factor, constant]: [f64; 2],
 ) {
@@ -237,7 +241,7 @@ pub fn follow(
 /// apart or are turned against each other in the design configuration, the mechanism is assembled so.
 pub fn weld(
     m: &mut Mechanism,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
     called: Called<'_>,
     kind: &'static str,
     [i, j]: [Marker; 2],
@@ -312,7 +316,7 @@ fn turn_of(turn: Mat3, angle: f64) -> hardpoint::space::Vec3 {
 /// The mass of a body: `frame` is that of its centre, along whose axes the inertia matrix is.
 pub fn mass(
     m: &mut Mechanism,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
     called: Called<'_>,
     body: usize,
     frame: Pose,
@@ -360,7 +364,7 @@ fn is_possible(i: Mat3) -> bool {
 }
 
 /// Standard gravity along -z, if there are masses: this format has none.
-pub fn standard_gravity(m: &mut Mechanism, notes: &mut Notes, format: &str) {
+pub fn standard_gravity(m: &mut Mechanism, notes: &mut ImportLog, format: &str) {
     if !m.masses.is_empty() {
         m.gravity = Some([0.0, 0.0, -STANDARD_GRAVITY].into());
         let why = format!("{format} has none: {STANDARD_GRAVITY} m/s^2 along -z");
@@ -371,7 +375,7 @@ pub fn standard_gravity(m: &mut Mechanism, notes: &mut Notes, format: &str) {
 /// A spring with a damper on a joint's coordinate; `free` counts from the drawing.
 pub fn joint_spring(
     m: &mut Mechanism,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
     called: Called<'_>,
     coordinate: Option<Coordinate>,
     [stiffness, damping, free]: [f64; 3],
@@ -404,7 +408,7 @@ pub fn joint_spring(
 }
 
 /// A constant friction of a joint, which the model cannot have.
-pub fn friction(notes: &mut Notes, name: &str, at: Option<At>, friction: f64) {
+pub fn friction(notes: &mut ImportLog, name: &str, at: Option<SourceSpan>, friction: f64) {
     if friction != 0.0 {
         let why = format!(
             "a constant friction of {friction}: friction of the model follows what presses, see docs/loads.md"

@@ -9,7 +9,7 @@ use roxmltree::{Document, Node};
 
 use crate::markers::{Called, Joined};
 use crate::mechanism::{GROUND, Joint, Mechanism};
-use crate::report::Notes;
+use crate::report::ImportLog;
 use crate::shapes::Solid;
 use crate::turn::{home, roll_pitch_yaw};
 use crate::xml::{Vocabulary, child, children, exactly, local, named};
@@ -83,7 +83,7 @@ const GRAVITY: [f64; 3] = [0.0, 0.0, -9.8];
 /// What has a place in a model or world.
 const PLACED: [&str; 5] = ["link", "frame", "joint", "model", "include"];
 
-fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     // Texts first: what is read of them refers to all of them.
     let texts = included(input, notes);
     let mut documents: Vec<Option<Document<'_>>> = Vec::new();
@@ -154,7 +154,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
 }
 
 /// The text itself and those that it includes, by the paths that name them.
-fn included(input: &Input<'_>, notes: &mut Notes) -> Vec<(String, String)> {
+fn included(input: &Input<'_>, notes: &mut ImportLog) -> Vec<(String, String)> {
     let mut texts = vec![(String::new(), xml::lenient(input.text))];
     let mut k = 0;
     while k < texts.len() && texts.len() < MOST_INCLUDED {
@@ -238,7 +238,7 @@ struct Shown<'d> {
 
 struct Reader<'d, 'n> {
     m: Mechanism,
-    notes: &'n mut Notes,
+    notes: &'n mut ImportLog,
     paths: Vec<String>,
     documents: &'d [Option<Document<'d>>],
     /// In an order in which what contains comes after what is in it.
@@ -687,7 +687,7 @@ fn relative_to<'a>(pose: Node<'a, '_>) -> Option<&'a str> {
 }
 
 /// The shape of a link, of one `visual`.
-fn shown(input: &mut Input<'_>, notes: &mut Notes, shape: Shown<'_>) {
+fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: Shown<'_>) {
     let Shown { text, visual, body, link, place } = shape;
     let at = xml::at(text, visual);
     let Some(shape) = child(visual, "geometry").and_then(|g| children(g).next()) else {

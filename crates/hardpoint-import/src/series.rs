@@ -15,12 +15,12 @@ pub struct Series {
     /// The times.
     pub times: Vec<f64>,
     /// By the bodies' names in the model file, all as long as the times; lengths in the file's unit.
-    pub bodies: Vec<(String, Vec<Stored>)>,
+    pub bodies: Vec<(String, Vec<StoredPose>)>,
 }
 
 /// A body at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stored {
+pub struct StoredPose {
     /// Where its frame is.
     pub pose: Pose,
     /// Velocity of the frame's origin, angular velocity, acceleration and angular acceleration, as far as they are stored.

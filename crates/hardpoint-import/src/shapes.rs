@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use hardpoint::space::{Pose, Vec3};
 
 use crate::mechanism::{GROUND, Mechanism, Mesh};
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 
 /// A body is drawn with so many triangles at most.
 const MOST: usize = 200_000;
@@ -109,7 +109,7 @@ pub fn file_name(name: &str) -> String {
 }
 
 /// That the shape of something is not shown, and why.
-pub fn not_shown(notes: &mut Notes, kind: &str, name: &str, at: Option<At>, why: &str) {
+pub fn not_shown(notes: &mut ImportLog, kind: &str, name: &str, at: Option<SourceSpan>, why: &str) {
     notes.refused(kind, name, at, format!("the shape is not shown: {why}"));
 }
 

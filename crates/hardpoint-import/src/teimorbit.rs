@@ -8,7 +8,7 @@ use crate::corner::{Corner, Link, plain, role_of, spin_axis};
 use crate::live_axle::{self, Places};
 use crate::lotus::half_round;
 use crate::mechanism::{Mechanism, end_named};
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 use crate::sides::SIDES;
 use crate::{Format, Input, teimorbit_blocks};
 
@@ -27,7 +27,7 @@ const PARAMETERS: [&str; 4] = ["parameter_name", "symmetry", "type", "value"];
 /// What a row's columns are, where the block does not say.
 const COLUMNS: [&str; 5] = ["hardpoint_name", "symmetry", "x_value", "y_value", "z_value"];
 
-fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let mut m = Mechanism::new(input.stem, "mm", "deg");
     let mut sides = [Side::default(), Side::default(), Side::default()];
     let (mut section, mut columns) = (String::new(), COLUMNS.map(str::to_owned).to_vec());
@@ -37,7 +37,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
     for whole in input.text.split_inclusive('\n') {
         let line = whole.split(['$', '!']).next().unwrap_or_default().trim();
         let from = start + whole.len() - whole.trim_start().len();
-        let at = At { text: 0, start: from, end: from + line.len() };
+        let at = SourceSpan { text: 0, start: from, end: from + line.len() };
         start += whole.len();
         if line.is_empty() {
             continue;
@@ -155,7 +155,7 @@ pub struct Block {
     /// Name, in capital letters.
     pub name: String,
     /// Place of its beginning.
-    pub at: At,
+    pub at: SourceSpan,
     /// Keys in capital letters, and their values.
     pub values: Vec<(String, String)>,
 }
@@ -245,7 +245,14 @@ const RADII: [&str; 6] = [
 
 impl Parameters {
     /// A row: static camber and toe, which the wheel's axis follows, and figures of the vehicle.
-    fn row(&mut self, m: &mut Mechanism, columns: &[String], line: &str, at: At, notes: &mut Notes) {
+    fn row(
+        &mut self,
+        m: &mut Mechanism,
+        columns: &[String],
+        line: &str,
+        at: SourceSpan,
+        notes: &mut ImportLog,
+    ) {
         let words = words(line);
         let column = |name: &str| columns.iter().position(|c| c == name).and_then(|k| words.get(k));
         let name = column("parameter_name").map_or("", String::as_str);
@@ -286,7 +293,7 @@ impl Parameters {
 }
 
 /// Whether the line says the unit of length.
-fn unit(m: &mut Mechanism, line: &str, at: At, notes: &mut Notes) -> bool {
+fn unit(m: &mut Mechanism, line: &str, at: SourceSpan, notes: &mut ImportLog) -> bool {
     let Some((key, value)) = line.split_once('=') else { return false };
     if !key.trim().eq_ignore_ascii_case("LENGTH") {
         return false;
@@ -331,7 +338,14 @@ fn words(line: &str) -> Vec<String> {
     out
 }
 
-fn row(m: &mut Mechanism, sides: &mut [Side; 3], columns: &[String], line: &str, at: At, notes: &mut Notes) {
+fn row(
+    m: &mut Mechanism,
+    sides: &mut [Side; 3],
+    columns: &[String],
+    line: &str,
+    at: SourceSpan,
+    notes: &mut ImportLog,
+) {
     let words = words(line);
     let column = |names: [&str; 2]| {
         columns.iter().position(|c| names.contains(&c.as_str())).and_then(|k| words.get(k))

@@ -6,7 +6,7 @@ use hardpoint::space::{Mat3, Pose, Vec3};
 use crate::lotus::half_round;
 use crate::markers::Called;
 use crate::mechanism::Mechanism;
-use crate::report::Notes;
+use crate::report::ImportLog;
 use crate::robot;
 use crate::sides::{SIDES, over};
 use crate::teimorbit::Block;
@@ -23,7 +23,7 @@ const PARTS: [(&str, &[&str]); 6] = [
 ];
 
 /// Takes the masses of parts, and names what else there is.
-pub fn take(blocks: &[Block], m: &mut Mechanism, is_kg: bool, notes: &mut Notes) {
+pub fn take(blocks: &[Block], m: &mut Mechanism, is_kg: bool, notes: &mut ImportLog) {
     for block in blocks {
         let usage = block.value("USAGE").unwrap_or_default();
         match block.name.as_str() {
@@ -49,7 +49,7 @@ pub fn take(blocks: &[Block], m: &mut Mechanism, is_kg: bool, notes: &mut Notes)
 }
 
 /// The mass of a part on each side that has its body.
-fn part(block: &Block, usage: &str, m: &mut Mechanism, notes: &mut Notes) {
+fn part(block: &Block, usage: &str, m: &mut Mechanism, notes: &mut ImportLog) {
     let Some(mass) = block.number("MASS").filter(|mass| *mass != 0.0) else {
         notes.ignored(&block.name, Some(block.at));
         return;

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use saphyr_parser::{Event, Parser, ScalarStyle};
 
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 
 /// Maps and lists are nested so deep at most.
 const DEEPEST: usize = 60;
@@ -13,7 +13,7 @@ const DEEPEST: usize = 60;
 #[derive(Clone, Debug)]
 pub struct Tree {
     /// Where.
-    pub at: At,
+    pub at: SourceSpan,
     /// What.
     pub value: Value,
 }
@@ -22,7 +22,7 @@ pub struct Tree {
 #[derive(Clone, Debug)]
 pub enum Value {
     /// Keys, where they stand, and values, in order.
-    Map(Vec<(String, At, Tree)>),
+    Map(Vec<(String, SourceSpan, Tree)>),
     /// Values.
     List(Vec<Tree>),
     /// A text or number as it is written, and whether it stands in quotes.
@@ -36,7 +36,7 @@ impl Tree {
     }
 
     /// The entries of a map; none of anything else.
-    pub fn entries(&self) -> &[(String, At, Self)] {
+    pub fn entries(&self) -> &[(String, SourceSpan, Self)] {
         if let Value::Map(entries) = &self.value { entries } else { &[] }
     }
 
@@ -74,12 +74,12 @@ impl Tree {
 }
 
 /// The tree of a YAML text; what is wrong with it is told.
-pub fn yaml(text: &str, notes: &mut Notes) -> Option<Tree> {
+pub fn yaml(text: &str, notes: &mut ImportLog) -> Option<Tree> {
     parse(text, text, "YAML", notes)
 }
 
 /// The tree of a JSON text, which may have comments: JSON is YAML, but for these and for tabs.
-pub fn json(text: &str, notes: &mut Notes) -> Option<Tree> {
+pub fn json(text: &str, notes: &mut ImportLog) -> Option<Tree> {
     parse(text, &blanked(text), "JSON", notes)
 }
 
@@ -116,11 +116,11 @@ fn blanked(text: &str) -> String {
 
 /// What is open while the events come: a map with its next key, or a list.
 enum Open {
-    Map(At, Vec<(String, At, Tree)>, Option<(String, At)>, HashSet<String>),
-    List(At, Vec<Tree>),
+    Map(SourceSpan, Vec<(String, SourceSpan, Tree)>, Option<(String, SourceSpan)>, HashSet<String>),
+    List(SourceSpan, Vec<Tree>),
 }
 
-fn parse(original: &str, text: &str, language: &str, notes: &mut Notes) -> Option<Tree> {
+fn parse(original: &str, text: &str, language: &str, notes: &mut ImportLog) -> Option<Tree> {
     // The parser counts characters.
     let bytes: Vec<usize> = original.char_indices().map(|(k, _)| k).chain([original.len()]).collect();
     let byte = |k: usize| bytes.get(k).copied().unwrap_or(original.len());
@@ -131,7 +131,7 @@ fn parse(original: &str, text: &str, language: &str, notes: &mut Notes) -> Optio
             Ok(event) => event,
             Err(e) => {
                 let start = byte(e.marker().index());
-                let at = At { text: 0, start, end: start };
+                let at = SourceSpan { text: 0, start, end: start };
                 let help =
                     "mostly a bracket, a quote or a comma, or the depth of a line, at or before this place";
                 notes.problem_with(
@@ -143,7 +143,7 @@ fn parse(original: &str, text: &str, language: &str, notes: &mut Notes) -> Optio
                 return None;
             }
         };
-        let at = At { text: 0, start: byte(span.start.index()), end: byte(span.end.index()) };
+        let at = SourceSpan { text: 0, start: byte(span.start.index()), end: byte(span.end.index()) };
         let done = match event {
             Event::MappingStart(..) => {
                 open.push(Open::Map(at, Vec::new(), None, HashSet::new()));

@@ -10,7 +10,7 @@ use roxmltree::Node;
 
 use crate::markers::{Called, Marker, join};
 use crate::mechanism::{Coordinate, GROUND, Mechanism};
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 use crate::shapes::Solid;
 use crate::turn::{X, Y, home, roll_pitch_yaw};
 use crate::xml::{Vocabulary, attribute, attribute_at, child, children, local, named};
@@ -149,7 +149,7 @@ struct Mimic<'a, 'i> {
     offset: f64,
 }
 
-fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
+fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let text = xml::lenient(input.text);
     let document = xml::parse(&text, 0, notes)?;
     let robot = document.root_element();
@@ -217,7 +217,7 @@ fn read(input: &mut Input<'_>, notes: &mut Notes) -> Option<Mechanism> {
 }
 
 /// Whether the file has yet to be expanded by xacro.
-fn xml_macros(robot: Node<'_, '_>, notes: &mut Notes) -> bool {
+fn xml_macros(robot: Node<'_, '_>, notes: &mut ImportLog) -> bool {
     let is_macro = |n: &Node<'_, '_>| {
         let declared = n.tag_name().namespace().is_some_and(|s| s.contains("xacro"));
         // Without a declaration the prefix is part of the name.
@@ -231,7 +231,7 @@ fn xml_macros(robot: Node<'_, '_>, notes: &mut Notes) -> bool {
 
 struct Reader<'a, 'i, 'n> {
     m: Mechanism,
-    notes: &'n mut Notes,
+    notes: &'n mut ImportLog,
     links: BTreeMap<String, Node<'a, 'i>>,
     /// Bodies and poses of the links as drawn.
     poses: BTreeMap<String, (usize, Pose)>,
@@ -507,7 +507,7 @@ fn moved(frame: Pose, kind: &str, axis: Vec3, by: f64) -> Pose {
     }
 }
 
-fn pose(origin: Node<'_, '_>, notes: &mut Notes) -> Pose {
+fn pose(origin: Node<'_, '_>, notes: &mut ImportLog) -> Pose {
     let [r, angles] = ["xyz", "rpy"].map(|key| attribute::<3>(0, origin, key, notes).unwrap_or_default());
     let rot = match attribute::<4>(0, origin, "quat_xyzw", notes) {
         Some([x, y, z, w]) => crate::turn::quaternion([w, x, y, z]).unwrap_or_else(|| {
@@ -521,10 +521,10 @@ fn pose(origin: Node<'_, '_>, notes: &mut Notes) -> Pose {
 }
 
 /// The shapes of a link.
-fn shapes(input: &mut Input<'_>, notes: &mut Notes, link: Node<'_, '_>, body: usize, name: &str) {
+fn shapes(input: &mut Input<'_>, notes: &mut ImportLog, link: Node<'_, '_>, body: usize, name: &str) {
     xml::unknown(0, link, name, LINK, notes);
     for part in named(link, "visual") {
-        let at: Option<At> = xml::at(0, part);
+        let at: Option<SourceSpan> = xml::at(0, part);
         let place = child(part, "origin").map_or_else(home, |o| pose(o, notes));
         let Some(shape) = child(part, "geometry").and_then(|g| children(g).next()) else {
             notes.refused("visual", name, at, "it has no shape");

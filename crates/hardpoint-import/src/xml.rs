@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
-use crate::report::{At, Notes};
+use crate::report::{ImportLog, SourceSpan};
 
 /// A document has so many nodes at most.
 const MOST_NODES: u32 = 2_000_000;
@@ -49,10 +49,10 @@ fn options<'t>() -> ParsingOptions<'t> {
 }
 
 /// The document of a text; what is wrong with it is told.
-pub fn parse<'t>(text: &'t str, number: usize, notes: &mut Notes) -> Option<Document<'t>> {
+pub fn parse<'t>(text: &'t str, number: usize, notes: &mut ImportLog) -> Option<Document<'t>> {
     if let Some(unfit) = unfit(text) {
         let (start, message, help) = unfit.message();
-        notes.problem_with("HP0802", Some(At { text: number, start, end: start + 1 }), message, help);
+        notes.problem_with("HP0802", Some(SourceSpan { text: number, start, end: start + 1 }), message, help);
         return None;
     }
     match Document::parse_with_options(text, options()) {
@@ -60,7 +60,7 @@ pub fn parse<'t>(text: &'t str, number: usize, notes: &mut Notes) -> Option<Docu
         Err(e) => {
             let start = offset(text, e.pos());
             let end = start + text[start..].chars().next().map_or(0, char::len_utf8);
-            let at = Some(At { text: number, start, end });
+            let at = Some(SourceSpan { text: number, start, end });
             let what = e.to_string();
             // The parser's own place is the one that is shown.
             let what = what.rsplit_once(" at ").map_or(what.as_str(), |(what, _)| what);
@@ -231,9 +231,9 @@ fn offset(text: &str, pos: roxmltree::TextPos) -> usize {
 }
 
 /// Where an element stands: its name.
-pub fn at(text: usize, node: Node<'_, '_>) -> Option<At> {
+pub fn at(text: usize, node: Node<'_, '_>) -> Option<SourceSpan> {
     let start = node.range().start;
-    Some(At { text, start, end: start + 1 + node.tag_name().name().len() })
+    Some(SourceSpan { text, start, end: start + 1 + node.tag_name().name().len() })
 }
 
 /// The name of an element without the prefix of a program that is known: `drake:ball_constraint`, whether the prefix is declared or not.
@@ -254,11 +254,11 @@ pub struct Vocabulary {
 }
 
 /// Lists what an element has that its reader does not know: unknown is not irrelevant. `owner` is the name of what it belongs to.
-pub fn unknown(text: usize, node: Node<'_, '_>, owner: &str, words: Vocabulary, notes: &mut Notes) {
+pub fn unknown(text: usize, node: Node<'_, '_>, owner: &str, words: Vocabulary, notes: &mut ImportLog) {
     let kind = node.tag_name().name();
     for a in node.attributes().filter(|a| !words.attributes.contains(&a.name())) {
         let range = a.range();
-        let at = Some(At { text, start: range.start, end: range.end });
+        let at = Some(SourceSpan { text, start: range.start, end: range.end });
         let why = format!("`{}` has an attribute `{}` that is not known here", kind, a.name());
         notes.not_understood(a.name(), owner, at, why);
     }
@@ -298,8 +298,8 @@ pub fn numbers(text: &str) -> Option<Vec<f64>> {
 pub fn exactly<const N: usize>(
     text: &str,
     what: &str,
-    at: Option<At>,
-    notes: &mut Notes,
+    at: Option<SourceSpan>,
+    notes: &mut ImportLog,
 ) -> Option<[f64; N]> {
     let list = numbers(text).and_then(|list| <[f64; N]>::try_from(list).ok());
     if list.is_none() {
@@ -311,7 +311,7 @@ pub fn exactly<const N: usize>(
 }
 
 /// A bound of a range, which may be infinite; what is wrong with it is told.
-pub fn bound(text: &str, what: &str, at: Option<At>, notes: &mut Notes) -> Option<f64> {
+pub fn bound(text: &str, what: &str, at: Option<SourceSpan>, notes: &mut ImportLog) -> Option<f64> {
     let value = text.trim().parse().ok().filter(|x: &f64| !x.is_nan());
     if value.is_none() {
         let help = "write it with a point in fractions, or `inf` where there is no bound";
@@ -326,9 +326,9 @@ pub fn range(low: f64, high: f64) -> Option<[f64; 2]> {
 }
 
 /// Where an attribute's value stands.
-pub fn attribute_at(text: usize, node: Node<'_, '_>, name: &str) -> Option<At> {
+pub fn attribute_at(text: usize, node: Node<'_, '_>, name: &str) -> Option<SourceSpan> {
     let range = node.attribute_node(name)?.range_value();
-    Some(At { text, start: range.start, end: range.end })
+    Some(SourceSpan { text, start: range.start, end: range.end })
 }
 
 /// An attribute of so many numbers, where there is one.
@@ -336,7 +336,7 @@ pub fn attribute<const N: usize>(
     text: usize,
     node: Node<'_, '_>,
     name: &str,
-    notes: &mut Notes,
+    notes: &mut ImportLog,
 ) -> Option<[f64; N]> {
     let value = node.attribute(name)?;
     let what = format!("`{name}` of `{}`", node.tag_name().name());

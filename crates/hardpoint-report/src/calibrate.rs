@@ -5,9 +5,11 @@ use std::io::Write;
 use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
 use hardpoint::model::{DriverId, Model};
-use hardpoint::study::{Calibration, FitStatus, Fitted, Loss, Next, Reading, Untold};
+use hardpoint::study::{
+    Calibration, FitStatus, FittedReading, Loss, NextReading, Reading, UnidentifiableChange,
+};
 use hardpoint_file::csv_table::CsvWriter;
-use hardpoint_file::{Measured, ModelFile, Units};
+use hardpoint_file::{MeasuredData, ModelFile, Units};
 use serde::Serialize;
 
 use crate::facts::variable_unit;
@@ -160,7 +162,7 @@ pub struct Calibrated<'a> {
     /// The model file.
     pub file: &'a ModelFile,
     /// What was measured, and its file's name.
-    pub measured: &'a Measured,
+    pub measured: &'a MeasuredData,
     /// The file of what was measured.
     pub data: &'a str,
     /// What residuals counted.
@@ -195,7 +197,7 @@ impl Calibrated<'_> {
     }
 
     /// Readings that were compared, with what they are beside.
-    fn compared(&self) -> impl Iterator<Item = (&Reading, &Fitted)> {
+    fn compared(&self) -> impl Iterator<Item = (&Reading, &FittedReading)> {
         let readings = &self.measured.measurements.readings;
         readings.iter().zip(&self.found.fitted).filter_map(|(r, f)| Some((r, f.as_ref()?)))
     }
@@ -602,7 +604,7 @@ fn together(covariance: &[Vec<f64>], variables: &[CalibratedVariable]) -> Vec<(S
     found
 }
 
-fn untold(of: &Calibrated<'_>, untold: &Untold) -> UntoldFact {
+fn untold(of: &Calibrated<'_>, untold: &UnidentifiableChange) -> UntoldFact {
     let (model, units) = (of.model(), of.units());
     let shown = |k: usize| {
         let variable = &model.variables[of.found.variables[k].0];
@@ -618,7 +620,7 @@ fn untold(of: &Calibrated<'_>, untold: &Untold) -> UntoldFact {
     UntoldFact { variables, sigma: untold.sigma.map(|s| s * most) }
 }
 
-fn next(of: &Calibrated<'_>, next: &Next, variables: &[CalibratedVariable]) -> NextFact {
+fn next(of: &Calibrated<'_>, next: &NextReading, variables: &[CalibratedVariable]) -> NextFact {
     let improves = next.improves.as_ref();
     let variable = improves.map(|i| &variables[i.variable]);
     let in_units = |i: &hardpoint::study::Improvement| {

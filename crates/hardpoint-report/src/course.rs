@@ -5,7 +5,7 @@ use hardpoint::motion::{Margin, Motion};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
 use hardpoint::study::Magnitude;
-use hardpoint::{Footprint, Keep, Kept, Solution};
+use hardpoint::{Footprint, SampledResults, Sampling, Solution};
 
 use crate::shifts::Shifts;
 
@@ -26,9 +26,9 @@ const SAME: f64 = 1e-12;
 pub struct Gathering {
     course: Course,
     orders: Vec<(Dimension, usize)>,
-    kept: Kept,
+    kept: SampledResults,
     /// Where what is kept for the page is too coarse for metrics.
-    curves: Option<Kept>,
+    curves: Option<SampledResults>,
     /// Where sensitivities of bodies are not kept.
     shifts: Option<Shifts>,
 }
@@ -90,9 +90,10 @@ impl Gathering {
             model.metrics.iter().flat_map(|m| std::iter::once(m.of).chain(m.over)).collect();
         outputs.dedup();
         let curve = (outputs.len() * (1 + model.variables.len()) * size_of::<[f64; 3]>()).max(1);
-        let keep = |rows, motion, outputs| Keep { rows, motion, sensitivities: motion && bodies, outputs };
+        let keep =
+            |rows, motion, outputs| Sampling { rows, motion, sensitivities: motion && bodies, outputs };
         let curves = (!outputs.is_empty() && times > rows)
-            .then(|| Kept::new(keep(METRIC_BYTES / curve, false, Some(outputs))));
+            .then(|| SampledResults::new(keep(METRIC_BYTES / curve, false, Some(outputs))));
         let measures = hardpoint::measure::outputs(model);
         let measures = measures.iter().filter(|o| matches!(o.source, OutputSource::Measure(_)));
         let orders: Vec<_> = measures.map(|o| (o.dimension, o.known.orders)).collect();
@@ -104,7 +105,7 @@ impl Gathering {
             ..Course::default()
         };
         let shifts = (!bodies && variables > 0).then(|| Shifts::new(KEPT_BYTES));
-        Self { course, orders, kept: Kept::new(keep(rows, true, None)), curves, shifts }
+        Self { course, orders, kept: SampledResults::new(keep(rows, true, None)), curves, shifts }
     }
 
     /// Takes a window that begins with output time `first`.
@@ -144,7 +145,7 @@ impl Gathering {
     pub fn end(self, whole: &Solution) -> Course {
         let mut course = self.course;
         course.stride = self.kept.stride();
-        course.metric_stride = self.curves.as_ref().map_or(course.stride, Kept::stride);
+        course.metric_stride = self.curves.as_ref().map_or(course.stride, SampledResults::stride);
         course.curves = self.curves.map(|curves| curves.end(whole));
         course.kept = self.kept.end(whole);
         course.shifts = self.shifts;

@@ -4,11 +4,11 @@
 use hardpoint::Analysis;
 use hardpoint::joint::Quantity;
 use hardpoint::motion::{Closing, Motion, Stop, StopKind};
-use hardpoint::topology::TopologyFault;
+use hardpoint::topology::TopologyError;
 use hardpoint::{
     draft::Section,
     model::{
-        AtChangePoints, DesignVariable, ENDS_MEET, ElementKind, JointId, MeasureKind, Model, OutputSource,
+        ChangePointPolicy, DesignVariable, ENDS_MEET, ElementKind, JointId, MeasureKind, Model, OutputSource,
     },
 };
 use hardpoint_file::{Diagnostic, ModelFile, Severity};
@@ -40,10 +40,10 @@ pub fn all(file: &ModelFile, summary: &Summary, course: &Course, outputs: Option
 }
 
 /// The mechanism cannot be driven as it is written.
-pub fn topology_fault(file: &ModelFile, fault: &TopologyFault) -> Diagnostic {
+pub fn topology_fault(file: &ModelFile, fault: &TopologyError) -> Diagnostic {
     let place = match fault {
         // Where drivers meet, one of them has to go.
-        TopologyFault::OverDriven { drivers, .. } if drivers.len() > 1 => {
+        TopologyError::OverDriven { drivers, .. } if drivers.len() > 1 => {
             Some((Section::Drivers, drivers[0].0))
         }
         _ => fault.joints().first().map(|j| (Section::Joints, j.0)),
@@ -347,10 +347,10 @@ pub fn margin(file: &ModelFile, margin: &MarginFact) -> Option<Diagnostic> {
     ));
     let d = d.note(format!("the loop consists of {}", names(margin.joints.iter().map(String::as_str))));
     Some(d.help(match file.model.at_change_points {
-        AtChangePoints::Stop => {
+        ChangePointPolicy::Stop => {
             "drive another joint of this loop, or move its hardpoints so that it stays away from there"
         }
-        AtChangePoints::Continue => {
+        ChangePointPolicy::Continue => {
             "the motion may pass a change point, as `at_change_points = \"continue\"` allows; read velocities, loads and sensitivities at \
              output times away from this one, or drive another joint of this loop"
         }

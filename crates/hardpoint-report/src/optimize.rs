@@ -2,9 +2,12 @@
 
 use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
-use hardpoint::model::{Change, DesignVariable, Dimension, Limited, Model, Optimization, OutputSource};
+use hardpoint::model::{
+    Change, DesignVariable, Dimension, LimitTarget, Model, OptimizationSettings, OutputSource,
+};
 use hardpoint::study::{
-    Binding, Iteration, Judged, LIMIT_KEPT, Motions, Optimized, Refused, Search, Status, judge,
+    ActiveConstraint, DesignAssessment, FailedDesign, Iteration, LIMIT_KEPT, Motions, OptimizationResult,
+    OptimizationStatus, SearchResult, judge,
 };
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
@@ -239,14 +242,14 @@ pub struct RefusedFact {
 }
 
 /// The word for a status in JSON.
-pub fn status_word(status: Status) -> &'static str {
+pub fn status_word(status: OptimizationStatus) -> &'static str {
     match status {
-        Status::Optimal => "optimal",
-        Status::Stuck => "stuck",
-        Status::LimitsNotKept => "limits_not_kept",
-        Status::IterationLimit => "iteration_limit",
-        Status::Interrupted => "interrupted",
-        Status::NoStart => "no_start",
+        OptimizationStatus::Optimal => "optimal",
+        OptimizationStatus::Stuck => "stuck",
+        OptimizationStatus::LimitsNotKept => "limits_not_kept",
+        OptimizationStatus::IterationLimit => "iteration_limit",
+        OptimizationStatus::Interrupted => "interrupted",
+        OptimizationStatus::NoStart => "no_start",
     }
 }
 
@@ -294,7 +297,12 @@ fn exceeded(violation: f64) -> Option<String> {
 }
 
 /// The design that is saved: numbers of as few digits as still describe the optimum, judged by solving it.
-pub fn to_save(file: &ModelFile, motions: &Motions<'_>, asked: &Optimization, design: &[f64]) -> Vec<f64> {
+pub fn to_save(
+    file: &ModelFile,
+    motions: &Motions<'_>,
+    asked: &OptimizationSettings,
+    design: &[f64],
+) -> Vec<f64> {
     let moves =
         |design: &Vec<f64>| judge(&file.model, motions, asked, design).is_ok_and(|j| j.violation <= SAVED);
     let all = || FINER.iter().map(|finest| rounded_to(file, asked, design, *finest));
@@ -302,11 +310,11 @@ pub fn to_save(file: &ModelFile, motions: &Motions<'_>, asked: &Optimization, de
 }
 
 /// A design with the searched variables at numbers of few digits in the file's units.
-pub fn rounded(file: &ModelFile, asked: &Optimization, design: &[f64]) -> Vec<f64> {
+pub fn rounded(file: &ModelFile, asked: &OptimizationSettings, design: &[f64]) -> Vec<f64> {
     rounded_to(file, asked, design, FINEST)
 }
 
-fn rounded_to(file: &ModelFile, asked: &Optimization, design: &[f64], finest: f64) -> Vec<f64> {
+fn rounded_to(file: &ModelFile, asked: &OptimizationSettings, design: &[f64], finest: f64) -> Vec<f64> {
     let mut design = design.to_vec();
     for v in &asked.variables {
         let variable = &file.model.variables[v.0];
@@ -320,7 +328,7 @@ fn rounded_to(file: &ModelFile, asked: &Optimization, design: &[f64], finest: f6
 }
 
 /// The header-free line of a search that ended.
-pub fn start_line(k: usize, search: &Search) -> String {
+pub fn start_line(k: usize, search: &SearchResult) -> String {
     let from = if k == 0 { "as drawn".into() } else { format!("start {k}") };
     let found = search.found.as_ref().map_or("-".into(), |f| number(f.objective));
     let status = in_words(search.status);
@@ -328,32 +336,32 @@ pub fn start_line(k: usize, search: &Search) -> String {
 }
 
 /// A status in a few words.
-fn in_words(status: Status) -> &'static str {
+fn in_words(status: OptimizationStatus) -> &'static str {
     match status {
-        Status::Optimal => "an optimum",
-        Status::Stuck => "no step goes further",
-        Status::LimitsNotKept => "limits not kept",
-        Status::IterationLimit => "iterations used up",
-        Status::Interrupted => "interrupted",
-        Status::NoStart => "cannot start",
+        OptimizationStatus::Optimal => "an optimum",
+        OptimizationStatus::Stuck => "no step goes further",
+        OptimizationStatus::LimitsNotKept => "limits not kept",
+        OptimizationStatus::IterationLimit => "iterations used up",
+        OptimizationStatus::Interrupted => "interrupted",
+        OptimizationStatus::NoStart => "cannot start",
     }
 }
 
 impl OptimizeFacts {
     /// Those of an optimisation.
-    pub fn of(file: &ModelFile, asked: &Optimization, found: &Optimized) -> Self {
+    pub fn of(file: &ModelFile, asked: &OptimizationSettings, found: &OptimizationResult) -> Self {
         let (model, units) = (&file.model, file.units);
         let best = found.best.map(|k| &found.searches[k]);
         let judged = best.and_then(|b| b.found.as_ref());
-        let worst = found.searches.first().map_or(Status::NoStart, |s| s.status);
+        let worst = found.searches.first().map_or(OptimizationStatus::NoStart, |s| s.status);
         let status = best.map_or(worst, |b| b.status);
-        let before_after = |of: fn(&Judged) -> f64| BeforeAfter {
+        let before_after = |of: fn(&DesignAssessment) -> f64| BeforeAfter {
             before: found.drawn.as_ref().map(of),
             after: judged.map(of),
         };
         let refused =
             found.searches.iter().enumerate().flat_map(|(k, s)| s.refused.iter().map(move |r| (k, r)));
-        let refused_fact = |(start, refused): (usize, &Refused)| RefusedFact {
+        let refused_fact = |(start, refused): (usize, &FailedDesign)| RefusedFact {
             start,
             case: refused.motion.and_then(|m| case_name(model, m)),
             why: refused.why.clone(),
@@ -397,20 +405,20 @@ impl OptimizeFacts {
             seconds: 0.0,
         };
         facts.message = facts.sentence(model, status, found);
-        let begun = found.searches.iter().filter(|s| s.status != Status::Interrupted).count();
-        if begun < found.searches.len() && status != Status::Interrupted {
+        let begun = found.searches.iter().filter(|s| s.status != OptimizationStatus::Interrupted).count();
+        if begun < found.searches.len() && status != OptimizationStatus::Interrupted {
             let all = found.searches.len();
             facts.message = format!(
                 "interrupted with {begun} of {all} starts searched; the best so far: {}",
                 facts.message
             );
-            facts.status = status_word(Status::Interrupted);
+            facts.status = status_word(OptimizationStatus::Interrupted);
         }
         facts
     }
 
     /// How it ended, and what to do.
-    fn sentence(&self, model: &Model, status: Status, found: &Optimized) -> String {
+    fn sentence(&self, model: &Model, status: OptimizationStatus, found: &OptimizationResult) -> String {
         let exceeded = || {
             let missed = |l: &&LimitFact| l.missed().is_some();
             let lines: Vec<String> = self.limits.iter().filter(missed).map(LimitFact::line).collect();
@@ -419,25 +427,25 @@ impl OptimizeFacts {
         let binding: Vec<&str> =
             self.variables.iter().filter(|v| v.binds.is_some()).map(|v| v.name.as_str()).collect();
         match status {
-            Status::Optimal if best_is_met(found) => "all goals are met: nothing is left to gain".into(),
-            Status::Optimal if binding.is_empty() => "an optimum: no small change of the design is better".into(),
-            Status::Optimal => format!(
+            OptimizationStatus::Optimal if best_is_met(found) => "all goals are met: nothing is left to gain".into(),
+            OptimizationStatus::Optimal if binding.is_empty() => "an optimum: no small change of the design is better".into(),
+            OptimizationStatus::Optimal => format!(
                 "an optimum within the bounds, of which {} hold it; wider ones would do more",
                 some_of(&binding, ", ")
             ),
-            Status::Stuck => "no step goes further, although it is not quite an optimum: try more `starts`, or more output times \
+            OptimizationStatus::Stuck => "no step goes further, although it is not quite an optimum: try more `starts`, or more output times \
                 where a metric jumps"
                 .into(),
-            Status::LimitsNotKept => format!(
+            OptimizationStatus::LimitsNotKept => format!(
                 "no design was found that keeps all limits{}; they contradict each other or the bounds: widen one of them, or \
                  try more `starts`",
                 exceeded()
             ),
-            Status::IterationLimit => {
+            OptimizationStatus::IterationLimit => {
                 "the iterations are used up before an optimum was reached: give more `iterations`".into()
             }
-            Status::Interrupted => "interrupted: the best design so far".into(),
-            Status::NoStart => {
+            OptimizationStatus::Interrupted => "interrupted: the best design so far".into(),
+            OptimizationStatus::NoStart => {
                 let drawn = found.drawn_refused.as_ref();
                 let case = drawn.and_then(|r| case_name(model, r.motion?));
                 let case = case.map_or(String::new(), |case| format!("case `{case}`: "));
@@ -705,9 +713,9 @@ const MISSED: f64 = 1e-7;
 fn goals(
     model: &Model,
     units: Units,
-    asked: &Optimization,
-    found: &Optimized,
-    judged: Option<&Judged>,
+    asked: &OptimizationSettings,
+    found: &OptimizationResult,
+    judged: Option<&DesignAssessment>,
 ) -> Vec<GoalFact> {
     let some = found.drawn.as_ref().or(judged);
     let taken = some.map_or(&[][..], |j| &j.goals[..]);
@@ -716,7 +724,7 @@ fn goals(
         let metric = &model.metrics[goal.metric];
         let dimension = model.metric_dimension(metric);
         let shown = |x: f64| units.from_si(dimension, x);
-        let value = |j: Option<&Judged>| j.and_then(|j| j.goals.get(k)).map(|g| shown(g.2));
+        let value = |j: Option<&DesignAssessment>| j.and_then(|j| j.goals.get(k)).map(|g| shown(g.2));
         GoalFact {
             name: goal.name.clone(),
             metric: metric.name.clone(),
@@ -733,9 +741,9 @@ fn goals(
 fn limits(
     model: &Model,
     units: Units,
-    asked: &Optimization,
-    found: &Optimized,
-    best: Option<&Search>,
+    asked: &OptimizationSettings,
+    found: &OptimizationResult,
+    best: Option<&SearchResult>,
 ) -> Vec<LimitFact> {
     let judged = best.and_then(|b| b.found.as_ref());
     let some = found.drawn.as_ref().or(judged);
@@ -744,24 +752,24 @@ fn limits(
     let fact = |(k, (limit, motion, _)): (usize, &(usize, Option<usize>, f64))| {
         let (place, limit) = (*limit, &asked.limits[*limit]);
         let (dimension, of) = match limit.of {
-            Limited::Metric(m) => {
+            LimitTarget::Metric(m) => {
                 let metric = &model.metrics[m];
                 (model.metric_dimension(metric), format!("metric `{}`", metric.name))
             }
-            Limited::Coordinate(h, axis) => {
+            LimitTarget::Coordinate(h, axis) => {
                 (Dimension::LENGTH, format!("`{}.{}`", hardpoint(h), ["x", "y", "z"][axis]))
             }
-            Limited::Distance(a, b) => {
+            LimitTarget::Distance(a, b) => {
                 (Dimension::LENGTH, format!("distance of `{}` and `{}`", hardpoint(a), hardpoint(b)))
             }
-            Limited::Length(j) => (Dimension::LENGTH, format!("length of `{}`", model.joints[j.0].name)),
+            LimitTarget::Length(j) => (Dimension::LENGTH, format!("length of `{}`", model.joints[j.0].name)),
         };
         let shown = |x: f64| units.from_si(dimension, x);
-        let value = |j: Option<&Judged>| j.and_then(|j| j.limits.get(k)).map(|l| shown(l.2));
+        let value = |j: Option<&DesignAssessment>| j.and_then(|j| j.limits.get(k)).map(|l| shown(l.2));
         let binding = best.into_iter().flat_map(|b| &b.optimality.binding);
-        let binds = |(what, worth): &(Binding, f64)| match *what {
-            Binding::Least(l, m) if l == place && m == *motion => Some(("min", *worth)),
-            Binding::Most(l, m) if l == place && m == *motion => Some(("max", *worth)),
+        let binds = |(what, worth): &(ActiveConstraint, f64)| match *what {
+            ActiveConstraint::Least(l, m) if l == place && m == *motion => Some(("min", *worth)),
+            ActiveConstraint::Most(l, m) if l == place && m == *motion => Some(("max", *worth)),
             _ => None,
         };
         let binds = binding.filter_map(binds).next();
@@ -813,7 +821,7 @@ fn nominal(file: &ModelFile, variable: &DesignVariable) -> Option<f64> {
 }
 
 /// Returns whether the best search ended where all goals vanish.
-fn best_is_met(found: &Optimized) -> bool {
+fn best_is_met(found: &OptimizationResult) -> bool {
     found.best.is_some_and(|k| found.searches[k].optimality.met)
 }
 
@@ -832,7 +840,7 @@ impl SearchedVariable {
 impl OptimizeFacts {
     /// Takes in what solving the saved file anew has shown; a design that is not the optimum is not called one. `margin` is the one that
     /// the search has kept.
-    pub fn check_saved(&mut self, to: &str, judged: Result<Judged, String>, margin: Option<f64>) {
+    pub fn check_saved(&mut self, to: &str, judged: Result<DesignAssessment, String>, margin: Option<f64>) {
         let mut saved = SavedFact { file: to.into(), ..SavedFact::default() };
         match judged {
             Ok(judged) => {
@@ -873,7 +881,7 @@ impl OptimizeFacts {
     }
 }
 
-fn variables(file: &ModelFile, asked: &Optimization, best: &Search) -> Vec<SearchedVariable> {
+fn variables(file: &ModelFile, asked: &OptimizationSettings, best: &SearchResult) -> Vec<SearchedVariable> {
     let (model, units) = (&file.model, file.units);
     let end = best.found.as_ref().map_or(&best.start, |j| &j.design);
     let objective = best.found.as_ref().map_or(0.0, |j| j.objective.abs());
@@ -881,9 +889,9 @@ fn variables(file: &ModelFile, asked: &Optimization, best: &Search) -> Vec<Searc
         let variable = &model.variables[v.0];
         let shown = |x: f64| units.from_si(variable.quantity, x);
         let bounds = variable.bounds.unwrap_or_default();
-        let binds = |(what, worth): &(Binding, f64)| match *what {
-            Binding::Lower(of) if of == k => Some(("lower", *worth)),
-            Binding::Upper(of) if of == k => Some(("upper", *worth)),
+        let binds = |(what, worth): &(ActiveConstraint, f64)| match *what {
+            ActiveConstraint::Lower(of) if of == k => Some(("lower", *worth)),
+            ActiveConstraint::Upper(of) if of == k => Some(("upper", *worth)),
             _ => None,
         };
         let told = |(_, worth): &(&str, f64)| worth * (bounds[1] - bounds[0]) > SLIGHT * objective;
@@ -913,7 +921,7 @@ pub(crate) fn moved(model: &Model, units: Units, design: &[f64]) -> Vec<MovedHar
         .collect()
 }
 
-fn iterations(model: &Model, units: Units, search: &Search) -> Vec<IterationFact> {
+fn iterations(model: &Model, units: Units, search: &SearchResult) -> Vec<IterationFact> {
     let fact = |i: &Iteration| {
         let variable = i.most.map(|(v, by)| (&model.variables[v.0], by));
         IterationFact {
@@ -930,7 +938,7 @@ fn iterations(model: &Model, units: Units, search: &Search) -> Vec<IterationFact
     search.iterations.iter().map(fact).collect()
 }
 
-fn start(k: usize, search: &Search) -> StartFact {
+fn start(k: usize, search: &SearchResult) -> StartFact {
     StartFact {
         start: k,
         status: status_word(search.status),

@@ -21,7 +21,7 @@ use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 use hardpoint::study::{Comparison, Difference, DriverRates};
 use hardpoint::{Analysis, Solution};
-use hardpoint_file::{Drawing, ModelFile, Units};
+use hardpoint_file::{Appearance, ModelFile, Units};
 
 use crate::course::{Course, RoundOff, settled};
 use crate::encoding::{packed, size_in_page};
@@ -396,7 +396,7 @@ fn headline(summary: &Summary) -> Vec<Fact> {
 
 struct Compose<'a> {
     model: &'a Model,
-    looks: &'a Drawing,
+    looks: &'a Appearance,
     units: Units,
     analysis: &'a Analysis<'a>,
     course: &'a Course,

@@ -3,9 +3,10 @@
 use std::io;
 
 use hardpoint::measure::Output;
-use hardpoint::model::{Dimension, Model, OutputSource, SweepMethod, SweepRange, Sweeping, VariableId};
+use hardpoint::model::{Dimension, Model, OutputSource, SweepMethod, SweepRange, SweepSettings, VariableId};
 use hardpoint::study::{
-    Cost, Distribution, Motions, SobolIndex, Sweep, SweptBlock, SweptMetric, rank_correlation, sobol_indices,
+    Distribution, Motions, SobolIndex, StudyCost, Sweep, SweptBlock, SweptMetric, rank_correlation,
+    sobol_indices,
 };
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
@@ -152,7 +153,7 @@ pub struct Swept<'a> {
     /// Per motion, its number among those of the model.
     pub numbers: &'a [usize],
     /// What was asked.
-    pub asked: &'a Sweeping,
+    pub asked: &'a SweepSettings,
     /// The motions.
     pub motions: &'a Motions<'a>,
     /// The designs and columns.
@@ -166,7 +167,7 @@ pub struct Tally {
     pub designs: usize,
     /// Designs that do not move to the end.
     pub failed: usize,
-    cost: Cost,
+    cost: StudyCost,
     failures: Vec<(String, usize, FailureFact)>,
 }
 
@@ -443,7 +444,7 @@ impl Swept<'_> {
         } else {
             ("complete", format!("all {} were solved", count(tally.designs, "design")))
         };
-        let Cost { designs, motions, steps } = tally.cost;
+        let StudyCost { designs, motions, steps } = tally.cost;
         SweepFacts {
             generator: crate::GENERATOR.into(),
             study: "sweep",

@@ -3,10 +3,10 @@
 use std::io::Write;
 
 use hardpoint::measure::Output;
-use hardpoint::model::{AllocationRule, Dimension, Limited, Model, OutputSource, Tolerancing};
+use hardpoint::model::{AllocationRule, Dimension, LimitTarget, Model, OutputSource, ToleranceSettings};
 use hardpoint::study::{
-    Allocation, Examination, Extreme, Impossible, MetricSpread, MonteCarlo, NONLINEAR, SampledMetric,
-    SpreadModel, Yield,
+    Allocation, AllocationError, Extreme, MetricSpread, MonteCarlo, NONLINEAR, SampledMetric, SpreadModel,
+    ToleranceResult, Yield,
 };
 use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{ModelFile, Units};
@@ -242,9 +242,9 @@ pub struct Studied<'a> {
     /// Per motion, its number among those of the model.
     pub numbers: &'a [usize],
     /// What was asked.
-    pub asked: &'a Tolerancing,
+    pub asked: &'a ToleranceSettings,
     /// What was found.
-    pub found: &'a Examination,
+    pub found: &'a ToleranceResult,
 }
 
 impl Studied<'_> {
@@ -923,7 +923,7 @@ fn limit(studied: &Studied<'_>, k: usize) -> YieldFact {
     let found = &studied.found.limits[k];
     let limit = &studied.asked.limits[found.limit];
     let of = &studied.found.metrics[found.spread];
-    assert_eq!(limit.of, Limited::Metric(of.metric));
+    assert_eq!(limit.of, LimitTarget::Metric(of.metric));
     let (units, dimension) = (studied.units(), studied.dimension(of));
     let shown = |x: f64| units.from_si(dimension, x);
     let worth = studied.found.allocation.as_ref().filter(|a| a.impossible.is_none()).map(|a| a.worth[k]);
@@ -942,7 +942,7 @@ fn limit(studied: &Studied<'_>, k: usize) -> YieldFact {
 }
 
 fn failures(studied: &Studied<'_>, sampled: &MonteCarlo) -> Vec<FailureFact> {
-    let fact = |f: &hardpoint::study::Failure| FailureFact {
+    let fact = |f: &hardpoint::study::FailureGroup| FailureFact {
         case: studied.case(f.motion),
         why: f.why.clone(),
         first: f.first,
@@ -958,12 +958,12 @@ fn allocation(studied: &Studied<'_>, found: &Allocation) -> AllocationFact {
     };
     let status = match found.impossible {
         None => "found".to_owned(),
-        Some(Impossible::NoCosts) => "none of the variables that can be followed has a cost".into(),
-        Some(Impossible::NoLimits) => "there is no limit to keep".into(),
-        Some(Impossible::AsDrawn(k)) => {
+        Some(AllocationError::NoCosts) => "none of the variables that can be followed has a cost".into(),
+        Some(AllocationError::NoLimits) => "there is no limit to keep".into(),
+        Some(AllocationError::AsDrawn(k)) => {
             format!("limit `{}` is not kept by the design as drawn: change the design first", name(k))
         }
-        Some(Impossible::Fixed(k)) => {
+        Some(AllocationError::Fixed(k)) => {
             format!("tolerances without a cost use up all room of limit `{}`: give them one", name(k))
         }
     };

@@ -1,7 +1,7 @@
 //! `verify.json`: exact sensitivities against re-solved designs.
 
 use hardpoint::Analysis;
-use hardpoint::study::{CheckOutcome, Scheme, StepError, Verification};
+use hardpoint::study::{CheckOutcome, DifferenceScheme, StepError, Verification};
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
@@ -110,9 +110,9 @@ impl Verdict {
     pub fn new(file: &ModelFile, analysis: &Analysis<'_>, verification: &Verification, seconds: f64) -> Self {
         let (model, units) = (analysis.model(), file.units);
         // One-sided differences fall with the step in any mechanism.
-        let parts_later =
-            verification.scheme == Scheme::Central && analysis.topology().redundant().next().is_some();
-        let check = |c: &hardpoint::study::VerifiedValue| {
+        let parts_later = verification.scheme == DifferenceScheme::Central
+            && analysis.topology().redundant().next().is_some();
+        let check = |c: &hardpoint::study::VariableCheck| {
             let variable = &model.variables[c.variable.0];
             let natural = model.natural_step(c.variable);
             let step = |s: &StepError| StepFact {
@@ -155,9 +155,9 @@ impl Verdict {
             passed: verification.passed(),
             interrupted: verification.interrupted,
             differences: match verification.scheme {
-                Scheme::Central => Differences::Central,
-                Scheme::Forward => Differences::Forward,
-                Scheme::Backward => Differences::Backward,
+                DifferenceScheme::Central => Differences::Central,
+                DifferenceScheme::Forward => Differences::Forward,
+                DifferenceScheme::Backward => Differences::Backward,
             },
             tolerance: verification.scheme.tolerance(),
             worst,

@@ -20,15 +20,15 @@ use hardpoint_report::page::ModelText;
 use serde::Serialize;
 
 pub use protocol::{
-    Checked, Coordinate, Failed, Grip, Message, Opened, OptimizeOffer, OptimizeRequest, Request, Scattered,
-    SearchGoal, SearchVariable, Searched, Setting, Solved, Studied, Text, Told, ToleranceOffer,
-    ToleranceRequest, Wanted,
+    CheckReply, Coordinate, DesignReply, DiagnosticMessage, ErrorReply, GoalChoice, MovableHardpoint,
+    OpenReply, OptimizeOffer, OptimizeRequest, ProgressReply, Request, SearchGoal, SearchVariable,
+    StudyReply, Text, ToleranceChoice, ToleranceOffer, ToleranceRequest, VariableChoice, VariableSetting,
 };
 
 use open::Open;
 
 /// Is told how far a study is, and may end it.
-pub type Tell<'t> = dyn FnMut(&Told) -> ControlFlow<()> + Send + 't;
+pub type ProgressListener<'t> = dyn FnMut(&ProgressReply) -> ControlFlow<()> + Send + 't;
 
 /// Answers what a page asks.
 #[derive(Debug, Default)]
@@ -37,7 +37,7 @@ pub struct Engine {
 }
 
 /// Why there is no answer.
-type Refusal = Vec<Message>;
+type Refusal = Vec<DiagnosticMessage>;
 
 impl Engine {
     /// The answer to a request, which is JSON.
@@ -49,22 +49,22 @@ impl Engine {
     /// });
     /// assert!(String::from_utf8_lossy(&answer).contains("HP0104"));
     /// ```
-    pub fn answer(&mut self, request: &[u8], tell: &mut Tell<'_>) -> Vec<u8> {
+    pub fn answer(&mut self, request: &[u8], tell: &mut ProgressListener<'_>) -> Vec<u8> {
         let answered = match serde_json::from_slice(request) {
             Ok(request) => self.answered(request, tell),
             Err(error) => {
                 let message = format!("the page asked what the engine does not understand: {error}");
-                Err(vec![Message::plain(
+                Err(vec![DiagnosticMessage::plain(
                     "HP0701",
                     message,
                     "make the page anew with this version of Hardpoint",
                 )])
             }
         };
-        answered.unwrap_or_else(|failed| json(&Failed { failed }))
+        answered.unwrap_or_else(|failed| json(&ErrorReply { failed }))
     }
 
-    fn answered(&mut self, request: Request, tell: &mut Tell<'_>) -> Result<Vec<u8>, Refusal> {
+    fn answered(&mut self, request: Request, tell: &mut ProgressListener<'_>) -> Result<Vec<u8>, Refusal> {
         match request {
             Request::Check { model } => Ok(json(&checked(&model))),
             Request::Open { model } => {
@@ -95,7 +95,8 @@ impl Engine {
     }
 
     fn opened(&mut self) -> Result<&mut Open, Refusal> {
-        let nothing = || vec![Message::plain("HP0702", "no model is open".into(), "open one first")];
+        let nothing =
+            || vec![DiagnosticMessage::plain("HP0702", "no model is open".into(), "open one first")];
         self.open.as_mut().ok_or_else(nothing)
     }
 }
@@ -113,7 +114,7 @@ fn read(model: &ModelText) -> Result<ModelFile, Refusal> {
 /// The model with all its cases.
 fn whole(model: &ModelText) -> Result<ModelFile, Refusal> {
     parse_with(&model.text, &model.file, &model.files)
-        .map_err(|all| all.list().iter().map(|d| Message::of(&model.text, d)).collect())
+        .map_err(|all| all.list().iter().map(|d| DiagnosticMessage::of(&model.text, d)).collect())
 }
 
 /// Of a file with cases, the first.
@@ -122,18 +123,19 @@ fn first_case(file: ModelFile) -> ModelFile {
 }
 
 /// What is wrong or worth knowing about a text: also what hinders its motion.
-fn checked(model: &ModelText) -> Checked {
+fn checked(model: &ModelText) -> CheckReply {
     let file = match read(model) {
         Ok(file) => file,
-        Err(messages) => return Checked { messages },
+        Err(messages) => return CheckReply { messages },
     };
-    let mut messages: Vec<Message> = file.remarks.iter().map(|d| Message::of(&model.text, d)).collect();
+    let mut messages: Vec<DiagnosticMessage> =
+        file.remarks.iter().map(|d| DiagnosticMessage::of(&model.text, d)).collect();
     if let Err(fault) = hardpoint::Analysis::new(&file.model) {
         let fault = hardpoint_report::diagnose::topology_fault(&file, &fault);
         assert_eq!(fault.severity, Severity::Error);
-        messages.push(Message::of(&model.text, &fault));
+        messages.push(DiagnosticMessage::of(&model.text, &fault));
     }
-    Checked { messages }
+    CheckReply { messages }
 }
 
 /// An answer without curves.
@@ -159,7 +161,7 @@ fn bytes(answer: &impl Serialize, numbers: &[f32]) -> Vec<u8> {
     bytes
 }
 
-impl Plain for Solved {
+impl Plain for DesignReply {
     fn lay_out(&mut self, numbers: &mut Vec<f32>) {
         if let Some(design) = &mut self.design {
             design.lay_out(numbers);

@@ -1,6 +1,8 @@
 //! What a study may choose, and what the text chooses.
 
-use hardpoint::model::{Dimension, Goal, Limit, Limited, Model, Optimization, Tolerancing, VariableId};
+use hardpoint::model::{
+    Dimension, Goal, Limit, LimitTarget, Model, OptimizationSettings, ToleranceSettings, VariableId,
+};
 use hardpoint::study::{Motions, metrics};
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, Units};
@@ -9,7 +11,8 @@ use hardpoint_report::figures::{number, order_unit, with_unit};
 
 use crate::Refusal;
 use crate::protocol::{
-    Message, OptimizeOffer, OptimizeRequest, Scattered, SearchGoal, SearchVariable, ToleranceOffer,
+    DiagnosticMessage, OptimizeOffer, OptimizeRequest, SearchGoal, SearchVariable, ToleranceChoice,
+    ToleranceOffer,
 };
 
 /// A search has so many starts and iterations where the text does not say.
@@ -68,15 +71,15 @@ fn values(file: &ModelFile) -> Vec<Option<f64>> {
 
 fn sentence(model: &Model, units: Units, limit: &Limit) -> String {
     let (dimension, of) = match limit.of {
-        Limited::Metric(k) => (model.metric_dimension(&model.metrics[k]), model.metrics[k].name.clone()),
-        Limited::Coordinate(h, axis) => {
+        LimitTarget::Metric(k) => (model.metric_dimension(&model.metrics[k]), model.metrics[k].name.clone()),
+        LimitTarget::Coordinate(h, axis) => {
             (Dimension::LENGTH, format!("{}.{}", model.hardpoints[h.0].name, ["x", "y", "z"][axis]))
         }
-        Limited::Distance(a, b) => {
+        LimitTarget::Distance(a, b) => {
             let [a, b] = [a, b].map(|h| &model.hardpoints[h.0].name);
             (Dimension::LENGTH, format!("distance of {a} and {b}"))
         }
-        Limited::Length(j) => (Dimension::LENGTH, format!("length of {}", model.joints[j.0].name)),
+        LimitTarget::Length(j) => (Dimension::LENGTH, format!("length of {}", model.joints[j.0].name)),
     };
     let unit = order_unit(units, dimension, 0);
     let shown = |x: f64| with_unit(units.from_si(dimension, x), &unit);
@@ -91,12 +94,19 @@ fn sentence(model: &Model, units: Units, limit: &Limit) -> String {
 }
 
 /// What is asked, on top of what the text says; the model has the bounds that are asked for.
-pub(crate) fn asked(file: &mut ModelFile, request: &OptimizeRequest) -> Result<Optimization, Refusal> {
+pub(crate) fn asked(
+    file: &mut ModelFile,
+    request: &OptimizeRequest,
+) -> Result<OptimizationSettings, Refusal> {
     let units = file.units;
     let unknown = |what: &str, name: &str| {
-        vec![Message::plain("HP0704", format!("the model has no {what} `{name}`"), "open the pane again")]
+        vec![DiagnosticMessage::plain(
+            "HP0704",
+            format!("the model has no {what} `{name}`"),
+            "open the pane again",
+        )]
     };
-    let mut asked = file.model.optimization.clone().unwrap_or(Optimization {
+    let mut asked = file.model.optimization.clone().unwrap_or(OptimizationSettings {
         variables: Vec::new(),
         goals: Vec::new(),
         limits: Vec::new(),
@@ -128,7 +138,7 @@ pub(crate) fn asked(file: &mut ModelFile, request: &OptimizeRequest) -> Result<O
     }
     if asked.variables.is_empty() || asked.goals.is_empty() {
         let message = "a search needs a variable that may change and a goal".into();
-        return Err(vec![Message::plain(
+        return Err(vec![DiagnosticMessage::plain(
             "HP0602",
             message,
             "choose them in the pane, or add `[optimize.goals]` and `bounds`",
@@ -142,10 +152,10 @@ pub(crate) fn asked(file: &mut ModelFile, request: &OptimizeRequest) -> Result<O
 /// What a study of tolerances may choose.
 pub(crate) fn tolerance(file: &ModelFile) -> Result<ToleranceOffer, Refusal> {
     let (model, units) = (&file.model, file.units);
-    let asked = model.tolerancing.clone().or_else(|| Tolerancing::of_variables(model));
+    let asked = model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(model));
     let scattered = |t: &hardpoint::model::Tolerance| {
         let first = &model.variables[t.variables[0].0];
-        Scattered {
+        ToleranceChoice {
             name: t.name.clone(),
             tolerance: units.from_si(first.quantity, t.reach),
             unit: variable_unit(model, units, first),
@@ -162,8 +172,8 @@ pub(crate) fn tolerance(file: &ModelFile) -> Result<ToleranceOffer, Refusal> {
         None => ToleranceOffer {
             tolerances: Vec::new(),
             metrics: Vec::new(),
-            samples: Tolerancing::SAMPLES,
-            seed: Tolerancing::SEED,
+            samples: ToleranceSettings::SAMPLES,
+            seed: ToleranceSettings::SEED,
         },
     })
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use hardpoint::model::{HardpointId, Model};
 use hardpoint::space::Quat;
 use hardpoint::study::{add_coordinates, coordinate, variable_named};
-use hardpoint::topology::TopologyFault;
+use hardpoint::topology::TopologyError;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
@@ -14,7 +14,9 @@ use hardpoint_report::page::{Design, Detail, ModelText};
 use hardpoint_report::payload::{self, Changed, Request};
 use hardpoint_report::summary::Summary;
 
-use crate::protocol::{Coordinate, Grip, Message, Opened, Setting, Solved};
+use crate::protocol::{
+    Coordinate, DesignReply, DiagnosticMessage, MovableHardpoint, OpenReply, VariableSetting,
+};
 use crate::{Refusal, first_case, read, whole};
 
 /// Where a design cannot be reached, so many times the way to it is halved: the last step is a thousandth of it.
@@ -40,7 +42,7 @@ pub(crate) struct Open {
 
 impl Open {
     /// Opens a model, and says what can be done with it.
-    pub fn new(model: &ModelText) -> Result<(Self, Opened), Refusal> {
+    pub fn new(model: &ModelText) -> Result<(Self, OpenReply), Refusal> {
         let mut whole = whole(model)?;
         add_coordinates(&mut whole.model);
         let file = match whole.model.cases.iter().position(|c| Some(&c.name) == model.case.as_ref()) {
@@ -53,7 +55,7 @@ impl Open {
         bare.model.variables.clear();
         let stop = solution.stop.as_ref();
         let stop = stop.map(|stop| diagnose::stop(&bare, stop, solution.motion.len(), None));
-        let stop = stop.map(|d| Message::of(&model.text, &d));
+        let stop = stop.map(|d| DiagnosticMessage::of(&model.text, &d));
         if let Some(stop) = stop.as_ref().filter(|_| solution.motion.is_empty()) {
             return Err(vec![stop.clone()]);
         }
@@ -69,7 +71,7 @@ impl Open {
                 body_differences: true,
             })
         });
-        let opened = Opened {
+        let opened = OpenReply {
             cases: whole.model.cases.iter().map(|case| case.name.clone()).collect(),
             grips: grips(&file),
             frames: file
@@ -84,7 +86,11 @@ impl Open {
     }
 
     /// The design with these changes, or as near to it as can be on the way from a solved one.
-    pub fn design(&mut self, change: &[Setting], from: Option<&[Setting]>) -> Result<Solved, Refusal> {
+    pub fn design(
+        &mut self,
+        change: &[VariableSetting],
+        from: Option<&[VariableSetting]>,
+    ) -> Result<DesignReply, Refusal> {
         let wanted = self.values(change)?;
         let start = from.map(|from| self.values(from)).transpose()?;
         let (mut solution, mut why) = self.solved(&wanted);
@@ -118,11 +124,11 @@ impl Open {
         }
         let shown = self.shown(&solution, &design);
         self.memory = solution;
-        Ok(Solved { part, design: shown, why })
+        Ok(DesignReply { part, design: shown, why })
     }
 
     /// Another model's motion beside this one's, where the two have the same bodies and measures.
-    pub fn beside(&mut self, model: &ModelText) -> Result<Solved, Refusal> {
+    pub fn beside(&mut self, model: &ModelText) -> Result<DesignReply, Refusal> {
         let other = read(model)?;
         let same = |a: &Model, b: &Model| {
             let bodies = |m: &Model| m.bodies.iter().map(|b| b.name.clone()).collect::<Vec<_>>();
@@ -138,36 +144,36 @@ impl Open {
         if !same(&other.model, &self.file.model) {
             let help = "compare designs of the same mechanism over the same output times";
             let message = "the two models have different bodies, measures, metrics or output times".into();
-            return Err(vec![Message::plain("HP0703", message, help)]);
+            return Err(vec![DiagnosticMessage::plain("HP0703", message, help)]);
         }
         let analysis = planned(&other, model)?;
         let solution = analysis.solve(Run::new().without_sensitivities());
         let stop = solution.stop.as_ref();
         let why = stop.map(|stop| diagnose::stop(&other, stop, solution.motion.len(), None));
-        let why = why.map(|d| Message::of(&model.text, &d));
-        Ok(Solved { part: 1.0, design: self.shown(&solution, &[]), why })
+        let why = why.map(|d| DiagnosticMessage::of(&model.text, &d));
+        Ok(DesignReply { part: 1.0, design: self.shown(&solution, &[]), why })
     }
 
     /// The text with these changes.
-    pub fn text(&self, change: &[Setting]) -> Result<String, Refusal> {
+    pub fn text(&self, change: &[VariableSetting]) -> Result<String, Refusal> {
         let values = self.values(change)?;
         self.whole
             .edit(&values)
-            .map_err(|all| all.list().iter().map(|d| Message::of(self.whole.text(), d)).collect())
+            .map_err(|all| all.list().iter().map(|d| DiagnosticMessage::of(self.whole.text(), d)).collect())
     }
 
     /// The values of all variables, SI.
-    fn values(&self, change: &[Setting]) -> Result<Vec<f64>, Refusal> {
+    fn values(&self, change: &[VariableSetting]) -> Result<Vec<f64>, Refusal> {
         let model = &self.file.model;
         let mut values = vec![0.0; model.variables.len()];
-        for Setting { name, by } in change {
+        for VariableSetting { name, by } in change {
             let Some(v) = model.variable(name).or_else(|| variable_named(&mut model.clone(), name)) else {
                 let message = format!("`{name}` is no design variable or hardpoint coordinate of the model");
-                return Err(vec![Message::plain("HP0704", message, "open the model again")]);
+                return Err(vec![DiagnosticMessage::plain("HP0704", message, "open the model again")]);
             };
             let Some(value) = values.get_mut(v.0) else {
                 let message = format!("`{name}` is a joint's tilt, which the page does not vary");
-                return Err(vec![Message::plain(
+                return Err(vec![DiagnosticMessage::plain(
                     "HP0704",
                     message,
                     "add it to `[design]` in the model's text",
@@ -179,13 +185,13 @@ impl Open {
     }
 
     /// A design's motion, and why it ends before that of the design as it stands does.
-    fn solved(&mut self, values: &[f64]) -> (Solution, Option<Message>) {
+    fn solved(&mut self, values: &[f64]) -> (Solution, Option<DiagnosticMessage>) {
         let memory = std::mem::take(&mut self.memory);
         let run = Run::new().at(values).without_sensitivities().reusing(memory);
         let solution = self.analysis.solve(run);
         let stop = solution.stop.as_ref().filter(|_| solution.motion.len() < self.today.steps);
         let stop = stop.map(|stop| diagnose::stop_of_changed(&self.bare, stop, solution.motion.len()));
-        let stop = stop.map(|d| Message::of(self.whole.text(), &d));
+        let stop = stop.map(|d| DiagnosticMessage::of(self.whole.text(), &d));
         (solution, stop)
     }
 
@@ -209,13 +215,13 @@ impl Open {
 
 /// The plan of a model that outlives the call.
 fn planned(file: &ModelFile, model: &ModelText) -> Result<Analysis<'static>, Refusal> {
-    Analysis::new(Arc::new(file.model.clone())).map_err(|fault: TopologyFault| {
-        vec![Message::of(&model.text, &diagnose::topology_fault(file, &fault))]
+    Analysis::new(Arc::new(file.model.clone())).map_err(|fault: TopologyError| {
+        vec![DiagnosticMessage::of(&model.text, &diagnose::topology_fault(file, &fault))]
     })
 }
 
 /// The hardpoints that have a name, with what their coordinates are varied by.
-fn grips(file: &ModelFile) -> Vec<Grip> {
+fn grips(file: &ModelFile) -> Vec<MovableHardpoint> {
     let (model, units) = (&file.model, file.units);
     let grip = |(h, hardpoint): (usize, &hardpoint::model::Hardpoint)| {
         let of = |axis: usize| -> Option<Coordinate> {
@@ -226,7 +232,7 @@ fn grips(file: &ModelFile) -> Vec<Grip> {
         };
         let place =
             hardpoint.position.to_array().map(|x| units.from_si(hardpoint::joint::Quantity::Length, x));
-        Some(Grip { name: hardpoint.name.clone(), place, coordinates: [of(0)?, of(1)?, of(2)?] })
+        Some(MovableHardpoint { name: hardpoint.name.clone(), place, coordinates: [of(0)?, of(1)?, of(2)?] })
     };
     model.hardpoints.iter().enumerate().filter(|(_, h)| !h.unnamed).filter_map(grip).collect()
 }

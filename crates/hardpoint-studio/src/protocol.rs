@@ -12,30 +12,30 @@ use ts_rs::TS;
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "ask", rename_all = "snake_case")]
 pub enum Request {
-    /// Whether a text is a model. Answered by [`Checked`]; nothing that is open changes.
+    /// Whether a text is a model. Answered by [`CheckReply`]; nothing that is open changes.
     Check {
         /// The text.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
     },
-    /// To solve the designs of this model from now on. Answered by [`Opened`].
+    /// To solve the designs of this model from now on. Answered by [`OpenReply`].
     Open {
         /// The model.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
     },
-    /// A design of the open model. Answered by [`Solved`].
+    /// A design of the open model. Answered by [`DesignReply`].
     Design {
         /// What is changed.
-        change: Vec<Setting>,
+        change: Vec<VariableSetting>,
         /// A design that is solved already: where the changed one cannot be, what is given is as far on the way from this one to it
         /// as can be.
-        from: Option<Vec<Setting>>,
+        from: Option<Vec<VariableSetting>>,
     },
     /// The text of the open model with a changed design. Answered by [`Text`].
     Text {
         /// What is changed.
-        change: Vec<Setting>,
+        change: Vec<VariableSetting>,
     },
     /// Everything that the page of a model shows, which need not be open. Answered by a payload.
     Page {
@@ -43,13 +43,13 @@ pub enum Request {
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
     },
-    /// Another model's motion beside that of the open one. Answered by [`Solved`].
+    /// Another model's motion beside that of the open one. Answered by [`DesignReply`].
     Beside {
         /// The other model.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
     },
-    /// A search for the design that serves the goals of a model best. Answered by [`Studied`].
+    /// A search for the design that serves the goals of a model best. Answered by [`StudyReply`].
     Optimize {
         /// The model.
         #[cfg_attr(test, ts(type = "ModelText"))]
@@ -69,7 +69,7 @@ pub enum Request {
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
     },
-    /// What the tolerances of a model come to. Answered by [`Studied`].
+    /// What the tolerances of a model come to. Answered by [`StudyReply`].
     Tolerance {
         /// The model.
         #[cfg_attr(test, ts(type = "ModelText"))]
@@ -84,9 +84,9 @@ pub enum Request {
 #[cfg_attr(test, derive(TS))]
 pub struct OptimizeRequest {
     /// What may change, and within what.
-    pub variables: Vec<Searched>,
+    pub variables: Vec<VariableChoice>,
     /// What is to be small.
-    pub goals: Vec<Wanted>,
+    pub goals: Vec<GoalChoice>,
     /// From how many designs it starts.
     pub starts: usize,
     /// After so many iterations a search ends.
@@ -96,7 +96,7 @@ pub struct OptimizeRequest {
 /// A variable that is searched over.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Searched {
+pub struct VariableChoice {
     /// Its name.
     pub name: String,
     /// Lowest and highest change, or value of a parameter.
@@ -106,7 +106,7 @@ pub struct Searched {
 /// A metric that is made small.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Wanted {
+pub struct GoalChoice {
     /// Its name.
     pub metric: String,
     /// How much its unit counts.
@@ -170,7 +170,7 @@ pub struct SearchGoal {
 #[cfg_attr(test, derive(TS))]
 pub struct ToleranceOffer {
     /// What may be off, by how much.
-    pub tolerances: Vec<Scattered>,
+    pub tolerances: Vec<ToleranceChoice>,
     /// What is looked at.
     pub metrics: Vec<String>,
     /// So many designs are drawn.
@@ -183,7 +183,7 @@ pub struct ToleranceOffer {
 /// Something that may be off.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Scattered {
+pub struct ToleranceChoice {
     /// Its name.
     pub name: String,
     /// By so much either way.
@@ -207,7 +207,7 @@ pub struct ToleranceRequest {
 /// A variable and its change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Setting {
+pub struct VariableSetting {
     /// A design variable of the model, or a coordinate of a hardpoint like `tie_rod_outer.z`.
     pub name: String,
     /// By how much it is changed, in the model's unit.
@@ -217,7 +217,7 @@ pub struct Setting {
 /// A diagnostic of the text, in the words of the command line.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Message {
+pub struct DiagnosticMessage {
     /// `error`, `warning` or `note`.
     #[cfg_attr(test, ts(type = "'error' | 'warning' | 'note'"))]
     pub severity: String,
@@ -239,7 +239,7 @@ pub struct Message {
     pub help: Option<String>,
 }
 
-impl Message {
+impl DiagnosticMessage {
     /// A diagnostic of this text.
     pub(crate) fn of(text: &str, d: &Diagnostic) -> Self {
         let length = d.span.as_ref().and_then(|span| text.get(span.clone())).map(|part| part.chars().count());
@@ -281,29 +281,29 @@ impl Message {
 /// What is wrong or worth knowing about a text.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Checked {
+pub struct CheckReply {
     /// Errors, warnings and notes, in the order of the text.
-    pub messages: Vec<Message>,
+    pub messages: Vec<DiagnosticMessage>,
 }
 
 /// What can be done with a model that was opened.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Opened {
+pub struct OpenReply {
     /// The cases of the file, of which one is open.
     pub cases: Vec<String>,
     /// The hardpoints that can be taken hold of.
-    pub grips: Vec<Grip>,
+    pub grips: Vec<MovableHardpoint>,
     /// How the frames of the bodies are turned in the drawing, quaternions w x y z, ground first.
     pub frames: Vec<[f64; 4]>,
     /// Why its motion ends early, where it does.
-    pub stop: Option<Message>,
+    pub stop: Option<DiagnosticMessage>,
 }
 
 /// A hardpoint that can be moved.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Grip {
+pub struct MovableHardpoint {
     /// Its name.
     pub name: String,
     /// Where it is in the drawing, in the model's unit.
@@ -327,14 +327,14 @@ pub struct Coordinate {
 /// A design that was solved.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Solved {
+pub struct DesignReply {
     /// The part of the way to the design that was asked for, 0 to 1: 1 where it is that one.
     pub part: f64,
     /// The design; `None` where nothing of its motion could be solved.
     #[cfg_attr(test, ts(type = "Design | null"))]
     pub design: Option<Design>,
     /// Why it is not the one asked for, or why its motion ends early.
-    pub why: Option<Message>,
+    pub why: Option<DiagnosticMessage>,
 }
 
 /// A text.
@@ -348,14 +348,14 @@ pub struct Text {
 /// What a study came to.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Studied {
+pub struct StudyReply {
     /// How it ended, in a sentence.
     pub message: String,
     /// What was found.
     #[cfg_attr(test, ts(type = "Array<Table>"))]
     pub tables: Vec<Table>,
     /// The design found, where one was searched for.
-    pub change: Option<Vec<Setting>>,
+    pub change: Option<Vec<VariableSetting>>,
     /// The model's text with it.
     pub text: Option<String>,
 }
@@ -363,15 +363,15 @@ pub struct Studied {
 /// Why there is no answer.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Failed {
+pub struct ErrorReply {
     /// Never none.
-    pub failed: Vec<Message>,
+    pub failed: Vec<DiagnosticMessage>,
 }
 
 /// How far a study is.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Told {
+pub struct ProgressReply {
     /// So much is done ...
     pub done: usize,
     /// ... of so much, where that is known.
@@ -379,7 +379,7 @@ pub struct Told {
     /// What has happened, in a line.
     pub line: String,
     /// The design that the study stands at.
-    pub change: Option<Vec<Setting>>,
+    pub change: Option<Vec<VariableSetting>>,
 }
 
 #[cfg(test)]
@@ -400,7 +400,7 @@ mod tests {
                 expected += &format!("export {}\n", <$name as TS>::decl(&config)).replace(" \n", "\n");
             )* };
         }
-        declare!(Request OptimizeRequest Searched Wanted OptimizeOffer SearchVariable SearchGoal ToleranceOffer Scattered ToleranceRequest Setting Message Checked Opened Grip Coordinate Solved Text Studied Failed Told);
+        declare!(Request OptimizeRequest VariableChoice GoalChoice OptimizeOffer SearchVariable SearchGoal ToleranceOffer ToleranceChoice ToleranceRequest VariableSetting DiagnosticMessage CheckReply OpenReply MovableHardpoint Coordinate DesignReply Text StudyReply ErrorReply ProgressReply);
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/engine/protocol.ts");
         if fs::read_to_string(&path).ok().as_deref() != Some(&expected) {
             fs::write(&path, expected).unwrap();

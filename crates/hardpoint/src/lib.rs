@@ -74,7 +74,7 @@ pub mod space;
 pub mod study;
 pub mod topology;
 
-pub use run::{Analysis, Footprint, Keep, Kept, Progress, Run, Sink, Solution, Streamed};
+pub use run::{Analysis, Footprint, Progress, Run, SampledResults, Sampling, Sink, Solution, StreamSummary};
 
 /// The example of the readme compiles and runs.
 #[cfg(doctest)]

@@ -12,7 +12,7 @@
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
-use hardpoint_studio::{Engine, Told};
+use hardpoint_studio::{Engine, ProgressReply};
 
 thread_local! {
     static ENGINE: RefCell<Engine> = RefCell::default();
@@ -46,7 +46,7 @@ pub extern "C" fn answer() -> usize {
         panicked(what.as_ptr(), what.len());
     }));
     let request = REQUEST.take();
-    let mut on = |told: &Told| {
+    let mut on = |told: &ProgressReply| {
         if let Ok(json) = serde_json::to_vec(told) {
             tell(json.as_ptr(), json.len());
         }

@@ -1,11 +1,11 @@
-import type { Message, OptimizeOffer, OptimizeRequest, Setting, ToleranceOffer, ToleranceRequest } from './protocol'
+import type { DiagnosticMessage, OptimizeOffer, OptimizeRequest, VariableSetting, ToleranceOffer, ToleranceRequest } from './protocol'
 import type { Table } from '../payload'
 
-export type { Message as Diagnostic, OptimizeOffer, OptimizeRequest, SearchGoal, SearchVariable, ToleranceOffer, ToleranceRequest } from './protocol'
+export type { DiagnosticMessage as Diagnostic, OptimizeOffer, OptimizeRequest, SearchGoal, SearchVariable, ToleranceOffer, ToleranceRequest } from './protocol'
 
 /** Reads and checks a text. */
 export interface Checker {
-  check(text: string): Promise<Message[]>
+  check(text: string): Promise<DiagnosticMessage[]>
 }
 
 /** A study under way in a worker of its own. */
@@ -22,7 +22,7 @@ export interface Running<T> {
 export interface StudyResult {
   tables: Table[]
   /** The design found, as changes from the text that was studied; none where nothing better was found. */
-  change: Setting[] | null
+  change: VariableSetting[] | null
   /** The text with the design found, its comments kept. */
   text: string | null
   /** How it ended, in a sentence. */

@@ -1,4 +1,4 @@
-import type { Request, Told } from './protocol'
+import type { Request, ProgressReply } from './protocol'
 
 /** What the engine's binary offers: see `web/engine`. */
 interface Exports {
@@ -12,7 +12,7 @@ interface Exports {
 export type Ask = (request: Request) => ArrayBuffer
 
 /** An engine of its own; `tell` hears how far a study is. */
-export async function instantiate(module: WebAssembly.Module, tell: (told: Told) => void): Promise<Ask> {
+export async function instantiate(module: WebAssembly.Module, tell: (told: ProgressReply) => void): Promise<Ask> {
   let why = ''
   const text = (place: number, length: number) => new TextDecoder().decode(new Uint8Array(exports.memory.buffer, place, length))
   const page = {

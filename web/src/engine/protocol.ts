@@ -17,16 +17,16 @@ model: ModelText, } | { "ask": "design",
 /**
  * What is changed.
  */
-change: Array<Setting>,
+change: Array<VariableSetting>,
 /**
  * A design that is solved already: where the changed one cannot be, what is given is as far on the way from this one to it
  * as can be.
  */
-from: Array<Setting> | null, } | { "ask": "text",
+from: Array<VariableSetting> | null, } | { "ask": "text",
 /**
  * What is changed.
  */
-change: Array<Setting>, } | { "ask": "page",
+change: Array<VariableSetting>, } | { "ask": "page",
 /**
  * The model.
  */
@@ -67,11 +67,11 @@ export type OptimizeRequest = {
 /**
  * What may change, and within what.
  */
-variables: Array<Searched>,
+variables: Array<VariableChoice>,
 /**
  * What is to be small.
  */
-goals: Array<Wanted>,
+goals: Array<GoalChoice>,
 /**
  * From how many designs it starts.
  */
@@ -84,7 +84,7 @@ iterations: number, };
 /**
  * A variable that is searched over.
  */
-export type Searched = {
+export type VariableChoice = {
 /**
  * Its name.
  */
@@ -97,7 +97,7 @@ bounds: [number, number], };
 /**
  * A metric that is made small.
  */
-export type Wanted = {
+export type GoalChoice = {
 /**
  * Its name.
  */
@@ -197,7 +197,7 @@ export type ToleranceOffer = {
 /**
  * What may be off, by how much.
  */
-tolerances: Array<Scattered>,
+tolerances: Array<ToleranceChoice>,
 /**
  * What is looked at.
  */
@@ -214,7 +214,7 @@ seed: number, };
 /**
  * Something that may be off.
  */
-export type Scattered = {
+export type ToleranceChoice = {
 /**
  * Its name.
  */
@@ -248,7 +248,7 @@ seed: number, };
 /**
  * A variable and its change.
  */
-export type Setting = {
+export type VariableSetting = {
 /**
  * A design variable of the model, or a coordinate of a hardpoint like `tie_rod_outer.z`.
  */
@@ -261,7 +261,7 @@ by: number, };
 /**
  * A diagnostic of the text, in the words of the command line.
  */
-export type Message = {
+export type DiagnosticMessage = {
 /**
  * `error`, `warning` or `note`.
  */
@@ -302,16 +302,16 @@ help: string | null, };
 /**
  * What is wrong or worth knowing about a text.
  */
-export type Checked = {
+export type CheckReply = {
 /**
  * Errors, warnings and notes, in the order of the text.
  */
-messages: Array<Message>, };
+messages: Array<DiagnosticMessage>, };
 
 /**
  * What can be done with a model that was opened.
  */
-export type Opened = {
+export type OpenReply = {
 /**
  * The cases of the file, of which one is open.
  */
@@ -319,7 +319,7 @@ cases: Array<string>,
 /**
  * The hardpoints that can be taken hold of.
  */
-grips: Array<Grip>,
+grips: Array<MovableHardpoint>,
 /**
  * How the frames of the bodies are turned in the drawing, quaternions w x y z, ground first.
  */
@@ -327,12 +327,12 @@ frames: Array<[number, number, number, number]>,
 /**
  * Why its motion ends early, where it does.
  */
-stop: Message | null, };
+stop: DiagnosticMessage | null, };
 
 /**
  * A hardpoint that can be moved.
  */
-export type Grip = {
+export type MovableHardpoint = {
 /**
  * Its name.
  */
@@ -366,7 +366,7 @@ bounds: [number, number] | null, };
 /**
  * A design that was solved.
  */
-export type Solved = {
+export type DesignReply = {
 /**
  * The part of the way to the design that was asked for, 0 to 1: 1 where it is that one.
  */
@@ -378,7 +378,7 @@ design: Design | null,
 /**
  * Why it is not the one asked for, or why its motion ends early.
  */
-why: Message | null, };
+why: DiagnosticMessage | null, };
 
 /**
  * A text.
@@ -392,7 +392,7 @@ text: string, };
 /**
  * What a study came to.
  */
-export type Studied = {
+export type StudyReply = {
 /**
  * How it ended, in a sentence.
  */
@@ -404,7 +404,7 @@ tables: Array<Table>,
 /**
  * The design found, where one was searched for.
  */
-change: Array<Setting> | null,
+change: Array<VariableSetting> | null,
 /**
  * The model's text with it.
  */
@@ -413,16 +413,16 @@ text: string | null, };
 /**
  * Why there is no answer.
  */
-export type Failed = {
+export type ErrorReply = {
 /**
  * Never none.
  */
-failed: Array<Message>, };
+failed: Array<DiagnosticMessage>, };
 
 /**
  * How far a study is.
  */
-export type Told = {
+export type ProgressReply = {
 /**
  * So much is done ...
  */
@@ -438,4 +438,4 @@ line: string,
 /**
  * The design that the study stands at.
  */
-change: Array<Setting> | null, };
+change: Array<VariableSetting> | null, };

@@ -1,13 +1,13 @@
 import { inflatedOf85 } from '../unpack'
 import { type Answer, answer } from './answer'
-import type { Request, Told } from './protocol'
+import type { Request, ProgressReply } from './protocol'
 import type { Order, Report } from './worker'
 import EngineWorker from './worker?worker&inline'
 
 interface Waiting {
   done: (block: ArrayBuffer) => void
   failed: (error: Error) => void
-  tell?: (told: Told) => void
+  tell?: (told: ProgressReply) => void
 }
 
 /** An engine in a worker of its own. What is asked is answered in order. */
@@ -18,7 +18,7 @@ export class Solver {
 
   constructor(private readonly module: WebAssembly.Module) {}
 
-  async ask<T>(request: Request, tell?: (told: Told) => void): Promise<Answer<T>> {
+  async ask<T>(request: Request, tell?: (told: ProgressReply) => void): Promise<Answer<T>> {
     const worker = (this.#worker ??= this.#start())
     const number = ++this.#number
     const block = await new Promise<ArrayBuffer>((done, failed) => {

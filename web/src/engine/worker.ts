@@ -1,10 +1,10 @@
 import { type Ask, instantiate } from './instance'
-import type { Request, Told } from './protocol'
+import type { Request, ProgressReply } from './protocol'
 
 /** To the worker: the binary first, then requests by number. */
 export type Order = { module: WebAssembly.Module } | { number: number; request: Request }
 /** From it: what a request came to, or how far it is. */
-export type Report = { number: number } & ({ block: ArrayBuffer } | { told: Told } | { broken: string })
+export type Report = { number: number } & ({ block: ArrayBuffer } | { told: ProgressReply } | { broken: string })
 
 let engine: Promise<Ask> | undefined
 let number = 0

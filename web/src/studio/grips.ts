@@ -1,7 +1,7 @@
 import './grips.css'
 import { Quaternion, Vector3 } from 'three'
 import { el, prose, svg } from '../dom'
-import type { Grip, Opened } from '../engine/protocol'
+import type { MovableHardpoint, OpenReply } from '../engine/protocol'
 import { poseAt } from '../scene/poses'
 import type { View } from '../scene/view'
 import type { State } from '../state'
@@ -15,7 +15,7 @@ const NUDGE = 1e-3
 const GUIDE = 0.25
 
 interface Shown {
-  grip: Grip
+  grip: MovableHardpoint
   body: number
   point: number
   button: HTMLButtonElement
@@ -43,7 +43,7 @@ export class Grips {
   #hold?: Hold
   #way: Way = 'free'
   #snap = 0
-  #mirror?: { axis: number; partner: Map<string, Grip>; on: boolean }
+  #mirror?: { axis: number; partner: Map<string, MovableHardpoint>; on: boolean }
   #fields: HTMLInputElement[] = []
   /** Whether a field is being written in. */
   #typing = false
@@ -53,7 +53,7 @@ export class Grips {
   constructor(
     private readonly view: View,
     private readonly state: State,
-    private readonly opened: Opened,
+    private readonly opened: OpenReply,
     /** Called when a hand lets go. */
     private readonly rest: () => void,
   ) {
@@ -94,7 +94,7 @@ export class Grips {
   }
 
   /** Where a hardpoint is drawn: of the bodies that it is fixed in, ground first. */
-  #place(grip: Grip): Shown[] {
+  #place(grip: MovableHardpoint): Shown[] {
     const { bodies } = this.state.report
     for (const [body, { labels }] of bodies.entries()) {
       const point = labels.findIndex((label) => label.split(', ').includes(grip.name))

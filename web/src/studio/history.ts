@@ -1,11 +1,11 @@
-import type { Setting } from '../engine/protocol'
+import type { VariableSetting } from '../engine/protocol'
 
 /** A design, as it can be come back to. */
 export interface Step {
   /** The model's text that the changes count from. */
   text: string
   /** Of design variables and coordinates of hardpoints, by name. */
-  settings: readonly Setting[]
+  settings: readonly VariableSetting[]
   /** What made it of the one before: `tie_rod_outer_z`, `typed`, `optimised`. */
   label: string
 }

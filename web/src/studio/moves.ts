@@ -1,5 +1,5 @@
 import { Quaternion, type Ray, Vector3 } from 'three'
-import type { Grip, Setting } from '../engine/protocol'
+import type { MovableHardpoint, VariableSetting } from '../engine/protocol'
 
 /** Along what a hardpoint is moved: in the plane of the picture, along an axis of the model, or in a plane of two of them. */
 export type Way = 'free' | 'x' | 'y' | 'z' | 'xy' | 'yz' | 'zx'
@@ -50,14 +50,14 @@ export function snapped(value: number, snap: number): number {
 }
 
 /** The place of a hardpoint in the drawing of the design that has these changes. */
-export function placeOf(grip: Grip, settings: readonly Setting[]): Vector3 {
+export function placeOf(grip: MovableHardpoint, settings: readonly VariableSetting[]): Vector3 {
   const by = new Map(settings.map(({ name, by }) => [name, by]))
   const [x, y, z] = grip.coordinates.map(({ variable, sign }, k) => grip.place[k] + sign * (by.get(variable) ?? 0))
   return new Vector3(x, y, z)
 }
 
 /** What puts a hardpoint at a place of the drawing, within the bounds of its variables, and the variable whose bound is reached. */
-export function settingsFor(grip: Grip, place: Vector3): { settings: Setting[]; bound?: string } {
+export function settingsFor(grip: MovableHardpoint, place: Vector3): { settings: VariableSetting[]; bound?: string } {
   let bound: string | undefined
   const settings = grip.coordinates.map(({ variable, sign, bounds }, k) => {
     const wanted = (place.getComponent(k) - grip.place[k]) / sign
@@ -69,11 +69,11 @@ export function settingsFor(grip: Grip, place: Vector3): { settings: Setting[]; 
 }
 
 /** The axis across which hardpoints have mirror images, and whose image each is, by name; nothing where hardly any has one. */
-export function mirrors(grips: readonly Grip[]): { axis: number; partner: Map<string, Grip> } | undefined {
+export function mirrors(grips: readonly MovableHardpoint[]): { axis: number; partner: Map<string, MovableHardpoint> } | undefined {
   const size = Math.max(1e-9, ...grips.flatMap(({ place }) => place.map(Math.abs)))
   const near = MIRRORED * size
   const found = AXES.map((_, axis) => {
-    const partner = new Map<string, Grip>()
+    const partner = new Map<string, MovableHardpoint>()
     for (const grip of grips) {
       if (Math.abs(grip.place[axis]) <= near) continue
       const image = grip.place.map((x, k) => (k === axis ? -x : x))

@@ -3,7 +3,7 @@ import { el } from '../dom'
 import type { Editor } from '../editor/editor'
 import { openEditor } from '../editor/open'
 import type { StudyResult } from '../engine/engine'
-import type { Checked, Opened, Setting, Solved, Text } from '../engine/protocol'
+import type { CheckReply, OpenReply, VariableSetting, DesignReply, Text } from '../engine/protocol'
 import { type Answer, Refused } from '../engine/answer'
 import { Solver } from '../engine/solver'
 import { save } from '../export/save'
@@ -43,9 +43,9 @@ export class Studio {
   readonly #listeners: (() => void)[] = []
   #editor?: Editor
   #grips?: Grips
-  #opened?: Opened
-  #accepted: Setting[] = []
-  #wanted?: Setting[]
+  #opened?: OpenReply
+  #accepted: VariableSetting[] = []
+  #wanted?: VariableSetting[]
   #busy = false
   #resting?: ReturnType<typeof setTimeout>
   #hand = 0
@@ -147,7 +147,7 @@ export class Studio {
     const version = ++this.#version
     const { state } = this
     try {
-      const { json } = await this.#drags.ask<Opened>({ ask: 'open', model: this.model })
+      const { json } = await this.#drags.ask<OpenReply>({ ask: 'open', model: this.model })
       if (version !== this.#version) return
       this.#opened = json
       this.#accepted = []
@@ -204,14 +204,14 @@ export class Studio {
     this.#wait()
   }
 
-  async #step(wanted: Setting[], version: number): Promise<void> {
+  async #step(wanted: VariableSetting[], version: number): Promise<void> {
     const { state } = this
     if (wanted.length === 0) {
       this.#accepted = []
       return state.solved(undefined, [], '', !this.#wanted)
     }
     try {
-      const answer = await this.#drags.ask<Solved>({ ask: 'design', change: wanted, from: this.#accepted })
+      const answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: wanted, from: this.#accepted })
       if (version !== this.#version) return
       const { part, why } = answer.json
       const reached = part === 1 ? wanted : between(this.#accepted, wanted, part)
@@ -225,7 +225,7 @@ export class Studio {
     }
   }
 
-  #read(found: WireDesign | null, { decode }: Answer<unknown>, settings: Setting[]): Design | undefined {
+  #read(found: WireDesign | null, { decode }: Answer<unknown>, settings: VariableSetting[]): Design | undefined {
     if (!found) return undefined
     const by = new Map(settings.map(({ name, by }) => [name, by]))
     return { ...design(found, decode), change: this.state.report.variables.map(({ name }) => by.get(name) ?? 0) }
@@ -288,7 +288,7 @@ export class Studio {
   }
 
   /** Shows another model, solved anew. */
-  async #become(model: ModelText, settings: Setting[]): Promise<void> {
+  async #become(model: ModelText, settings: VariableSetting[]): Promise<void> {
     this.#say('solving')
     this.#next = model.text
     this.#version++
@@ -336,13 +336,13 @@ export class Studio {
     if (!snapshot) return this.state.choose({ compared: undefined })
     const { text, settings } = snapshot.step
     try {
-      let answer: Answer<Solved>
+      let answer: Answer<DesignReply>
       if (text === this.model.text) {
-        answer = await this.#drags.ask<Solved>({ ask: 'design', change: [...settings], from: null })
+        answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: [...settings], from: null })
       } else {
-        await this.#sensing.ask<Opened>({ ask: 'open', model: { ...this.model, text } })
+        await this.#sensing.ask<OpenReply>({ ask: 'open', model: { ...this.model, text } })
         const { json } = await this.#sensing.ask<Text>({ ask: 'text', change: [...settings] })
-        answer = await this.#drags.ask<Solved>({ ask: 'beside', model: { ...this.model, text: json.text } })
+        answer = await this.#drags.ask<DesignReply>({ ask: 'beside', model: { ...this.model, text: json.text } })
       }
       const found = this.#read(answer.json.design, answer, [...settings])
       if (!found) return
@@ -354,7 +354,7 @@ export class Studio {
   }
 
   /** Makes the design that a study found the present one. */
-  async #take(change: Setting[] | null, text: string | null, studied: string): Promise<void> {
+  async #take(change: VariableSetting[] | null, text: string | null, studied: string): Promise<void> {
     if (text !== null) await this.replace(text, 'found')
     else if (studied !== this.#text) await this.replace(studied, 'studied')
     if (text === null && change) this.state.become(change)
@@ -363,7 +363,7 @@ export class Studio {
   async #openEditor(): Promise<HTMLElement> {
     this.#editor ??= await openEditor({
       text: this.#text,
-      check: { check: async (text) => (await this.#checks.ask<Checked>({ ask: 'check', model: { ...this.model, text } })).json.messages },
+      check: { check: async (text) => (await this.#checks.ask<CheckReply>({ ask: 'check', model: { ...this.model, text } })).json.messages },
       onValid: (text) => void this.replace(text, 'typed'),
     })
     return this.#editor.element
@@ -384,7 +384,7 @@ function studyPane(make: () => StudyPane, studio: Studio): () => Promise<HTMLEle
 }
 
 /** A part of the way from some changes to others. */
-export function between(from: readonly Setting[], to: readonly Setting[], part: number): Setting[] {
+export function between(from: readonly VariableSetting[], to: readonly VariableSetting[], part: number): VariableSetting[] {
   const before = new Map(from.map(({ name, by }) => [name, by]))
   const after = new Map(to.map(({ name, by }) => [name, by]))
   const names = [...new Set([...before.keys(), ...after.keys()])]

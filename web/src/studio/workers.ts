@@ -1,5 +1,5 @@
 import type { OptimizeRequest, Running, Studies, StudyResult, ToleranceRequest } from '../engine/engine'
-import type { OptimizeOffer, Request, Setting, Studied, Told, ToleranceOffer } from '../engine/protocol'
+import type { OptimizeOffer, Request, VariableSetting, StudyReply, ProgressReply, ToleranceOffer } from '../engine/protocol'
 import { Solver } from '../engine/solver'
 import type { ModelText } from '../payload'
 
@@ -39,15 +39,15 @@ export class Workers implements Studies {
   /** An engine that is at work hears nothing: to cancel ends it, and what it told last is the best so far. */
   #run(request: Request): Running<StudyResult> {
     const solver = new Solver(this.module)
-    const listeners: ((told: Told) => void)[] = []
-    let best: Setting[] | null = null
+    const listeners: ((told: ProgressReply) => void)[] = []
+    let best: VariableSetting[] | null = null
     let ended: (result: StudyResult) => void
     const cancelled = new Promise<StudyResult>((done) => (ended = done))
-    const told = (news: Told) => {
+    const told = (news: ProgressReply) => {
       best = news.change ?? best
       for (const listener of listeners) listener(news)
     }
-    const whole = solver.ask<Studied>(request, told).then(({ json }) => json)
+    const whole = solver.ask<StudyReply>(request, told).then(({ json }) => json)
     return {
       onProgress: (listener) => listeners.push(({ done, total, line }) => listener(done, total, line)),
       cancel: () => {

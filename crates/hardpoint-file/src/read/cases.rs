@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use hardpoint::draft::{CaseDraft, FormulaDraft, FormulaOf, GridDraft, Rest, Section};
+use hardpoint::draft::{CaseDraft, FormulaDraft, FormulaOf, GridDraft, OtherDrivers, Section};
 use hardpoint::joint::Quantity;
 use hardpoint::law::Law;
 
@@ -59,7 +59,7 @@ const REST: Shape = Shape::Words(&[
     ("held", "They are held as drawn: their law is 0."),
     ("as_above", "They follow the laws that they have in `[drivers]`."),
 ]);
-const RESTS: [Rest; 2] = [Rest::Held, Rest::AsAbove];
+const RESTS: [OtherDrivers; 2] = [OtherDrivers::Held, OtherDrivers::AsAbove];
 
 impl Reader<'_> {
     pub(super) fn cases(&mut self, model: &Fields<'_>, raw: &mut Raw) {
@@ -104,7 +104,7 @@ impl Reader<'_> {
             let load_mode = fields.get("loads").is_some().then(|| self.word_of(&fields, "loads")).flatten();
             let load_mode = load_mode.map(|k| LOAD_MODES[k]);
             let laws = laws.unwrap_or_default();
-            if rest == Some(Rest::AsAbove) && !self.unread.contains(&"laws") {
+            if rest == Some(OtherDrivers::AsAbove) && !self.unread.contains(&"laws") {
                 self.laws_of_their_own(&fields, &laws, raw);
             }
             self.push(raw, Section::Cases, place);

@@ -1,6 +1,6 @@
 //! What a design is to be optimised for.
 
-use hardpoint::draft::{GoalDraft, LimitDraft, LimitedDraft, OptimizationDraft, Section};
+use hardpoint::draft::{GoalDraft, LimitDraft, LimitTargetDraft, OptimizationSettingsDraft, Section};
 
 use crate::format::{
     HARDPOINT, JOINT, Key, Kinds, METRIC, NUMBER, Shape, TWO_NUMBERS, Table, VARIABLE, keys, table,
@@ -50,7 +50,7 @@ pub(super) const LIMIT: Kinds = Kinds {
 /// Reads what is limited; of a box there are several.
 type Read = fn(&mut Reader<'_>, &Fields<'_>) -> Option<Vec<One>>;
 /// The axis of a box or nothing, what is limited, and to what.
-type One = (&'static str, LimitedDraft, Bounds);
+type One = (&'static str, LimitTargetDraft, Bounds);
 /// The least and the most.
 type Bounds = [Option<f64>; 2];
 
@@ -70,7 +70,7 @@ static LIMITS: &[(Table, Read)] = &[
         |r, fields| {
             let name = r.name_of(fields, "metric");
             let bounds = r.bounds_of_limit(fields);
-            Some(vec![("", LimitedDraft::Metric(name?), bounds?)])
+            Some(vec![("", LimitTargetDraft::Metric(name?), bounds?)])
         },
     ),
     (
@@ -98,7 +98,7 @@ static LIMITS: &[(Table, Read)] = &[
         |r, fields| {
             let names = r.names_of::<2>(fields, "between");
             let bounds = r.bounds_of_limit(fields);
-            Some(vec![("", LimitedDraft::Distance(names?), bounds?)])
+            Some(vec![("", LimitTargetDraft::Distance(names?), bounds?)])
         },
     ),
     (
@@ -111,7 +111,7 @@ static LIMITS: &[(Table, Read)] = &[
         |r, fields| {
             let name = r.name_of(fields, "length");
             let bounds = r.bounds_of_limit(fields);
-            Some(vec![("", LimitedDraft::Length(name?), bounds?)])
+            Some(vec![("", LimitTargetDraft::Length(name?), bounds?)])
         },
     ),
 ];
@@ -152,7 +152,7 @@ impl Reader<'_> {
         self.push(raw, Section::Optimize, place);
         let goals = self.goals(&fields, raw);
         let limits = self.limits(&fields, raw);
-        raw.draft.optimization = Some(OptimizationDraft {
+        raw.draft.optimization = Some(OptimizationSettingsDraft {
             variables,
             goals,
             limits,
@@ -194,7 +194,7 @@ impl Reader<'_> {
             let read = kind.filter(|_| is_clear).and_then(|(_, read)| read(self, &fields));
             let read = read.unwrap_or_else(|| {
                 self.unread.push("");
-                vec![("", LimitedDraft::Unread, [None; 2])]
+                vec![("", LimitTargetDraft::Unread, [None; 2])]
             });
             let unread = std::mem::take(&mut self.unread);
             for (axis, of, [least, most]) in read {
@@ -230,7 +230,7 @@ impl Reader<'_> {
         let name = name.filter(|_| complete)?;
         let sides = (0..3).zip(axes).zip(sides);
         let limit = |((k, axis), side): ((usize, &'static str), Option<Bounds>)| {
-            side.map(|side| (axis, LimitedDraft::Coordinate(name.clone(), k), side))
+            side.map(|side| (axis, LimitTargetDraft::Coordinate(name.clone(), k), side))
         };
         Some(sides.filter_map(limit).collect())
     }

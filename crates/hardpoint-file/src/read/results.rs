@@ -3,11 +3,11 @@
 use std::sync::LazyLock;
 
 use hardpoint::draft::{
-    FieldDraft, FieldKind, LineDraft, MeasureDraft, MeasureField, MeasureKindDraft, MeasureType, MetricDraft,
-    PlaceDraft, PointDraft, PointRef, RayDraft, Section,
+    DirectionDraft, FieldDraft, FieldKind, LocationDraft, MeasureDraft, MeasureField, MeasureKindDraft,
+    MeasureType, MetricDraft, PointDraft, PointRef, RayDraft, Section,
 };
 use hardpoint::model::{
-    Axes, AxleMeasure, ElementUnit, OrientationAngle, ReactionPart, Reduction, WheelMeasure, WheelNeed,
+    Axes, AxleMeasure, ElementUnit, OrientationAngle, ReactionPart, Reduction, WheelMeasure, WheelRequirement,
 };
 use hardpoint::space::Vec3;
 
@@ -185,14 +185,14 @@ pub(super) const WHEEL_MEASURE: Shape = Shape::Any(
     "",
     &[Shape::Known("the name of a measure", || {
         let needs = |m: &WheelMeasure| match m.needs() {
-            WheelNeed::Nothing => "",
-            WheelNeed::Kingpin => " Needs a kingpin.",
-            WheelNeed::Planes => " Needs `planes`.",
-            WheelNeed::Bump => " Needs `bump`.",
-            WheelNeed::Spring => " Needs `bump` and `spring`.",
-            WheelNeed::Steer => " Needs `steer`.",
-            WheelNeed::Braking(_) => " Needs `bump`, and the vehicle's `front_brake_share`.",
-            WheelNeed::Driving(_) => " Needs `bump`, and the vehicle's `front_drive_share`.",
+            WheelRequirement::Nothing => "",
+            WheelRequirement::Kingpin => " Needs a kingpin.",
+            WheelRequirement::Planes => " Needs `planes`.",
+            WheelRequirement::Bump => " Needs `bump`.",
+            WheelRequirement::Spring => " Needs `bump` and `spring`.",
+            WheelRequirement::Steer => " Needs `steer`.",
+            WheelRequirement::Braking(_) => " Needs `bump`, and the vehicle's `front_brake_share`.",
+            WheelRequirement::Driving(_) => " Needs `bump`, and the vehicle's `front_drive_share`.",
         };
         WheelMeasure::ALL.iter().map(|m| (m.name(), format!("{}{}", m.summary(), needs(m)))).collect()
     })],
@@ -313,7 +313,7 @@ impl Reader<'_> {
             let body = self.name_of(&fields, "body").unwrap_or_default();
             let at = self.place_of(&fields, "at");
             place.items("at", Vec::new());
-            let at = at.unwrap_or(PlaceDraft::At(Vec3::ZERO));
+            let at = at.unwrap_or(LocationDraft::At(Vec3::ZERO));
             self.push(raw, Section::Points, place);
             raw.draft.points.push(PointDraft { name: entry.0, body, at });
         }
@@ -448,7 +448,7 @@ impl Reader<'_> {
             }
             _ => {
                 let axis = self.vector(f.value, &subject)?;
-                Some(RayDraft::Fixed { body: "ground".into(), axis: LineDraft::Along(axis) })
+                Some(RayDraft::Fixed { body: "ground".into(), axis: DirectionDraft::Along(axis) })
             }
         }
     }

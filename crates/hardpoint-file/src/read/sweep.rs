@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use hardpoint::draft::{DesignListDraft, Section, SweepRangeDraft, SweepingDraft};
-use hardpoint::model::{SweepMethod, Sweeping};
+use hardpoint::draft::{DesignListDraft, Section, SweepRangeDraft, SweepSettingsDraft};
+use hardpoint::model::{SweepMethod, SweepSettings};
 use toml::de::DeValue;
 
 use crate::csv_table::original;
@@ -115,13 +115,13 @@ impl Reader<'_> {
             per_metre: units[0],
             per_radian: units[1],
         };
-        raw.draft.sweeping = Some(SweepingDraft {
+        raw.draft.sweeping = Some(SweepSettingsDraft {
             method: method.map(|k| SweepMethod::NAMED[k]),
             ranges: fields.get("variables").map(|_| ranges),
             designs: designs.map(list),
-            levels: levels.unwrap_or(Sweeping::LEVELS),
-            samples: samples.unwrap_or(Sweeping::SAMPLES),
-            seed: seed.map_or(Sweeping::SEED, |seed| seed as u64),
+            levels: levels.unwrap_or(SweepSettings::LEVELS),
+            samples: samples.unwrap_or(SweepSettings::SAMPLES),
+            seed: seed.map_or(SweepSettings::SEED, |seed| seed as u64),
             metrics,
             curves: curves.unwrap_or_default(),
         });

@@ -1,9 +1,10 @@
 //! How far off a design may be made.
 
 use hardpoint::draft::{
-    CorrelationDraft, LimitDraft, LimitedDraft, ScatterDraft, Section, ToleranceDraft, TolerancingDraft,
+    CorrelationDraft, LimitDraft, LimitTargetDraft, ScatterDraft, Section, ToleranceDraft,
+    ToleranceSettingsDraft,
 };
-use hardpoint::model::{AllocationRule, Tolerancing};
+use hardpoint::model::{AllocationRule, ToleranceSettings};
 use toml::de::DeValue;
 
 use crate::diagnostic::shown;
@@ -122,18 +123,18 @@ impl Reader<'_> {
         let correlations = self.correlations(&fields, raw);
         let limits = self.limits_of_tolerances(&fields, raw);
         let allocation = rule.map(|rule| match rule {
-            0 => AllocationRule::Rss { sigmas: keep.unwrap_or(Tolerancing::SIGMAS) },
+            0 => AllocationRule::Rss { sigmas: keep.unwrap_or(ToleranceSettings::SIGMAS) },
             _ => AllocationRule::Worst,
         });
-        raw.draft.tolerancing = Some(TolerancingDraft {
+        raw.draft.tolerancing = Some(ToleranceSettingsDraft {
             tolerances,
             correlations,
             limits,
             metrics,
             curves,
             scatter,
-            samples: samples.unwrap_or(Tolerancing::SAMPLES),
-            seed: seed.map_or(Tolerancing::SEED, |seed| seed as u64),
+            samples: samples.unwrap_or(ToleranceSettings::SAMPLES),
+            seed: seed.map_or(ToleranceSettings::SEED, |seed| seed as u64),
             allocation,
         });
     }
@@ -218,7 +219,7 @@ impl Reader<'_> {
                 self.unread.push("");
             }
             self.push(raw, Section::ToleranceLimits, place);
-            let of = LimitedDraft::Metric(metric.unwrap_or_else(|| entry.0.clone()));
+            let of = LimitTargetDraft::Metric(metric.unwrap_or_else(|| entry.0.clone()));
             found.push(LimitDraft { name: entry.0, of, least, most, per_metre, per_radian });
         }
         found

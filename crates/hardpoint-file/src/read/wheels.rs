@@ -1,10 +1,12 @@
 //! The vehicle, its road wheels and axles, and the measures that they list.
 
 use hardpoint::draft::{
-    AxleDraft, LineDraft, MeasureDraft, MeasureKindDraft, PlaceDraft, PointRef, Section, WheelDraft,
+    AxleDraft, DirectionDraft, LocationDraft, MeasureDraft, MeasureKindDraft, PointRef, Section, WheelDraft,
     WheelSpinDraft,
 };
-use hardpoint::model::{AxleMeasure, Side, TorqueReaction, Vehicle, VehicleEnd, WheelMeasure, WheelNeed};
+use hardpoint::model::{
+    AxleMeasure, Side, TorqueReaction, Vehicle, VehicleEnd, WheelMeasure, WheelRequirement,
+};
 use hardpoint::space::Vec3;
 
 use crate::diagnostic::Severity;
@@ -174,8 +176,8 @@ impl Reader<'_> {
             raw.draft.wheels.push(WheelDraft {
                 name: entry.0,
                 body,
-                centre: centre.unwrap_or(PlaceDraft::At(Vec3::ZERO)),
-                spin: spin.unwrap_or(WheelSpinDraft::Axis(LineDraft::Along(Vec3::AXES[1]))),
+                centre: centre.unwrap_or(LocationDraft::At(Vec3::ZERO)),
+                spin: spin.unwrap_or(WheelSpinDraft::Axis(DirectionDraft::Along(Vec3::AXES[1]))),
                 radius: radius.unwrap_or(1.0),
                 side,
                 kingpin,
@@ -234,7 +236,7 @@ impl Reader<'_> {
             let body = self.name_of(&plane, "body");
             let at = self.need(&plane, "at")?;
             let points = self.list(at.value, &plane.subject("at"), "a list of two or three hardpoints")?;
-            let places: Vec<Option<PlaceDraft>> =
+            let places: Vec<Option<LocationDraft>> =
                 points.iter().map(|value| self.fixed_place(value, &plane.subject("at"))).collect();
             let (body, places) = (body?, places.into_iter().collect::<Option<Vec<_>>>()?);
             Some(places.into_iter().map(|at| PointRef::On { body: body.clone(), at }).collect())
@@ -262,16 +264,17 @@ impl Reader<'_> {
         let vehicle = &raw.draft.vehicle;
         // A wheel that names no driver takes the only one.
         let moves = has("bump") || raw.draft.drivers.len() == 1;
-        let has_kingpin = |need: WheelNeed| need != WheelNeed::Kingpin || has("kingpin");
+        let has_kingpin = |need: WheelRequirement| need != WheelRequirement::Kingpin || has("kingpin");
         // Whoever names no driver that steers, no planes and no spring does not ask for what follows from them.
-        let is_asked = |need: WheelNeed| match need {
-            WheelNeed::Steer => has("steer"),
-            WheelNeed::Planes => has("planes"),
-            WheelNeed::Spring => has("spring"),
+        let is_asked = |need: WheelRequirement| match need {
+            WheelRequirement::Steer => has("steer"),
+            WheelRequirement::Planes => has("planes"),
+            WheelRequirement::Spring => has("spring"),
             _ => true,
         };
-        let has_driver = |need: WheelNeed| !need.goes_by_driver() || need == WheelNeed::Steer || moves;
-        let is_at = |need: WheelNeed| need.end().is_none_or(|at| end == Some(at.name()));
+        let has_driver =
+            |need: WheelRequirement| !need.goes_by_driver() || need == WheelRequirement::Steer || moves;
+        let is_at = |need: WheelRequirement| need.end().is_none_or(|at| end == Some(at.name()));
         let possible = |m: &WheelMeasure| {
             let need = m.needs();
             has_kingpin(need)

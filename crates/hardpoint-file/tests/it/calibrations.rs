@@ -5,7 +5,7 @@ use std::path::Path;
 
 use hardpoint::model::{Model, Scatter, VariableId};
 use hardpoint::study::{
-    Calibrating, Calibration, CannotCalibrate, FitStatus, Loss, Measurements, Reading, calibrate,
+    Calibration, CalibrationError, CalibrationRequest, FitStatus, Loss, Measurements, Reading, calibrate,
     design_stream, draw, values_in_postures,
 };
 use hardpoint::topology::Formulation;
@@ -53,8 +53,9 @@ fn fitted_by(
     measured: &Measurements,
     variables: &[VariableId],
     loss: Loss,
-) -> Result<Calibration, CannotCalibrate> {
-    let asked = Calibrating { measured, variables, loss, formulation: Formulation::Relative, iterations: 50 };
+) -> Result<Calibration, CalibrationError> {
+    let asked =
+        CalibrationRequest { measured, variables, loss, formulation: Formulation::Relative, iterations: 50 };
     calibrate(model, &asked, &mut |_, _| {}, &|| true)
 }
 
@@ -257,7 +258,7 @@ fn without_standard_deviations_they_come_from_the_residuals() {
     }
     measured.readings.truncate(3);
     let few = fitted_by(&model, &measured, &all(&model), Loss::Squares);
-    assert!(matches!(few, Err(CannotCalibrate::TooFewReadings { readings: 3, variables: 3 })));
+    assert!(matches!(few, Err(CalibrationError::TooFewReadings { readings: 3, variables: 3 })));
 }
 
 #[test]

@@ -190,7 +190,8 @@ fn assert_same(name: &str, a: &Solution, b: &Solution, limit: f64) {
     assert_eq!((a.len(), a.outputs.len(), a.variables), (b.len(), b.outputs.len(), b.variables), "{name}");
     for m in 0..a.outputs.len() {
         for by in (0..=a.variables).map(|v| (v < a.variables).then_some(VariableId(v))) {
-            let at = |s: &hardpoint::measure::Measured, k: usize| by.map_or(s.value(k, m), |v| s.d(k, v, m));
+            let at =
+                |s: &hardpoint::measure::MeasureResults, k: usize| by.map_or(s.value(k, m), |v| s.d(k, v, m));
             for order in 0..3 {
                 let pairs = || (0..a.len()).map(|k| [at(a, k)[order], at(b, k)[order]]);
                 let largest = pairs().fold(1e-3, |most: f64, [_, y]| most.max(y.abs()));

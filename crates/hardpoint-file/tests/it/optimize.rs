@@ -1,6 +1,6 @@
 //! What a file says it is to be optimised for, in SI.
 
-use hardpoint::model::{Goal, Limit, Limited, Reduction};
+use hardpoint::model::{Goal, Limit, LimitTarget, Reduction};
 use hardpoint_file::{parse, read};
 
 /// A slider-crank with a rod, a target to follow, and two strokes.
@@ -61,13 +61,13 @@ fn goals_and_limits_are_read_in_si() {
     let id = |name: &str| {
         hardpoint::model::HardpointId(model.hardpoints.iter().position(|h| h.name == name).unwrap())
     };
-    let expected: [(&str, Limited, Option<f64>, Option<f64>); 6] = [
-        ("angle", Limited::Metric(2), Some(45.0 * degree), Some(45.0 * degree)),
-        ("room.x", Limited::Coordinate(id("A"), 0), Some(0.095), Some(0.105)),
-        ("room.z", Limited::Coordinate(id("A"), 2), None, Some(0.005)),
-        ("apart", Limited::Distance(id("O"), id("A")), Some(0.08), Some(0.12)),
-        ("rod", Limited::Length(hardpoint::model::JointId(2)), Some(0.15), None),
-        ("top.z", Limited::Coordinate(id("B"), 2), Some(0.02), Some(0.04)),
+    let expected: [(&str, LimitTarget, Option<f64>, Option<f64>); 6] = [
+        ("angle", LimitTarget::Metric(2), Some(45.0 * degree), Some(45.0 * degree)),
+        ("room.x", LimitTarget::Coordinate(id("A"), 0), Some(0.095), Some(0.105)),
+        ("room.z", LimitTarget::Coordinate(id("A"), 2), None, Some(0.005)),
+        ("apart", LimitTarget::Distance(id("O"), id("A")), Some(0.08), Some(0.12)),
+        ("rod", LimitTarget::Length(hardpoint::model::JointId(2)), Some(0.15), None),
+        ("top.z", LimitTarget::Coordinate(id("B"), 2), Some(0.02), Some(0.04)),
     ];
     assert_eq!(o.limits.len(), expected.len());
     for (Limit { name, of, least, most }, (named, put_on, low, high)) in o.limits.iter().zip(expected) {

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use hardpoint::motion::StopKind;
 use hardpoint::space::Vec3;
-use hardpoint::topology::{Formulation, TopologyFault};
+use hardpoint::topology::{Formulation, TopologyError};
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, parse, read};
 
@@ -349,7 +349,7 @@ fn a_four_bar_that_starts_flat_is_refused_before_it_moves() {
         match Analysis::with(&file.model, formulation) {
             Err(fault) => {
                 assert!(
-                    matches!(fault, TopologyFault::Singular { freedom: 1, .. }),
+                    matches!(fault, TopologyError::Singular { freedom: 1, .. }),
                     "{formulation:?}: {fault:?}"
                 );
             }

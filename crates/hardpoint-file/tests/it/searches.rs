@@ -4,8 +4,11 @@ use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use hardpoint::model::{Limit, Limited, Optimization};
-use hardpoint::study::{Binding, Cost, Motions, Optimized, Progress, Search, Searching, Status, optimize};
+use hardpoint::model::{Limit, LimitTarget, OptimizationSettings};
+use hardpoint::study::{
+    ActiveConstraint, Motions, OptimizationRequest, OptimizationResult, OptimizationStatus, SearchProgress,
+    SearchResult, StudyCost, optimize,
+};
 use hardpoint::topology::Formulation;
 use hardpoint_file::ModelFile;
 
@@ -17,33 +20,38 @@ fn model(name: &str) -> ModelFile {
     hardpoint_file::read(&models.join(name)).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn searched_on(threads: usize, file: &ModelFile, asked: &Optimization) -> Optimized {
+fn searched_on(threads: usize, file: &ModelFile, asked: &OptimizationSettings) -> OptimizationResult {
     searched_from(0, threads, file, asked)
 }
 
 /// Searches from the starts of these numbers on.
-fn searched_from(first: usize, threads: usize, file: &ModelFile, asked: &Optimization) -> Optimized {
+fn searched_from(
+    first: usize,
+    threads: usize,
+    file: &ModelFile,
+    asked: &OptimizationSettings,
+) -> OptimizationResult {
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
-    let mut progress = |_: usize, _: Progress<'_>| ControlFlow::Continue(());
+    let mut progress = |_: usize, _: SearchProgress<'_>| ControlFlow::Continue(());
     let threads = NonZero::new(threads).unwrap();
     optimize(
         &file.model,
         &motions,
         asked,
-        Searching { progress: &mut progress, more: &|| true, threads, first },
+        OptimizationRequest { progress: &mut progress, more: &|| true, threads, first },
     )
 }
 
-fn searched(file: &ModelFile, asked: &Optimization) -> Optimized {
+fn searched(file: &ModelFile, asked: &OptimizationSettings) -> OptimizationResult {
     searched_on(1, file, asked)
 }
 
-fn asked(file: &ModelFile) -> Optimization {
+fn asked(file: &ModelFile) -> OptimizationSettings {
     file.model.optimization.clone().expect("the file says what is wanted")
 }
 
-fn best(found: &Optimized) -> &Search {
+fn best(found: &OptimizationResult) -> &SearchResult {
     &found.searches[found.best.expect("something is found")]
 }
 
@@ -53,7 +61,7 @@ const FOUND: f64 = 1e-6 * 0.204;
 /// The published search ends after so many iterations, each with a motion and its derivatives at least, and is 47 mm off.
 const PUBLISHED: usize = 16;
 
-fn is_known(file: &ModelFile, search: &Search) -> bool {
+fn is_known(file: &ModelFile, search: &SearchResult) -> bool {
     let Some(found) = &search.found else { return false };
     let places = file.model.hardpoint_places(&found.design);
     KNOWN.iter().zip(&places).all(|([x, y], p)| (p.x - x).abs() <= FOUND && (p.y - y).abs() <= FOUND)
@@ -64,7 +72,7 @@ fn the_four_bar_of_a_known_motion_is_found() {
     let file = model("four_bar_inverse.toml");
     let found = searched(&file, &asked(&file));
     let search = best(&found);
-    assert_eq!(search.status, Status::Optimal);
+    assert_eq!(search.status, OptimizationStatus::Optimal);
     assert!(is_known(&file, search), "{:?}", search.found);
     assert!(search.cost.designs < PUBLISHED, "{} designs", search.cost.designs);
     assert!(search.optimality.left_of_start <= OPTIMAL, "{:e}", search.optimality.left_of_start);
@@ -78,7 +86,7 @@ fn the_four_bar_of_a_known_motion_is_found() {
 #[test]
 fn it_is_found_from_everywhere_within_the_bounds_on_any_number_of_threads() {
     let file = model("four_bar_inverse.toml");
-    let many = Optimization { starts: 13, ..asked(&file) };
+    let many = OptimizationSettings { starts: 13, ..asked(&file) };
     let found = searched(&file, &many);
     for (k, search) in found.searches.iter().enumerate() {
         assert!(is_known(&file, search), "start {k}: {:?}, {:?}", search.status, search.found);
@@ -86,7 +94,9 @@ fn it_is_found_from_everywhere_within_the_bounds_on_any_number_of_threads() {
     // Most linkages within these bounds cannot turn: their starts are drawn nearer until they do.
     assert!(found.searches.iter().any(|s| !s.refused.is_empty()));
     let again = searched_on(3, &file, &many);
-    let ends = |o: &Optimized| o.searches.iter().map(|s| s.found.clone().unwrap().design).collect::<Vec<_>>();
+    let ends = |o: &OptimizationResult| {
+        o.searches.iter().map(|s| s.found.clone().unwrap().design).collect::<Vec<_>>()
+    };
     assert_eq!(ends(&found), ends(&again));
 }
 
@@ -96,15 +106,15 @@ fn a_search_that_is_interrupted_keeps_the_best_so_far() {
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
     let mut told = 0;
-    let mut progress = |_: usize, _: Progress<'_>| {
+    let mut progress = |_: usize, _: SearchProgress<'_>| {
         told += 1;
         if told < 4 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
     let threads = NonZero::<usize>::MIN;
-    let searching = Searching { progress: &mut progress, more: &|| true, threads, first: 0 };
-    let asked = Optimization { starts: 3, ..asked(&file) };
+    let searching = OptimizationRequest { progress: &mut progress, more: &|| true, threads, first: 0 };
+    let asked = OptimizationSettings { starts: 3, ..asked(&file) };
     let found = optimize(&file.model, &motions, &asked, searching);
-    assert!(found.searches.iter().all(|s| s.status == Status::Interrupted));
+    assert!(found.searches.iter().all(|s| s.status == OptimizationStatus::Interrupted));
     let judged = best(&found).found.as_ref().unwrap();
     assert!(judged.objective < 0.1 * found.drawn.unwrap().objective);
 }
@@ -118,7 +128,7 @@ fn the_strut_gets_its_toe_curve_and_steers_no_worse() {
     let asked = asked(&file);
     let found = searched(&file, &asked);
     let search = best(&found);
-    assert_eq!(search.status, Status::Optimal);
+    assert_eq!(search.status, OptimizationStatus::Optimal);
     assert!(search.cost.designs < 20, "{} designs", search.cost.designs);
     assert!(search.optimality.left_of_start <= OPTIMAL, "{:e}", search.optimality.left_of_start);
     let judged = search.found.as_ref().unwrap();
@@ -127,7 +137,7 @@ fn the_strut_gets_its_toe_curve_and_steers_no_worse() {
     assert!(judged.limits[0].2 > drawn.limits[0].2, "the inner wheel steers no less");
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
-    let solved = motions.evaluate(&judged.design, &mut Cost::default(), &|| true).unwrap();
+    let solved = motions.evaluate(&judged.design, &mut StudyCost::default(), &|| true).unwrap();
     let (measured, bump) = (&solved.solutions[0].measured, &models[0]);
     let [toe, travel] = ["toe", "wheel_travel"].map(|name| measured.index(name).unwrap());
     for k in 0..measured.len() {
@@ -145,14 +155,14 @@ fn the_front_axle_gets_the_toe_curve_of_a_published_example() {
     let file = model("studies/front_axle_toe.toml");
     let found = searched(&file, &asked(&file));
     let search = best(&found);
-    assert_eq!(search.status, Status::Optimal);
+    assert_eq!(search.status, OptimizationStatus::Optimal);
     assert!(search.optimality.left_of_start <= OPTIMAL, "{:e}", search.optimality.left_of_start);
     let [drawn, left] = [found.drawn.as_ref(), search.found.as_ref()].map(|j| j.unwrap().goals[0].2);
     assert!(drawn > 500.0 * FOLLOWED && left < FOLLOWED, "{drawn} {left}");
 }
 
 /// A limit on what a goal of the strut is taken of, in SI.
-fn limit(of: Limited, least: Option<f64>, most: Option<f64>) -> Limit {
+fn limit(of: LimitTarget, least: Option<f64>, most: Option<f64>) -> Limit {
     Limit { name: "limit".into(), of, least, most }
 }
 
@@ -163,18 +173,21 @@ fn what_binds_is_worth_what_giving_way_gains() {
     const AGREES: f64 = 1e-3;
     let file = model("studies/strut_toe.toml");
     let at = |least: f64| {
-        let limits = vec![limit(Limited::Metric(1), Some(least), None)];
-        searched(&file, &Optimization { limits, ..asked(&file) })
+        let limits = vec![limit(LimitTarget::Metric(1), Some(least), None)];
+        searched(&file, &OptimizationSettings { limits, ..asked(&file) })
     };
     let deg = std::f64::consts::PI / 180.0;
     let least = 0.145 * deg;
     let middle = at(least);
     let search = best(&middle);
-    assert_eq!(search.status, Status::Optimal, "{:?}", search.iterations);
+    assert_eq!(search.status, OptimizationStatus::Optimal, "{:?}", search.iterations);
     let binding = &search.optimality.binding;
-    let worth =
-        binding.iter().find(|(what, _)| matches!(what, Binding::Least(0, Some(1)))).expect("it binds").1;
-    let objective = |found: &Optimized| best(found).found.as_ref().unwrap().objective;
+    let worth = binding
+        .iter()
+        .find(|(what, _)| matches!(what, ActiveConstraint::Least(0, Some(1))))
+        .expect("it binds")
+        .1;
+    let objective = |found: &OptimizationResult| best(found).found.as_ref().unwrap().objective;
     let gained =
         (objective(&at(least + MOVED * deg)) - objective(&at(least - MOVED * deg))) / (2.0 * MOVED * deg);
     assert!((gained / worth - 1.0).abs() < AGREES, "{gained} and {worth}");
@@ -183,14 +196,15 @@ fn what_binds_is_worth_what_giving_way_gains() {
 #[test]
 fn limits_that_contradict_each_other_and_designs_that_lock_are_told() {
     let file = model("studies/strut_toe.toml");
-    let far = Optimization { limits: vec![limit(Limited::Metric(1), Some(0.5), None)], ..asked(&file) };
+    let far =
+        OptimizationSettings { limits: vec![limit(LimitTarget::Metric(1), Some(0.5), None)], ..asked(&file) };
     let found = searched(&file, &far);
-    assert_eq!(best(&found).status, Status::LimitsNotKept);
+    assert_eq!(best(&found).status, OptimizationStatus::LimitsNotKept);
     assert!(best(&found).found.as_ref().unwrap().violation > 0.0);
     // No design keeps so far from singular positions: none can be judged, and each says why.
     let file = model("four_bar_inverse.toml");
-    let found = searched(&file, &Optimization { margin: Some(0.99), ..asked(&file) });
-    assert_eq!((found.best, found.searches[0].status), (None, Status::NoStart));
+    let found = searched(&file, &OptimizationSettings { margin: Some(0.99), ..asked(&file) });
+    assert_eq!((found.best, found.searches[0].status), (None, OptimizationStatus::NoStart));
     assert!(found.drawn_refused.unwrap().why.contains("margin"));
 }
 
@@ -201,15 +215,15 @@ const GAINED: f64 = 1e-3;
 fn a_restart_from_a_claimed_optimum_gains_nothing() {
     for name in ["synthesis/arc_five_points.toml", "four_bar_inverse.toml"] {
         let file = model(name);
-        let wanted = Optimization { starts: 1, ..asked(&file) };
+        let wanted = OptimizationSettings { starts: 1, ..asked(&file) };
         let found = searched(&file, &wanted);
         let search = best(&found);
-        assert_eq!(search.status, Status::Optimal, "{name}");
+        assert_eq!(search.status, OptimizationStatus::Optimal, "{name}");
         let judged = search.found.as_ref().unwrap();
         let again = hardpoint_file::parse(&file.edit(&judged.design).unwrap(), name);
         // Files beside the model are not there: only what needs none is searched again.
         let Ok(again) = again else { continue };
-        let restarted = searched(&again, &Optimization { starts: 1, ..asked(&again) });
+        let restarted = searched(&again, &OptimizationSettings { starts: 1, ..asked(&again) });
         let after = best(&restarted).found.as_ref().unwrap().objective;
         let is_met = search.optimality.met || judged.objective - after <= GAINED * judged.objective;
         assert!(is_met, "{name}: {:e} {after:e}", judged.objective);
@@ -224,17 +238,17 @@ fn no_start_of_a_published_problem_ends_at_a_false_optimum() {
     // These two starts lead into a valley in which the error falls from 8e-5 to 7e-7 over a long way: the gradient along it is
     // 1e-9 of that at the start of the search.
     let file = model("synthesis/arc_five_points.toml");
-    let found = searched_from(5, 1, &file, &Optimization { starts: 2, ..asked(&file) });
-    for search in found.searches.iter().filter(|s| s.status == Status::Optimal) {
+    let found = searched_from(5, 1, &file, &OptimizationSettings { starts: 2, ..asked(&file) });
+    for search in found.searches.iter().filter(|s| s.status == OptimizationStatus::Optimal) {
         let judged = search.found.as_ref().unwrap();
         let again = hardpoint_file::parse(&file.edit(&judged.design).unwrap(), "again.toml").unwrap();
-        let restarted = searched(&again, &Optimization { starts: 1, ..asked(&again) });
+        let restarted = searched(&again, &OptimizationSettings { starts: 1, ..asked(&again) });
         let after = best(&restarted).found.as_ref().unwrap().objective;
         assert!(judged.objective - after <= GAINED * judged.objective, "{:e} {after:e}", judged.objective);
     }
     // Where the iterations suffice, the end of the valley is reached.
     let least = best(&found).found.as_ref().unwrap().objective;
-    assert!(best(&found).status == Status::Optimal && least < 1e-6, "{least:e}");
+    assert!(best(&found).status == OptimizationStatus::Optimal && least < 1e-6, "{least:e}");
 }
 
 /// Misfits of a path of 25 mm that are round-off, mm^2.
@@ -249,13 +263,13 @@ fn goals_that_can_all_be_met_are_met_along_limits() {
     let found = searched(&file, &asked(&file));
     let search = best(&found);
     let judged = search.found.as_ref().unwrap();
-    assert_eq!(search.status, Status::Optimal);
+    assert_eq!(search.status, OptimizationStatus::Optimal);
     assert!(search.optimality.met && judged.objective < MET, "{:e}", judged.objective);
     assert!(judged.violation <= 1e-8, "{:e}", judged.violation);
     assert!(search.cost.designs < 300, "{} designs", search.cost.designs);
     // A search that may not go so far does not claim an optimum.
-    let early = searched(&file, &Optimization { iterations: 60, ..asked(&file) });
-    assert_eq!(best(&early).status, Status::IterationLimit, "{:?}", best(&early).found);
+    let early = searched(&file, &OptimizationSettings { iterations: 60, ..asked(&file) });
+    assert_eq!(best(&early).status, OptimizationStatus::IterationLimit, "{:?}", best(&early).found);
 }
 
 #[test]
@@ -283,7 +297,7 @@ high = { target = 15 }
     let file = hardpoint_file::parse(text, "single.toml").unwrap_or_else(|e| panic!("{e}"));
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
-    let values = motions.evaluate(&[], &mut Cost::default(), &|| true).unwrap().metrics.swap_remove(0);
+    let values = motions.evaluate(&[], &mut StudyCost::default(), &|| true).unwrap().metrics.swap_remove(0);
     let near = |a: f64, b: f64| assert!((a - b).abs() <= 1e-12, "{a} {b}");
     let (sin, cos) = 30_f64.to_radians().sin_cos();
     near(values[0].value.unwrap(), 0.02 * sin);
@@ -295,6 +309,6 @@ high = { target = 15 }
     assert!(values[3].value.is_none(), "there is no output time at 1 s");
     let found = searched(&file, &asked(&file));
     let judged = best(&found).found.as_ref().unwrap();
-    assert_eq!(best(&found).status, Status::Optimal);
+    assert_eq!(best(&found).status, OptimizationStatus::Optimal);
     near(judged.design[0], 0.03 - 0.02);
 }

@@ -4,7 +4,7 @@ use std::num::NonZero;
 use std::ops::ControlFlow;
 
 use hardpoint::Run;
-use hardpoint::model::{Model, SweepMethod, Sweeping};
+use hardpoint::model::{Model, SweepMethod, SweepSettings};
 use hardpoint::study::{BLOCK, Motions, Sweep, SweptBlock, metrics, sobol_indices};
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, parse};
@@ -33,7 +33,7 @@ fn file(text: &str) -> ModelFile {
     parse(text, "sweeps.toml").unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn swept_from(model: &Model, asked: &Sweeping, from: usize, threads: usize) -> Vec<SweptBlock> {
+fn swept_from(model: &Model, asked: &SweepSettings, from: usize, threads: usize) -> Vec<SweptBlock> {
     let models = model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
     let numbers: Vec<usize> = (0..models.len()).collect();
@@ -80,7 +80,8 @@ fn metrics_are_those_of_each_design_by_itself_on_any_threads_and_from_anywhere()
     const ROUND_OFF: f64 = 1e-12;
     let model = file(CRANK).model;
     for method in SweepMethod::NAMED {
-        let asked = Sweeping { method, samples: 1400, curves: vec![0], ..Sweeping::of_bounds(&model) };
+        let asked =
+            SweepSettings { method, samples: 1400, curves: vec![0], ..SweepSettings::of_bounds(&model) };
         let blocks = swept_from(&model, &asked, 0, 1);
         assert_eq!(blocks, swept_from(&model, &asked, 0, 3), "{method:?}");
         if blocks.len() > 1 {
@@ -108,7 +109,8 @@ fn metrics_are_those_of_each_design_by_itself_on_any_threads_and_from_anywhere()
 fn a_latin_hypercube_has_a_design_in_every_slice() {
     let model = file(CRANK).model;
     const N: usize = 1000;
-    let asked = Sweeping { method: SweepMethod::LatinHypercube, samples: N, ..Sweeping::of_bounds(&model) };
+    let asked =
+        SweepSettings { method: SweepMethod::LatinHypercube, samples: N, ..SweepSettings::of_bounds(&model) };
     let models = model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
     let sweep = Sweep::new(&model, &motions, &[0], &asked).unwrap();
@@ -136,7 +138,8 @@ fn indices_of_a_mechanism_are_those_of_its_closed_form() {
         "parameters.radius = { value = 100, unit = \"length\", bounds = [60, 140] }",
     );
     let model = file(&text).model;
-    let asked = Sweeping { method: SweepMethod::Indices, samples: 1024, ..Sweeping::of_bounds(&model) };
+    let asked =
+        SweepSettings { method: SweepMethod::Indices, samples: 1024, ..SweepSettings::of_bounds(&model) };
     let values: Vec<f64> =
         swept_from(&model, &asked, 0, 2).into_iter().flat_map(|b| b.metrics[0].clone()).collect();
     let found = sobol_indices(&values, 3);

@@ -7,8 +7,10 @@ use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use hardpoint::model::{Optimization, Reduction};
-use hardpoint::study::{Motions, Optimized, Search, Searching, Status, optimize};
+use hardpoint::model::{OptimizationSettings, Reduction};
+use hardpoint::study::{
+    Motions, OptimizationRequest, OptimizationResult, OptimizationStatus, SearchResult, optimize,
+};
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, read, schema};
 
@@ -41,10 +43,10 @@ fn every_problem_names_its_schema_and_fits_it() {
     }
 }
 
-fn search(file: &ModelFile, asked: &Optimization) -> Optimized {
+fn search(file: &ModelFile, asked: &OptimizationSettings) -> OptimizationResult {
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
-    let searching = Searching {
+    let searching = OptimizationRequest {
         progress: &mut |_, _| ControlFlow::Continue(()),
         more: &|| true,
         threads: NonZero::<usize>::MIN,
@@ -82,7 +84,7 @@ fn links(file: &ModelFile, design: &[f64]) -> [f64; 4] {
 }
 
 /// Searches, and holds what is found against the published error, the bounds, Grashof's condition and the conditions of an optimum.
-fn reaches(name: &str, points: usize, published: f64) -> (ModelFile, Search) {
+fn reaches(name: &str, points: usize, published: f64) -> (ModelFile, SearchResult) {
     let file = problem(name);
     let asked = file.model.optimization.clone().unwrap();
     let found = search(&file, &asked);
@@ -106,7 +108,7 @@ fn reaches(name: &str, points: usize, published: f64) -> (ModelFile, Search) {
     assert!(error <= published, "{error:e} {published:e}");
     // What was minimised is what is published.
     assert!((best.objective - error).abs() <= 1e-9 * error, "{} {error}", best.objective);
-    assert_eq!(search.status, Status::Optimal);
+    assert_eq!(search.status, OptimizationStatus::Optimal);
     assert!(search.optimality.left_of_start <= STATIONARY, "{:e}", search.optimality.left_of_start);
     assert!(search.optimality.residual <= SCALED, "{:e}", search.optimality.residual);
     for v in &asked.variables {

@@ -4,9 +4,10 @@ use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use hardpoint::model::{Allocating, AllocationRule, Limit, Limited, Model, Tolerancing};
+use hardpoint::model::{AllocationRule, AllocationSettings, Limit, LimitTarget, Model, ToleranceSettings};
 use hardpoint::study::{
-    Cost, Examination, Impossible, MetricSpread, MonteCarlo, Motions, Stage, ToleranceFailure, tolerance,
+    AllocationError, MetricSpread, MonteCarlo, Motions, StudyCost, ToleranceError, ToleranceResult,
+    ToleranceStage, tolerance,
 };
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, parse};
@@ -42,22 +43,26 @@ fn study(name: &str) -> ModelFile {
     hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn examined_on(threads: usize, model: &Model, asked: &Tolerancing) -> Result<Examination, ToleranceFailure> {
+fn examined_on(
+    threads: usize,
+    model: &Model,
+    asked: &ToleranceSettings,
+) -> Result<ToleranceResult, ToleranceError> {
     let models = model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
     let numbers: Vec<usize> = (0..models.len()).collect();
-    let mut tell = |_: Stage| ControlFlow::Continue(());
+    let mut tell = |_: ToleranceStage| ControlFlow::Continue(());
     let threads = NonZero::new(threads).unwrap();
     tolerance(model, &motions, &numbers, asked, threads, &mut tell, &|| true)
 }
 
-fn examined(file: &ModelFile, change: impl FnOnce(&mut Tolerancing)) -> Examination {
+fn examined(file: &ModelFile, change: impl FnOnce(&mut ToleranceSettings)) -> ToleranceResult {
     let mut asked = file.model.tolerancing.clone().expect("the file says what is off");
     change(&mut asked);
     examined_on(THREADS.get(), &file.model, &asked).unwrap_or_else(|e| panic!("{e:?}"))
 }
 
-fn spread<'e>(file: &ModelFile, found: &'e Examination, metric: &str) -> &'e MetricSpread {
+fn spread<'e>(file: &ModelFile, found: &'e ToleranceResult, metric: &str) -> &'e MetricSpread {
     let name = |m: &MetricSpread| file.model.metrics[m.metric].name == metric;
     found.metrics.iter().find(|m| name(m)).expect("the metric is looked at")
 }
@@ -71,7 +76,7 @@ fn crank(tolerance: &str) -> ModelFile {
     model(&format!("{CRANK}\n[tolerance]\nsamples = 20000\n{tolerance}\n"))
 }
 
-fn sampled(found: &Examination) -> &MonteCarlo {
+fn sampled(found: &ToleranceResult) -> &MonteCarlo {
     found.sampled.as_ref().expect("designs were drawn")
 }
 
@@ -157,7 +162,7 @@ fn squares_and_moments_match_re_solved_designs() {
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
     let value = |of: &MetricSpread, design: &[f64]| {
-        let found = motions.evaluate(design, &mut Cost::default(), &|| true).unwrap();
+        let found = motions.evaluate(design, &mut StudyCost::default(), &|| true).unwrap();
         let name = &file.model.metrics[of.metric].name;
         let place = models[of.motion].metrics.iter().position(|m| m.name == *name).unwrap();
         found.metrics[of.motion][place].value.unwrap()
@@ -321,11 +326,11 @@ fn a_point_lies_in_a_sphere() {
     assert!((drawn.sigma[0] - of.sigma).abs() < ERRORS * drawn.sigma[1]);
 }
 
-fn limits(asked: &mut Tolerancing, rule: AllocationRule, most: &[(usize, f64)]) {
-    asked.allocation = Some(Allocating { rule });
+fn limits(asked: &mut ToleranceSettings, rule: AllocationRule, most: &[(usize, f64)]) {
+    asked.allocation = Some(AllocationSettings { rule });
     let limit = |(metric, most): &(usize, f64)| Limit {
         name: format!("limit {metric}"),
-        of: Limited::Metric(*metric),
+        of: LimitTarget::Metric(*metric),
         least: None,
         most: Some(*most),
     };
@@ -442,19 +447,19 @@ fn what_cannot_be_allocated_is_told() {
         });
         found.allocation.unwrap().impossible
     };
-    assert_eq!(impossible(COSTS, 0.37), Some(Impossible::AsDrawn(0)));
+    assert_eq!(impossible(COSTS, 0.37), Some(AllocationError::AsDrawn(0)));
     assert_eq!(
         impossible(&COSTS.replace("rod = { tolerance = 0.6, cost = 2 }", "rod = 6"), 0.374),
-        Some(Impossible::Fixed(0))
+        Some(AllocationError::Fixed(0))
     );
-    assert_eq!(impossible("[tolerance.variables]\nrod = 6", 0.374), Some(Impossible::NoCosts));
+    assert_eq!(impossible("[tolerance.variables]\nrod = 6", 0.374), Some(AllocationError::NoCosts));
     assert_eq!(impossible(COSTS, 0.374), None);
 }
 
 #[test]
 fn nothing_depends_on_threads_or_on_how_many_are_drawn() {
     let file = near_dead_point(0.9);
-    let asked = |samples: usize| Tolerancing { samples, ..file.model.tolerancing.clone().unwrap() };
+    let asked = |samples: usize| ToleranceSettings { samples, ..file.model.tolerancing.clone().unwrap() };
     let drawn = |threads: usize, samples: usize| {
         examined_on(threads, &file.model, &asked(samples)).unwrap().sampled.unwrap()
     };
@@ -483,8 +488,8 @@ fn what_was_drawn_before_an_interruption_is_kept() {
     let file = crank("[tolerance.variables]\nrod = 6");
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
-    let mut tell = |stage: Stage| match stage {
-        Stage::Designs(done, _) if done >= 1000 => ControlFlow::Break(()),
+    let mut tell = |stage: ToleranceStage| match stage {
+        ToleranceStage::Designs(done, _) if done >= 1000 => ControlFlow::Break(()),
         _ => ControlFlow::Continue(()),
     };
     let asked = file.model.tolerancing.as_ref().unwrap();
@@ -520,7 +525,7 @@ fn what_is_asked_is_read_in_si() {
     assert_eq!((asked.samples, asked.seed, asked.curves.len()), (10_000, 1, 2));
     assert!(model.motions().iter().all(|m| m.tolerancing.is_none()));
     // Without a table, the variables' own tolerances are asked for.
-    let own = Tolerancing::of_variables(model).unwrap();
+    let own = ToleranceSettings::of_variables(model).unwrap();
     assert_eq!((own.tolerances.len(), own.metrics.len()), (model.variables.len(), model.metrics.len()));
 }
 

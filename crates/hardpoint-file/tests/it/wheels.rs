@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use hardpoint::model::{VariableId, VehicleEnd, WheelMeasure, WheelNeed};
+use hardpoint::model::{VariableId, VehicleEnd, WheelMeasure, WheelRequirement};
 use hardpoint::space::Vec3;
 use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::{Analysis, Solution};
@@ -115,7 +115,8 @@ fn suspensions() -> [(&'static str, String); 5] {
 
 /// All but what goes by a driver that moves the wheel up and down: the rack, the only driver there is, hardly does.
 fn of_a_rack(text: &str) -> String {
-    let needs_no_driver = |m: &&WheelMeasure| matches!(m.needs(), WheelNeed::Nothing | WheelNeed::Kingpin);
+    let needs_no_driver =
+        |m: &&WheelMeasure| matches!(m.needs(), WheelRequirement::Nothing | WheelRequirement::Kingpin);
     let names = WheelMeasure::ALL.iter().filter(needs_no_driver).map(|m| format!("\"{}\"", m.name()));
     text.replace("\"all\"", &format!("[{}]", names.collect::<Vec<_>>().join(", ")))
 }
@@ -143,9 +144,14 @@ fn with_all(text: &str) -> String {
 /// Only wheels that a driver moves up and down have slopes, and only those of a vehicle that is known stand up to braking.
 fn is_left_out(name: &str, what: WheelMeasure) -> bool {
     match what.needs() {
-        WheelNeed::Bump | WheelNeed::Steer | WheelNeed::Planes | WheelNeed::Spring => name == "rack_steering",
-        WheelNeed::Braking(end) | WheelNeed::Driving(end) => name != "front_axle" || end == VehicleEnd::Rear,
-        WheelNeed::Nothing | WheelNeed::Kingpin => false,
+        WheelRequirement::Bump
+        | WheelRequirement::Steer
+        | WheelRequirement::Planes
+        | WheelRequirement::Spring => name == "rack_steering",
+        WheelRequirement::Braking(end) | WheelRequirement::Driving(end) => {
+            name != "front_axle" || end == VehicleEnd::Rear
+        }
+        WheelRequirement::Nothing | WheelRequirement::Kingpin => false,
     }
 }
 
@@ -238,7 +244,7 @@ fn rates_and_accelerations_agree_with_differences_over_time() {
                 // What is nearly at infinity has no number.
                 let is_there = |n: &usize| (3 * n..3 * n + 3).all(|k| value(k)[0].is_finite());
                 let there: Vec<usize> = (0..at.len()).filter(is_there).collect();
-                let least = if what.needs() == WheelNeed::Planes { 8 } else { at.len() };
+                let least = if what.needs() == WheelRequirement::Planes { 8 } else { at.len() };
                 assert!(there.len() >= least, "{name}: {} has too few numbers", what.name());
                 for n in there {
                     let difference = (value(3 * n + 2)[order - 1] - value(3 * n)[order - 1]) / (2.0 * H);
@@ -342,7 +348,8 @@ fn toe_and_camber_are_those_that_the_file_states_on_either_side() {
         }
         assert!((value(1, "wheel_travel") - 0.01).abs() < 1e-15);
         // What needs a kingpin is not among all that is possible; the only driver is the one that moves the wheel up and down.
-        let possible = |m: &&WheelMeasure| matches!(m.needs(), WheelNeed::Nothing | WheelNeed::Bump);
+        let possible =
+            |m: &&WheelMeasure| matches!(m.needs(), WheelRequirement::Nothing | WheelRequirement::Bump);
         assert_eq!(file.model.measures.len(), WheelMeasure::ALL.iter().filter(possible).count());
     }
 }

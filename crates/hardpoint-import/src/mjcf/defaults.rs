@@ -6,7 +6,7 @@ use hardpoint::space::{Mat3, Pose, Quat, Vec3};
 
 use super::{DEEPEST, Element, Reader};
 
-use crate::report::At;
+use crate::report::SourceSpan;
 use crate::turn::{from_z_and_x, none, sequence};
 use crate::xml;
 use crate::xml::exactly;
@@ -124,7 +124,7 @@ impl<'d> Reader<'d, '_> {
         (text, node): Element<'d>,
         key: &str,
         class: Option<&str>,
-    ) -> Option<(String, Option<At>)> {
+    ) -> Option<(String, Option<SourceSpan>)> {
         if let Some(value) = node.attribute(key) {
             return Some((value.to_owned(), xml::attribute_at(text, node, key)));
         }

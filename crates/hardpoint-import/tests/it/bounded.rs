@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use hardpoint_import::{Format, Imported, Problems};
+use hardpoint_import::{Format, ImportErrors, ImportedModel};
 
 /// More than any of these takes without optimisation on a busy machine, s; unbounded they take hours, or all memory.
 const LONGEST: f64 = 30.0;
@@ -11,7 +11,7 @@ fn import(
     format: &str,
     bytes: &[u8],
     beside: &dyn Fn(&str) -> Option<Vec<u8>>,
-) -> Result<Imported, Problems> {
+) -> Result<ImportedModel, ImportErrors> {
     let start = Instant::now();
     let result = hardpoint_import::import_as(Format::named(format).unwrap(), bytes, "source", beside);
     let taken = start.elapsed().as_secs_f64();

@@ -6,12 +6,12 @@ use hardpoint::model::BodyId;
 use hardpoint::space::{Mat3, Pose, Quat};
 use hardpoint::{Analysis, Run};
 use hardpoint_file::ModelFile;
-use hardpoint_import::{Closing, Fate, Imported, Options};
+use hardpoint_import::{Closing, ElementOutcome, ImportedModel, Options};
 
 /// Residual that the solver leaves of a position, m or rad.
 const SAME: f64 = 1e-9;
 
-fn read_with(name: &str, text: &str, closings: &[&str]) -> (Imported, ModelFile) {
+fn read_with(name: &str, text: &str, closings: &[&str]) -> (ImportedModel, ModelFile) {
     let closings: Vec<Closing> = closings.iter().map(|c| c.parse().unwrap()).collect();
     let options = Options { format: None, closings };
     let imported = hardpoint_import::import_with(&options, text.as_bytes(), name, &|_| None)
@@ -21,7 +21,7 @@ fn read_with(name: &str, text: &str, closings: &[&str]) -> (Imported, ModelFile)
     (imported, file)
 }
 
-fn read(name: &str, text: &str) -> (Imported, ModelFile) {
+fn read(name: &str, text: &str) -> (ImportedModel, ModelFile) {
     read_with(name, text, &[])
 }
 
@@ -164,7 +164,7 @@ fn constants_of_relations_count() {
         assert_eq!(
             imported
                 .report
-                .of(Fate::Approximated)
+                .of(ElementOutcome::Approximated)
                 .filter(|e| ["joint", "tendon"].contains(&e.kind.as_str()))
                 .count(),
             0
@@ -231,7 +231,7 @@ fn joints_follow_others_however_that_is_written() {
         let text = text.replace("PLUGIN", plugin).replace("MIMIC", mimic);
         let (imported, file) = read(name, &text);
         assert_eq!(file.model.couplers.len(), 1, "{text}");
-        assert_eq!(imported.report.of(Fate::NotUnderstood).count(), 0, "{}", imported.report);
+        assert_eq!(imported.report.of(ElementOutcome::NotUnderstood).count(), 0, "{}", imported.report);
         let poses = poses(&file, &["a", "b"]);
         let upright = at([0.0; 3]);
         let mut most: f64 = 0.0;
@@ -431,11 +431,15 @@ fn masses_come_along_in_the_global_axes() {
     // Values that no body can have are reported, and the mass stays.
     let flat = urdf.replace("izz=\"0.5\"", "izz=\"5\"");
     let (imported, _) = read("r.urdf", &flat);
-    assert!(imported.report.of(Fate::Approximated).any(|e| e.kind == "inertial"), "{}", imported.report);
+    assert!(
+        imported.report.of(ElementOutcome::Approximated).any(|e| e.kind == "inertial"),
+        "{}",
+        imported.report
+    );
     is(&mass_of(&imported.text), &[("mass", 2.0), ("ixx", 0.0)]);
     let negative = urdf.replace("<mass value=\"2\"/>", "<mass value=\"-2\"/>");
     let (imported, _) = read("r.urdf", &negative);
-    assert!(imported.report.of(Fate::Refused).any(|e| e.kind == "inertial"), "{}", imported.report);
+    assert!(imported.report.of(ElementOutcome::Refused).any(|e| e.kind == "inertial"), "{}", imported.report);
 }
 
 /// The force of the only driver of a model file at its first output time while it moves at 0.4 per second, with the file that gives it.
@@ -491,8 +495,8 @@ fn datasets_of_adams_bring_masses_gravity_and_springs() {
         JOINT/1, REVOLUTE, I=23, J=1\nMOTION/1, ROTATIONAL, JOINT=1, FUNCTION=0.4*TIME\nACCGRAV/KGRAV=-9806.65\n\
         SPRINGDAMPER/1, I=22, J=10, TRANSLATION, K=3, C=0.2, LENGTH=300, FORCE=12\nEND\n";
     let (imported, _) = read("pendulum.adm", text);
-    assert_eq!(imported.report.of(Fate::NotUnderstood).count(), 0, "{}", imported.report);
-    assert_eq!(imported.report.of(Fate::Ignored).count(), 0, "{}", imported.report);
+    assert_eq!(imported.report.of(ElementOutcome::NotUnderstood).count(), 0, "{}", imported.report);
+    assert_eq!(imported.report.of(ElementOutcome::Ignored).count(), 0, "{}", imported.report);
     // I_c = I_P - m (d^2 1 - d d^T) with d = (0.1, 0.05, 0) m; products are integrals on both sides.
     is(
         &mass_of(&imported.text),

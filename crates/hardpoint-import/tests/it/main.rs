@@ -14,7 +14,7 @@ mod vehicles;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use hardpoint_import::{Imported, Problems};
+use hardpoint_import::{ImportErrors, ImportedModel};
 
 /// The folder of sources made in the manner of their programs, one folder for each format.
 fn folder() -> PathBuf {
@@ -62,14 +62,14 @@ fn document(xml: &[u8]) -> Vec<u8> {
 }
 
 /// Imports a source with what lies beside it.
-fn import(path: &Path) -> Result<Imported, Problems> {
+fn import(path: &Path) -> Result<ImportedModel, ImportErrors> {
     let folder = path.parent().unwrap().to_owned();
     let name = path.file_name().unwrap().to_string_lossy().into_owned();
     hardpoint_import::import(&bytes(path), &name, &|p| std::fs::read(folder.join(p)).ok())
 }
 
 /// The model of an import, its files beside it.
-fn model(imported: &Imported) -> hardpoint_file::ModelFile {
+fn model(imported: &ImportedModel) -> hardpoint_file::ModelFile {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in &imported.files {
         let path = folder.path().join(name);

@@ -4,14 +4,14 @@ use hardpoint::model::{BodyId, Joint};
 use hardpoint::space::Vec3;
 use hardpoint::{Analysis, Run};
 use hardpoint_file::ModelFile;
-use hardpoint_import::{Fate, Imported};
+use hardpoint_import::{ElementOutcome, ImportedModel};
 
 use crate::model;
 
 /// What sums of sixteen digits leave.
 const SAME: f64 = 1e-12;
 
-fn read_with(name: &str, bytes: &[u8], beside: &[(&str, &str)]) -> (Imported, ModelFile) {
+fn read_with(name: &str, bytes: &[u8], beside: &[(&str, &str)]) -> (ImportedModel, ModelFile) {
     let resolve =
         |path: &str| beside.iter().find(|(p, _)| *p == path).map(|(_, text)| text.as_bytes().to_vec());
     let imported = hardpoint_import::import(bytes, name, &resolve).unwrap_or_else(|e| panic!("{name}:\n{e}"));
@@ -20,7 +20,7 @@ fn read_with(name: &str, bytes: &[u8], beside: &[(&str, &str)]) -> (Imported, Mo
     (imported, file)
 }
 
-fn read(name: &str, text: &str) -> (Imported, ModelFile) {
+fn read(name: &str, text: &str) -> (ImportedModel, ModelFile) {
     read_with(name, text.as_bytes(), &[])
 }
 
@@ -45,7 +45,7 @@ fn kinds(file: &ModelFile) -> Vec<(&str, &str)> {
     file.model.named_joints().map(|(_, j)| (j.name.as_str(), j.kind.name)).collect()
 }
 
-fn told(imported: &Imported, fate: Fate, kind: &str) -> Vec<String> {
+fn told(imported: &ImportedModel, fate: ElementOutcome, kind: &str) -> Vec<String> {
     imported.report.of(fate).filter(|e| e.kind == kind).map(|e| format!("{}: {}", e.name, e.why)).collect()
 }
 
@@ -74,7 +74,7 @@ const ARM: &str = r#"<robot name="arm">
 fn texts_are_read_however_exporters_write_them() {
     let (plain, file) = read("arm.urdf", ARM);
     is_at(place(&file, "flange"), [0.0, 0.0, 1.5]);
-    assert_eq!(told(&plain, Fate::Taken, "spring").len(), 1);
+    assert_eq!(told(&plain, ElementOutcome::Taken, "spring").len(), 1);
     let remark = "<!-- ==== -- an arm -- ==== -->";
     let utf16: Vec<u8> = format!("\u{feff}{ARM}").encode_utf16().flat_map(u16::to_le_bytes).collect();
     let ways: [(&str, Vec<u8>); 7] = [
@@ -135,7 +135,7 @@ fn meshes_in_collada_are_shown_in_metres_in_the_frame_of_the_link() {
     let shape = r#"<link name="upper"><visual><geometry><mesh filename="package://arm/meshes/plates.dae" scale="2 2 2"/></geometry></visual></link>"#;
     let text = ARM.replace("<link name=\"upper\"/>", shape);
     let (imported, file) = read_with("arm.urdf", text.as_bytes(), &[("meshes/plates.dae", PLATES)]);
-    assert_eq!(told(&imported, Fate::Taken, "mesh").len(), 1);
+    assert_eq!(told(&imported, ElementOutcome::Taken, "mesh").len(), 1);
     let upper = file.model.bodies.iter().position(|b| b.name == "upper").unwrap();
     let drawing = &file.drawing.bodies[&upper];
     assert_eq!(drawing.triangles.len(), 4);
@@ -145,7 +145,7 @@ fn meshes_in_collada_are_shown_in_metres_in_the_frame_of_the_link() {
         assert!((most(k) - wanted).abs() < 1e-8, "{k}: {}", most(k));
     }
     let (imported, _) = read_with("arm.urdf", text.as_bytes(), &[("meshes/plates.dae", "<COLLADA/>")]);
-    let why = told(&imported, Fate::Refused, "mesh");
+    let why = told(&imported, ElementOutcome::Refused, "mesh");
     assert!(why.len() == 1 && why[0].contains("it shows no triangles"), "{why:?}");
 }
 
@@ -181,7 +181,7 @@ fn loops_of_every_program_close() {
     assert!(refused("loop.urdf", &none).contains("the axis has no direction"));
     let bushing = "<drake:linear_bushing_rpy xmlns:drake=\"http://drake.mit.edu\"/>";
     let (imported, _) = read("loop.urdf", &OPEN.replace("LOOP", bushing));
-    assert_eq!(told(&imported, Fate::Refused, "linear_bushing_rpy").len(), 1);
+    assert_eq!(told(&imported, ElementOutcome::Refused, "linear_bushing_rpy").len(), 1);
 }
 
 #[test]
@@ -203,14 +203,14 @@ fn plugins_say_which_joint_follows_and_limits_count_from_the_drawing() {
         <joint>A</joint><mimicJoint>D</mimicJoint><multiplier>-2</multiplier><offset>0.25</offset></plugin></gazebo>"#;
     let (imported, file) = read("loop.urdf", &OPEN.replace("LOOP", plugin));
     assert_eq!(file.model.couplers.len(), 1);
-    assert_eq!(told(&imported, Fate::Taken, "mimic").len(), 1);
+    assert_eq!(told(&imported, ElementOutcome::Taken, "mimic").len(), 1);
     // The offset is in the drawing.
     let rocker = file.model.bodies.iter().find(|b| b.name == "rocker").unwrap();
     assert!((rocker.frame.rot.cols[0] - Vec3::new(0.25_f64.cos(), 0.0, -(0.25_f64.sin()))).norm() < SAME);
     // A fixed joint follows nothing.
     let fixed = r#"<link name="lid"/><joint name="F" type="fixed"><parent link="base"/><child link="lid"/><mimic joint="A"/></joint>"#;
     let (imported, _) = read("loop.urdf", &OPEN.replace("LOOP", fixed));
-    assert_eq!(told(&imported, Fate::Refused, "mimic").len(), 1);
+    assert_eq!(told(&imported, ElementOutcome::Refused, "mimic").len(), 1);
 }
 
 /// A right angle with five digits, as many write it.
@@ -233,7 +233,7 @@ fn a_loop_whose_axes_are_rounded_moves_all_the_same() {
     let (imported, file) = read("four_bar.sdf", ROUNDED);
     assert_eq!(file.model.drivers.len(), 1);
     assert!(turns(&file, "rocker") > 0.01);
-    let axes = told(&imported, Fate::Approximated, "axes");
+    let axes = told(&imported, ElementOutcome::Approximated, "axes");
     assert!(
         axes.len() == 1 && axes[0].contains("1.1e-5 rad") && axes[0].contains("`A`, `B`, `D`"),
         "{axes:?}"
@@ -243,7 +243,7 @@ fn a_loop_whose_axes_are_rounded_moves_all_the_same() {
         .replace("<joint name=\"D\"", "<joint name=\"E\"")
         .replace("<parent>base</parent><child>rocker", "<parent>world</parent><child>base");
     let (imported, _) = read("chain.sdf", &chain);
-    assert!(told(&imported, Fate::Approximated, "axes").is_empty());
+    assert!(told(&imported, ElementOutcome::Approximated, "axes").is_empty());
 }
 
 #[test]
@@ -308,8 +308,8 @@ fn frames_of_sdf_stand_where_gazebo_puts_them() {
     let wheel = file.model.bodies.iter().position(|b| b.name == "cart::wheel").unwrap();
     let low = file.drawing.bodies[&wheel].vertices.iter().map(|v| v.z).fold(f64::INFINITY, f64::min);
     assert!(low.abs() < 1e-8, "{low}");
-    assert_eq!(told(&imported, Fate::Taken, "frame").len(), 3);
-    assert!(imported.report.of(Fate::Refused).next().is_none(), "{}", imported.report);
+    assert_eq!(told(&imported, ElementOutcome::Taken, "frame").len(), 3);
+    assert!(imported.report.of(ElementOutcome::Refused).next().is_none(), "{}", imported.report);
 }
 
 #[test]
@@ -326,10 +326,10 @@ fn joints_of_mjcf_in_frames_and_classes_and_includes_are_found() {
     let (imported, file) = read_with("m.xml", text.as_bytes(), &beside);
     is_at(joint(&file, "j").frames[0].cols[2], [0.0, 1.0, 0.0]);
     assert_eq!(joint(&file, "j").kind.name, "translational");
-    assert_eq!(told(&imported, Fate::Taken, "include").len(), 2);
+    assert_eq!(told(&imported, ElementOutcome::Taken, "include").len(), 2);
     assert!(file.model.bodies.iter().any(|b| b.name == "e"));
     // Each of the two ball joints is held in all its angles, also the spin of the body between them.
-    assert_eq!(told(&imported, Fate::Approximated, "motion").len(), 7, "{}", imported.report);
+    assert_eq!(told(&imported, ElementOutcome::Approximated, "motion").len(), 7, "{}", imported.report);
     assert!(
         refused(
             "m.xml",

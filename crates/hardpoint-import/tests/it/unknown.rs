@@ -1,6 +1,6 @@
 //! Unknown is not irrelevant: what a reader does not know is named, never counted among what does not concern the motion.
 
-use hardpoint_import::{Fate, Format};
+use hardpoint_import::{ElementOutcome, Format};
 
 use crate::folder;
 
@@ -37,21 +37,21 @@ fn named_in(format: &str, bytes: &[u8], what: &str) {
     let imported = hardpoint_import::import_as(format, bytes, "source", &|_| None)
         .unwrap_or_else(|e| panic!("{what}: {e}"));
     let report = &imported.report;
-    let named: Vec<&str> = report.of(Fate::NotUnderstood).map(|e| e.kind.as_str()).collect();
+    let named: Vec<&str> = report.of(ElementOutcome::NotUnderstood).map(|e| e.kind.as_str()).collect();
     assert_eq!(named, [what], "{report}");
-    let place = &report.of(Fate::NotUnderstood).next().unwrap().place;
-    assert!(report.of(Fate::Ignored).all(|e| e.place != *place), "{report}");
+    let place = &report.of(ElementOutcome::NotUnderstood).next().unwrap().place;
+    assert!(report.of(ElementOutcome::Ignored).all(|e| e.place != *place), "{report}");
     // It is the first that is read, but for remarks about the whole.
     let text = report.to_string();
     let lines = text.lines().skip(1).find(|l| !l.starts_with("  note:"));
     assert!(lines.unwrap().starts_with("  not understood"), "{text}");
-    assert!(report.of(Fate::NotUnderstood).all(|e| e.place.is_some()), "{report}");
+    assert!(report.of(ElementOutcome::NotUnderstood).all(|e| e.place.is_some()), "{report}");
 }
 
 fn all_named(format: &str, text: &str, changes: &[Change]) {
     let known =
         hardpoint_import::import(text.as_bytes(), "source", &|_| None).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(known.report.of(Fate::NotUnderstood).count(), 0, "{}", known.report);
+    assert_eq!(known.report.of(ElementOutcome::NotUnderstood).count(), 0, "{}", known.report);
     for (from, to, what) in changes {
         let changed = text.replacen(from, to, 1);
         assert_ne!(changed, text, "`{from}` is not in the source");
@@ -194,7 +194,7 @@ fn in_adams() {
     let starts = text.replace("JOINT/1, REVOLUTE", "JOINT/1, REVOLUTE, ICROT = 0.5, 0");
     let imported = hardpoint_import::import(starts.as_bytes(), "geared.adm", &|_| None).unwrap();
     assert_eq!(
-        imported.report.of(Fate::Refused).filter(|e| e.kind == "ICROT").count(),
+        imported.report.of(ElementOutcome::Refused).filter(|e| e.kind == "ICROT").count(),
         1,
         "{}",
         imported.report

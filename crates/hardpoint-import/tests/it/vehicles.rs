@@ -5,7 +5,7 @@ use hardpoint::model::{BodyId, CaseId};
 use hardpoint::space::{Mat3, Vec3};
 use hardpoint::{Analysis, Run};
 use hardpoint_file::ModelFile;
-use hardpoint_import::{Fate, Imported};
+use hardpoint_import::{ElementOutcome, ImportedModel};
 use toml_edit::DocumentMut;
 
 use crate::{folder, import, model, sources};
@@ -15,7 +15,7 @@ const SOLVED: f64 = 1e-9;
 /// Round-off of numbers that went through a text, as a part of them.
 const WRITTEN: f64 = 1e-12;
 
-fn read(name: &str, text: &str) -> (Imported, ModelFile) {
+fn read(name: &str, text: &str) -> (ImportedModel, ModelFile) {
     let imported =
         hardpoint_import::import(text.as_bytes(), name, &|_| None).unwrap_or_else(|e| panic!("{e}"));
     assert!(imported.fault.is_none(), "{}\n{}", imported.fault.unwrap(), imported.text);
@@ -24,7 +24,7 @@ fn read(name: &str, text: &str) -> (Imported, ModelFile) {
     (imported, file)
 }
 
-fn source(path: &str) -> (Imported, ModelFile) {
+fn source(path: &str) -> (ImportedModel, ModelFile) {
     let imported = import(&folder().join(path)).unwrap_or_else(|e| panic!("{e}"));
     let file = model(&imported);
     (imported, file)
@@ -86,7 +86,8 @@ fn masses_of_chrono_parts_come_in_the_frames_that_chrono_gives_them() {
         near(number(&doc, &["masses", "tierod_outer", "mass"]), 2.0 * outer, "outer");
         near(number(&doc, &["masses", "tierod_inner", "mass"]), 2.0 * (1.0 - outer), "inner");
         assert_eq!(file.model.elements.len(), 5, "{}", imported.text);
-        let told: Vec<_> = imported.report.of(Fate::Approximated).filter(|e| e.kind == "mass").collect();
+        let told: Vec<_> =
+            imported.report.of(ElementOutcome::Approximated).filter(|e| e.kind == "mass").collect();
         assert_eq!(told.iter().map(|e| e.name.as_str()).collect::<Vec<_>>(), ["tierod"]);
         near(number(&doc, &["gravity", "acceleration"]), 9.80665, "gravity");
     }
@@ -161,9 +162,9 @@ fn springs_and_dampers_of_chrono_have_its_forces() {
         &["spring"],
     );
     assert!((found[0][0] + 2000.0).abs() < 1e-6, "{}", found[0][0]);
-    let refused: Vec<&str> = imported.report.of(Fate::Refused).map(|e| e.kind.as_str()).collect();
+    let refused: Vec<&str> = imported.report.of(ElementOutcome::Refused).map(|e| e.kind.as_str()).collect();
     assert_eq!(refused, ["Minimum Length", "Damping Curve Data"]);
-    assert!(imported.report.of(Fate::Approximated).any(|e| e.kind == "Spring Curve Data"));
+    assert!(imported.report.of(ElementOutcome::Approximated).any(|e| e.kind == "Spring Curve Data"));
 }
 
 /// A pose as six numbers: a displacement, and a rotation vector about the origin.
@@ -312,7 +313,7 @@ fn a_live_axle_of_adams_car_is_recognised_by_its_names() {
     );
     let report = imported.report.to_string();
     assert!(report.contains("NSPRING_ASSEMBLY `ride_spring`: its characteristic is in the property file `springs.tbl/rear.spr`"), "{report}");
-    assert_eq!(imported.report.of(Fate::NotUnderstood).count(), 0, "{report}");
+    assert_eq!(imported.report.of(ElementOutcome::NotUnderstood).count(), 0, "{report}");
 }
 
 /// Another set of hardpoints in the axle's file.
@@ -409,12 +410,12 @@ fn figures_of_the_vehicle_come_from_suspension_explorer() {
     near(number(&doc, &["vehicle", "front_brake_share"]), 0.6, "brakes");
     assert!(imported.text.contains("front_drive_share = 0.0") && imported.text.contains("end = \"rear\""));
     let of = |fate| imported.report.of(fate).map(|e| e.kind.clone()).collect::<Vec<_>>();
-    assert_eq!(of(Fate::NotUnderstood), ["colour"]);
-    let refused = of(Fate::Refused);
+    assert_eq!(of(ElementOutcome::NotUnderstood), ["colour"]);
+    let refused = of(ElementOutcome::Refused);
     assert!(["spring", "damper", "anti_roll"].iter().all(|k| refused.iter().any(|r| r == k)), "{refused:?}");
     let (imported, _) =
         read("w.yaml", &text.replace("wheelbase: 2500.0", "wheelbase: -1\n  driven_axle: both"));
-    let refused: Vec<&str> = imported.report.of(Fate::Refused).map(|e| e.kind.as_str()).collect();
+    let refused: Vec<&str> = imported.report.of(ElementOutcome::Refused).map(|e| e.kind.as_str()).collect();
     assert!(["wheelbase", "driven_axle"].iter().all(|k| refused.contains(k)), "{refused:?}");
     // In metres everything is.
     let metres =
@@ -449,7 +450,7 @@ fn the_right_side_is_left_to_a_mirror_where_it_is_the_image_of_the_left_one() {
             .collect();
         let entries = imported
             .report
-            .of(Fate::Taken)
+            .of(ElementOutcome::Taken)
             .filter(|e| ["link", "mass", "force", "wheel"].contains(&e.kind.as_str()));
         for entry in entries {
             assert!(names.contains(&entry.name.as_str()), "{name}: {} {}", entry.kind, entry.name);
@@ -502,7 +503,7 @@ fn every_key_of_a_part_is_accounted_for() {
     let arm = r#""Bushing Data": {"Stiffness Linear": 7e7},"#;
     let (imported, _) = read("front.json", &leaning("", arm, rest));
     let of = |fate| imported.report.of(fate).map(|e| e.kind.clone()).collect::<Vec<_>>();
-    assert_eq!(of(Fate::NotUnderstood), ["Colour", "Turbo"]);
-    assert_eq!(of(Fate::Refused), ["Bushing Data", "Axle"]);
-    assert_eq!(of(Fate::Ignored), ["Radius"]);
+    assert_eq!(of(ElementOutcome::NotUnderstood), ["Colour", "Turbo"]);
+    assert_eq!(of(ElementOutcome::Refused), ["Bushing Data", "Axle"]);
+    assert_eq!(of(ElementOutcome::Ignored), ["Radius"]);
 }

@@ -22,7 +22,7 @@ use hardpoint::model::{
     BodyId, Coupler, Direction, Driver, GROUND, HardpointId, Joint, JointId, Model, OutputSource, VariableId,
 };
 use hardpoint::sensitivity::{self, Condition, JointDefect, admissibility_at_design, conditions_at_design};
-use hardpoint::topology::{Block, Closure, CutReason, Formulation, Role, RowId, Topology};
+use hardpoint::topology::{Block, Closure, CutReason, Formulation, JointRole, RowId, Topology};
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
@@ -353,7 +353,7 @@ fn joints(model: &Model, topology: &Topology) -> Vec<JointFact> {
     let spins = held_spins(model);
     let fact = |(id, joint): (JointId, &Joint)| {
         let (role, why) = match &topology.roles[id.0] {
-            Role::Tree { child, unknowns } => {
+            JointRole::Tree { child, unknowns } => {
                 let child = &model.bodies[child.0].name;
                 let leaves = match unknowns {
                     0 => "no unknown".into(),
@@ -361,7 +361,7 @@ fn joints(model: &Model, topology: &Topology) -> Vec<JointFact> {
                 };
                 ("tree", format!("places {child}, leaves {leaves}"))
             }
-            Role::Cut(reason) => ("cut", why_cut(joint, *reason).into()),
+            JointRole::Cut(reason) => ("cut", why_cut(joint, *reason).into()),
         };
         JointFact {
             name: joint.name.clone(),

@@ -9,7 +9,7 @@ use crate::figures::{names, number, order_unit, rounded, symbol, with_unit};
 
 /// One note per idle spin.
 pub(super) fn idle_spins(model: &Model) -> Vec<String> {
-    let note = |idle: &hardpoint::model::Idle| {
+    let note = |idle: &hardpoint::model::IdleRotation| {
         let bodies = names(idle.bodies.iter().map(|b| model.bodies[b.0].name.as_str()));
         let ball = &model.joints[idle.joint.0].name;
         let (spins, its) = match idle.bodies.len() {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use hardpoint::joint;
 use hardpoint::model::{JointId, MeasureKind, Model};
-use hardpoint::topology::{Formulation, Redundancy, Role, Topology};
+use hardpoint::topology::{Formulation, JointRole, Redundancy, Topology};
 use serde::Serialize;
 
 use crate::figures::{count, quoted, some_in_words};
@@ -119,7 +119,7 @@ impl Freed {
     /// A joint that removes so many redundant constraints as another type, and leaves the mechanism driven as it is: tried,
     /// together with those found before. Joints that close a loop come first.
     fn instead(&mut self, topology: &Topology, joints: &[usize], redundant: usize) -> Option<Instead> {
-        let is_cut = |j: &usize| matches!(topology.roles[*j], Role::Cut(_));
+        let is_cut = |j: &usize| matches!(topology.roles[*j], JointRole::Cut(_));
         let (cut, tree): (Vec<usize>, Vec<usize>) = joints.iter().partition(|j| is_cut(j));
         cut.into_iter().chain(tree).find_map(|j| {
             if self.is_named_by_others(JointId(j)) {

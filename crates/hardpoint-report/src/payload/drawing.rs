@@ -10,7 +10,7 @@ use hardpoint::model::{
 };
 use hardpoint::space::{Pose, Vec3};
 use hardpoint::study::DriverRates;
-use hardpoint::topology::Role;
+use hardpoint::topology::JointRole;
 use hardpoint_file::MeshFrame;
 
 use crate::facts::{held_spins, written_kind};
@@ -183,7 +183,7 @@ impl Compose<'_> {
                 lead: self.lead(JointId(j)),
                 curve: joint.curve.as_ref().map(|curve| self.joint_curve(curve, *i)),
                 draw: self.looks.joints.get(&j).map(|form| form.name().into()),
-                cut: matches!(roles[j], Role::Cut(_)),
+                cut: matches!(roles[j], JointRole::Cut(_)),
             }
         };
         self.drawn_joints().map(mark).collect()

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use hardpoint::model::{BodyId, VariableId};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Angles;
-use hardpoint::study::{Scheme, finite_differences};
+use hardpoint::study::{DifferenceScheme, finite_differences};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::columns::Columns;
@@ -226,7 +226,7 @@ fn page_holds_all_quantities_and_their_comparison() {
     let (analysis, solution, summary) = solved(&file);
     let steps: Vec<(VariableId, f64)> =
         [0, 1].map(|b| (VariableId(b), 1e-4 * file.model.natural_step(VariableId(b)))).to_vec();
-    let mut differences: Vec<_> = finite_differences(&analysis, &solution, Scheme::Central, &steps)
+    let mut differences: Vec<_> = finite_differences(&analysis, &solution, DifferenceScheme::Central, &steps)
         .into_iter()
         .map(Result::ok)
         .collect();

@@ -47,7 +47,7 @@ fn body(name: &str) -> BodyDraft {
 }
 
 fn joint(name: &str, kind: &str, bodies: [&str; 2], at: &[[f64; 3]], axis: Option<[f64; 3]>) -> JointDraft {
-    let joint = JointDraft { axis: axis.map(LineDraft::from), ..JointDraft::new(name, kind, bodies) };
+    let joint = JointDraft { axis: axis.map(DirectionDraft::from), ..JointDraft::new(name, kind, bodies) };
     at.iter().fold(joint, |joint, place| joint.at(*place))
 }
 
@@ -138,7 +138,7 @@ fn couplers_are_written_out_in_the_users_units_and_counted() {
 
 /// Three arms that turn about y, each driven in a way of its own.
 fn arms() -> Draft {
-    let at = |x: f64, y: f64| PlaceDraft::At(Vec3::new(x, y, 0.0));
+    let at = |x: f64, y: f64| LocationDraft::At(Vec3::new(x, y, 0.0));
     let arm = |k: usize| {
         let name = format!("arm_{k}");
         joint(&format!("hinge_{k}"), "revolute", ["ground", &name], &[[0.0, 0.1 * k as f64, 0.0]], Y)
@@ -154,7 +154,7 @@ fn arms() -> Draft {
                 "lift",
                 DrivenDraft::Position {
                     point: PointRef::On { body: "arm_1".into(), at: at(0.1, 0.1) },
-                    along: LineDraft::Along(Vec3::new(0.0, 0.0, 1.0)),
+                    along: DirectionDraft::Along(Vec3::new(0.0, 0.0, 1.0)),
                 },
             ),
             drives(
@@ -162,9 +162,9 @@ fn arms() -> Draft {
                 DrivenDraft::Distance {
                     from: PointRef::On {
                         body: "ground".into(),
-                        at: PlaceDraft::At(Vec3::new(0.1, 0.2, -0.1)),
+                        at: LocationDraft::At(Vec3::new(0.1, 0.2, -0.1)),
                     },
-                    to: PointRef::On { body: "arm_2".into(), at: PlaceDraft::Hardpoint("tip".into()) },
+                    to: PointRef::On { body: "arm_2".into(), at: LocationDraft::Hardpoint("tip".into()) },
                 },
             ),
             drives(
@@ -172,7 +172,7 @@ fn arms() -> Draft {
                 DrivenDraft::Orientation {
                     body: "arm_3".into(),
                     relative_to: None,
-                    about: LineDraft::Along(Vec3::new(0.0, 1.0, 0.0)),
+                    about: DirectionDraft::Along(Vec3::new(0.0, 1.0, 0.0)),
                 },
             ),
         ],
@@ -271,7 +271,7 @@ fn one_four_bar(pin: Vec3, law_of: impl Fn(f64) -> String) -> ModelFile {
     draft.joints.truncate(4);
     draft.bodies.truncate(3);
     draft.drivers.truncate(1);
-    draft.joints[2].at = vec![PlaceDraft::At(pin)];
+    draft.joints[2].at = vec![LocationDraft::At(pin)];
     // Coupler and rocker are in line where the crank's pin is as far from D as both are long.
     let (crank, coupler, rocker, base) = (0.1_f64, 0.2_f64, 0.02_f64.sqrt(), 0.3_f64);
     let cosine = (crank.powi(2) + base.powi(2) - (coupler + rocker).powi(2)) / (2.0 * crank * base);

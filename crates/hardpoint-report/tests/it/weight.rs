@@ -5,7 +5,7 @@ use std::path::Path;
 
 use hardpoint::model::{BodyId, VariableId};
 use hardpoint::space::Vec3;
-use hardpoint::study::{Difference, Scheme, finite_differences};
+use hardpoint::study::{Difference, DifferenceScheme, finite_differences};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
@@ -36,7 +36,10 @@ fn page(file: &ModelFile, compared: bool) -> (Payload, String) {
 fn differences(file: &ModelFile, analysis: &Analysis<'_>, solution: &Solution) -> Vec<Option<Difference>> {
     let variables = (0..file.model.variables.len()).map(VariableId);
     let steps: Vec<_> = variables.map(|b| (b, 1e-4 * file.model.natural_step(b))).collect();
-    finite_differences(analysis, solution, Scheme::Central, &steps).into_iter().map(Result::ok).collect()
+    finite_differences(analysis, solution, DifferenceScheme::Central, &steps)
+        .into_iter()
+        .map(Result::ok)
+        .collect()
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! A run in windows gives the same numbers as a run in one piece, to the last bit.
 
 use hardpoint::model::VariableId;
-use hardpoint::{Analysis, Keep, Kept, Run, Solution};
+use hardpoint::{Analysis, Run, SampledResults, Sampling, Solution};
 
 fn bits(x: [f64; 3]) -> [u64; 3] {
     x.map(f64::to_bits)
@@ -46,7 +46,8 @@ fn windows_of_a_run_are_parts_of_the_whole() {
         let analysis = Analysis::new(&file.model).unwrap();
         let whole = analysis.run();
         let steps = whole.motion.len();
-        let mut kept = Kept::new(Keep { rows: 11, motion: true, sensitivities: true, outputs: None });
+        let mut kept =
+            SampledResults::new(Sampling { rows: 11, motion: true, sensitivities: true, outputs: None });
         let (mut next, mut windows) = (0, 0);
         // The least there is: one round of the lanes.
         let end = analysis.solve_in_windows(Run::new(), 1, |first, window| {

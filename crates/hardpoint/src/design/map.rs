@@ -17,8 +17,8 @@ use crate::constraint::Row;
 use crate::design::{BodyFixed, DesignVelocity, Geometry, JointConstants, MarkerVelocity};
 use crate::law::Law;
 use crate::model::{
-    BodyId, Change, DesignVariable, Direction, DriverId, HardpointId, Held, Joint, JointId, Measure,
-    MeasureKind, Model, NumberId, PointId, Source, Target, VariableId,
+    BodyId, Change, DesignVariable, Direction, DriverId, HardpointId, Joint, JointId, Measure, MeasureKind,
+    Model, NumberId, PointId, SharedModel, Source, Target, VariableId,
 };
 use crate::number::{Dual, Real};
 use crate::space::{Mat3, Pose, Twist, Vec3};
@@ -29,7 +29,7 @@ use super::formulas::Formulas;
 /// What the variables of a model change, by what they change: found once for many designs.
 #[derive(Clone, Debug)]
 pub(crate) struct DesignMap<'m> {
-    held: Held<'m>,
+    held: SharedModel<'m>,
     /// Per hardpoint: the variables that move it, and its velocity by each.
     moves: Vec<Vec<(usize, Vec3)>>,
     /// Per joint: the variables that change the joint itself, and by which of their changes.
@@ -42,7 +42,7 @@ pub(crate) struct DesignMap<'m> {
 }
 
 impl<'m> DesignMap<'m> {
-    pub fn of(held: impl Into<Held<'m>>) -> Self {
+    pub fn of(held: impl Into<SharedModel<'m>>) -> Self {
         let held = held.into();
         let model: &Model = &held;
         let hardpoints = model.hardpoints.len();

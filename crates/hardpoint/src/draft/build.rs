@@ -3,8 +3,8 @@
 //! Whatever has no word here is a field: `draft.wheels.push(...)`.
 
 use crate::draft::{
-    BodyDraft, ChangeDraft, CurveDraft, Draft, DrivenDraft, DriverDraft, FrameDraft, HardpointDraft,
-    JointDraft, LineDraft, MeasureDraft, MeasureKindDraft, PlaceDraft, PointDraft, VariableDraft,
+    BodyDraft, ChangeDraft, CurveDraft, DirectionDraft, Draft, DrivenDraft, DriverDraft, FrameDraft,
+    HardpointDraft, JointDraft, LocationDraft, MeasureDraft, MeasureKindDraft, PointDraft, VariableDraft,
 };
 use crate::law::Law;
 use crate::space::Vec3;
@@ -46,8 +46,8 @@ impl Draft {
         self,
         name: impl Into<String>,
         bodies: [impl Into<String>; 2],
-        at: impl Into<PlaceDraft>,
-        axis: impl Into<LineDraft>,
+        at: impl Into<LocationDraft>,
+        axis: impl Into<DirectionDraft>,
     ) -> Self {
         self.joint(JointDraft::new(name, "revolute", bodies).at(at).axis(axis))
     }
@@ -57,8 +57,8 @@ impl Draft {
         self,
         name: impl Into<String>,
         bodies: [impl Into<String>; 2],
-        at: impl Into<PlaceDraft>,
-        axis: impl Into<LineDraft>,
+        at: impl Into<LocationDraft>,
+        axis: impl Into<DirectionDraft>,
     ) -> Self {
         self.joint(JointDraft::new(name, "translational", bodies).at(at).axis(axis))
     }
@@ -68,7 +68,7 @@ impl Draft {
         self,
         name: impl Into<String>,
         bodies: [impl Into<String>; 2],
-        at: impl Into<PlaceDraft>,
+        at: impl Into<LocationDraft>,
     ) -> Self {
         self.joint(JointDraft::new(name, "spherical", bodies).at(at))
     }
@@ -78,7 +78,7 @@ impl Draft {
         self,
         name: impl Into<String>,
         bodies: [impl Into<String>; 2],
-        between: [impl Into<PlaceDraft>; 2],
+        between: [impl Into<LocationDraft>; 2],
     ) -> Self {
         let [from, to] = between;
         self.joint(JointDraft::new(name, "distance", bodies).at(from).at(to))
@@ -112,7 +112,7 @@ impl Draft {
         mut self,
         name: impl Into<String>,
         body: impl Into<String>,
-        at: impl Into<PlaceDraft>,
+        at: impl Into<LocationDraft>,
     ) -> Self {
         self.points.push(PointDraft::new(name, body, at));
         self
@@ -146,18 +146,18 @@ impl JointDraft {
     }
 
     /// Its place, or the next one of two.
-    pub fn at(mut self, place: impl Into<PlaceDraft>) -> Self {
+    pub fn at(mut self, place: impl Into<LocationDraft>) -> Self {
         self.at.push(place.into());
         self
     }
 
     /// Where the markers' z axis points.
-    pub fn axis(self, axis: impl Into<LineDraft>) -> Self {
+    pub fn axis(self, axis: impl Into<DirectionDraft>) -> Self {
         Self { axis: Some(axis.into()), ..self }
     }
 
     /// Where the markers' x axis points.
-    pub fn axis2(self, axis: impl Into<LineDraft>) -> Self {
+    pub fn axis2(self, axis: impl Into<DirectionDraft>) -> Self {
         Self { axis2: Some(axis.into()), ..self }
     }
 
@@ -172,7 +172,7 @@ impl JointDraft {
     }
 
     /// The curve on body i that a point of body j follows.
-    pub fn curve(self, points: impl IntoIterator<Item = impl Into<PlaceDraft>>, closed: bool) -> Self {
+    pub fn curve(self, points: impl IntoIterator<Item = impl Into<LocationDraft>>, closed: bool) -> Self {
         let points = points.into_iter().map(Into::into).collect();
         Self { curve: Some(CurveDraft { points, closed }), ..self }
     }
@@ -206,7 +206,7 @@ impl DriverDraft {
 
 impl PointDraft {
     /// A point to follow, on a body.
-    pub fn new(name: impl Into<String>, body: impl Into<String>, at: impl Into<PlaceDraft>) -> Self {
+    pub fn new(name: impl Into<String>, body: impl Into<String>, at: impl Into<LocationDraft>) -> Self {
         Self { name: name.into(), body: body.into(), at: at.into() }
     }
 }
@@ -238,42 +238,42 @@ impl From<&str> for BodyDraft {
 }
 
 /// A hardpoint, by name.
-impl From<&str> for PlaceDraft {
+impl From<&str> for LocationDraft {
     fn from(hardpoint: &str) -> Self {
         Self::Hardpoint(hardpoint.into())
     }
 }
 
 /// Global coordinates, m.
-impl From<[f64; 3]> for PlaceDraft {
+impl From<[f64; 3]> for LocationDraft {
     fn from(position: [f64; 3]) -> Self {
         Self::At(position.into())
     }
 }
 
 /// Global coordinates, m.
-impl From<Vec3> for PlaceDraft {
+impl From<Vec3> for LocationDraft {
     fn from(position: Vec3) -> Self {
         Self::At(position)
     }
 }
 
 /// Along a global vector of any length.
-impl From<[f64; 3]> for LineDraft {
+impl From<[f64; 3]> for DirectionDraft {
     fn from(direction: [f64; 3]) -> Self {
         Self::Along(direction.into())
     }
 }
 
 /// Along a global vector of any length.
-impl From<Vec3> for LineDraft {
+impl From<Vec3> for DirectionDraft {
     fn from(direction: Vec3) -> Self {
         Self::Along(direction)
     }
 }
 
 /// From one named hardpoint to another.
-impl From<[&str; 2]> for LineDraft {
+impl From<[&str; 2]> for DirectionDraft {
     fn from([from, to]: [&str; 2]) -> Self {
         Self::Through(from.into(), to.into())
     }

@@ -1,6 +1,6 @@
 //! Changes as written, and what a variable measures that makes them.
 
-use crate::draft::LineDraft;
+use crate::draft::DirectionDraft;
 use crate::joint::Quantity;
 use crate::law::{Law, ParameterKind};
 use crate::model::End;
@@ -23,7 +23,7 @@ macro_rules! in_drafts {
                 /// The joint's name.
                 joint: String,
                 /// The line to turn about, by one radian per radian of the variable.
-                about: LineDraft,
+                about: DirectionDraft,
             },
             /// Whole bodies change their shape, and everything on them follows: joints with the markers of both bodies, axes, points.
             Shape {
@@ -94,7 +94,7 @@ pub enum ShapeDraft {
     /// About a line through a hardpoint.
     Rotate {
         /// The line's direction.
-        about: LineDraft,
+        about: DirectionDraft,
         /// The hardpoint.
         at: String,
     },
@@ -103,7 +103,7 @@ pub enum ShapeDraft {
         /// The hardpoint.
         from: String,
         /// The direction.
-        along: Option<LineDraft>,
+        along: Option<DirectionDraft>,
     },
     /// Like a beam that is held at one hardpoint and pushed at another.
     Bend {

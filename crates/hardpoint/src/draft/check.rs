@@ -14,13 +14,14 @@ mod sweeping;
 mod tolerancing;
 mod wheels;
 
-pub use formulas::{Nominal, NotConstant};
+pub use formulas::{ConstantError, Nominal};
 pub(super) use measures::MeasureCheck;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::draft::{
-    Draft, Fault, FormulaOf, FrameDraft, LineDraft, Locus, PlaceDraft, PointRef, Section, did_you_mean,
+    DirectionDraft, Draft, DraftError, DraftLocation, FormulaOf, FrameDraft, LocationDraft, PointRef,
+    Section, did_you_mean,
 };
 use crate::expression::Expression;
 use crate::model::{
@@ -44,17 +45,17 @@ impl Model {
     /// Checks a draft and resolves its names.
     ///
     /// # Errors
-    /// Every [`Fault`] of the draft, in its order: unknown or duplicate names, axes that are null or
+    /// Every [`DraftError`] of the draft, in its order: unknown or duplicate names, axes that are null or
     /// missing or not square, places that do not fit the joint type, drivers on coordinates that a joint
     /// does not have, laws that are not finite at an output time, times that do not increase. No fault, but no model either,
-    /// where something is [`Unread`](crate::draft::Unread) and all else is right.
+    /// where something is [`UnreadEntries`](crate::draft::Unread) and all else is right.
     ///
     /// ```
     /// use hardpoint::{draft::Draft, model::Model};
     /// let faults = Model::from_draft(&Draft::default()).unwrap_err();
     /// assert_eq!(faults[0].message, "the model has no bodies");
     /// ```
-    pub fn from_draft(draft: &Draft) -> Result<Self, Vec<Fault>> {
+    pub fn from_draft(draft: &Draft) -> Result<Self, Vec<DraftError>> {
         let mut c = Checker::new(draft);
         c.names();
         c.formulas();
@@ -96,19 +97,19 @@ struct Here {
 }
 
 impl Here {
-    fn key(self, key: &'static str) -> Locus {
-        Locus { section: self.section, index: self.index, key, item: None }
+    fn key(self, key: &'static str) -> DraftLocation {
+        DraftLocation { section: self.section, index: self.index, key, item: None }
     }
 
-    fn item(self, key: &'static str, item: usize) -> Locus {
-        Locus { item: Some(item), ..self.key(key) }
+    fn item(self, key: &'static str, item: usize) -> DraftLocation {
+        DraftLocation { item: Some(item), ..self.key(key) }
     }
 }
 
 struct Checker<'a> {
     draft: &'a Draft,
     model: Model,
-    faults: Vec<Fault>,
+    faults: Vec<DraftError>,
     /// Which drafted joint became which joint; `None` for those that are faulty.
     joint_ids: Vec<Option<JointId>>,
     /// The same for wheels, and for axles.
@@ -165,7 +166,7 @@ fn extent_of_joints(draft: &Draft, hardpoints: &[Hardpoint], spoilt: &BTreeSet<S
     let places = draft.joints.iter().flat_map(|j| &j.at);
     let named: BTreeSet<&str> = places
         .filter_map(|place| match place {
-            PlaceDraft::Hardpoint(name) => Some(name.as_str()),
+            LocationDraft::Hardpoint(name) => Some(name.as_str()),
             _ => None,
         })
         .collect();
@@ -269,8 +270,13 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn fault(&mut self, code: &'static str, at: Locus, message: impl Into<String>) -> &mut Fault {
-        self.faults.push(Fault { code, at, message: message.into(), notes: Vec::new(), help: None });
+    fn fault(
+        &mut self,
+        code: &'static str,
+        at: DraftLocation,
+        message: impl Into<String>,
+    ) -> &mut DraftError {
+        self.faults.push(DraftError { code, at, message: message.into(), notes: Vec::new(), help: None });
         self.faults.last_mut().expect("just pushed")
     }
 
@@ -372,7 +378,7 @@ impl<'a> Checker<'a> {
         &mut self,
         what: &str,
         name: &str,
-        at: Locus,
+        at: DraftLocation,
         candidates: impl Iterator<Item = &'n str> + Clone,
     ) -> Option<usize> {
         let numbers = self.numbers.get(what);
@@ -407,7 +413,8 @@ impl<'a> Checker<'a> {
     /// What to write where a hardpoint is named in place of a point.
     fn point_at(&self, hardpoint: &str) -> Option<String> {
         self.draft.hardpoints.iter().find(|h| h.name == hardpoint)?;
-        let is_there = |place: &PlaceDraft| matches!(place, PlaceDraft::Hardpoint(name) if name == hardpoint);
+        let is_there =
+            |place: &LocationDraft| matches!(place, LocationDraft::Hardpoint(name) if name == hardpoint);
         // A joint with one place has it on both of its bodies.
         let bodies = self.draft.joints.iter().filter_map(|joint| {
             let k = joint.at.iter().position(is_there)?;
@@ -419,35 +426,35 @@ impl<'a> Checker<'a> {
         ))
     }
 
-    fn body(&mut self, name: &str, at: Locus) -> Option<BodyId> {
+    fn body(&mut self, name: &str, at: DraftLocation) -> Option<BodyId> {
         let draft = self.draft;
         let names = std::iter::once("ground").chain(draft.bodies.iter().map(|b| b.name.as_str()));
         self.find("body", name, at, names).map(BodyId)
     }
 
-    fn hardpoint(&mut self, name: &str, at: Locus) -> Option<HardpointId> {
+    fn hardpoint(&mut self, name: &str, at: DraftLocation) -> Option<HardpointId> {
         let draft = self.draft;
         self.find("hardpoint", name, at, draft.hardpoints.iter().map(|h| h.name.as_str())).map(HardpointId)
     }
 
     /// The joint of that name; `None`, without a second fault, where the joint itself is faulty.
-    fn joint(&mut self, name: &str, at: Locus) -> Option<JointId> {
+    fn joint(&mut self, name: &str, at: DraftLocation) -> Option<JointId> {
         let draft = self.draft;
         let k = self.find("joint", name, at, draft.joints.iter().map(|j| j.name.as_str()))?;
         self.joint_ids[k]
     }
 
     /// A hardpoint for a place; coordinates become an unnamed one.
-    fn place(&mut self, place: &PlaceDraft, owner: &str, at: Locus) -> Option<HardpointId> {
+    fn place(&mut self, place: &LocationDraft, owner: &str, at: DraftLocation) -> Option<HardpointId> {
         match place {
-            PlaceDraft::Hardpoint(name) => self.hardpoint(name, at),
-            PlaceDraft::At(p) if p.is_finite() => {
+            LocationDraft::Hardpoint(name) => self.hardpoint(name, at),
+            LocationDraft::At(p) if p.is_finite() => {
                 self.model.hardpoints.push(Hardpoint { name: owner.into(), position: *p, unnamed: true });
                 self.extent.include(*p);
                 Some(HardpointId(self.model.hardpoints.len() - 1))
             }
-            PlaceDraft::Formula(coordinates) => self.formula_place(coordinates, owner, at),
-            PlaceDraft::At(_) => {
+            LocationDraft::Formula(coordinates) => self.formula_place(coordinates, owner, at),
+            LocationDraft::At(_) => {
                 self.fault("HP0202", at, format!("a coordinate of `{owner}` is not a finite number"));
                 None
             }
@@ -468,7 +475,7 @@ impl<'a> Checker<'a> {
     /// A direction, and its unit vector at the design configuration.
     fn line(
         &mut self,
-        line: &LineDraft,
+        line: &DirectionDraft,
         owner: &str,
         here: Here,
         key: &'static str,
@@ -477,10 +484,15 @@ impl<'a> Checker<'a> {
     }
 
     /// The same, written at a place.
-    fn line_at(&mut self, line: &LineDraft, owner: &str, at: Locus) -> Option<(Direction, Vec3)> {
+    fn line_at(
+        &mut self,
+        line: &DirectionDraft,
+        owner: &str,
+        at: DraftLocation,
+    ) -> Option<(Direction, Vec3)> {
         let key = at.key;
         match line {
-            LineDraft::Along(v) => match v.unit() {
+            DirectionDraft::Along(v) => match v.unit() {
                 Some(u) => Some((Direction::Along(u), u)),
                 None => {
                     self.fault("HP0205", at, format!("the {key} of `{owner}` has no direction"))
@@ -489,9 +501,9 @@ impl<'a> Checker<'a> {
                     None
                 }
             },
-            LineDraft::Through(a, b) => {
-                let a_id = self.hardpoint(a, Locus { item: Some(0), ..at.clone() });
-                let b_id = self.hardpoint(b, Locus { item: Some(1), ..at.clone() });
+            DirectionDraft::Through(a, b) => {
+                let a_id = self.hardpoint(a, DraftLocation { item: Some(0), ..at.clone() });
+                let b_id = self.hardpoint(b, DraftLocation { item: Some(1), ..at.clone() });
                 let (a_id, b_id) = (a_id?, b_id?);
                 match self.apart(a_id, b_id)?.and_then(Vec3::unit) {
                     Some(u) => Some((Direction::Through(a_id, b_id), u)),
@@ -529,21 +541,21 @@ impl<'a> Checker<'a> {
                     frame = *pose;
                 }
                 FrameDraft::Points(origin, x, xy) => {
-                    let mut at = |k: usize, p: &PlaceDraft| match p {
-                        PlaceDraft::Formula(_) => {
+                    let mut at = |k: usize, p: &LocationDraft| match p {
+                        LocationDraft::Formula(_) => {
                             let message = format!("the frame of body `{}` is given by an expression", b.name);
                             self.fault("HP0230", here.item("frame", k), message)
                                 .help("give numbers: a change of the design leaves frames where they are");
                             None
                         }
-                        PlaceDraft::At(v) if v.is_finite() => Some(*v),
-                        PlaceDraft::At(_) => {
+                        LocationDraft::At(v) if v.is_finite() => Some(*v),
+                        LocationDraft::At(_) => {
                             let message =
                                 format!("a coordinate of the frame of `{}` is not a finite number", b.name);
                             self.fault("HP0202", here.item("frame", k), message);
                             None
                         }
-                        PlaceDraft::Hardpoint(name) => {
+                        LocationDraft::Hardpoint(name) => {
                             self.hardpoint(name, here.item("frame", k)).and_then(|h| self.position(h))
                         }
                     };
@@ -610,7 +622,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A point; `None`, without a second fault, where a named point itself is faulty.
-    fn point(&mut self, p: &PointRef, owner: &str, at: Locus) -> Option<PointId> {
+    fn point(&mut self, p: &PointRef, owner: &str, at: DraftLocation) -> Option<PointId> {
         match p {
             PointRef::Named(name) => {
                 let draft = self.draft;
@@ -638,7 +650,7 @@ impl<'a> Checker<'a> {
     }
 
     /// HP0219: output times that do not go on.
-    fn times_of(&mut self, times: &[f64], at: Locus) {
+    fn times_of(&mut self, times: &[f64], at: DraftLocation) {
         if times.is_empty() {
             self.fault("HP0219", at, "there are no output times")
                 .help("give a `[time]` table with `end` and `steps`");

@@ -5,11 +5,11 @@ use std::fmt;
 /// One thing that is wrong with a draft. All faults of a draft are found at once.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{message}")]
-pub struct Fault {
+pub struct DraftError {
     /// Stable code, `HP02..`; documented in `docs/diagnostics.md`.
     pub code: &'static str,
     /// Where in the draft.
-    pub at: Locus,
+    pub at: DraftLocation,
     /// The headline, enough alone.
     pub message: String,
     /// Facts, with units.
@@ -18,7 +18,7 @@ pub struct Fault {
     pub help: Option<String>,
 }
 
-impl Fault {
+impl DraftError {
     pub(crate) fn note(&mut self, note: impl Into<String>) -> &mut Self {
         self.notes.push(note.into());
         self
@@ -73,27 +73,27 @@ pub enum Section {
     Grids,
     /// [`super::Draft::optimization`].
     Optimize,
-    /// [`super::OptimizationDraft::goals`].
+    /// [`super::OptimizationSettingsDraft::goals`].
     Goals,
-    /// [`super::OptimizationDraft::limits`].
+    /// [`super::OptimizationSettingsDraft::limits`].
     Limits,
     /// [`super::Draft::tolerancing`].
     Tolerance,
-    /// [`super::TolerancingDraft::tolerances`].
+    /// [`super::ToleranceSettingsDraft::tolerances`].
     Tolerances,
-    /// [`super::TolerancingDraft::correlations`].
+    /// [`super::ToleranceSettingsDraft::correlations`].
     Correlations,
-    /// [`super::TolerancingDraft::limits`].
+    /// [`super::ToleranceSettingsDraft::limits`].
     ToleranceLimits,
     /// [`super::Draft::sweeping`].
     Sweep,
-    /// [`super::SweepingDraft::ranges`].
+    /// [`super::SweepSettingsDraft::ranges`].
     SweepRanges,
 }
 
 /// A place in a draft.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct Locus {
+pub struct DraftLocation {
     /// Which list.
     pub section: Section,
     /// Which entry of it.

@@ -2,7 +2,7 @@
 
 use crate::constraint::Row;
 use crate::linalg::FullPivot;
-use crate::model::{BodyId, GROUND, Idle, JointId, Model};
+use crate::model::{BodyId, GROUND, IdleRotation, JointId, Model};
 use crate::space::{Mat3, Twist, Vec3};
 
 /// A constraint that is weaker than this part of the strongest does not hold.
@@ -44,7 +44,7 @@ impl Model {
             let frame = Mat3 { cols: [axis.cross(z), z.cross(axis.cross(z)), z] };
             let held = &mut self.joints[ball.0];
             (held.kind, held.frames) = (&crate::joint::UNIVERSAL, [frame; 2]);
-            self.idle.push(Idle { bodies, joint: ball, axis });
+            self.idle.push(IdleRotation { bodies, joint: ball, axis });
         }
     }
 

@@ -1,6 +1,6 @@
 //! Measures as written, and what their fields mean in a model.
 
-use crate::draft::{LineDraft, NumberDraft, PointRef, RayDraft};
+use crate::draft::{DirectionDraft, NumberDraft, PointRef, RayDraft};
 use crate::expression::Expression;
 use crate::law::Law;
 use crate::model::{
@@ -89,7 +89,7 @@ pub enum FieldDraft {
     /// A global direction, of any length.
     Direction(Vec3),
     /// A direction, which may follow hardpoints.
-    Line(LineDraft),
+    Line(DirectionDraft),
     /// A direction to measure an angle from or to.
     Ray(RayDraft),
     /// One of the angles that say how a body is turned.

@@ -1,7 +1,7 @@
 //! A mechanism as somebody wrote it, with names as references, and the check that makes a model of it.
 //!
 //! [`Model::from_draft`](crate::model::Model::from_draft) checks all of a [`Draft`] at once and gives either a
-//! [`Model`](crate::model::Model) or every [`Fault`] that it found.
+//! [`Model`](crate::model::Model) or every [`DraftError`] that it found.
 
 mod build;
 mod change;
@@ -12,9 +12,9 @@ mod idle;
 mod measure;
 
 pub use change::{ChangeDraft, ShapeDraft};
-pub use check::{Nominal, NotConstant};
+pub use check::{ConstantError, Nominal};
 pub use element::{ElementDraft, ElementKindDraft, ElementType, NumberDraft};
-pub use fault::{Fault, Locus, Section, did_you_mean, some_of};
+pub use fault::{DraftError, DraftLocation, Section, did_you_mean, some_of};
 pub use measure::{FieldDraft, FieldKind, MeasureField, MeasureKindDraft, MeasureType};
 
 use std::collections::BTreeMap;
@@ -23,8 +23,8 @@ use crate::expression::Expression;
 use crate::joint::{self, JointType, Quantity};
 use crate::law::Law;
 use crate::model::{
-    AllocationRule, AtChangePoints, Dimension, LoadMode, Reduction, Side, SweepMethod, Sweeping, Tolerancing,
-    TorqueReaction, Transmission, Vehicle, VehicleEnd, WheelMeasure,
+    AllocationRule, ChangePointPolicy, Dimension, LoadMode, Reduction, Side, SweepMethod, SweepSettings,
+    ToleranceSettings, TorqueReaction, Transmission, Vehicle, VehicleEnd, WheelMeasure,
 };
 use crate::space::{Pose, Vec3};
 
@@ -73,27 +73,27 @@ pub struct Draft {
     /// Output times, s.
     pub times: Vec<f64>,
     /// Behaviour at change points.
-    pub at_change_points: AtChangePoints,
+    pub at_change_points: ChangePointPolicy,
     /// Several motions, in place of the one that the drivers' own laws and these times make.
     pub cases: Vec<CaseDraft>,
     /// Cases that sweep two drivers over a grid.
     pub grids: Vec<GridDraft>,
     /// What the design is to be optimised for.
-    pub optimization: Option<OptimizationDraft>,
+    pub optimization: Option<OptimizationSettingsDraft>,
     /// How far off the design may be made.
-    pub tolerancing: Option<TolerancingDraft>,
+    pub tolerancing: Option<ToleranceSettingsDraft>,
     /// Which designs are swept over, if the file says that.
-    pub sweeping: Option<SweepingDraft>,
+    pub sweeping: Option<SweepSettingsDraft>,
     /// What of all this could not be read.
-    pub unread: Unread,
+    pub unread: UnreadEntries,
 }
 
 /// What of a draft could not be read from the text that it was made from. Whatever the draft holds in its place counts for nothing: the
 /// check says nothing of it, nor of what would follow from it, and makes no model.
 #[derive(Clone, Debug, Default)]
-pub struct Unread(BTreeMap<(Section, usize), Vec<&'static str>>);
+pub struct UnreadEntries(BTreeMap<(Section, usize), Vec<&'static str>>);
 
-impl Unread {
+impl UnreadEntries {
     /// Notes that a field of an entry could not be read: by its name in model files, an empty one for the entry as a whole. Of
     /// [`Section::Model`] the fields are the tables of the file.
     pub fn note(&mut self, section: Section, index: usize, field: &'static str) {
@@ -172,7 +172,7 @@ pub struct HardpointDraft {
 
 /// Where something is: at a named hardpoint, or at coordinates.
 #[derive(Clone, Debug, PartialEq)]
-pub enum PlaceDraft {
+pub enum LocationDraft {
     /// A hardpoint's name.
     Hardpoint(String),
     /// Global coordinates in the design configuration, m.
@@ -183,7 +183,7 @@ pub enum PlaceDraft {
 
 /// Where an axis points.
 #[derive(Clone, Debug, PartialEq)]
-pub enum LineDraft {
+pub enum DirectionDraft {
     /// Along a global vector of any length.
     Along(Vec3),
     /// From one named hardpoint to another.
@@ -208,7 +208,7 @@ pub enum FrameDraft {
     /// Position and orientation.
     Pose(Pose),
     /// Origin, a point on the x axis, and a point in the xy plane on the side of +y.
-    Points(PlaceDraft, PlaceDraft, PlaceDraft),
+    Points(LocationDraft, LocationDraft, LocationDraft),
 }
 
 /// A joint.
@@ -223,11 +223,11 @@ pub struct JointDraft {
     /// Its place, or its two places for a rod or leg. May be empty where the axis passes through
     /// hardpoints: then it is the first of them. A joint with one place may be given two that lie apart, on body i and
     /// on body j, for the mechanism to be assembled there.
-    pub at: Vec<PlaceDraft>,
+    pub at: Vec<LocationDraft>,
     /// Direction of the markers' z axis.
-    pub axis: Option<LineDraft>,
+    pub axis: Option<DirectionDraft>,
     /// Direction of the markers' x axis.
-    pub axis2: Option<LineDraft>,
+    pub axis2: Option<DirectionDraft>,
     /// The global axis (0, 1 or 2) across which it is the mirror image of another joint: where `axis2` is not given, its default is the
     /// image of that joint's default.
     pub mirror: Option<usize>,
@@ -245,7 +245,7 @@ pub struct JointDraft {
 #[derive(Clone, Debug, Default)]
 pub struct CurveDraft {
     /// The points, in order; the curve of a cam is closed and does not repeat the first one.
-    pub points: Vec<PlaceDraft>,
+    pub points: Vec<LocationDraft>,
     /// Whether it returns to its first point.
     pub closed: bool,
 }
@@ -316,7 +316,7 @@ pub enum DrivenDraft {
         /// The point.
         point: PointRef,
         /// The direction, of any length.
-        along: LineDraft,
+        along: DirectionDraft,
     },
     /// The change of the distance between two points.
     Distance {
@@ -332,7 +332,7 @@ pub enum DrivenDraft {
         /// The body that carries the direction; ground if left out.
         relative_to: Option<String>,
         /// The direction.
-        about: LineDraft,
+        about: DirectionDraft,
     },
     /// The value of a measure, like wheel travel or a steer angle.
     Measure(String),
@@ -402,7 +402,7 @@ pub struct PointDraft {
     /// The name of the body that carries it.
     pub body: String,
     /// Where it is in the design configuration.
-    pub at: PlaceDraft,
+    pub at: LocationDraft,
 }
 
 /// A point as a measure names it.
@@ -415,7 +415,7 @@ pub enum PointRef {
         /// The body's name.
         body: String,
         /// The place.
-        at: PlaceDraft,
+        at: LocationDraft,
     },
 }
 
@@ -427,7 +427,7 @@ pub struct WheelDraft {
     /// The name of the body that it turns on.
     pub body: String,
     /// Its centre in the design configuration.
-    pub centre: PlaceDraft,
+    pub centre: LocationDraft,
     /// How it stands in the design configuration.
     pub spin: WheelSpinDraft,
     /// From the centre to the ground in the wheel's plane, m.
@@ -469,7 +469,7 @@ pub struct AxleDraft {
 #[derive(Clone, Debug, PartialEq)]
 pub enum WheelSpinDraft {
     /// With this spin axis, pointing outboard.
-    Axis(LineDraft),
+    Axis(DirectionDraft),
     /// At these angles, rad.
     Angles {
         /// Positive for toe-in.
@@ -520,7 +520,7 @@ pub enum RayDraft {
         /// The body's name.
         body: String,
         /// Where it points in the design configuration.
-        axis: LineDraft,
+        axis: DirectionDraft,
     },
 }
 
@@ -532,7 +532,7 @@ pub struct CaseDraft {
     /// The names of drivers, and the laws that they follow in it, in m or rad.
     pub laws: Vec<(String, Law)>,
     /// What all others do.
-    pub rest: Rest,
+    pub rest: OtherDrivers,
     /// Its output times, s; those of the draft where they are left out.
     pub times: Option<Vec<f64>>,
     /// Loads with or without inertia; those of the draft where there is none.
@@ -550,7 +550,7 @@ pub struct GridDraft {
 
 /// What the drivers do that a case does not name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Rest {
+pub enum OtherDrivers {
     /// They are held as drawn.
     #[default]
     Held,
@@ -558,9 +558,9 @@ pub enum Rest {
     AsAbove,
 }
 
-/// What a design is to be optimised for; see [`Optimization`](crate::model::Optimization).
+/// What a design is to be optimised for; see [`OptimizationSettings`](crate::model::Optimization).
 #[derive(Clone, Debug)]
-pub struct OptimizationDraft {
+pub struct OptimizationSettingsDraft {
     /// The names of the design variables that may change; all that have bounds where they are left out.
     pub variables: Option<Vec<String>>,
     /// What is made as small as possible.
@@ -575,7 +575,7 @@ pub struct OptimizationDraft {
     pub iterations: usize,
 }
 
-impl Default for OptimizationDraft {
+impl Default for OptimizationSettingsDraft {
     fn default() -> Self {
         let (goals, limits) = (Vec::new(), Vec::new());
         Self { variables: None, goals, limits, margin: None, starts: 1, iterations: 100 }
@@ -606,7 +606,7 @@ pub struct LimitDraft {
     /// Its name.
     pub name: String,
     /// What it is put on.
-    pub of: LimitedDraft,
+    pub of: LimitTargetDraft,
     /// It must not be less than this; equal to `most` where it must have one value.
     pub least: Option<f64>,
     /// It must not be more than this.
@@ -617,9 +617,9 @@ pub struct LimitDraft {
     pub per_radian: f64,
 }
 
-/// What a limit is put on; see [`Limited`](crate::model::Limited). References are names.
+/// What a limit is put on; see [`LimitTarget`](crate::model::Limited). References are names.
 #[derive(Clone, Debug, PartialEq)]
-pub enum LimitedDraft {
+pub enum LimitTargetDraft {
     /// It could not be read.
     Unread,
     /// A metric.
@@ -632,9 +632,9 @@ pub enum LimitedDraft {
     Length(String),
 }
 
-/// How far off a design may be made; see [`Tolerancing`](crate::model::Tolerancing).
+/// How far off a design may be made; see [`ToleranceSettings`](crate::model::Tolerancing).
 #[derive(Clone, Debug)]
-pub struct TolerancingDraft {
+pub struct ToleranceSettingsDraft {
     /// What is said of single variables, by their names or by that of the entry that makes them. All others that have a
     /// [tolerance](VariableDraft::tolerance) join them.
     pub tolerances: Vec<ToleranceDraft>,
@@ -656,7 +656,7 @@ pub struct TolerancingDraft {
     pub allocation: Option<AllocationRule>,
 }
 
-impl Default for TolerancingDraft {
+impl Default for ToleranceSettingsDraft {
     fn default() -> Self {
         Self {
             tolerances: Vec::new(),
@@ -665,8 +665,8 @@ impl Default for TolerancingDraft {
             metrics: None,
             curves: None,
             scatter: ScatterDraft::default(),
-            samples: Tolerancing::SAMPLES,
-            seed: Tolerancing::SEED,
+            samples: ToleranceSettings::SAMPLES,
+            seed: ToleranceSettings::SEED,
             allocation: None,
         }
     }
@@ -709,9 +709,9 @@ pub struct CorrelationDraft {
     pub coefficient: f64,
 }
 
-/// Which designs are swept over; see [`Sweeping`].
+/// Which designs are swept over; see [`SweepSettings`].
 #[derive(Clone, Debug)]
-pub struct SweepingDraft {
+pub struct SweepSettingsDraft {
     /// How designs are chosen, where that is said.
     pub method: Option<SweepMethod>,
     /// How far variables go; all that have bounds, within these, where it is left out.
@@ -730,15 +730,15 @@ pub struct SweepingDraft {
     pub curves: Vec<String>,
 }
 
-impl Default for SweepingDraft {
+impl Default for SweepSettingsDraft {
     fn default() -> Self {
         Self {
             method: None,
             ranges: None,
             designs: None,
-            levels: Sweeping::LEVELS,
-            samples: Sweeping::SAMPLES,
-            seed: Sweeping::SEED,
+            levels: SweepSettings::LEVELS,
+            samples: SweepSettings::SAMPLES,
+            seed: SweepSettings::SEED,
             metrics: None,
             curves: Vec::new(),
         }

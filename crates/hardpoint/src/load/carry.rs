@@ -14,7 +14,7 @@ use crate::motion::level::Flow;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{Differentiated, PlanVelocity, Transmission, Transposed, Way};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
-use crate::topology::{ClosureId, CoordinateId, LinkId, RowId, Term, Topology};
+use crate::topology::{ClosureId, CoordinateId, LinkId, RowId, RowTerm, Topology};
 
 use super::acting::{Acting, Moving};
 use super::inertia::{Changed, SpatialInertia};
@@ -286,7 +286,7 @@ impl<T: Real> Equilibrium<T> {
                 state.finish_wrenches(topology);
             }
             // With mu_r = 1 row r puts l on body j, which needs so much less.
-            let pull = |Term { row, factor }| {
+            let pull = |RowTerm { row, factor }| {
                 (topology[row].closure, state.l[0][row.0].times_plus(T::constant(factor), Wrench::zero()))
             };
             let pulls: Vec<_> = topology.parts_of_row(r).map(pull).collect();

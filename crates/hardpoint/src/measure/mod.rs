@@ -43,7 +43,7 @@ use crate::sensitivity::{Admissibility, Sensitivities};
 use crate::space::{Pose, Vec3};
 use crate::topology::{CoordinateId, Topology};
 
-/// A column of [`Measured`].
+/// A column of [`MeasureResults`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
     /// `toe` for a measure, `wheel_centre.z` for a point's component.
@@ -72,7 +72,7 @@ impl Output {
 
 /// Measures and point components over a motion, with their sensitivities.
 #[derive(Clone, Debug, Default)]
-pub struct Measured {
+pub struct MeasureResults {
     /// The columns: all measures, then x, y, z of all named points.
     pub outputs: Vec<Output>,
     /// How many design variables there are.
@@ -90,7 +90,7 @@ pub struct Measured {
     by_formula: usize,
 }
 
-impl Measured {
+impl MeasureResults {
     /// The column of that name.
     pub fn index(&self, name: &str) -> Option<usize> {
         self.outputs.iter().position(|o| o.name == name)
@@ -283,7 +283,7 @@ pub(crate) fn evaluate(
     (motion, sensitivities): (&Motion, &Sensitivities),
     slopes: &StepValues,
     program: Option<&MeasureProgram>,
-    measured: &mut Measured,
+    measured: &mut MeasureResults,
 ) {
     let &MeasuredDesign { model, values, .. } = design;
     make_room(model, sensitivities, motion.len(), program, measured);
@@ -322,7 +322,7 @@ fn make_room(
     sensitivities: &Sensitivities,
     steps: usize,
     program: Option<&MeasureProgram>,
-    measured: &mut Measured,
+    measured: &mut MeasureResults,
 ) {
     let outputs = outputs(model);
     let variables = sensitivities.variables;
@@ -362,7 +362,7 @@ impl<'a> FormulaEvaluator<'a> {
         topology: &Topology,
         motion: &'a Motion,
         slopes: &'a StepValues,
-        measured: &Measured,
+        measured: &MeasureResults,
     ) -> Self {
         let &MeasuredDesign { model, design_map, values, laws } = design;
         Self {
@@ -385,7 +385,12 @@ impl<'a> FormulaEvaluator<'a> {
 
     /// Evaluates what a program does not tell at these output times, which are a block of eight, and counts all angles there; says how
     /// many outputs that are.
-    fn fill(&mut self, times: Range<usize>, run: Option<&MeasureRun<'_>>, measured: &mut Measured) -> usize {
+    fn fill(
+        &mut self,
+        times: Range<usize>,
+        run: Option<&MeasureRun<'_>>,
+        measured: &mut MeasureResults,
+    ) -> usize {
         let first = times.start;
         let begins = self.left.partition_point(|(block, _)| *block < first);
         self.left.truncate(begins);
@@ -400,7 +405,7 @@ impl<'a> FormulaEvaluator<'a> {
     }
 
     /// The same at output time k, for the outputs that are left from `begins` on.
-    fn fill_one(&mut self, k: usize, begins: usize, measured: &mut Measured) {
+    fn fill_one(&mut self, k: usize, begins: usize, measured: &mut MeasureResults) {
         let Self { model, motion, fixed, bodies, poses, left, given, whole_turns, .. } = self;
         let left = &left[begins..];
         let place = |poses: &mut [Pose<Rates>]| {
@@ -608,7 +613,7 @@ fn unwrap_angles(
     motion: &Motion,
     k: usize,
     turns: &[Option<Turns>],
-    measured: &mut Measured,
+    measured: &mut MeasureResults,
     mut counted: impl FnMut(usize, f64),
 ) {
     for (m, turns_of) in turns.iter().enumerate() {

@@ -33,7 +33,7 @@ use crate::sensitivity::{BodySensitivity, Sensitivities};
 use crate::space::{Mat3, Pose, Vec3};
 
 use super::bodies::{moving, pair};
-use super::{Instant, Measured, Output, bodies_asked_for};
+use super::{Instant, MeasureResults, Output, bodies_asked_for};
 
 /// Of more sums of products - one for each output, variable, and body that both have to do with - no program is recorded: it would take
 /// more memory than its results.
@@ -428,7 +428,13 @@ impl<'p> MeasureRun<'p> {
 
     /// Evaluates all outputs at the eight output times that k is one of. The whole turns of measures that are asked for are those that
     /// were [given](Self::turns).
-    pub fn at(&mut self, k: usize, motion: &Motion, sensitivities: &Sensitivities, measured: &mut Measured) {
+    pub fn at(
+        &mut self,
+        k: usize,
+        motion: &Motion,
+        sensitivities: &Sensitivities,
+        measured: &mut MeasureResults,
+    ) {
         let MeasureProgram { program, bodies, moved, .. } = self.program;
         let (of_bodies, rest) =
             lanes_of(&mut self.inputs).split_at_mut(BodyState::NUMBERS * self.program.bodies.len());

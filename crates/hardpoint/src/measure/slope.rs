@@ -4,7 +4,9 @@
 //! changes with the design is the second derivative along both.
 
 use crate::design::{BodyFixed, DesignMap};
-use crate::model::{AxleMeasure, DriverId, GROUND, MeasureKind, Model, VariableId, WheelId, WheelNeed};
+use crate::model::{
+    AxleMeasure, DriverId, GROUND, MeasureKind, Model, VariableId, WheelId, WheelRequirement,
+};
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{PairDirection, Seconds};
@@ -102,7 +104,7 @@ impl<'a> Slopes<'a> {
 
 /// The drivers that a measure goes by, if it does: those of both wheels of an axle may differ.
 fn driver_of(model: &Model, k: usize) -> Option<[DriverId; 2]> {
-    let of_wheel = |wheel: WheelId, need: WheelNeed| model.wheels[wheel.0].driver(need);
+    let of_wheel = |wheel: WheelId, need: WheelRequirement| model.wheels[wheel.0].driver(need);
     if !model.goes_by_driver(k) {
         return None;
     }
@@ -110,7 +112,8 @@ fn driver_of(model: &Model, k: usize) -> Option<[DriverId; 2]> {
         MeasureKind::Slope { driver, .. } => Some([driver; 2]),
         MeasureKind::Wheel { wheel, what } => of_wheel(wheel, what.needs()).map(|d| [d; 2]),
         MeasureKind::Axle { axle, .. } => {
-            let [left, right] = model.axles[axle.0].wheels.map(|wheel| of_wheel(wheel, WheelNeed::Bump));
+            let [left, right] =
+                model.axles[axle.0].wheels.map(|wheel| of_wheel(wheel, WheelRequirement::Bump));
             left.zip(right).map(|(l, r)| [l, r])
         }
         _ => None,

@@ -10,7 +10,7 @@
 //! | `off_kingpin(P)` | d(P) | |
 //! | `.d` of a number of [`TravellingWheel`], `carrier` | X', w and v | per unit of the driver q, (11) of `docs/theory.md` with `L_u = 1` |
 
-use crate::model::{TorqueReaction, Vehicle, VehicleEnd, WheelMeasure, WheelNeed};
+use crate::model::{TorqueReaction, Vehicle, VehicleEnd, WheelMeasure, WheelRequirement};
 use crate::number::{Dual, Real};
 use crate::space::{Twist, Vec3};
 
@@ -290,14 +290,14 @@ impl<T: Real> TravellingWheel<T> {
     /// C where the carrier reacts the torque, for the wheel is locked to it; W where the body does, for the wheel turns freely on it.
     fn reacting(&self, what: WheelMeasure, v: Vec3<T>) -> T {
         let reacted = match what.needs() {
-            WheelNeed::Braking(_) => self.brakes,
-            WheelNeed::Driving(_)
-            | WheelNeed::Nothing
-            | WheelNeed::Kingpin
-            | WheelNeed::Planes
-            | WheelNeed::Bump
-            | WheelNeed::Spring
-            | WheelNeed::Steer => self.drive,
+            WheelRequirement::Braking(_) => self.brakes,
+            WheelRequirement::Driving(_)
+            | WheelRequirement::Nothing
+            | WheelRequirement::Kingpin
+            | WheelRequirement::Planes
+            | WheelRequirement::Bump
+            | WheelRequirement::Spring
+            | WheelRequirement::Steer => self.drive,
         };
         match reacted {
             TorqueReaction::Outboard => v.x / v.z,

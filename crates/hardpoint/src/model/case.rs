@@ -2,7 +2,7 @@
 
 use crate::law::Law;
 
-use super::{CaseId, Change, DriverId, Formula, Limited, Model, Target};
+use super::{CaseId, Change, DriverId, Formula, LimitTarget, Model, Target};
 
 /// A motion of the mechanism under laws and at times of its own: a car in bump with the rack held, or steered at one ride height.
 #[derive(Clone, Debug)]
@@ -106,9 +106,9 @@ impl Model {
         if let Some(asked) = &mut model.optimization {
             asked.goals.retain(|goal| stays(&goal.metric));
             asked.goals.iter_mut().for_each(|goal| goal.metric = place(goal.metric));
-            asked.limits.retain(|limit| !matches!(&limit.of, Limited::Metric(metric) if !stays(metric)));
+            asked.limits.retain(|limit| !matches!(&limit.of, LimitTarget::Metric(metric) if !stays(metric)));
             for limit in &mut asked.limits {
-                if let Limited::Metric(metric) = &mut limit.of {
+                if let LimitTarget::Metric(metric) = &mut limit.of {
                     *metric = place(*metric);
                 }
             }

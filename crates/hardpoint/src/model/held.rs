@@ -21,14 +21,14 @@ use super::Model;
 /// assert_eq!(borrowed.model().name, kept.model().name);
 /// ```
 #[derive(Clone, Debug)]
-pub enum Held<'m> {
+pub enum SharedModel<'m> {
     /// Borrowed.
     Borrowed(&'m Model),
     /// Shared.
     Shared(Arc<Model>),
 }
 
-impl Deref for Held<'_> {
+impl Deref for SharedModel<'_> {
     type Target = Model;
 
     fn deref(&self) -> &Model {
@@ -39,13 +39,13 @@ impl Deref for Held<'_> {
     }
 }
 
-impl<'m> From<&'m Model> for Held<'m> {
+impl<'m> From<&'m Model> for SharedModel<'m> {
     fn from(model: &'m Model) -> Self {
         Self::Borrowed(model)
     }
 }
 
-impl From<Arc<Model>> for Held<'static> {
+impl From<Arc<Model>> for SharedModel<'static> {
     fn from(model: Arc<Model>) -> Self {
         Self::Shared(model)
     }

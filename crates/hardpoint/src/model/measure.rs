@@ -181,7 +181,7 @@ macro_rules! measures {
         /// The body that the wheel turns on.
         body: String => BodyId,
         /// The wheel's spin axis in the design configuration, pointing outboard.
-        spin_axis: LineDraft => Direction,
+        spin_axis: DirectionDraft => Direction,
     } |_, w| Dimension::ANGLE, POSITIONS, w.of_axis("toe", *body, spin_axis);
 
     /// Camber of a wheel, positive where its top leans outboard.
@@ -189,7 +189,7 @@ macro_rules! measures {
         /// The body that the wheel turns on.
         body: String => BodyId,
         /// The wheel's spin axis in the design configuration, pointing outboard.
-        spin_axis: LineDraft => Direction,
+        spin_axis: DirectionDraft => Direction,
     } |_, w| Dimension::ANGLE, POSITIONS, w.of_axis("camber", *body, spin_axis);
 
     /// Force or moment that a driver needs; positive where it works while what it drives grows.

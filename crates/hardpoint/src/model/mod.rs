@@ -31,7 +31,7 @@ pub use element::{
 };
 pub(crate) use element::{each_number, elements};
 pub use formula::{Formula, NamedNumber, Source, Target};
-pub use held::Held;
+pub use held::SharedModel;
 pub(crate) use measure::measures;
 pub use measure::{
     Combination, Dimension, KnownOrders, Measure, MeasureKind, OrientationAngle, OutputSource, Ray,
@@ -39,14 +39,17 @@ pub use measure::{
 };
 pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
-pub use optimization::{Goal, Limit, Limited, Optimization};
+pub use optimization::{Goal, Limit, LimitTarget, OptimizationSettings};
 pub(crate) use solid::about_centre;
 pub use solid::{OpenSurface, Solid};
 pub use spring_table::SpringTable;
-pub use sweeping::{SweepMethod, SweepRange, Sweeping};
-pub use tolerancing::{Allocating, AllocationRule, Correlation, Scatter, Tolerance, Tolerancing};
+pub use sweeping::{SweepMethod, SweepRange, SweepSettings};
+pub use tolerancing::{
+    AllocationRule, AllocationSettings, Correlation, Scatter, Tolerance, ToleranceSettings,
+};
 pub use wheel::{
-    ArmPlane, Axle, AxleMeasure, Side, TorqueReaction, Vehicle, VehicleEnd, Wheel, WheelMeasure, WheelNeed,
+    ArmPlane, Axle, AxleMeasure, Side, TorqueReaction, Vehicle, VehicleEnd, Wheel, WheelMeasure,
+    WheelRequirement,
 };
 
 use crate::constraint::MarkerPair;
@@ -132,21 +135,21 @@ pub struct Model {
     /// Metrics, in the order of the file.
     pub metrics: Vec<Metric>,
     /// Idle spins, which are held at rest.
-    pub idle: Vec<Idle>,
+    pub idle: Vec<IdleRotation>,
     /// Output times, s, increasing.
     pub times: Vec<f64>,
     /// Behaviour at change points.
-    pub at_change_points: AtChangePoints,
+    pub at_change_points: ChangePointPolicy,
     /// Its motions, in the order of the file; where there are none, that of the drivers' own laws at `times` is the only one.
     pub cases: Vec<Case>,
     /// Cases that sweep two drivers over a grid, in the order of the file.
     pub grids: Vec<Grid>,
     /// What the design is to be optimised for, if that is known.
-    pub optimization: Option<Optimization>,
+    pub optimization: Option<OptimizationSettings>,
     /// How far off the design may be made, if the file says more of it than its variables.
-    pub tolerancing: Option<Tolerancing>,
+    pub tolerancing: Option<ToleranceSettings>,
     /// Which designs are swept over, if the file says that.
-    pub sweeping: Option<Sweeping>,
+    pub sweeping: Option<SweepSettings>,
 }
 
 /// A named point of the design configuration.
@@ -241,7 +244,7 @@ pub struct DesignVariable {
 /// A body, or two that slide on each other, that can spin about a line without moving anything else. The spin is held at
 /// rest: one of its balls is treated as a universal joint.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Idle {
+pub struct IdleRotation {
     /// The bodies that spin together.
     pub bodies: Vec<BodyId>,
     /// The spherical joint that holds the spin.
@@ -268,7 +271,7 @@ const ONE_PLACE: f64 = 1e-12;
 
 /// Behaviour at a change point, where two motions of a mechanism meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum AtChangePoints {
+pub enum ChangePointPolicy {
     /// The motion ends there (HP0402).
     #[default]
     Stop,
@@ -276,7 +279,7 @@ pub enum AtChangePoints {
     Continue,
 }
 
-impl AtChangePoints {
+impl ChangePointPolicy {
     /// All of them, with the words of model files.
     pub const WORDS: [(&'static str, Self); 2] = [("stop", Self::Stop), ("continue", Self::Continue)];
 }

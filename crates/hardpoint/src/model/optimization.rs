@@ -4,7 +4,7 @@ use super::{HardpointId, JointId, VariableId};
 
 /// The search for the design that serves some goals best.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Optimization {
+pub struct OptimizationSettings {
     /// The variables that may change, each within its bounds.
     pub variables: Vec<VariableId>,
     /// What is made as small as possible: the sum of all of them.
@@ -39,7 +39,7 @@ pub struct Limit {
     /// Its name.
     pub name: String,
     /// What.
-    pub of: Limited,
+    pub of: LimitTarget,
     /// It must not be less than this, m, rad or a plain number; equal to `most` where it must have one value.
     pub least: Option<f64>,
     /// It must not be more than this.
@@ -48,7 +48,7 @@ pub struct Limit {
 
 /// What a limit is put on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Limited {
+pub enum LimitTarget {
     /// A metric, by its place in [`Model::metrics`](super::Model::metrics). One that names no case is limited in each of them.
     Metric(usize),
     /// A coordinate of a hardpoint in the design configuration: 0 for x, 1 for y, 2 for z.

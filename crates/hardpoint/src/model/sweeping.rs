@@ -4,7 +4,7 @@ use super::{Change, Model, VariableId};
 
 /// Many designs at once, and what is kept of each.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sweeping {
+pub struct SweepSettings {
     /// How designs are chosen within the ranges.
     pub method: SweepMethod,
     /// The variables that change, and how far. All others stay as drawn. Of a list, the variables that it has.
@@ -63,7 +63,7 @@ impl SweepMethod {
     }
 }
 
-impl Sweeping {
+impl SweepSettings {
     /// So many designs are chosen where nothing else is said.
     pub const SAMPLES: usize = 1000;
     /// What they are drawn from where nothing else is said.

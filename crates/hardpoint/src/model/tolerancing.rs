@@ -4,7 +4,7 @@ use super::{Limit, Model, VariableId};
 
 /// What is asked of the tolerances of a design.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tolerancing {
+pub struct ToleranceSettings {
     /// What may be off, and by how much.
     pub tolerances: Vec<Tolerance>,
     /// Which of these go together.
@@ -20,7 +20,7 @@ pub struct Tolerancing {
     /// What they are drawn from: the same number gives the same designs.
     pub seed: u64,
     /// How the loosest tolerances that keep the limits are sought, if they are.
-    pub allocation: Option<Allocating>,
+    pub allocation: Option<AllocationSettings>,
 }
 
 /// By how much some design variables may be off together.
@@ -82,7 +82,7 @@ pub struct Correlation {
 
 /// How the loosest tolerances are sought.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Allocating {
+pub struct AllocationSettings {
     /// What is to stay within the limits.
     pub rule: AllocationRule,
 }
@@ -104,7 +104,7 @@ impl AllocationRule {
     pub const NAMES: [&str; 2] = ["rss", "worst_case"];
 }
 
-impl Tolerancing {
+impl ToleranceSettings {
     /// So many designs are drawn where nothing else is said: the standard deviation is then known to 1 %.
     pub const SAMPLES: usize = 10_000;
     /// What they are drawn from where nothing else is said.

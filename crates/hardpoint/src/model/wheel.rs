@@ -51,8 +51,8 @@ impl TorqueReaction {
 
 impl Wheel {
     /// The driver that moves alone where a measure needs this.
-    pub fn driver(&self, need: WheelNeed) -> Option<DriverId> {
-        if need == WheelNeed::Steer { self.steer } else { self.bump }
+    pub fn driver(&self, need: WheelRequirement) -> Option<DriverId> {
+        if need == WheelRequirement::Steer { self.steer } else { self.bump }
     }
 }
 
@@ -99,16 +99,16 @@ pub struct Vehicle {
 
 impl Vehicle {
     /// The front wheels' part of the force that a measure is of, if it is of one: how model files call it, and what they say.
-    pub fn front_share(&self, need: WheelNeed) -> Option<(&'static str, Option<f64>)> {
+    pub fn front_share(&self, need: WheelRequirement) -> Option<(&'static str, Option<f64>)> {
         match need {
-            WheelNeed::Braking(_) => Some(("front_brake_share", self.front_brake_share)),
-            WheelNeed::Driving(_) => Some(("front_drive_share", self.front_drive_share)),
+            WheelRequirement::Braking(_) => Some(("front_brake_share", self.front_brake_share)),
+            WheelRequirement::Driving(_) => Some(("front_drive_share", self.front_drive_share)),
             _ => None,
         }
     }
 
     /// What a measure of a wheel needs to know of the vehicle and model files do not say, by their keys.
-    pub fn lacks(&self, need: WheelNeed) -> impl Iterator<Item = &'static str> {
+    pub fn lacks(&self, need: WheelRequirement) -> impl Iterator<Item = &'static str> {
         let share = self.front_share(need);
         let of_pitching =
             [("wheelbase", self.wheelbase), ("centre_of_gravity", self.centre_of_gravity)].map(Some);
@@ -141,7 +141,7 @@ impl VehicleEnd {
 
 /// What a measure of a wheel needs besides the wheel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WheelNeed {
+pub enum WheelRequirement {
     /// Nothing.
     Nothing,
     /// The kingpin.
@@ -160,7 +160,7 @@ pub enum WheelNeed {
     Driving(VehicleEnd),
 }
 
-impl WheelNeed {
+impl WheelRequirement {
     /// The end of the vehicle that the measure is of, if it is not of both.
     pub fn end(self) -> Option<VehicleEnd> {
         match self {
@@ -249,107 +249,107 @@ const ANGLE_PER_LENGTH: Dimension = ANGLE.over(LENGTH);
 
 wheel_measures! {
     /// What can be measured at a wheel. Formulas and signs are in `docs/measures.md`.
-    WheelMeasure, needs: WheelNeed;
+    WheelMeasure, needs: WheelRequirement;
     /// Heading of the wheel's plane; positive where its front is inboard.
-    Toe "toe" ANGLE WheelNeed::Nothing;
+    Toe "toe" ANGLE WheelRequirement::Nothing;
     /// Lean of the wheel's plane; positive where its top is outboard.
-    Camber "camber" ANGLE WheelNeed::Nothing;
+    Camber "camber" ANGLE WheelRequirement::Nothing;
     /// Lean of the wheel's plane as the vehicle's front view shows it; positive where its top is outboard.
-    CamberFront "camber_front" ANGLE WheelNeed::Nothing;
+    CamberFront "camber_front" ANGLE WheelRequirement::Nothing;
     /// Heading of the wheel's plane since the design configuration; positive to the left.
-    SteerAngle "steer_angle" ANGLE WheelNeed::Nothing;
+    SteerAngle "steer_angle" ANGLE WheelRequirement::Nothing;
     /// Lean of the kingpin in side view; positive where its top is rearward.
-    Caster "caster" ANGLE WheelNeed::Kingpin;
+    Caster "caster" ANGLE WheelRequirement::Kingpin;
     /// Lean of the kingpin in front view; positive where its top is inboard.
-    KingpinInclination "kingpin_inclination" ANGLE WheelNeed::Kingpin;
+    KingpinInclination "kingpin_inclination" ANGLE WheelRequirement::Kingpin;
     /// How far outboard of the kingpin the contact point is, on the ground.
-    ScrubRadius "scrub_radius" LENGTH WheelNeed::Kingpin;
+    ScrubRadius "scrub_radius" LENGTH WheelRequirement::Kingpin;
     /// How far outboard of the kingpin the wheel centre is, at its height.
-    SpindleOffset "spindle_offset" LENGTH WheelNeed::Kingpin;
+    SpindleOffset "spindle_offset" LENGTH WheelRequirement::Kingpin;
     /// How far behind the kingpin the contact point is, on the ground.
-    CasterTrail "caster_trail" LENGTH WheelNeed::Kingpin;
+    CasterTrail "caster_trail" LENGTH WheelRequirement::Kingpin;
     /// The same square to the kingpin, in the wheel's side view.
-    MechanicalTrail "mechanical_trail" LENGTH WheelNeed::Kingpin;
+    MechanicalTrail "mechanical_trail" LENGTH WheelRequirement::Kingpin;
     /// How far in front of the kingpin the wheel centre is, at its height.
-    HubTrail "hub_trail" LENGTH WheelNeed::Kingpin;
+    HubTrail "hub_trail" LENGTH WheelRequirement::Kingpin;
     /// Rise of the wheel centre since the design configuration.
-    WheelTravel "wheel_travel" LENGTH WheelNeed::Nothing;
+    WheelTravel "wheel_travel" LENGTH WheelRequirement::Nothing;
     /// Way of the wheel centre rearward since the design configuration.
-    WheelRecession "wheel_recession" LENGTH WheelNeed::Nothing;
+    WheelRecession "wheel_recession" LENGTH WheelRequirement::Nothing;
     /// Distance of the contact point from the vehicle's plane of symmetry, outboard.
-    HalfTrack "half_track" LENGTH WheelNeed::Nothing;
+    HalfTrack "half_track" LENGTH WheelRequirement::Nothing;
     /// Growth of that since the design configuration.
-    HalfTrackChange "half_track_change" LENGTH WheelNeed::Nothing;
+    HalfTrackChange "half_track_change" LENGTH WheelRequirement::Nothing;
     /// Global x of the contact point.
-    ContactX "contact_x" LENGTH WheelNeed::Nothing;
+    ContactX "contact_x" LENGTH WheelRequirement::Nothing;
     /// Global y of the contact point.
-    ContactY "contact_y" LENGTH WheelNeed::Nothing;
+    ContactY "contact_y" LENGTH WheelRequirement::Nothing;
     /// Global z of the contact point.
-    ContactZ "contact_z" LENGTH WheelNeed::Nothing;
+    ContactZ "contact_z" LENGTH WheelRequirement::Nothing;
     /// Growth of toe per wheel travel.
-    BumpSteer "bump_steer" ANGLE_PER_LENGTH WheelNeed::Bump;
+    BumpSteer "bump_steer" ANGLE_PER_LENGTH WheelRequirement::Bump;
     /// Growth of camber per wheel travel.
-    BumpCamber "bump_camber" ANGLE_PER_LENGTH WheelNeed::Bump;
+    BumpCamber "bump_camber" ANGLE_PER_LENGTH WheelRequirement::Bump;
     /// Growth of wheel recession per wheel travel.
-    BumpRecession "bump_recession" NUMBER WheelNeed::Bump;
+    BumpRecession "bump_recession" NUMBER WheelRequirement::Bump;
     /// Growth of half track per wheel travel.
-    BumpScrub "bump_scrub" NUMBER WheelNeed::Bump;
+    BumpScrub "bump_scrub" NUMBER WheelRequirement::Bump;
     /// Height of the roll centre above the ground, from the path of the contact point.
-    RollCentreHeight "roll_centre_height" LENGTH WheelNeed::Bump;
+    RollCentreHeight "roll_centre_height" LENGTH WheelRequirement::Bump;
     /// Height of the roll centre above the ground, from the instant centre of the wheel carrier in front view.
-    RollCentreHeightGeometric "roll_centre_height_geometric" LENGTH WheelNeed::Bump;
+    RollCentreHeightGeometric "roll_centre_height_geometric" LENGTH WheelRequirement::Bump;
     /// Global y of the instant centre in front view, at the contact point's x.
-    FrontCentreY "instant_centre_front_y" LENGTH WheelNeed::Bump;
+    FrontCentreY "instant_centre_front_y" LENGTH WheelRequirement::Bump;
     /// Global z of the instant centre in front view, at the contact point's x.
-    FrontCentreZ "instant_centre_front_z" LENGTH WheelNeed::Bump;
+    FrontCentreZ "instant_centre_front_z" LENGTH WheelRequirement::Bump;
     /// Global x of the instant centre in side view, at the contact point's y.
-    SideCentreX "instant_centre_side_x" LENGTH WheelNeed::Bump;
+    SideCentreX "instant_centre_side_x" LENGTH WheelRequirement::Bump;
     /// Global z of the instant centre in side view, at the contact point's y.
-    SideCentreZ "instant_centre_side_z" LENGTH WheelNeed::Bump;
+    SideCentreZ "instant_centre_side_z" LENGTH WheelRequirement::Bump;
     /// x component of the unit vector along the instant axis of the wheel carrier, about which a left wheel rises and a right one falls.
-    InstantAxisX "instant_axis_x" NUMBER WheelNeed::Bump;
+    InstantAxisX "instant_axis_x" NUMBER WheelRequirement::Bump;
     /// y component of the unit vector along the instant axis of the wheel carrier, about which a left wheel rises and a right one falls.
-    InstantAxisY "instant_axis_y" NUMBER WheelNeed::Bump;
+    InstantAxisY "instant_axis_y" NUMBER WheelRequirement::Bump;
     /// z component of the unit vector along the instant axis of the wheel carrier, about which a left wheel rises and a right one falls.
-    InstantAxisZ "instant_axis_z" NUMBER WheelNeed::Bump;
+    InstantAxisZ "instant_axis_z" NUMBER WheelRequirement::Bump;
     /// How far inboard of the contact point the instant centre in front view is.
-    SwingArmFront "swing_arm_front" LENGTH WheelNeed::Bump;
+    SwingArmFront "swing_arm_front" LENGTH WheelRequirement::Bump;
     /// How far in front of the contact point the instant centre in side view is.
-    SwingArmSide "swing_arm_side" LENGTH WheelNeed::Bump;
+    SwingArmSide "swing_arm_side" LENGTH WheelRequirement::Bump;
     /// How much shorter the spring gets per wheel travel.
-    MotionRatio "motion_ratio" NUMBER WheelNeed::Spring;
+    MotionRatio "motion_ratio" NUMBER WheelRequirement::Spring;
     /// Global y of where the planes of both arms meet in front view, at the contact point's x.
-    PlaneCentreFrontY "plane_centre_front_y" LENGTH WheelNeed::Planes;
+    PlaneCentreFrontY "plane_centre_front_y" LENGTH WheelRequirement::Planes;
     /// Global z of where the planes of both arms meet in front view, at the contact point's x.
-    PlaneCentreFrontZ "plane_centre_front_z" LENGTH WheelNeed::Planes;
+    PlaneCentreFrontZ "plane_centre_front_z" LENGTH WheelRequirement::Planes;
     /// Global x of where the planes of both arms meet in side view, at the contact point's y.
-    PlaneCentreSideX "plane_centre_side_x" LENGTH WheelNeed::Planes;
+    PlaneCentreSideX "plane_centre_side_x" LENGTH WheelRequirement::Planes;
     /// Global z of where the planes of both arms meet in side view, at the contact point's y.
-    PlaneCentreSideZ "plane_centre_side_z" LENGTH WheelNeed::Planes;
+    PlaneCentreSideZ "plane_centre_side_z" LENGTH WheelRequirement::Planes;
     /// Height of the roll centre above the ground, from where the planes of both arms meet in front view.
-    RollCentreHeightPlanes "roll_centre_height_planes" LENGTH WheelNeed::Planes;
+    RollCentreHeightPlanes "roll_centre_height_planes" LENGTH WheelRequirement::Planes;
     /// Lean of the virtual steering axis in side view; positive where its top is rearward.
-    VirtualCaster "virtual_caster" ANGLE WheelNeed::Steer;
+    VirtualCaster "virtual_caster" ANGLE WheelRequirement::Steer;
     /// Lean of the virtual steering axis in front view; positive where its top is inboard.
-    VirtualKingpinInclination "virtual_kingpin_inclination" ANGLE WheelNeed::Steer;
+    VirtualKingpinInclination "virtual_kingpin_inclination" ANGLE WheelRequirement::Steer;
     /// How far outboard of the virtual steering axis the contact point is, on the ground.
-    VirtualScrubRadius "virtual_scrub_radius" LENGTH WheelNeed::Steer;
+    VirtualScrubRadius "virtual_scrub_radius" LENGTH WheelRequirement::Steer;
     /// How far outboard of the virtual steering axis the wheel centre is, at its height.
-    VirtualSpindleOffset "virtual_spindle_offset" LENGTH WheelNeed::Steer;
+    VirtualSpindleOffset "virtual_spindle_offset" LENGTH WheelRequirement::Steer;
     /// How far behind the virtual steering axis the contact point is, on the ground.
-    VirtualCasterTrail "virtual_caster_trail" LENGTH WheelNeed::Steer;
+    VirtualCasterTrail "virtual_caster_trail" LENGTH WheelRequirement::Steer;
     /// The same square to the virtual steering axis, in the wheel's side view.
-    VirtualMechanicalTrail "virtual_mechanical_trail" LENGTH WheelNeed::Steer;
+    VirtualMechanicalTrail "virtual_mechanical_trail" LENGTH WheelRequirement::Steer;
     /// How far in front of the virtual steering axis the wheel centre is, at its height.
-    VirtualHubTrail "virtual_hub_trail" LENGTH WheelNeed::Steer;
+    VirtualHubTrail "virtual_hub_trail" LENGTH WheelRequirement::Steer;
     /// Part of the braking dive that the front suspension's geometry takes, 1 for all of it.
-    AntiDive "anti_dive" NUMBER WheelNeed::Braking(VehicleEnd::Front);
+    AntiDive "anti_dive" NUMBER WheelRequirement::Braking(VehicleEnd::Front);
     /// Part of the braking lift that the rear suspension's geometry takes, 1 for all of it.
-    AntiLift "anti_lift" NUMBER WheelNeed::Braking(VehicleEnd::Rear);
+    AntiLift "anti_lift" NUMBER WheelRequirement::Braking(VehicleEnd::Rear);
     /// Part of the driving squat that the rear suspension's geometry takes, 1 for all of it.
-    AntiSquat "anti_squat" NUMBER WheelNeed::Driving(VehicleEnd::Rear);
+    AntiSquat "anti_squat" NUMBER WheelRequirement::Driving(VehicleEnd::Rear);
     /// Part of the driving lift that the front suspension's geometry takes, 1 for all of it.
-    AntiRise "anti_rise" NUMBER WheelNeed::Driving(VehicleEnd::Front);
+    AntiRise "anti_rise" NUMBER WheelRequirement::Driving(VehicleEnd::Front);
 }
 
 wheel_measures! {
@@ -374,7 +374,7 @@ wheel_measures! {
 impl WheelMeasure {
     /// Whether it needs the wheel's kingpin.
     pub fn needs_kingpin(self) -> bool {
-        self.needs() == WheelNeed::Kingpin
+        self.needs() == WheelRequirement::Kingpin
     }
 
     /// Of a virtual steering axis, what the same is of a kingpin.

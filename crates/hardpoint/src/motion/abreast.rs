@@ -35,7 +35,7 @@ const FEWEST: usize = 3;
 pub(crate) type ProgramOf<'p> = Box<dyn Fn(usize) -> Option<Arc<StepProgram>> + 'p>;
 
 /// Takes up to eight steps of a stepper at once.
-pub(crate) struct TimesAbreast<'p> {
+pub(crate) struct TimeBatch<'p> {
     /// Where a tape may come from.
     programs: Option<ProgramOf<'p>>,
     /// The values of the design's variables.
@@ -58,7 +58,7 @@ struct Laws {
     limits: Vec<AlignedLanes>,
 }
 
-impl<'p> TimesAbreast<'p> {
+impl<'p> TimeBatch<'p> {
     /// By these programs, for a design with these values; `laws` are those of its drivers, if there is a program for them.
     pub fn new(programs: Option<ProgramOf<'p>>, design: &[f64], laws: Option<Arc<Runnable>>) -> Self {
         let limits = vec![AlignedLanes::default(); laws.as_ref().map_or(0, |laws| laws.sizes()[1])];

@@ -11,7 +11,7 @@ use crate::joint::Quantity;
 use crate::linalg::Elimination;
 use crate::model::{BodyId, Contact, DriverId, JointId};
 use crate::space::{Quat, Vec3};
-use crate::topology::{BlockId, CoordinateId, LoopLink, RowId, Term, Topology};
+use crate::topology::{BlockId, CoordinateId, LoopLink, RowId, RowTerm, Topology};
 
 use super::kinematics::State;
 use super::parts::PlanGeometry;
@@ -437,7 +437,7 @@ impl Stepper<'_> {
             let scale = 1.0 / self.topology[r].unit;
             residuals.push(scale * s.residual_of(&self.topology, &self.parts, &self.drivers, r));
             let mut by_coordinate = std::collections::BTreeMap::new();
-            for Term { row, factor } in self.topology.parts_of_row(r) {
+            for RowTerm { row, factor } in self.topology.parts_of_row(r) {
                 let wrench = s.wrench_of(&self.topology, row);
                 for &LoopLink { link, side } in &self.topology.closure_of(row).links {
                     for c in self.topology[link].coordinates() {

@@ -1,12 +1,12 @@
 //! Passing a change point: the position where two motions meet, as where a parallelogram lies in line.
 //!
-//! There J is singular, and each of two motions goes on smoothly. With [`AtChangePoints::Continue`] the one is followed that continues the
+//! There J is singular, and each of two motions goes on smoothly. With [`ChangePointPolicy::Continue`] the one is followed that continues the
 //! path: from a position b before the change point that of f behind it is predicted by q' and q'', and accepted where its own q' is the
 //! predicted one. Positions between b and f are found from the polynomials through both ends; at the change point itself, where nothing
 //! can be solved, position, velocity and acceleration are those of the polynomials, and what is solved with J has no number.
 
 use crate::linalg::{hermite, segment_at};
-use crate::model::AtChangePoints;
+use crate::model::ChangePointPolicy;
 use crate::topology::BlockId;
 
 use super::forecast::Channel;
@@ -48,7 +48,7 @@ impl Stepper<'_> {
     /// Crosses the change point that stopped the walk, where the model asks for it and the motion goes on smoothly; the stepper stands
     /// behind it then. Returns the stop where it does not.
     pub(super) fn cross(&mut self, path: Path, stop: Box<Stop>) -> Result<(), Box<Stop>> {
-        let asked = self.model.at_change_points == AtChangePoints::Continue && path != Path::Assembly;
+        let asked = self.model.at_change_points == ChangePointPolicy::Continue && path != Path::Assembly;
         let (StopKind::BranchChange, true, Some(block)) = (stop.kind, asked, stop.block) else {
             return Err(stop);
         };

@@ -18,7 +18,7 @@ use super::step_program::MOST_CORRECTIONS;
 use super::stepper::{Lookahead, MILD, MILD_CHANGE, Stepper, TRUST_FLOOR};
 use super::tape::{SolveQuality, Tape};
 use super::walk::Path;
-use super::{Effort, Motion};
+use super::{Motion, SolverStatistics};
 
 /// A forecast that was so good at the last step will be good enough for one correction at the next one.
 const GOOD: f64 = 0.1 * QUADRATIC;
@@ -33,7 +33,7 @@ struct Drive {
 }
 
 /// Designs on their way through time.
-pub(crate) struct DesignsAbreast<'m> {
+pub(crate) struct DesignBatch<'m> {
     /// Of the nominal design, at the first output time.
     nominal: Stepper<'m>,
     /// What the drivers do at every output time, up to the first where they do not go there evenly.
@@ -65,13 +65,13 @@ pub(crate) struct DesignsAbreast<'m> {
 }
 
 /// What was found at an output time.
-pub(crate) struct FoundAbreast<'f> {
+pub(crate) struct BatchResults<'f> {
     pub tape: &'f Tape,
     /// The numbers of all bodies but ground, and their derivatives.
     pub block: ResultBlock<'f>,
 }
 
-impl<'m> DesignsAbreast<'m> {
+impl<'m> DesignBatch<'m> {
     /// By these programs. None where there is none, and where the nominal design is not as drawn at its first output time, where
     /// `nominal` stands: designs could have gone other ways till there. `keeps` says whether the results of all output times are kept.
     pub fn new(mut nominal: Stepper<'m>, programs: ProgramOf<'m>, keeps: bool) -> Option<Self> {
@@ -134,8 +134,8 @@ impl<'m> DesignsAbreast<'m> {
     pub fn run(
         &mut self,
         designs: &[Vec<f64>],
-        mut each: impl FnMut(usize, &FoundAbreast<'_>) -> ControlFlow<()>,
-    ) -> Option<Effort> {
+        mut each: impl FnMut(usize, &BatchResults<'_>) -> ControlFlow<()>,
+    ) -> Option<SolverStatistics> {
         let model = self.nominal.model;
         for (_, knows) in self.tapes.iter_mut().flatten() {
             *knows = false;
@@ -150,7 +150,7 @@ impl<'m> DesignsAbreast<'m> {
                 *lines = Arc::new(vec![AlignedLanes::default(); width * steps]);
             }
         }
-        let mut effort = Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() };
+        let mut effort = SolverStatistics { least_pivot_ratio: f64::INFINITY, ..SolverStatistics::default() };
         for (k, &t) in model.times.iter().enumerate() {
             let solved = if k == 0 { self.start(t)? } else { self.step(k, t)? };
             if self.keeps {
@@ -161,7 +161,7 @@ impl<'m> DesignsAbreast<'m> {
             }
             let states = &self.states[self.states_at(k)];
             let [states, derivatives] = [states, &self.derivatives].map(bytemuck::cast_slice);
-            let found = FoundAbreast { tape: self.tape(), block: ResultBlock { states, derivatives } };
+            let found = BatchResults { tape: self.tape(), block: ResultBlock { states, derivatives } };
             if each(k, &found).is_break() && k + 1 < model.times.len() {
                 return None;
             }

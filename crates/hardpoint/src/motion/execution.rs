@@ -42,7 +42,7 @@ impl Execution {
 
 /// How the even steps of a motion are solved, eight output times at once or one by one.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum SolvedBy {
+pub enum StepMethod {
     /// By programs as machine code.
     Code(Width),
     /// By programs that are interpreted, and why there is no machine code.
@@ -51,7 +51,7 @@ pub enum SolvedBy {
     Kernel(String),
 }
 
-impl fmt::Display for SolvedBy {
+impl fmt::Display for StepMethod {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Code(width) => write!(f, "machine code ({width}), eight output times at once"),

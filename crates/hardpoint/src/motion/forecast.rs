@@ -28,7 +28,7 @@ const FARTHEST: f64 = 8.5;
 
 /// Polynomials through the last accepted positions.
 #[derive(Clone)]
-pub(super) struct Forecast {
+pub(super) struct Predictor {
     /// What is foreseen: unknown coordinates, and quaternions of unknown balls.
     channels: Vec<Channel>,
     /// Times of the positions, the newest first; how many there are.
@@ -113,7 +113,7 @@ impl Channel {
     }
 }
 
-impl Forecast {
+impl Predictor {
     pub fn new(topology: &Topology) -> Self {
         let channels = Channel::all(topology);
         let n = channels.len();

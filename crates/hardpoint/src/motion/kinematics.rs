@@ -19,7 +19,7 @@ use crate::joint::Freedom;
 use crate::linalg::{Factors, LARGEST_DENSE, Watched};
 use crate::model::{Contact, DriverId, GROUND, Model};
 use crate::space::{Pose, Quat, Real, Twist, Vec3, Wrench};
-use crate::topology::{Block, BlockId, Closure, ClosureId, Entry, LinkId, RowId, Term, Topology};
+use crate::topology::{Block, BlockId, Closure, ClosureColumn, ClosureId, LinkId, RowId, RowTerm, Topology};
 
 use super::level::{Flow, Linear, turn_twists};
 use super::parts::PlanGeometry;
@@ -324,7 +324,7 @@ impl<T: Real> State<T> {
     #[inline(never)]
     fn coupled(&self, topology: &Topology, parts: &PlanGeometry<T>, r: RowId) -> T {
         let mut sum = T::zero();
-        for Term { row, factor } in topology.parts_of_row(r) {
+        for RowTerm { row, factor } in topology.parts_of_row(r) {
             // phi = sum c_k chi_k, each chi_k counted from its design value
             let value = self.value(topology, row) - parts.kept[row.0];
             sum += value * T::constant(factor);
@@ -349,7 +349,7 @@ impl<T: Real> State<T> {
         let entries = place.columns.iter().map(|c| {
             let mut sum = zero;
             // J_ra = sum over the terms of +- c_k l_k . x_a                                                       (6)
-            for &Term { row, factor } in &c.parts {
+            for &RowTerm { row, factor } in &c.parts {
                 sum += l[row.0].on(x[c.coordinate.0]) * T::constant(factor);
             }
             (c.column, sum)
@@ -394,7 +394,7 @@ impl<T: Real> State<T> {
                 let x = &self.x[0];
                 let entries = closure.entries.iter().map(
                     #[inline(always)]
-                    |e: &Entry| (e.column, wrench.on(x[e.coordinate.0]) * T::constant(e.side)),
+                    |e: &ClosureColumn| (e.column, wrench.on(x[e.coordinate.0]) * T::constant(e.side)),
                 );
                 self.factors[b.0].set_row(k, entries, zero);
             } else {
@@ -735,8 +735,8 @@ impl<T: Real> State<T> {
         let scale = 1.0 / topology[r].unit;
         let zero = T::zero();
         out.fill(zero);
-        for Term { row, factor } in topology.parts_of_row(r) {
-            for &Entry { column, coordinate: c, side } in &topology.closure_of(row).entries {
+        for RowTerm { row, factor } in topology.parts_of_row(r) {
+            for &ClosureColumn { column, coordinate: c, side } in &topology.closure_of(row).entries {
                 let unit = topology[c].unit;
                 out[column] +=
                     // (6), the row per its unit and the coordinate per its: a number without dimension

@@ -13,7 +13,7 @@
 
 use crate::linalg::Factors;
 use crate::space::{Real, Twist, Wrench};
-use crate::topology::{BlockId, ClosureId, Link, LinkId, RowId, Step, Term, Topology};
+use crate::topology::{BlockId, ClosureId, Link, LinkId, LinkStep, RowId, RowTerm, Topology};
 
 /// How often the product of an m-th and an (n - m)-th derivative stands in the n-th of a product: `C(n, m)`.
 pub(crate) const BINOMIAL: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 2.0, 1.0]];
@@ -164,7 +164,7 @@ impl<T: Real> Flow<T> {
         topology: &Topology,
         links: impl Iterator<Item = LinkId>,
         x: &[Twist<T>],
-        counts: impl Fn(&Step) -> bool,
+        counts: impl Fn(&LinkStep) -> bool,
     ) {
         let bias = if N > 0 { &self.bias } else { &self.moves[0] };
         let (speeds, twists) = (&self.speeds[N], &mut self.twists[N]);
@@ -273,7 +273,7 @@ fn along<T: Real>(topology: &Topology, l: &[Wrench<T>], motion: &[Twist<T>], r: 
         l[r.0].on(motion[j.0] - motion[i.0])
     };
     let mut sum = of_row(r);
-    for &Term { row, factor } in &topology[r].terms {
+    for &RowTerm { row, factor } in &topology[r].terms {
         sum += of_row(row) * T::constant(factor);
     }
     sum

@@ -4,7 +4,7 @@ use crate::constraint::{MarkerPair, Row};
 use crate::joint::Freedom;
 use crate::linalg::{Elimination, MOST_GROWTH};
 use crate::space::{Real, Twist, Vec3, Wrench};
-use crate::topology::{BlockId, Entry, LoopLink, RowId, Term, Topology};
+use crate::topology::{BlockId, ClosureColumn, LoopLink, RowId, RowTerm, Topology};
 
 use super::kinematics::State;
 
@@ -184,9 +184,9 @@ fn relative_row<T: Real>(topology: &Topology, state: &State<T>, r: RowId, row: &
     let scale = 1.0 / topology[r].unit;
     let zero = T::zero();
     row.fill(zero);
-    for Term { row: part, factor } in topology.parts_of_row(r) {
+    for RowTerm { row: part, factor } in topology.parts_of_row(r) {
         let l = wrench(topology, state, part);
-        for &Entry { column, coordinate: c, side } in &topology.closure_of(part).entries {
+        for &ClosureColumn { column, coordinate: c, side } in &topology.closure_of(part).entries {
             // +- c_k l_k . x_c, in the units of row and coordinate                                                (6)
             let unit = topology[c].unit;
             row[column] += l.on(state.x[0][c.0]) * T::constant(scale * unit * side * factor);
@@ -207,7 +207,7 @@ fn wrench<T: Real>(topology: &Topology, state: &State<T>, r: RowId) -> Wrench<T>
 fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: RowId) -> T {
     let scale = 1.0 / topology[r].unit;
     let mut most = T::constant(f64::MIN_POSITIVE);
-    for Term { row, factor } in topology.parts_of_row(r) {
+    for RowTerm { row, factor } in topology.parts_of_row(r) {
         let MarkerPair { i, j, .. } = &state.ends[topology[row].closure.0];
         let l = wrench(topology, state, row);
         for &LoopLink { link, side } in &topology.closure_of(row).links {

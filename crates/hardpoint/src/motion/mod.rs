@@ -24,7 +24,7 @@ pub(crate) mod turns;
 mod walk;
 
 pub use assembly::{Assembly, AssemblyShift, Closing, Gap};
-pub use execution::{Execution, SolvedBy};
+pub use execution::{Execution, StepMethod};
 pub use jerk::BodyJerk;
 pub use margin::Margin;
 pub use stop::{Stop, StopKind};
@@ -139,13 +139,13 @@ pub struct Motion {
     /// How it was closed before it moved, if it was open as drawn.
     pub assembly: Option<Assembly>,
     /// The singular position next after its end, if one is near.
-    pub beyond: Option<Singular>,
+    pub beyond: Option<SingularPosition>,
     /// Per output time, the angles that are counted along the path, with all turns, rad; empty where the path was not followed.
     pub(crate) counted: Vec<f64>,
     /// What it took.
-    pub effort: Effort,
+    pub effort: SolverStatistics,
     /// What solved the steps that are even.
-    pub solved_by: Option<SolvedBy>,
+    pub solved_by: Option<StepMethod>,
 }
 
 /// States of all bodies at one output time.
@@ -176,7 +176,7 @@ impl<'m> States<'m> {
 
 /// A singular position ahead of a motion.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Singular {
+pub struct SingularPosition {
     /// How long after the last output time, s.
     pub after: f64,
     /// How far each driver moves until then, m or rad.
@@ -189,7 +189,7 @@ pub struct Singular {
 
 /// What a solution took, and how well the constraints hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Effort {
+pub struct SolverStatistics {
     /// Output steps solved.
     pub steps: usize,
     /// Steps in between that the predictor needed.
@@ -206,7 +206,7 @@ pub struct Effort {
     pub least_pivot_time: f64,
 }
 
-impl Effort {
+impl SolverStatistics {
     /// Keeps the smallest of these pivot ratios in mind, if it is the smallest so far.
     #[inline(always)]
     pub(crate) fn note_pivots(&mut self, ratios: impl Iterator<Item = f64>, t: f64) {

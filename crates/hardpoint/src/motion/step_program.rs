@@ -21,10 +21,10 @@ use crate::linalg::{LARGEST_DENSE, MOST_GROWTH};
 use crate::model::{BodyId, Model, VariableId};
 use crate::number::record as recording;
 use crate::space::Vec3;
-use crate::topology::{BlockId, CoordinateId, RowId, Step, Topology};
+use crate::topology::{BlockId, CoordinateId, LinkStep, RowId, Topology};
 
 use super::BodyState;
-use super::execution::{Cache, Execution, Runnable, SolvedBy, Staged};
+use super::execution::{Cache, Execution, Runnable, Staged, StepMethod};
 use super::forecast::{Channel, NODES, ORDERS};
 use super::kinematics::{CORRECTIONS, QUADRATIC, ROUND_OFF, State};
 use super::margin::Margins;
@@ -371,7 +371,7 @@ fn unknowns(topology: &Topology, channels: &[Channel]) -> Vec<Unknown> {
 fn of_balls(topology: &Topology) -> impl Iterator<Item = CoordinateId> {
     let steps = topology.links.iter().flat_map(|l| &l.steps);
     let balls = steps.filter(|s| s.freedom == Freedom::Ball && topology[s.first].is_unknown());
-    balls.flat_map(Step::coordinates)
+    balls.flat_map(LinkStep::coordinates)
 }
 
 /// Value, first and second derivative of every channel; speeds and accelerations of balls.
@@ -492,16 +492,18 @@ impl Programs {
     }
 
     /// How so many steps are solved, if they can be recorded.
-    pub fn solved_by(&self, steps: usize) -> SolvedBy {
+    pub fn solved_by(&self, steps: usize) -> StepMethod {
         let asked = || "it was asked for".to_owned();
         match self.execution {
-            Execution::Kernel => SolvedBy::Kernel(asked()),
-            _ if !self.pay(steps) => SolvedBy::Kernel(format!("recording pays from {PAYS} output times on")),
-            Execution::Interpreted => SolvedBy::Interpreter(asked()),
+            Execution::Kernel => StepMethod::Kernel(asked()),
+            _ if !self.pay(steps) => {
+                StepMethod::Kernel(format!("recording pays from {PAYS} output times on"))
+            }
+            Execution::Interpreted => StepMethod::Interpreter(asked()),
             // What can be made of nothing can be made of all.
             _ => match self.machine.get_or_init(|| Code::new(&Program::default()).map(|code| code.width())) {
-                Ok(width) => SolvedBy::Code(*width),
-                Err(why) => SolvedBy::Interpreter(why.to_string()),
+                Ok(width) => StepMethod::Code(*width),
+                Err(why) => StepMethod::Interpreter(why.to_string()),
             },
         }
     }

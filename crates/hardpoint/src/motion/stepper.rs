@@ -12,13 +12,13 @@ use crate::topology::{BlockId, RowId, SetBy, Topology};
 
 use super::assembly::Assembly;
 use super::change_point::Crossing;
-use super::forecast::Forecast;
+use super::forecast::Predictor;
 use super::kinematics::{PositionFailure, Residuals, State, factors_of};
 use super::parts::PlanGeometry;
 use super::singularity::{Surroundings, Workspace};
 use super::turns::TurnCounter;
 use super::walk::{MOST_BEND, PART_OF_WAY, Path};
-use super::{Effort, Stop};
+use super::{SolverStatistics, Stop};
 
 /// A first correction (rad, or sizes) up to this is accepted whatever the prediction's own length is.
 pub(super) const TRUST_FLOOR: f64 = 0.02;
@@ -67,7 +67,7 @@ pub(crate) struct Stepper<'m> {
     pub drivers: Vec<[f64; 3]>,
     /// The last accepted position.
     pub(super) saved: AcceptedPosition,
-    pub(super) forecast: Forecast,
+    pub(super) forecast: Predictor,
     pub(super) time: f64,
     /// What drivers follow on a straight path: from where to where each goes.
     pub(super) line: Vec<[f64; 2]>,
@@ -107,7 +107,7 @@ pub(crate) struct Stepper<'m> {
     pub(super) fastest_driver: f64,
     /// By how much the constraints fail at the position tried last.
     pub(super) residuals: Residuals,
-    pub effort: Effort,
+    pub effort: SolverStatistics,
     /// How often other rows were chosen.
     pub(super) selections: usize,
     /// How the mechanism was closed, if it was open as drawn.
@@ -225,7 +225,7 @@ impl<'m> Stepper<'m> {
             parts,
             state,
             line: vec![[0.0; 2]; drivers],
-            forecast: Forecast::new(topology),
+            forecast: Predictor::new(topology),
             time: 0.0,
             try_others: vec![0.0; blocks],
             branch: vec![(true, 0.0); blocks],
@@ -245,7 +245,7 @@ impl<'m> Stepper<'m> {
             touching: vec![[0.0; 2]; saved.contacts.len()],
             fastest_driver: 0.0,
             residuals: Residuals::default(),
-            effort: Effort { least_pivot_ratio: f64::INFINITY, ..Effort::default() },
+            effort: SolverStatistics { least_pivot_ratio: f64::INFINITY, ..SolverStatistics::default() },
             selections: 0,
             assembly: None,
             turns: None,

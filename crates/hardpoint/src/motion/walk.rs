@@ -12,7 +12,7 @@ use super::kinematics::PositionFailure;
 use super::singularity::Workspace;
 use super::stepper::{LOCKED, Lookahead, Refusal, Stepper, TRUST, TRUST_FLOOR};
 use super::turns::{FINEST, TURN_TRUST};
-use super::{Singular, Stop, StopKind};
+use super::{SingularPosition, Stop, StopKind};
 
 /// A step may be this part of the estimated distance to the nearest singular position. The estimate is 0.94 to 2.17 times the true
 /// distance (`docs/theory.md`, section 4), so that no step reaches beyond.
@@ -465,7 +465,7 @@ impl Stepper<'_> {
 
     /// The singular position that the motion would come to if it went on as it does at the last output time; `None` where none is near
     /// enough to be told from its surroundings.
-    pub fn beyond(&mut self) -> Option<Singular> {
+    pub fn beyond(&mut self) -> Option<SingularPosition> {
         self.stand(Path::Laws).ok()?;
         let ahead = self.ahead(Path::Laws)?;
         // m of (23): 1/2 at a limit, 1 where two motions meet
@@ -481,7 +481,7 @@ impl Stepper<'_> {
             // A law that ends there goes on as it does now.
             if then.is_finite() { then - now } else { self.drivers[d][1] * ahead.distance }
         });
-        Some(Singular {
+        Some(SingularPosition {
             after: ahead.distance,
             travel: travel.collect(),
             kind: if limit { StopKind::Limit } else { StopKind::BranchChange },

@@ -7,20 +7,20 @@ use std::sync::{Arc, OnceLock};
 use crate::design::DesignMap;
 use crate::law::Law;
 use crate::load::{self, RecordedLoads};
-use crate::measure::{self, Measured, StepValues};
-use crate::model::{BodyId, Held, MeasureKind, Model};
+use crate::measure::{self, MeasureResults, StepValues};
+use crate::model::{BodyId, MeasureKind, Model, SharedModel};
 use crate::motion::execution::{Cache, Runnable};
 use crate::motion::parts::PlanGeometry;
 use crate::motion::step_program::{Programs, Purpose, RecordedExtras, RecordedStep, StepProgram};
 use crate::motion::stepper::Stepper;
-use crate::motion::{BodyState, Execution, Motion, SolvedBy, Stop, StopKind};
+use crate::motion::{BodyState, Execution, Motion, StepMethod, Stop, StopKind};
 use crate::number::record as recording;
 use crate::sensitivity::{Admissibility, JointDefect, admissibility_at_design, along, record_derivatives};
-use crate::topology::{Formulation, Topology, TopologyFault};
+use crate::topology::{Formulation, Topology, TopologyError};
 
 use super::request::Run;
 use super::sink::Sink;
-use super::solution::{Solution, Streamed};
+use super::solution::{Solution, StreamSummary};
 use super::walk::{PreparedDesign, Scope, Walk};
 
 /// A model with its plan of solution, ready to be run as often as needed.
@@ -63,8 +63,8 @@ impl<'m> Analysis<'m> {
     /// Plans the solution of a model in relative coordinates.
     ///
     /// # Errors
-    /// A [`TopologyFault`] where the drivers leave motions free or contradict the joints.
-    pub fn new(model: impl Into<Held<'m>>) -> Result<Self, TopologyFault> {
+    /// A [`TopologyError`] where the drivers leave motions free or contradict the joints.
+    pub fn new(model: impl Into<SharedModel<'m>>) -> Result<Self, TopologyError> {
         Self::with(model, Formulation::Relative)
     }
 
@@ -72,7 +72,7 @@ impl<'m> Analysis<'m> {
     ///
     /// # Errors
     /// As [`Analysis::new`].
-    pub fn with(model: impl Into<Held<'m>>, formulation: Formulation) -> Result<Self, TopologyFault> {
+    pub fn with(model: impl Into<SharedModel<'m>>, formulation: Formulation) -> Result<Self, TopologyError> {
         let model = model.into();
         let topology = Topology::of(&model, formulation)?;
         let programs = Arc::new(Programs::new(Execution::default()));
@@ -130,13 +130,13 @@ impl<'m> Analysis<'m> {
     /// As [`Analysis::solve`], but nothing is stored: the sink takes every result as it is found.
     ///
     /// What 10,000 loops and 1,000 variables give need not fit into memory; measures are not evaluated.
-    pub fn stream(&self, mut run: Run<'_>, sink: &mut impl Sink) -> Streamed {
+    pub fn stream(&self, mut run: Run<'_>, sink: &mut impl Sink) -> StreamSummary {
         let design = self.prepare(run.design, run.scope);
         let wanted = self.wanted(std::slice::from_ref(sink));
         let mut walk = Walk::by_programs(self, &design, wanted, (false, false));
         let stop = walk.all(sink, &mut *run.progress, |_, _, _, _| ());
         let (steps, effort) = (walk.done, walk.one.effort);
-        Streamed { steps, admissibility: walk.admissibility(&design.opens), effort, stop }
+        StreamSummary { steps, admissibility: walk.admissibility(&design.opens), effort, stop }
     }
 
     /// Whether and how the mechanism follows a change of the nominal design as a whole, in which variable k goes by `change[k]`:
@@ -214,10 +214,10 @@ impl<'m> Analysis<'m> {
     }
 
     /// How the even steps of the nominal design's motion are solved, with its measures or without.
-    pub(super) fn solved_by(&self, measures: bool) -> SolvedBy {
+    pub(super) fn solved_by(&self, measures: bool) -> StepMethod {
         let of_measures = || if measures { self.needs_kernel() } else { None };
         match StepProgram::hindrance(&self.topology, measures).or_else(of_measures) {
-            Some(why) => SolvedBy::Kernel(why.into()),
+            Some(why) => StepMethod::Kernel(why.into()),
             None => self.programs.solved_by(self.model().times.len()),
         }
     }
@@ -293,7 +293,7 @@ impl<'m> Analysis<'m> {
     pub(super) fn measure(&self, design: &PreparedDesign, slopes: &StepValues, solution: &mut Solution) {
         let Solution { motion, sensitivities, measured, .. } = solution;
         if !design.scope.measures {
-            *measured = Measured::default();
+            *measured = MeasureResults::default();
             return;
         }
         let PreparedDesign { values, laws, scope: Scope { of_many, .. }, .. } = design;

@@ -6,16 +6,16 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use hardpoint_tape::LANES;
 
-use crate::measure::{Measured, StepValues};
-use crate::motion::Effort;
-use crate::motion::designs::DesignsAbreast;
+use crate::measure::{MeasureResults, StepValues};
+use crate::motion::SolverStatistics;
+use crate::motion::designs::DesignBatch;
 use crate::motion::step_program::Purpose;
 use crate::sensitivity::{Resistance, Sensitivities, admissibility, note_defects};
 
 use super::analysis::Analysis;
 use super::request::Run;
 use super::sink::{Sink, hand_over};
-use super::solution::{Solution, Streamed};
+use super::solution::{Solution, StreamSummary};
 use super::walk::Scope;
 
 impl Analysis<'_> {
@@ -61,7 +61,7 @@ impl Analysis<'_> {
     /// Up to as many designs as there are lanes: side by side, or each on its own.
     fn solve_group(
         &self,
-        abreast: &mut Option<DesignsAbreast<'_>>,
+        abreast: &mut Option<DesignBatch<'_>>,
         designs: &[Vec<f64>],
         scope: Scope,
         solutions: &mut [Solution],
@@ -82,7 +82,7 @@ impl Analysis<'_> {
                 self.measure(&design, &StepValues::default(), solution);
                 self.solve_between(&design, &mut |_| ControlFlow::Continue(()), solution);
             } else {
-                solution.measured = Measured::default();
+                solution.measured = MeasureResults::default();
             }
         }
     }
@@ -90,10 +90,10 @@ impl Analysis<'_> {
     /// The motions of all these designs, or nothing where one of them does not go as expected.
     fn solve_side_by_side(
         &self,
-        abreast: &mut Option<DesignsAbreast<'_>>,
+        abreast: &mut Option<DesignBatch<'_>>,
         designs: &[Vec<f64>],
         solutions: &mut [Solution],
-    ) -> Option<Effort> {
+    ) -> Option<SolverStatistics> {
         let abreast = abreast.as_mut().filter(|_| designs.len() > 1)?;
         solutions.iter_mut().for_each(|s| self.make_room(&mut s.motion, 0));
         let effort = abreast.run(&self.whole(designs), |_, _| self.flow())?;
@@ -121,7 +121,7 @@ impl Analysis<'_> {
         run: Run<'_>,
         designs: &[Vec<f64>],
         mut sink: impl FnMut(usize) -> S,
-        mut end: impl FnMut(usize, S, Streamed),
+        mut end: impl FnMut(usize, S, StreamSummary),
     ) {
         let mut abreast = self.side_by_side(designs.len(), run.scope.sensitivities, false);
         let opens = if run.scope.sensitivities { self.opens() } else { &[] };
@@ -134,7 +134,7 @@ impl Analysis<'_> {
                 for (k, sink) in sinks.into_iter().enumerate() {
                     let resisting = resisting.drain(..opens.len()).collect();
                     let admissibility = admissibility(opens, resisting, steps);
-                    end(number(k), sink, Streamed { steps, admissibility, effort, stop: None });
+                    end(number(k), sink, StreamSummary { steps, admissibility, effort, stop: None });
                 }
                 continue;
             }
@@ -149,10 +149,10 @@ impl Analysis<'_> {
     /// All designs to the end, or nothing where one of them does not go as expected.
     fn stream_side_by_side<S: Sink>(
         &self,
-        abreast: &mut Option<DesignsAbreast<'_>>,
+        abreast: &mut Option<DesignBatch<'_>>,
         designs: &[Vec<f64>],
         sinks: &mut [S],
-    ) -> Option<(Effort, Vec<Resistance>)> {
+    ) -> Option<(SolverStatistics, Vec<Resistance>)> {
         let abreast = abreast.as_mut().filter(|_| designs.len() > 1)?;
         let (wanted, moved) = (self.wanted(sinks), abreast.moved());
         let variables = self.model().variables.len();
@@ -174,7 +174,7 @@ impl Analysis<'_> {
     }
 
     /// What solves so many designs side by side, where that pays and can be done, and keeps what it finds if that is asked for.
-    fn side_by_side(&self, designs: usize, sensitivities: bool, keeps: bool) -> Option<DesignsAbreast<'_>> {
+    fn side_by_side(&self, designs: usize, sensitivities: bool, keeps: bool) -> Option<DesignBatch<'_>> {
         let pays = designs > 1 && self.programs_pay(designs);
         // All designs must have the same laws.
         if !pays || self.design_map().laws_change() {
@@ -191,6 +191,6 @@ impl Analysis<'_> {
             };
             self.program(purpose)
         };
-        DesignsAbreast::new(self.started()?, Box::new(program), keeps)
+        DesignBatch::new(self.started()?, Box::new(program), keeps)
     }
 }

@@ -6,7 +6,7 @@
 use super::curve::{SampledCurve, THERE, WidePolynomial, abscissa_at, along, apart, crossings};
 use super::quadrature::{PathIntegral, coarse_middles, path_error, path_nodes, travel};
 use super::solution::Solution;
-use crate::measure::Measured;
+use crate::measure::MeasureResults;
 use crate::model::{Metric, Model, OutputSource, Reduction, VariableId, on_target};
 use crate::number::{Dual, Real};
 
@@ -354,7 +354,7 @@ pub fn peaks(model: &Model, solution: &Solution, metric: &Metric, sign: f64) -> 
 }
 
 /// The column of an output, and how many orders of it are known.
-fn column(measured: &Measured, output: OutputSource) -> Option<(usize, usize)> {
+fn column(measured: &MeasureResults, output: OutputSource) -> Option<(usize, usize)> {
     let m = measured.outputs.iter().position(|o| o.source == output)?;
     Some((m, measured.outputs[m].known.orders))
 }

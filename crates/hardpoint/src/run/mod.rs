@@ -17,6 +17,6 @@ mod window;
 pub use analysis::Analysis;
 pub use request::{Progress, Run};
 pub use sink::Sink;
-pub use solution::{Solution, Streamed};
+pub use solution::{Solution, StreamSummary};
 pub(crate) use walk::{PreparedDesign, Walk};
-pub use window::{Footprint, Keep, Kept};
+pub use window::{Footprint, SampledResults, Sampling};

@@ -67,9 +67,9 @@ pub(super) fn hand_over<S: Sink>(
 }
 
 /// Takes nothing.
-pub(super) struct Nowhere;
+pub(super) struct NullSink;
 
-impl Sink for Nowhere {
+impl Sink for NullSink {
     fn state(&mut self, _: usize, _: BodyId, _: &BodyState) {}
 
     fn sensitivity(&mut self, _: usize, _: VariableId, _: BodyId, _: &BodySensitivity) {}

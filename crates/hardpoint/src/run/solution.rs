@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::measure::Measured;
+use crate::measure::MeasureResults;
 use crate::model::BodyId;
-use crate::motion::{BodyState, Effort, Motion, Stop};
+use crate::motion::{BodyState, Motion, SolverStatistics, Stop};
 use crate::sensitivity::{Admissibility, Sensitivities};
 
 /// What a run found. Everything that was solved is here, also where something stopped it.
@@ -15,7 +15,7 @@ pub struct Solution {
     /// Sensitivities of all bodies by all design variables.
     pub sensitivities: Sensitivities,
     /// Measures and points, with their sensitivities.
-    pub measured: Measured,
+    pub measured: MeasureResults,
     /// Why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
     /// The same motion at more times, where metrics ask for these.
@@ -31,13 +31,13 @@ impl Solution {
 
 /// What a streamed run says at its end.
 #[derive(Clone, Debug)]
-pub struct Streamed {
+pub struct StreamSummary {
     /// Output times solved.
     pub steps: usize,
     /// Per variable: whether and how the mechanism follows the change.
     pub admissibility: Vec<Admissibility>,
     /// What it took.
-    pub effort: Effort,
+    pub effort: SolverStatistics,
     /// Why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
 }

@@ -9,7 +9,7 @@ use crate::law::Law;
 use crate::load::LoadSolver;
 use crate::measure::PathAngles;
 use crate::model::BodyId;
-use crate::motion::abreast::TimesAbreast;
+use crate::motion::abreast::TimeBatch;
 use crate::motion::parts::PlanGeometry;
 use crate::motion::step_program::Purpose;
 use crate::motion::stepper::Stepper;
@@ -20,7 +20,7 @@ use crate::sensitivity::{Admissibility, JointDefect, SensitivitySolver};
 
 use super::analysis::Analysis;
 use super::request::Progress;
-use super::sink::{Nowhere, Sink, hand_over};
+use super::sink::{NullSink, Sink, hand_over};
 
 /// What is asked for of a design.
 #[derive(Clone, Copy, Debug)]
@@ -53,7 +53,7 @@ pub(crate) struct PreparedDesign {
 pub(crate) struct Walk<'a> {
     analysis: &'a Analysis<'a>,
     pub one: Stepper<'a>,
-    abreast: TimesAbreast<'a>,
+    abreast: TimeBatch<'a>,
     /// `None` where no sensitivities are asked for.
     pub solver: Option<SensitivitySolver>,
     /// `None` where no loads are.
@@ -81,7 +81,7 @@ impl<'a> Walk<'a> {
         Self {
             analysis,
             one,
-            abreast: TimesAbreast::new(None, &[], None),
+            abreast: TimeBatch::new(None, &[], None),
             solver: (!fields.is_empty())
                 .then(|| SensitivitySolver::new(model, topology, fields, wanted.clone())),
             loads: None,
@@ -107,14 +107,14 @@ impl<'a> Walk<'a> {
                 analysis.program(purpose).filter(|program| program.moved == moved)
             };
             let laws = analysis.laws_program(&design.laws, loads);
-            walk.abreast = TimesAbreast::new(Some(Box::new(program)), &design.values, laws);
+            walk.abreast = TimeBatch::new(Some(Box::new(program)), &design.values, laws);
         }
         walk
     }
 
     /// To the last output time, or to what stops it, for those who take what they want from the stepper: nothing is stored.
     pub fn each(&mut self, mut then: impl FnMut(&mut Stepper<'a>)) -> Option<Stop> {
-        self.all(&mut Nowhere, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
+        self.all(&mut NullSink, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
             if let SolvedSteps::One(one, _) = solved {
                 then(one);
             }

@@ -231,7 +231,7 @@ impl Window {
 
 /// What to keep of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Keep {
+pub struct Sampling {
     /// At most so many output times: of more, every second, then every fourth, and so on.
     pub rows: usize,
     /// Poses and motion of the bodies.
@@ -244,15 +244,15 @@ pub struct Keep {
 
 /// Keeps some of the results of a run, at evenly chosen output times.
 #[derive(Clone, Debug)]
-pub struct Kept {
-    keep: Keep,
+pub struct SampledResults {
+    keep: Sampling,
     stride: usize,
     solution: Solution,
 }
 
-impl Kept {
+impl SampledResults {
     /// Nothing as yet.
-    pub fn new(keep: Keep) -> Self {
+    pub fn new(keep: Sampling) -> Self {
         Self { keep, stride: 1, solution: Solution::default() }
     }
 

@@ -16,7 +16,7 @@ use crate::motion::kinematics::State;
 use crate::motion::level::BINOMIAL;
 use crate::motion::stepper::{LOCKED, Stepper};
 use crate::space::{Real, Twist, Wrench};
-use crate::topology::{BlockId, ClosureId, CoordinateId, LinkId, RowId, Term, Topology};
+use crate::topology::{BlockId, ClosureId, CoordinateId, LinkId, RowId, RowTerm, Topology};
 
 use super::direct::{DEFECT_FLOOR, Defect, PlanVelocity};
 use super::solver::{Resistance, note};
@@ -368,7 +368,7 @@ impl DefectWatch {
         let (zero, none) = (0.0, Wrench::zero());
         self.sum.fill(zero);
         self.most.fill(zero);
-        for Term { row, factor } in topology.parts_of_row(r) {
+        for RowTerm { row, factor } in topology.parts_of_row(r) {
             let closure = topology.closure_of(row);
             for (body, sign) in closure.bodies.into_iter().zip([-factor, factor]) {
                 if body == GROUND {

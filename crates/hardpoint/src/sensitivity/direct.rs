@@ -27,7 +27,7 @@ use crate::motion::kinematics::State;
 use crate::motion::level::{Flow, carried};
 use crate::motion::stepper::LOCKED;
 use crate::space::{Real, Twist, Wrench};
-use crate::topology::{BlockId, ClosureId, LinkId, RowId, Term, Topology};
+use crate::topology::{BlockId, ClosureId, LinkId, RowId, RowTerm, Topology};
 
 use super::adjoint::Turning;
 
@@ -500,7 +500,7 @@ impl<T: Real> DirectDifferentiation<T> {
         let zero = T::zero();
         // l . (W_j - W_i) + l . (z_j - z_i) - (L' + df/dp), summed over a coupler's terms: (11) of a row that it was not solved with
         let (mut sum, mut most) = (zero, zero);
-        for Term { row, factor } in topology.parts_of_row(r) {
+        for RowTerm { row, factor } in topology.parts_of_row(r) {
             let closure = topology.closure_of(row);
             let [i, j] = closure.bodies;
             let (l, w, factor) = (state.l[0][row.0], &self.flow.twists[0], T::constant(factor));

@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::motion::kinematics::State;
 use crate::motion::level::BINOMIAL;
 use crate::space::{Real, Twist, Wrench};
-use crate::topology::{BlockId, LinkId, Term, Topology};
+use crate::topology::{BlockId, LinkId, RowTerm, Topology};
 
 /// The way of some loads to ground.
 #[derive(Clone, Debug)]
@@ -133,7 +133,7 @@ impl<T: Real> Transmission<T> {
             // J^T mu(n) = works
             factors[b.0].solve_transposed(rhs);
             for (k, &r) in block.selected.iter().enumerate() {
-                for Term { row, factor } in topology.parts_of_row(r) {
+                for RowTerm { row, factor } in topology.parts_of_row(r) {
                     // mu of a coupler's terms: c_k mu
                     rows[n][row.0] = rhs[k] * factor;
                 }

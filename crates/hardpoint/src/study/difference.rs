@@ -8,7 +8,7 @@ use crate::space::Vec3;
 
 /// Which two designs a difference quotient is of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Scheme {
+pub enum DifferenceScheme {
     /// Those at +h and -h: the error falls with the square of h.
     #[default]
     Central,
@@ -18,7 +18,7 @@ pub enum Scheme {
     Backward,
 }
 
-impl Scheme {
+impl DifferenceScheme {
     /// The designs to solve, in steps from the nominal one.
     fn moves(self) -> &'static [f64] {
         match self {
@@ -55,7 +55,7 @@ pub struct Difference {
 pub fn finite_differences(
     analysis: &Analysis<'_>,
     nominal: &Solution,
-    scheme: Scheme,
+    scheme: DifferenceScheme,
     steps: &[(VariableId, f64)],
 ) -> Vec<Result<Difference, Stop>> {
     finite_differences_each(analysis, nominal, scheme, steps, 1)
@@ -68,7 +68,7 @@ pub fn finite_differences(
 pub fn finite_differences_each(
     analysis: &Analysis<'_>,
     nominal: &Solution,
-    scheme: Scheme,
+    scheme: DifferenceScheme,
     steps: &[(VariableId, f64)],
     stride: usize,
 ) -> Vec<Result<Difference, Stop>> {
@@ -90,15 +90,15 @@ pub fn finite_differences_each(
             let (nominal, plus) =
                 (Rows { solution: nominal, stride }, Rows { solution: &moved[0], stride: 1 });
             let [plus, minus] = match scheme {
-                Scheme::Central => [plus, Rows { solution: &moved[1], stride: 1 }],
-                Scheme::Forward => [plus, nominal],
-                Scheme::Backward => [nominal, plus],
+                DifferenceScheme::Central => [plus, Rows { solution: &moved[1], stride: 1 }],
+                DifferenceScheme::Forward => [plus, nominal],
+                DifferenceScheme::Backward => [nominal, plus],
             };
             out.push(match stop {
                 Some(stop) => Err(stop),
                 None => {
                     let mut d = quotient((variable, step, stride), plus, minus, moves.len() as f64 * step);
-                    if let Scheme::Central = scheme {
+                    if let DifferenceScheme::Central = scheme {
                         bend(&mut d.bends, [plus, nominal, minus]);
                     }
                     Ok(d)

@@ -3,10 +3,10 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
-use crate::model::{Held, Model};
+use crate::model::{Model, SharedModel};
 use crate::motion::{Stop, StopKind};
 use crate::run::{Analysis, Run, Solution};
-use crate::topology::{Formulation, TopologyFault};
+use crate::topology::{Formulation, TopologyError};
 
 use super::metric::{MetricValue, metrics};
 
@@ -18,7 +18,7 @@ pub struct Motions<'m> {
 
 /// A design as a study sees it.
 #[derive(Clone, Debug, Default)]
-pub struct Evaluated {
+pub struct DesignEvaluation {
     /// Per motion, what was solved, with sensitivities.
     pub solutions: Vec<Solution>,
     /// Per motion, its metrics.
@@ -27,7 +27,7 @@ pub struct Evaluated {
 
 /// Why a design has no values: in one of its motions it does not assemble, locks, or reaches a dead point.
 #[derive(Clone, Debug)]
-pub struct Rejection {
+pub struct EvaluationError {
     /// In which motion, as [`Model::motions`] counts them.
     pub motion: usize,
     /// What happened there.
@@ -36,7 +36,7 @@ pub struct Rejection {
     pub why: String,
 }
 
-impl fmt::Display for Rejection {
+impl fmt::Display for EvaluationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.why)
     }
@@ -44,7 +44,7 @@ impl fmt::Display for Rejection {
 
 /// What a study has cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Cost {
+pub struct StudyCost {
     /// Designs that were looked at.
     pub designs: usize,
     /// Motions solved for them.
@@ -53,7 +53,7 @@ pub struct Cost {
     pub steps: usize,
 }
 
-impl std::ops::AddAssign for Cost {
+impl std::ops::AddAssign for StudyCost {
     fn add_assign(&mut self, other: Self) {
         self.designs += other.designs;
         self.motions += other.motions;
@@ -66,10 +66,10 @@ impl<'m> Motions<'m> {
     ///
     /// # Errors
     /// The motion that cannot be driven, and why.
-    pub fn of<M: Into<Held<'m>>>(
+    pub fn of<M: Into<SharedModel<'m>>>(
         motions: impl IntoIterator<Item = M>,
         formulation: Formulation,
-    ) -> Result<Self, (usize, TopologyFault)> {
+    ) -> Result<Self, (usize, TopologyError)> {
         let plan = |(k, model)| Analysis::with(model, formulation).map_err(|fault| (k, fault));
         Ok(Self { analyses: motions.into_iter().enumerate().map(plan).collect::<Result<_, _>>()? })
     }
@@ -101,11 +101,11 @@ impl<'m> Motions<'m> {
     pub fn evaluate(
         &self,
         design: &[f64],
-        cost: &mut Cost,
+        cost: &mut StudyCost,
         more: &(dyn Fn() -> bool + Sync),
-    ) -> Result<Evaluated, Rejection> {
+    ) -> Result<DesignEvaluation, EvaluationError> {
         cost.designs += 1;
-        let mut found = Evaluated::default();
+        let mut found = DesignEvaluation::default();
         for (motion, analysis) in self.analyses.iter().enumerate() {
             let go_on = |_| if more() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
             let solution = analysis.solve(Run::new().at(design).progress(go_on));
@@ -113,7 +113,7 @@ impl<'m> Motions<'m> {
             cost.steps += solution.motion.len();
             if let Some(stop) = &solution.stop {
                 let why = stop.headline(analysis.model());
-                return Err(Rejection { motion, stop: Box::new(stop.clone()), why });
+                return Err(EvaluationError { motion, stop: Box::new(stop.clone()), why });
             }
             found.metrics.push(metrics(analysis.model(), &solution));
             found.solutions.push(solution);
@@ -128,7 +128,7 @@ impl<'m> From<Vec<Analysis<'m>>> for Motions<'m> {
     }
 }
 
-impl Rejection {
+impl EvaluationError {
     /// Whether it was the caller who ended it.
     pub fn interrupted(&self) -> bool {
         matches!(self.stop.kind, StopKind::Interrupted)

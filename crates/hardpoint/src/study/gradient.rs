@@ -27,7 +27,7 @@ const ROW_COST: usize = 1;
 
 /// How gradients are worked out. All ways give the same numbers, to round-off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Method {
+pub enum GradientMethod {
     /// Whichever is expected to be faster: adjoint where there are more variables than redundant rows, three times the outputs and six
     /// times the loads together.
     #[default]
@@ -48,7 +48,7 @@ pub struct Gradients {
     /// How many design variables there are.
     pub variables: usize,
     /// How they were worked out: direct or adjoint.
-    pub method: Method,
+    pub method: GradientMethod,
     /// Per variable: whether and how the mechanism follows the change.
     pub admissibility: Vec<Admissibility>,
     /// Why the run ended before the last output time, if it did.
@@ -80,7 +80,7 @@ impl Analysis<'_> {
     ///
     /// # Panics
     /// If there is no such output.
-    pub fn gradients(&self, design: &[f64], outputs_asked: &[usize], method: Method) -> Gradients {
+    pub fn gradients(&self, design: &[f64], outputs_asked: &[usize], method: GradientMethod) -> Gradients {
         let all = outputs(self.model());
         let asked: Vec<Output> = outputs_asked.iter().map(|&m| all[m].clone()).collect();
         // What is neither a smooth function of positions alone nor a load is no load on the bodies.
@@ -93,10 +93,10 @@ impl Analysis<'_> {
             return self.gradients_of_run(design, outputs_asked, asked);
         }
         match self.method(asked.len(), asked.iter().filter(|o| is_load(o)).count(), method) {
-            Method::Direct if asked.iter().any(is_load) => {
+            GradientMethod::Direct if asked.iter().any(is_load) => {
                 self.gradients_of_run(design, outputs_asked, asked)
             }
-            Method::Direct => self.gradients_direct(design, asked),
+            GradientMethod::Direct => self.gradients_direct(design, asked),
             _ => {
                 let design = self.design(design);
                 self.gradients_adjoint(&design, asked)
@@ -105,13 +105,13 @@ impl Analysis<'_> {
     }
 
     /// The way to go for so many outputs, so many of which are loads.
-    fn method(&self, outputs: usize, loads: usize, method: Method) -> Method {
+    fn method(&self, outputs: usize, loads: usize, method: GradientMethod) -> GradientMethod {
         let adjoint = OUTPUT_COST * (outputs - loads)
             + LOAD_COST * loads
             + ROW_COST * self.topology().redundant().count();
         match method {
-            Method::Auto if adjoint < self.model().variables.len() => Method::Adjoint,
-            Method::Auto => Method::Direct,
+            GradientMethod::Auto if adjoint < self.model().variables.len() => GradientMethod::Adjoint,
+            GradientMethod::Auto => GradientMethod::Direct,
             chosen => chosen,
         }
     }
@@ -129,7 +129,7 @@ impl Analysis<'_> {
             times: motion.times,
             outputs,
             variables,
-            method: Method::Direct,
+            method: GradientMethod::Direct,
             admissibility: sensitivities.admissibility,
             stop,
         }
@@ -153,7 +153,7 @@ impl Analysis<'_> {
             times: motion.times,
             outputs,
             variables,
-            method: Method::Direct,
+            method: GradientMethod::Direct,
             admissibility: sensitivities.admissibility,
             stop,
             d,
@@ -166,7 +166,7 @@ impl Analysis<'_> {
         let fields = self.design_map().fields(&design.values);
         let mut result = Gradients {
             d: vec![[f64::NAN; 3]; model.times.len() * asked * variables],
-            method: Method::Adjoint,
+            method: GradientMethod::Adjoint,
             variables,
             outputs,
             ..Gradients::default()

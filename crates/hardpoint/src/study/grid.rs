@@ -7,9 +7,9 @@ use crate::measure::Output;
 use crate::model::{Case, CaseId, DriverId, Formula, Grid, LoadMode, Model, Target, VariableId};
 use crate::motion::{Stop, StopKind};
 use crate::run::{Analysis, Run, Solution};
-use crate::topology::{Formulation, TopologyFault};
+use crate::topology::{Formulation, TopologyError};
 
-use super::evaluation::Cost;
+use super::evaluation::StudyCost;
 
 /// A solved grid. Positions are counted row by row: in a row the first driver goes from position to position while the second stands.
 #[derive(Clone, Debug)]
@@ -27,7 +27,7 @@ pub struct GridMap {
     /// What stopped the motions that did not come to their end.
     pub stops: Vec<GridStop>,
     /// What it cost.
-    pub cost: Cost,
+    pub cost: StudyCost,
 }
 
 /// Why positions could not be reached.
@@ -61,14 +61,14 @@ impl GridMap {
     /// and in a motion of its own down. So a position beyond a limit on one side says nothing of the other side.
     ///
     /// # Errors
-    /// A [`TopologyFault`] where the mechanism cannot be driven.
+    /// A [`TopologyError`] where the mechanism cannot be driven.
     pub fn solve(
         model: &Model,
         grid: &Grid,
         formulation: Formulation,
         design: &[f64],
         more: &(dyn Fn() -> bool + Sync),
-    ) -> Result<Self, TopologyFault> {
+    ) -> Result<Self, TopologyError> {
         let [first, second] = &from_drawing(model, grid);
         let outputs = crate::measure::outputs(model);
         let mut map = Self {
@@ -78,7 +78,7 @@ impl GridMap {
             positions: vec![Position::NotTried; first.len() * second.len()],
             variables: model.variables.len(),
             stops: Vec::new(),
-            cost: Cost { designs: 1, ..Cost::default() },
+            cost: StudyCost { designs: 1, ..StudyCost::default() },
         };
         for row in 0..second.len() {
             for sign in [1.0, -1.0] {

@@ -26,13 +26,14 @@ pub(crate) use crate::run::metric;
 
 pub use alone::DriverRates;
 pub use calibrate::{
-    Calibrating, Calibration, CannotCalibrate, Certainty, FitStatus, Fitted, Improvement, Loss, Measurements,
-    Next, NotReached, Reading, Untold, calibrate, values_in_postures,
+    Calibration, CalibrationError, CalibrationRequest, Certainty, FitStatus, FittedReading, Improvement,
+    Loss, Measurements, NextReading, Reading, UnidentifiableChange, UnreachedPosture, calibrate,
+    values_in_postures,
 };
 pub use comparison::{Comparison, StepError};
-pub use difference::{Difference, Scheme, finite_differences, finite_differences_each};
-pub use evaluation::{Cost, Evaluated, Motions, Rejection};
-pub use gradient::{Gradients, Method};
+pub use difference::{Difference, DifferenceScheme, finite_differences, finite_differences_each};
+pub use evaluation::{DesignEvaluation, EvaluationError, Motions, StudyCost};
+pub use gradient::{GradientMethod, Gradients};
 pub use grid::{GridMap, GridStop};
 pub use jerk::Jerks;
 pub use loads::{DriverLoad, JointLoad, Loads};
@@ -40,25 +41,26 @@ pub use magnitude::Magnitude;
 pub use metric::{MetricParts, MetricValue, metric_numbers, metrics, metrics_beside, misfits, peaks};
 pub use nearest::{NearestAdmissible, nearest_admissible};
 pub use optimize::{
-    Binding, Iteration, Judged, LIMIT_KEPT, Optimality, Optimized, Progress, Refused, Search, Searching,
-    Status, judge, optimize,
+    ActiveConstraint, DesignAssessment, FailedDesign, Iteration, LIMIT_KEPT, Optimality, OptimizationRequest,
+    OptimizationResult, OptimizationStatus, SearchProgress, SearchResult, judge, optimize,
 };
 pub use random::{Moments, design_stream, draw, moments};
-pub use samples::{BLOCK, Gathered, SampleRun};
+pub use samples::{BLOCK, SampleBlock, SampleRun};
 pub use second::SecondDerivatives;
 pub use sweep::{
-    Distribution, NoPlan, SobolIndex, Sweep, SweepPlan, SweptBlock, SweptCurves, SweptFailure, SweptMetric,
-    rank_correlation, sobol_indices,
+    Distribution, SobolIndex, Sweep, SweepPlan, SweepPlanError, SweptBlock, SweptCurves, SweptFailure,
+    SweptMetric, rank_correlation, sobol_indices,
 };
 pub use tolerance::{
-    Allocated, Allocation, Band, Contributions, CurveBands, Examination, Extreme, Failure, Impossible,
-    LimitYield, MetricSpread, MonteCarlo, NONLINEAR, SampledCurve, SampledMetric, SecondOrder, SpreadModel,
-    Stage, ToleranceFailure, Tolerated, Yield, tolerance, toleranced_designs,
+    AllocatedTolerance, Allocation, AllocationError, BandPoint, Contributions, CurveBands, Extreme,
+    FailureGroup, LimitYield, MetricSpread, MonteCarlo, NONLINEAR, SampledCurve, SampledMetric, SecondOrder,
+    SpreadModel, ToleranceError, ToleranceResult, ToleranceStage, TolerancedVariable, Yield, tolerance,
+    toleranced_designs,
 };
 pub use validity::{Validity, validity};
-pub use verify::{CheckOutcome, PASS, PASS_ONE_SIDED, Verification, VerifiedValue, VerifyOptions, verify};
+pub use verify::{CheckOutcome, PASS, PASS_ONE_SIDED, VariableCheck, Verification, VerifyOptions, verify};
 pub use whatif::{
-    Foresight, WhatIf, add_coordinates, add_tilts, coordinate, repeats_coordinate, value_beside,
+    PredictionQuality, WhatIf, add_coordinates, add_tilts, coordinate, repeats_coordinate, value_beside,
     variable_named, variable_names, what_if,
 };
 

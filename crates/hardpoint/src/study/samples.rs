@@ -33,7 +33,7 @@ pub struct SampleRun<'w> {
 
 /// What is gathered of a block.
 #[derive(Clone, Debug)]
-pub struct Gathered<A> {
+pub struct SampleBlock<A> {
     /// The designs.
     pub numbers: Range<usize>,
     /// What was gathered of them.
@@ -51,7 +51,7 @@ impl Motions<'_> {
         &self,
         run: &SampleRun<'_>,
         see: &(dyn Fn(&mut A, usize, usize, &Solution) + Sync),
-        done: &mut (dyn FnMut(Gathered<A>) -> ControlFlow<()> + Send),
+        done: &mut (dyn FnMut(SampleBlock<A>) -> ControlFlow<()> + Send),
     ) {
         let SampleRun { numbers, design, threads, more } = run;
         let (next, ended) = (AtomicUsize::new(0), AtomicBool::new(false));
@@ -69,7 +69,7 @@ impl Motions<'_> {
                 let found = self.block(numbers.clone(), *design, see);
                 let mut turn = waiting.lock().expect("no turn before has panicked");
                 let (waiting, now, done) = &mut *turn;
-                waiting.insert(block, Gathered { numbers, found });
+                waiting.insert(block, SampleBlock { numbers, found });
                 while let Some(gathered) = waiting.remove(now) {
                     *now += 1;
                     if !ended.load(Ordering::Relaxed) && done(gathered).is_break() {

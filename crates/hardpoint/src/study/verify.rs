@@ -9,7 +9,7 @@ use crate::run::{Analysis, Solution};
 use crate::sensitivity::Admissibility;
 
 use super::comparison::{Comparison, StepError, Undecided};
-use super::difference::{Scheme, finite_differences};
+use super::difference::{DifferenceScheme, finite_differences};
 
 /// A quantity passes if central differences agree to this at some step of the sweep, relative to the largest sensitivity of its
 /// kind. The best that they can reach in a well-conditioned mechanism is about (machine epsilon)^(2/3) = 4e-11;
@@ -25,15 +25,15 @@ pub const PASS_ONE_SIDED: f64 = 4e-4;
 #[derive(Clone, Debug)]
 pub struct VerifyOptions {
     /// Which designs are compared.
-    pub scheme: Scheme,
+    pub scheme: DifferenceScheme,
     /// Steps as parts of [natural steps](crate::model::Model::natural_step), from coarse to fine.
     pub steps: Vec<f64>,
 }
 
 impl VerifyOptions {
     /// Half decades from 1e-2 to where round-off rules: 1e-6 for central differences, 1e-9 for one-sided ones.
-    pub fn new(scheme: Scheme) -> Self {
-        let finest = if scheme == Scheme::Central { 12 } else { 18 };
+    pub fn new(scheme: DifferenceScheme) -> Self {
+        let finest = if scheme == DifferenceScheme::Central { 12 } else { 18 };
         Self { scheme, steps: (4..=finest).map(|k| 10.0_f64.powf(-0.5 * f64::from(k))).collect() }
     }
 }
@@ -41,11 +41,11 @@ impl VerifyOptions {
 impl Default for VerifyOptions {
     /// Central differences.
     fn default() -> Self {
-        Self::new(Scheme::Central)
+        Self::new(DifferenceScheme::Central)
     }
 }
 
-impl Scheme {
+impl DifferenceScheme {
     /// Within what these differences must agree.
     pub fn tolerance(self) -> f64 {
         if self == Self::Central { PASS } else { PASS_ONE_SIDED }
@@ -56,16 +56,16 @@ impl Scheme {
 #[derive(Clone, Debug)]
 pub struct Verification {
     /// Which designs were compared.
-    pub scheme: Scheme,
+    pub scheme: DifferenceScheme,
     /// One entry per variable, in the model's order.
-    pub checks: Vec<VerifiedValue>,
+    pub checks: Vec<VariableCheck>,
     /// Whether the sweep was ended before all variables were checked.
     pub interrupted: bool,
 }
 
 /// The check of one design variable.
 #[derive(Clone, Debug)]
-pub struct VerifiedValue {
+pub struct VariableCheck {
     /// The variable.
     pub variable: VariableId,
     /// What came of it.
@@ -80,7 +80,7 @@ pub struct VerifiedValue {
 /// What came of a check.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckOutcome {
-    /// Every quantity agrees to [`Scheme::tolerance`] at some step.
+    /// Every quantity agrees to [`DifferenceScheme::tolerance`] at some step.
     Passed,
     /// Some quantity agrees at no step.
     Failed,
@@ -90,7 +90,7 @@ pub enum CheckOutcome {
     NotSolved,
 }
 
-impl VerifiedValue {
+impl VariableCheck {
     /// The quantity that agrees worst at its own best step, which decides.
     pub fn worst(&self) -> Option<&StepError> {
         self.quantities.worst()
@@ -139,10 +139,10 @@ fn check_variable(
     solution: &Solution,
     options: &VerifyOptions,
     variable: VariableId,
-) -> Option<VerifiedValue> {
+) -> Option<VariableCheck> {
     if matches!(solution.sensitivities.admissibility[variable.0], Admissibility::CannotFollow { .. }) {
         let (quantities, sweep) = Default::default();
-        return Some(VerifiedValue { variable, outcome: CheckOutcome::CannotFollow, quantities, sweep });
+        return Some(VariableCheck { variable, outcome: CheckOutcome::CannotFollow, quantities, sweep });
     }
     let natural = analysis.model().natural_step(variable);
     let steps: Vec<(VariableId, f64)> = options.steps.iter().map(|part| (variable, part * natural)).collect();
@@ -172,7 +172,7 @@ fn check_variable(
         (_, true) => CheckOutcome::Passed,
         (_, false) => CheckOutcome::Failed,
     };
-    Some(VerifiedValue { variable, outcome, quantities, sweep })
+    Some(VariableCheck { variable, outcome, quantities, sweep })
 }
 
 #[cfg(test)]
@@ -196,7 +196,7 @@ mod tests {
         let analysis = Analysis::new(&model).unwrap();
         let right = analysis.run();
         let outcome = |solution: &Solution| {
-            let options = VerifyOptions::new(Scheme::Central);
+            let options = VerifyOptions::new(DifferenceScheme::Central);
             let found = verify(&analysis, solution, &options, |_| ControlFlow::Continue(()));
             found.checks[0].outcome.clone()
         };

@@ -31,7 +31,7 @@ pub struct WhatIf {
 
 /// How well one output was foreseen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Foresight {
+pub struct PredictionQuality {
     /// Largest exact change over the motion, and the index of its time.
     pub change: (f64, usize),
     /// Largest error of the first-order prediction, and of the second-order one, which follows for positions alone
@@ -110,7 +110,7 @@ impl WhatIf {
     }
 
     /// How well output m was foreseen over the motion; `None` where nothing was foreseen or solved.
-    pub fn foresight(&self, m: usize) -> Option<Foresight> {
+    pub fn foresight(&self, m: usize) -> Option<PredictionQuality> {
         if self.is_empty() || !self.cannot_follow.is_empty() {
             return None;
         }
@@ -133,7 +133,7 @@ impl WhatIf {
             linear_up_to(first / self.part, second / (self.part * self.part)) / self.part
         };
         let linear_up_to = (bends && first > 0.0).then(|| natural(first, second));
-        Some(Foresight { change, errors, linear_up_to })
+        Some(PredictionQuality { change, errors, linear_up_to })
     }
 }
 

@@ -8,11 +8,11 @@ use petgraph::graph::{DiGraph, NodeIndex};
 use crate::linalg::FullPivot;
 use crate::model::{BodyId, Model};
 
-use super::fault::TopologyFault;
+use super::fault::TopologyError;
 use super::matching::match_columns;
 use super::{
-    Block, BlockId, ClosureId, CoordinateId, CoupledColumn, Entry, LinkId, LoopLink, RowId, SetBy, Term,
-    Topology, fault,
+    Block, BlockId, ClosureColumn, ClosureId, CoordinateId, CoupledColumn, LinkId, LoopLink, RowId, RowTerm,
+    SetBy, Topology, fault,
 };
 
 /// A pivot below this part of the largest is zero when constraints are counted.
@@ -37,7 +37,7 @@ pub(super) fn design_jacobian(model: &Model, topology: &Topology) -> Vec<SparseR
             return parts[r.0].clone();
         }
         let mut sum = BTreeMap::new();
-        for Term { row, factor } in topology.parts_of_row(r) {
+        for RowTerm { row, factor } in topology.parts_of_row(r) {
             for &(c, x) in &parts[row.0] {
                 // l = sum c_k l_k
                 *sum.entry(c).or_insert(0.0) += x * factor;
@@ -80,7 +80,7 @@ fn jacobian_of_parts(model: &Model, topology: &Topology) -> Vec<SparseRow> {
 }
 
 /// Splits unknowns and rows into blocks, and orders the links by them.
-pub(super) fn split(model: &Model, topology: &mut Topology) -> Result<(), TopologyFault> {
+pub(super) fn split(model: &Model, topology: &mut Topology) -> Result<(), TopologyError> {
     let jacobian = design_jacobian(model, topology);
     let groups = match groups_of(topology, &jacobian) {
         Ok(groups) => groups,
@@ -263,7 +263,7 @@ fn assign(
                 if let Some((b, column)) = place(coordinate)
                     && Some(b) == block
                 {
-                    entries.push(Entry { column, coordinate, side });
+                    entries.push(ClosureColumn { column, coordinate, side });
                 }
             }
         }
@@ -279,10 +279,10 @@ fn assign(
     for k in 0..topology.coupled_rows.len() {
         let r = topology.coupled_rows[k];
         let mut columns: BTreeMap<usize, CoupledColumn> = BTreeMap::new();
-        for Term { row, factor } in topology.parts_of_row(r) {
-            for &Entry { column, coordinate, side } in &topology.closure_of(row).entries {
+        for RowTerm { row, factor } in topology.parts_of_row(r) {
+            for &ClosureColumn { column, coordinate, side } in &topology.closure_of(row).entries {
                 let new = || CoupledColumn { column, coordinate, parts: Vec::new() };
-                columns.entry(column).or_insert_with(new).parts.push(Term { row, factor: side * factor });
+                columns.entry(column).or_insert_with(new).parts.push(RowTerm { row, factor: side * factor });
             }
         }
         topology[r].columns = columns.into_values().collect();

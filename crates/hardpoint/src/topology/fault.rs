@@ -8,7 +8,7 @@ use super::{Closure, Formulation, Link, RowId, Topology};
 
 /// The mechanism cannot be driven as it is written.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum TopologyFault {
+pub enum TopologyError {
     /// Motions remain that no driver prescribes (HP0301).
     #[error("{}", under_driven_text(.freedom, .bodies))]
     UnderDriven {
@@ -78,7 +78,7 @@ fn dozen(names: &[String]) -> String {
     some_of(names, ", ", 12)
 }
 
-impl TopologyFault {
+impl TopologyError {
     /// Stable code.
     pub fn code(&self) -> &'static str {
         match self {
@@ -162,7 +162,7 @@ pub(super) fn free_motions(
     topology: &Topology,
     free: &[SparseRow],
     nearby: usize,
-) -> TopologyFault {
+) -> TopologyError {
     let moving = free.iter().flatten().filter(|(_, x)| x.abs() > 1e-6);
     let moving: Vec<&Link> = moving.map(|&(c, _)| &topology[topology[c].link]).collect();
     let mut joints: Vec<JointId> = moving.iter().filter_map(|link| link.joint).collect();
@@ -181,9 +181,9 @@ pub(super) fn free_motions(
     let joint_names = joints.iter().map(|j| format!("`{}`", model.joints[j.0].name)).collect();
     let bodies = bodies.iter().map(|b| format!("`{}`", model.bodies[b.0].name)).collect();
     if nearby < free.len() {
-        return TopologyFault::Singular { freedom: free.len() - nearby, joints, joint_names, bodies };
+        return TopologyError::Singular { freedom: free.len() - nearby, joints, joint_names, bodies };
     }
-    TopologyFault::UnderDriven { freedom: free.len(), joints, joint_names, bodies }
+    TopologyError::UnderDriven { freedom: free.len(), joints, joint_names, bodies }
 }
 
 /// The fault of rows that fail under the drivers' motion, each with its failure per driver.
@@ -191,7 +191,7 @@ pub(super) fn contradicted(
     model: &Model,
     topology: &Topology,
     contradictions: &[(RowId, Vec<f64>)],
-) -> TopologyFault {
+) -> TopologyError {
     let mut drivers: Vec<DriverId> = Vec::new();
     let mut joints = Vec::new();
     let mut joint_names: Vec<String> = Vec::new();
@@ -218,9 +218,9 @@ pub(super) fn contradicted(
     bodies.dedup();
     if topology.mobility == 0 {
         let bodies = bodies.iter().map(|b| format!("`{}`", model.bodies[b.0].name)).collect();
-        return TopologyFault::Immovable { joints, joint_names, bodies };
+        return TopologyError::Immovable { joints, joint_names, bodies };
     }
-    TopologyFault::OverDriven {
+    TopologyError::OverDriven {
         driver_names: drivers.iter().map(|d| format!("`{}`", model.drivers[d.0].name)).collect(),
         drivers,
         mobility: topology.mobility,

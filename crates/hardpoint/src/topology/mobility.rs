@@ -6,7 +6,7 @@ use crate::linalg::{Factors, FullPivot, LARGEST_DENSE};
 use crate::model::Model;
 
 use super::blocks::{RANK_TOLERANCE, SparseRow, columns_in_block, design_jacobian};
-use super::fault::TopologyFault;
+use super::fault::TopologyError;
 use super::{BlockId, RowId, Topology, fault};
 
 /// Counts the degrees of freedom; every unknown is already known to be determined.
@@ -14,7 +14,7 @@ use super::{BlockId, RowId, Topology, fault};
 /// Each driver in turn gets unit speed and the blocks are solved for the motion that follows. Where a
 /// row that was left out then fails, the drivers and constraints that meet there contradict each other:
 /// the mechanism has fewer freedoms than drivers.
-pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), TopologyFault> {
+pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), TopologyError> {
     let jacobian = design_jacobian(model, topology);
     let drivers = model.drivers.len();
     // Per coordinate: its speed per unit speed of the drivers that move it, lengths in sizes of their loops.

@@ -14,7 +14,7 @@ mod redundancy;
 mod size;
 mod tree;
 
-pub use fault::TopologyFault;
+pub use fault::TopologyError;
 pub use ids::{BlockId, ClosureId, CoordinateId, Ids, LinkId, RowId};
 pub use redundancy::Redundancy;
 
@@ -55,12 +55,12 @@ pub struct Topology {
     /// Degrees of freedom without drivers, at the design configuration.
     pub mobility: usize,
     /// Why each joint is in the tree or cut, by joint.
-    pub roles: Vec<Role>,
+    pub roles: Vec<JointRole>,
 }
 
 /// A joint's part in the solution.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum JointRole {
     /// It places a body.
     Tree {
         /// The body that it places.
@@ -97,14 +97,14 @@ pub struct Link {
     /// Which end of the joint is on the parent: 0 (i) or 1 (j).
     pub parent_end: usize,
     /// Its chain of freedoms from parent to child.
-    pub steps: Vec<Step>,
+    pub steps: Vec<LinkStep>,
     /// 0 if drivers alone place the child, k + 1 if block k does.
     pub stage: usize,
 }
 
 /// One freedom of a link.
 #[derive(Clone, Copy, Debug)]
-pub struct Step {
+pub struct LinkStep {
     /// Which motion.
     pub freedom: Freedom,
     /// -1 where the link runs from body j to body i, so that coordinates stay those of j relative to i.
@@ -173,7 +173,7 @@ pub struct Closure {
     /// The block that solves it; `None` if no unknown moves it.
     pub block: Option<BlockId>,
     /// Where its rows stand in that block.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<ClosureColumn>,
     /// All links around the loop that it closes.
     pub links: Vec<LoopLink>,
     /// Extent of the joints of that loop in the design configuration, m: what its gaps are compared with.
@@ -182,7 +182,7 @@ pub struct Closure {
 
 /// A column of a block in which the rows of a closure stand.
 #[derive(Clone, Copy, Debug)]
-pub struct Entry {
+pub struct ClosureColumn {
     /// The column.
     pub column: usize,
     /// Its coordinate.
@@ -230,7 +230,7 @@ pub struct RowPlace {
     /// Whether it is one of the independent rows that are solved with; else it is redundant and watched.
     pub selected: bool,
     /// The further terms of a coupler, which this row is the first of.
-    pub terms: Vec<Term>,
+    pub terms: Vec<RowTerm>,
     /// Of a coupler: the columns of its block where its terms stand.
     pub columns: Vec<CoupledColumn>,
     /// Whether it is a further term of a coupler, and no constraint by itself.
@@ -243,7 +243,7 @@ pub struct RowPlace {
 
 /// A row that is a part of a constraint, times its factor.
 #[derive(Clone, Copy, Debug)]
-pub struct Term {
+pub struct RowTerm {
     /// The row.
     pub row: RowId,
     /// Its factor.
@@ -258,7 +258,7 @@ pub struct CoupledColumn {
     /// The coordinate of the column.
     pub coordinate: CoordinateId,
     /// The terms' rows, with their factors and the sides of their loops.
-    pub parts: Vec<Term>,
+    pub parts: Vec<RowTerm>,
 }
 
 /// Unknowns and rows that are solved together.
@@ -290,9 +290,9 @@ impl Topology {
     /// Plans the solution of a model.
     ///
     /// # Errors
-    /// A [`TopologyFault`] where the drivers leave motions free, prescribe more than can move, or stand at
+    /// A [`TopologyError`] where the drivers leave motions free, prescribe more than can move, or stand at
     /// a dead point of the design configuration.
-    pub fn of(model: &Model, formulation: Formulation) -> Result<Self, TopologyFault> {
+    pub fn of(model: &Model, formulation: Formulation) -> Result<Self, TopologyError> {
         let mut topology = tree::grow(model, formulation);
         size::measure(model, &mut topology);
         blocks::split(model, &mut topology)?;
@@ -369,8 +369,8 @@ impl Topology {
     }
 
     /// The rows whose sum, each times its factor, is constraint row r: itself, and a coupler's further terms.
-    pub fn parts_of_row(&self, r: RowId) -> impl Iterator<Item = Term> + '_ {
-        std::iter::once(Term { row: r, factor: 1.0 }).chain(self[r].terms.iter().copied())
+    pub fn parts_of_row(&self, r: RowId) -> impl Iterator<Item = RowTerm> + '_ {
+        std::iter::once(RowTerm { row: r, factor: 1.0 }).chain(self[r].terms.iter().copied())
     }
 
     /// The closures that follow curves, with the number of the curve.
@@ -454,7 +454,7 @@ impl Link {
 
     /// Its coordinates.
     pub fn coordinates(&self) -> impl Iterator<Item = CoordinateId> + '_ {
-        self.steps.iter().flat_map(Step::coordinates)
+        self.steps.iter().flat_map(LinkStep::coordinates)
     }
 
     /// Whether its unit twists never change: a single freedom that starts on ground.
@@ -472,7 +472,7 @@ impl Link {
     }
 }
 
-impl Step {
+impl LinkStep {
     /// Its coordinates: one, or three of a ball.
     #[inline(always)]
     pub fn coordinates(&self) -> impl Ids<CoordinateId> + use<> {

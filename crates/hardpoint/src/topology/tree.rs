@@ -8,8 +8,8 @@ use crate::joint::Freedom;
 use crate::model::{BodyId, DriverId, GROUND, JointId, Model};
 
 use super::{
-    BlockId, Closure, ClosureId, Coordinate, CoordinateId, CutReason, Formulation, Link, LinkId, LoopLink,
-    Role, RowId, RowPlace, SetBy, Step, Term, Topology,
+    BlockId, Closure, ClosureId, Coordinate, CoordinateId, CutReason, Formulation, JointRole, Link, LinkId,
+    LinkStep, LoopLink, RowId, RowPlace, RowTerm, SetBy, Topology,
 };
 
 /// Cost of a joint in the tree: a body without any tree joint has six unknowns, so six is never chosen.
@@ -20,11 +20,11 @@ type DriversOf = Vec<Vec<(DriverId, Option<usize>)>>;
 
 /// Chooses the tree and lists links, coordinates and closures; blocks come later.
 pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
-    let mut roles: Vec<Role> = model
+    let mut roles: Vec<JointRole> = model
         .joints
         .iter()
         .map(|j| {
-            Role::Cut(match (formulation, j.kind.freedoms, j.cut) {
+            JointRole::Cut(match (formulation, j.kind.freedoms, j.cut) {
                 (Formulation::Absolute, ..) => CutReason::Absolute,
                 (_, None, _) => CutReason::AlwaysCut,
                 (_, _, true) => CutReason::Asked,
@@ -58,7 +58,7 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
             Some(Candidate { unknowns, depth: parent_depth, joint, parent_end }) => {
                 let bodies = model.joints[joint].bodies;
                 let (parent, child) = (bodies[parent_end], bodies[1 - parent_end]);
-                roles[joint] = Role::Tree { child, unknowns };
+                roles[joint] = JointRole::Tree { child, unknowns };
                 let drivers = &drivers_of[joint];
                 add_joint_link(model, drivers, &mut topology, JointId(joint), parent, child, parent_end);
                 reachable.place(&mut depth, child, parent_depth + 1);
@@ -83,7 +83,7 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
         add_closure(&mut topology, &way, owner, model.joints[joint].bodies, rows);
     };
     for (k, joint) in model.joints.iter().enumerate() {
-        let cut = matches!(roles[k], Role::Cut(_));
+        let cut = matches!(roles[k], JointRole::Cut(_));
         let rows = if cut { joint.kind.rows } else { joint.kind.tree_rows };
         if !rows.is_empty() {
             add(k, None, None, rows.to_vec());
@@ -101,7 +101,7 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
     for coupler in &model.couplers {
         // Every other row has the factor 1, so a coupler is divided by its first coefficient.
         let others = coupler.terms.iter().enumerate().skip(1);
-        let factors = others.map(|(k, t)| Term {
+        let factors = others.map(|(k, t)| RowTerm {
             row: RowId(first + k),
             factor: t.coefficient / coupler.terms[0].coefficient,
         });
@@ -213,7 +213,12 @@ fn add_link(
     let link = LinkId(topology.links.len());
     let mut steps = Vec::new();
     for &(freedom, driver) in freedoms {
-        steps.push(Step { freedom, sign, first: CoordinateId(topology.coordinates.len()), is_driven: false });
+        steps.push(LinkStep {
+            freedom,
+            sign,
+            first: CoordinateId(topology.coordinates.len()),
+            is_driven: false,
+        });
         for _ in 0..freedom.coordinates() {
             topology.coordinates.push(Coordinate {
                 link,

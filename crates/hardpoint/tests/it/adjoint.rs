@@ -3,7 +3,7 @@
 use hardpoint::measure::outputs;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
-use hardpoint::study::{Gradients, Method};
+use hardpoint::study::{GradientMethod, Gradients};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run};
 use hardpoint::{draft::*, model::*};
@@ -56,8 +56,9 @@ fn compare(analysis: &Analysis<'_>, design: &[f64], what: &str) -> f64 {
     let all = outputs(analysis.model());
     // What is no matter of positions has no load.
     let all: Vec<usize> = (0..all.len()).filter(|&m| all[m].known.by_position).collect();
-    let [direct, adjoint] = [Method::Direct, Method::Adjoint].map(|m| analysis.gradients(design, &all, m));
-    assert_eq!([direct.method, adjoint.method], [Method::Direct, Method::Adjoint]);
+    let [direct, adjoint] =
+        [GradientMethod::Direct, GradientMethod::Adjoint].map(|m| analysis.gradients(design, &all, m));
+    assert_eq!([direct.method, adjoint.method], [GradientMethod::Direct, GradientMethod::Adjoint]);
     assert_eq!(direct.times, adjoint.times, "{what}");
     assert_eq!(direct.stop.is_some(), adjoint.stop.is_some(), "{what}");
     for (v, (a, b)) in direct.admissibility.iter().zip(&adjoint.admissibility).enumerate() {
@@ -69,7 +70,7 @@ fn compare(analysis: &Analysis<'_>, design: &[f64], what: &str) -> f64 {
 /// A point on every body, with the measures that a draft has: no body's motion goes unseen.
 fn with_points(mut draft: Draft) -> Draft {
     for (k, b) in draft.bodies.iter().enumerate() {
-        let at = PlaceDraft::At([0.1 + 0.01 * k as f64, -0.2, 0.3].into());
+        let at = LocationDraft::At([0.1 + 0.01 * k as f64, -0.2, 0.3].into());
         draft.points.push(PointDraft::new(format!("point on body {k}"), b.name.clone(), at));
     }
     draft
@@ -105,7 +106,7 @@ fn all_measures_of_a_wheel_have_the_same_gradients_where_variables_move_its_own_
         let changes = vec![ChangeDraft::Move { hardpoint: name.into(), velocity }];
         draft.design.push(VariableDraft::new(name, changes));
     }
-    let at = |name: &str| PlaceDraft::Hardpoint(name.into());
+    let at = |name: &str| LocationDraft::Hardpoint(name.into());
     let on_knuckle = |name: &str| PointRef::On { body: "knuckle".into(), at: at(name) };
     draft.wheels.push(WheelDraft {
         name: "wheel".into(),
@@ -154,7 +155,7 @@ fn all_measures_of_a_wheel_have_the_same_gradients_where_variables_move_its_own_
 #[test]
 fn gradients_of_what_is_no_matter_of_positions_are_those_of_a_run() {
     let mut draft = reference_draft("double_wishbone");
-    let point = || PointRef::On { body: "knuckle".into(), at: PlaceDraft::At([0.0, 0.6, 0.2].into()) };
+    let point = || PointRef::On { body: "knuckle".into(), at: LocationDraft::At([0.0, 0.6, 0.2].into()) };
     let along: Vec3 = [0.0, 0.0, 1.0].into();
     let mut add = |name: &str, kind| draft.measures.push(MeasureDraft::new(name, kind));
     add("height", MeasureKindDraft::Coordinates { point: point(), along });
@@ -171,8 +172,8 @@ fn gradients_of_what_is_no_matter_of_positions_are_those_of_a_run() {
     let run = analysis.run();
     let asked: Vec<usize> =
         ["speed", "slope", "product"].iter().map(|n| run.measured.index(n).unwrap()).collect();
-    let found = analysis.gradients(&[], &asked, Method::Adjoint);
-    assert_eq!(found.method, Method::Direct);
+    let found = analysis.gradients(&[], &asked, GradientMethod::Adjoint);
+    assert_eq!(found.method, GradientMethod::Direct);
     let same = |a: f64, b: f64| a == b || a.is_nan() && b.is_nan();
     for k in 0..run.motion.len() {
         for (at, m) in asked.iter().enumerate() {
@@ -206,7 +207,7 @@ fn variables_that_cannot_be_followed_are_found_by_the_adjoint_way_too() {
         let analysis = Analysis::with(&model, formulation).unwrap();
         let worst = compare(&analysis, &[], "four-bar");
         assert!(worst < AGREE, "{formulation:?}: {worst:e}");
-        let gradients = analysis.gradients(&[], &[0], Method::Adjoint);
+        let gradients = analysis.gradients(&[], &[0], GradientMethod::Adjoint);
         assert!(matches!(gradients.admissibility[0], Admissibility::CannotFollow { .. }));
         assert_eq!(gradients.admissibility[1], Admissibility::Admissible);
         for k in 0..gradients.times.len() {
@@ -252,11 +253,11 @@ fn adjoint_and_direct_gradients_agree_on_random_mechanisms() {
 fn few_outputs_of_many_variables_go_the_adjoint_way_by_themselves() {
     let model = reference("macpherson");
     let analysis = Analysis::new(&model).unwrap();
-    let method = |outputs: &[usize]| analysis.gradients(&[], outputs, Method::Auto).method;
+    let method = |outputs: &[usize]| analysis.gradients(&[], outputs, GradientMethod::Auto).method;
     assert!(model.variables.len() > 30);
-    assert_eq!(method(&[0]), Method::Adjoint);
+    assert_eq!(method(&[0]), GradientMethod::Adjoint);
     let all: Vec<usize> = (0..outputs(&model).len()).cycle().take(20).collect();
-    assert_eq!(method(&all), Method::Direct);
+    assert_eq!(method(&all), GradientMethod::Direct);
 }
 
 #[test]
@@ -272,7 +273,7 @@ fn gradients_of_a_motion_that_stops_are_those_up_to_there() {
     draft.design = vec![VariableDraft::new("D", [change])];
     let model = Model::from_draft(&draft).unwrap();
     let analysis = Analysis::new(&model).unwrap();
-    let gradients = analysis.gradients(&[], &[0], Method::Adjoint);
+    let gradients = analysis.gradients(&[], &[0], GradientMethod::Adjoint);
     assert!(gradients.stop.is_some() && !gradients.times.is_empty() && gradients.times.len() < 61);
     let worst = compare(&analysis, &[], "four-bar that stops");
     assert!(worst < 100.0 * AGREE, "{worst:e}");
@@ -286,7 +287,7 @@ fn no_step_of_an_adjoint_run_allocates() {
             draft.times = (0..steps).map(|k| k as f64 * 1e-3).collect();
             let model = Model::from_draft(&draft).unwrap();
             let analysis = Analysis::new(&model).unwrap();
-            let run = || drop(analysis.gradients(&[], &[0, 1], Method::Adjoint));
+            let run = || drop(analysis.gradients(&[], &[0, 1], GradientMethod::Adjoint));
             allocation_counter::measure(run).count_total
         });
         // The list of times grows by doubling.

@@ -86,7 +86,7 @@ fn assembling_an_assembled_mechanism_changes_nothing() {
 fn joints_drawn_apart_come_together() {
     let mut draft = four_bar([[0.0, 0.0], [0.0, 0.1], [0.3, 0.25], [0.3, 0.0]], "sin(t)", &times(1.0, 5));
     let c = draft.joints.iter_mut().find(|j| j.name == "C").unwrap();
-    c.at.push(PlaceDraft::At(Vec3::new(0.31, 0.27, 0.0)));
+    c.at.push(LocationDraft::At(Vec3::new(0.31, 0.27, 0.0)));
     for formulation in [Formulation::Relative, Formulation::Absolute] {
         let solution = run(&draft, formulation);
         assert!(solution.stop.is_none(), "{:?}", solution.stop);

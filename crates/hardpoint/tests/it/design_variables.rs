@@ -25,10 +25,10 @@ fn strut_with_hardpoints(design: Vec<VariableDraft>) -> Model {
         match j.name.as_str() {
             "lca_pivot" => {
                 j.at = Vec::new();
-                j.axis = Some(LineDraft::Through("lca_rear".into(), "lca_front".into()));
+                j.axis = Some(DirectionDraft::Through("lca_rear".into(), "lca_front".into()));
             }
-            "ball_B" => j.at = vec![PlaceDraft::Hardpoint("ball".into())],
-            "tie_rod" => j.at[0] = PlaceDraft::Hardpoint("tie_rod_outer".into()),
+            "ball_B" => j.at = vec![LocationDraft::Hardpoint("ball".into())],
+            "tie_rod" => j.at[0] = LocationDraft::Hardpoint("tie_rod_outer".into()),
             _ => {}
         }
     }
@@ -82,7 +82,7 @@ fn the_field_is_the_derivative_of_the_geometry_for_every_kind_of_change() {
             "move a rod's end",
             ChangeDraft::Move { hardpoint: "tie_rod_outer".into(), velocity: Vec3::new(0.3, 1.0, 0.2) },
         ),
-        ("tilt", ChangeDraft::Tilt { joint: joint(), about: LineDraft::Along(x[1]) }),
+        ("tilt", ChangeDraft::Tilt { joint: joint(), about: DirectionDraft::Along(x[1]) }),
         (
             "one marker",
             ChangeDraft::Marker {

@@ -2,14 +2,14 @@
 
 use hardpoint::motion::StopKind;
 use hardpoint::space::Vec3;
-use hardpoint::topology::{Formulation, TopologyFault};
+use hardpoint::topology::{Formulation, TopologyError};
 use hardpoint::{Analysis, Run, draft::*, model::*};
 
 use crate::workbench::*;
 
 const CRANK_ROCKER: [[f64; 2]; 4] = [[0.0, 0.0], [0.0, 0.1], [0.3, 0.25], [0.3, 0.0]];
 
-fn fault(draft: &Draft, formulation: Formulation) -> TopologyFault {
+fn fault(draft: &Draft, formulation: Formulation) -> TopologyError {
     Analysis::with(&Model::from_draft(draft).unwrap(), formulation).unwrap_err()
 }
 
@@ -19,7 +19,7 @@ fn a_mechanism_without_its_driver_is_under_driven_and_names_what_moves() {
     draft.drivers.clear();
     for formulation in [Formulation::Relative, Formulation::Absolute] {
         let fault = fault(&draft, formulation);
-        let TopologyFault::UnderDriven { freedom, joint_names, bodies, .. } = &fault else {
+        let TopologyError::UnderDriven { freedom, joint_names, bodies, .. } = &fault else {
             panic!("{fault:?}")
         };
         assert_eq!(*freedom, 1);
@@ -37,7 +37,7 @@ fn a_second_motor_is_over_driven_and_names_both() {
     draft.drivers.push(driver("second", "D", "0.2*t"));
     for formulation in [Formulation::Relative, Formulation::Absolute] {
         let fault = fault(&draft, formulation);
-        let TopologyFault::OverDriven { driver_names, .. } = &fault else { panic!("{fault:?}") };
+        let TopologyError::OverDriven { driver_names, .. } = &fault else { panic!("{fault:?}") };
         assert_eq!(driver_names, &["`motor`", "`second`"], "{formulation:?}");
         assert_eq!(fault.code(), "HP0302");
         assert_eq!(
@@ -66,7 +66,7 @@ fn a_driven_structure_cannot_move() {
     };
     for formulation in [Formulation::Relative, Formulation::Absolute] {
         let fault = fault(&draft, formulation);
-        let TopologyFault::Immovable { joint_names, bodies, .. } = &fault else { panic!("{fault:?}") };
+        let TopologyError::Immovable { joint_names, bodies, .. } = &fault else { panic!("{fault:?}") };
         assert_eq!(bodies, &["`a`", "`b`"]);
         assert!(!joint_names.is_empty());
         assert_eq!(fault.code(), "HP0303");
@@ -133,12 +133,12 @@ fn a_rocker_driven_back_and_forth_stays_on_its_branch() {
 #[test]
 fn a_planar_linkage_with_a_tilted_pin_locks() {
     let mut draft = four_bar(CRANK_ROCKER, "2*pi*t", &times(1.0, 50));
-    draft.joints[2].axis = Some(LineDraft::Along([0.0, 0.02, 1.0].into()));
+    draft.joints[2].axis = Some(DirectionDraft::Along([0.0, 0.02, 1.0].into()));
     let model = Model::from_draft(&draft).unwrap();
     for formulation in [Formulation::Relative, Formulation::Absolute] {
         // Tilted by a degree, it has no motion at all: found already at the design configuration.
         let fault = Analysis::with(&model, formulation).unwrap_err();
-        assert!(matches!(fault, TopologyFault::Immovable { .. }), "{fault:?}");
+        assert!(matches!(fault, TopologyError::Immovable { .. }), "{fault:?}");
     }
 }
 

@@ -300,7 +300,7 @@ fn strut_on_its_wheel(push: [Option<NumberDraft>; 3]) -> Draft {
         name: "fl".into(),
         body: "knuckle".into(),
         centre: "wheel".into(),
-        spin: WheelSpinDraft::Axis(LineDraft::from([0.05, 1.0, -0.08])),
+        spin: WheelSpinDraft::Axis(DirectionDraft::from([0.05, 1.0, -0.08])),
         radius: 0.31,
         side: None,
         kingpin: None,

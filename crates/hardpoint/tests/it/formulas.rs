@@ -68,7 +68,7 @@ fn crank_rocker(own_length: bool) -> Draft {
     draft.drivers.push(DriverDraft::new("motor", "bearing", law));
     let place =
         ["C.x/2", "0.02*tanh(stretch)", "max(0.01, C.z)"].map(|text| Expression::parse(text).unwrap());
-    draft.points.push(PointDraft::new("P", "rocker", PlaceDraft::Formula(Box::new(place))));
+    draft.points.push(PointDraft::new("P", "rocker", LocationDraft::Formula(Box::new(place))));
     draft.measures.push(MeasureDraft::new("angle", "pivot"));
     // A hardpoint that formulas use may be moved as well.
     draft.design.push(VariableDraft::moving("A_x", "A", Vec3::AXES[0]));

@@ -404,13 +404,13 @@ fn a_moved_and_turned_mechanism_has_the_same_measures_and_turned_motion() {
 
 fn moved_draft(draft: &Draft, to: Pose) -> Draft {
     let mut d = draft.clone();
-    let place = |p: &mut PlaceDraft| {
-        if let PlaceDraft::At(v) = p {
+    let place = |p: &mut LocationDraft| {
+        if let LocationDraft::At(v) = p {
             *v = to.point(*v);
         }
     };
-    let line = |l: &mut Option<LineDraft>| {
-        if let Some(LineDraft::Along(v)) = l {
+    let line = |l: &mut Option<DirectionDraft>| {
+        if let Some(DirectionDraft::Along(v)) = l {
             *v = to.rot * *v;
         }
     };
@@ -435,7 +435,7 @@ fn moved_draft(draft: &Draft, to: Pose) -> Draft {
         place(&mut p.at);
     }
     for driver in &mut d.drivers {
-        if let DrivenDraft::Position { point: PointRef::On { at, .. }, along: LineDraft::Along(along) } =
+        if let DrivenDraft::Position { point: PointRef::On { at, .. }, along: DirectionDraft::Along(along) } =
             &mut driver.drives
         {
             place(at);

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use hardpoint::joint::ALL;
 use hardpoint::study::{VerifyOptions, verify};
-use hardpoint::topology::{Formulation, Role};
+use hardpoint::topology::{Formulation, JointRole};
 use hardpoint::{Analysis, Solution};
 use hardpoint::{draft::*, model::*};
 
@@ -45,7 +45,7 @@ fn shaft_train() -> Draft {
     let drives = |body: &str, about: [f64; 3]| DrivenDraft::Orientation {
         body: body.into(),
         relative_to: None,
-        about: LineDraft::Along(about.into()),
+        about: DirectionDraft::Along(about.into()),
     };
     let law = |text: &str| hardpoint::law::Law::parse(text).unwrap();
     Draft {
@@ -91,8 +91,11 @@ fn shaft_train() -> Draft {
             DriverDraft::new(
                 "lift",
                 DrivenDraft::Position {
-                    point: PointRef::On { body: "plate".into(), at: PlaceDraft::At([0.5, 0.6, 0.4].into()) },
-                    along: LineDraft::Along([0.0, 0.3, 1.0].into()),
+                    point: PointRef::On {
+                        body: "plate".into(),
+                        at: LocationDraft::At([0.5, 0.6, 0.4].into()),
+                    },
+                    along: DirectionDraft::Along([0.0, 0.3, 1.0].into()),
                 },
                 law("0.02*sin(4*t)"),
             ),
@@ -381,7 +384,7 @@ fn it_makes_no_difference_which_joint_is_cut() {
                 continue;
             }
             tried += 1;
-            assert!(matches!(analysis.topology().roles[k], Role::Cut(_)));
+            assert!(matches!(analysis.topology().roles[k], JointRole::Cut(_)));
             let got = analysis.run();
             let d = largest_difference(&want, &got);
             assert!(d < 1e-10, "{}: cut at `{}`: {d:e}", draft.name, draft.joints[k].name);

@@ -5,7 +5,7 @@ use hardpoint::measure::outputs;
 use hardpoint::motion::Execution;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
-use hardpoint::study::{Gradients, Method};
+use hardpoint::study::{GradientMethod, Gradients};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint::{draft::*, model::*};
@@ -15,12 +15,12 @@ use crate::workbench::*;
 /// Two ways to the same number agree to this part of the largest that stands in it.
 const SAME: f64 = 1e-11;
 
-pub fn on(body: &str, at: impl Into<PlaceDraft>) -> PointRef {
+pub fn on(body: &str, at: impl Into<LocationDraft>) -> PointRef {
     PointRef::On { body: body.into(), at: at.into() }
 }
 
 /// A point mass.
-pub fn point_mass(name: &str, body: &str, at: impl Into<PlaceDraft>, mass: f64) -> ElementDraft {
+pub fn point_mass(name: &str, body: &str, at: impl Into<LocationDraft>, mass: f64) -> ElementDraft {
     rigid(name, body, at, mass, [0.0; 6])
 }
 
@@ -28,7 +28,7 @@ pub fn point_mass(name: &str, body: &str, at: impl Into<PlaceDraft>, mass: f64) 
 pub fn rigid(
     name: &str,
     body: &str,
-    at: impl Into<PlaceDraft>,
+    at: impl Into<LocationDraft>,
     mass: f64,
     inertia: [f64; 6],
 ) -> ElementDraft {
@@ -358,7 +358,7 @@ fn newton_euler(
     s: &hardpoint::motion::BodyState,
 ) -> (Vec3, Vec3, Vec3) {
     let ElementKindDraft::Rigid {
-        centre: PointRef::On { at: PlaceDraft::At(drawn), .. },
+        centre: PointRef::On { at: LocationDraft::At(drawn), .. },
         mass,
         ixx,
         iyy,
@@ -886,8 +886,8 @@ pub fn compare_both_ways(draft: &Draft, formulation: Formulation) -> usize {
     let asked: Vec<usize> = (0..all.len()).filter(is_load).collect();
     let design: Vec<f64> = vec![0.0; model.variables.len()];
     let [direct, adjoint] =
-        [Method::Direct, Method::Adjoint].map(|way| analysis.gradients(&design, &asked, way));
-    assert_eq!([direct.method, adjoint.method], [Method::Direct, Method::Adjoint]);
+        [GradientMethod::Direct, GradientMethod::Adjoint].map(|way| analysis.gradients(&design, &asked, way));
+    assert_eq!([direct.method, adjoint.method], [GradientMethod::Direct, GradientMethod::Adjoint]);
     assert_eq!(direct.times, adjoint.times);
     let numbers = |g: &Gradients, m: usize| -> Vec<f64> {
         (0..g.times.len()).flat_map(|k| g.at(k, m).iter().map(|d| d[0]).collect::<Vec<_>>()).collect()

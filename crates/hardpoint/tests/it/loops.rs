@@ -2,7 +2,7 @@
 
 use hardpoint::motion::Execution;
 use hardpoint::space::Vec3;
-use hardpoint::study::{Comparison, Scheme, finite_differences};
+use hardpoint::study::{Comparison, DifferenceScheme, finite_differences};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run};
 use hardpoint::{draft::*, model::*};
@@ -80,7 +80,7 @@ fn loops_that_share_their_code_move_as_the_kernel_moves_them() {
     for joint in &mut draft.joints {
         let number: usize = joint.name.trim_matches(char::is_alphabetic).parse().unwrap();
         for place in &mut joint.at {
-            let PlaceDraft::At(at) = place else { unreachable!() };
+            let LocationDraft::At(at) = place else { unreachable!() };
             let next = number + usize::from(joint.name.starts_with("right"));
             at.x += 0.1 * (next as f64).sin();
             at.y *= 1.0 + 1e-3 * (2.0 * next as f64).cos();
@@ -164,9 +164,9 @@ fn moves(name: &str, k: usize, y: f64) -> VariableDraft {
 fn with_hardpoints(mut draft: Draft, n: usize, place: &dyn Fn(usize) -> [f64; 3]) -> Draft {
     draft.hardpoints = (0..n).map(|k| HardpointDraft::new(format!("p{k}"), place(k))).collect();
     for at in draft.joints.iter_mut().flat_map(|j| &mut j.at) {
-        let PlaceDraft::At(p) = *at else { continue };
+        let LocationDraft::At(p) = *at else { continue };
         if let Some(k) = (0..n).find(|&k| Vec3::from(place(k)) == p) {
-            *at = PlaceDraft::Hardpoint(format!("p{k}"));
+            *at = LocationDraft::Hardpoint(format!("p{k}"));
         }
     }
     draft
@@ -203,7 +203,7 @@ fn a_coupled_truss_of_any_size_turns_as_one_body() {
             }
         }
         let steps = [(VariableId(0), 1e-4), (VariableId(1), 1e-4)];
-        for difference in finite_differences(&analysis, &solution, Scheme::Central, &steps) {
+        for difference in finite_differences(&analysis, &solution, DifferenceScheme::Central, &steps) {
             let difference = difference.unwrap();
             let comparison = Comparison::of(&model, &solution, &difference);
             let worst = comparison.worst().unwrap();

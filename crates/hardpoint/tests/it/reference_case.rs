@@ -80,7 +80,7 @@ impl Case {
                 "point_coordinate" => {
                     let along = vec3(&d["direction"]).ok_or("no direction")?;
                     let point = PointRef::On { body: text(d, "body")?, at: place(&d["location"])? };
-                    DrivenDraft::Position { point, along: LineDraft::Along(along) }
+                    DrivenDraft::Position { point, along: DirectionDraft::Along(along) }
                 }
                 other => return Err(format!("driver kind `{other}` is not built yet")),
             };
@@ -318,8 +318,8 @@ impl Comparison {
     }
 }
 
-fn place(v: &Value) -> Result<PlaceDraft, String> {
-    vec3(v).map(PlaceDraft::At).ok_or_else(|| format!("not a place: {v}"))
+fn place(v: &Value) -> Result<LocationDraft, String> {
+    vec3(v).map(LocationDraft::At).ok_or_else(|| format!("not a place: {v}"))
 }
 
 fn joint(j: &Value) -> Result<JointDraft, String> {
@@ -333,13 +333,13 @@ fn joint(j: &Value) -> Result<JointDraft, String> {
     // A case may give a marker's axes where the joint needs none (a weld's, say): they place nothing.
     let kind = hardpoint::joint::named(&text(j, "type")?);
     let needs = |need: fn(&JointType) -> Need| kind.is_none_or(|k| need(k) != Need::Unused);
-    let axis = |key: &str| j.get(key).and_then(vec3).map(LineDraft::Along);
+    let axis = |key: &str| j.get(key).and_then(vec3).map(DirectionDraft::Along);
     Ok(JointDraft {
         name: text(j, "name")?,
         kind: text(j, "type")?,
         bodies: [text(j, "body_i")?, text(j, "body_j")?],
         at,
-        axis: pivot_axis.map(LineDraft::Along).or_else(|| axis("axis")).filter(|_| needs(|k| k.axis)),
+        axis: pivot_axis.map(DirectionDraft::Along).or_else(|| axis("axis")).filter(|_| needs(|k| k.axis)),
         axis2: axis("axis2").filter(|_| needs(|k| k.axis2)),
         ..JointDraft::default()
     })
@@ -373,7 +373,7 @@ fn measure(m: &Value) -> Result<MeasureDraft, String> {
     let coordinate = |name: &str| -> Result<MeasureKindDraft, String> {
         Ok(MeasureKindDraft::Coordinate { joint: text(m, "joint")?, coordinate: Some(name.into()) })
     };
-    let spin_axis = || vec3(&m["spin_axis"]).map(LineDraft::Along).ok_or("no spin axis");
+    let spin_axis = || vec3(&m["spin_axis"]).map(DirectionDraft::Along).ok_or("no spin axis");
     let point = |end: &str| -> Result<PointRef, String> {
         Ok(PointRef::On { body: text(m, &format!("body_{end}"))?, at: place(&m[format!("location_{end}")])? })
     };

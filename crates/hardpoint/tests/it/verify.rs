@@ -8,24 +8,25 @@ use hardpoint::motion::{Stop, StopKind};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
 use hardpoint::study::{
-    CheckOutcome, Comparison, Method, Scheme, Verification, VerifyOptions, finite_differences,
-    finite_differences_each, verify,
+    CheckOutcome, Comparison, DifferenceScheme, GradientMethod, Verification, VerifyOptions,
+    finite_differences, finite_differences_each, verify,
 };
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint::{
-    draft::PlaceDraft,
+    draft::LocationDraft,
     model::{BodyId, Model, VariableId},
 };
 
 use crate::workbench::*;
 
-const SCHEMES: [Scheme; 3] = [Scheme::Central, Scheme::Forward, Scheme::Backward];
+const SCHEMES: [DifferenceScheme; 3] =
+    [DifferenceScheme::Central, DifferenceScheme::Forward, DifferenceScheme::Backward];
 
 /// Two solved positions differ by this part from the exact ones, at the most: some times what Newton's last correction leaves, where
 /// the motion magnifies it. A variable that moves nothing has only this, and by chance none of it at some step.
 const NOISE: f64 = 1e-12;
 
-fn verified(analysis: &Analysis<'_>, solution: &Solution, scheme: Scheme) -> Verification {
+fn verified(analysis: &Analysis<'_>, solution: &Solution, scheme: DifferenceScheme) -> Verification {
     verify(analysis, solution, &VerifyOptions::new(scheme), |_| ControlFlow::Continue(()))
 }
 
@@ -77,7 +78,7 @@ fn differences_at_some_output_times_are_those_at_all_of_them() {
 #[test]
 fn sensitivities_match_resolved_designs_and_the_error_falls_as_it_must() {
     for scheme in SCHEMES {
-        let a_decade = if scheme == Scheme::Central { 100.0 } else { 10.0 };
+        let a_decade = if scheme == DifferenceScheme::Central { 100.0 } else { 10.0 };
         let (mut falling, mut worst) = (0, 0.0_f64);
         for name in ["slider_crank", "macpherson", "rssr", "hooke", "double_wishbone", "jansen"] {
             let model = reference(name);
@@ -111,7 +112,7 @@ fn sensitivities_match_resolved_designs_and_the_error_falls_as_it_must() {
         println!("{scheme:?}: worst {worst:.1e}, falling {falling}");
         assert!(falling > 100, "only {falling} places where the error could be seen to fall");
         // What the scheme can reach at best, and four digits more.
-        let reach = f64::EPSILON.powf(if scheme == Scheme::Central { 2.0 / 3.0 } else { 0.5 });
+        let reach = f64::EPSILON.powf(if scheme == DifferenceScheme::Central { 2.0 / 3.0 } else { 0.5 });
         assert!(worst < 1e4 * reach && scheme.tolerance() < 3e4 * reach, "{scheme:?}: {worst:e}");
     }
 }
@@ -162,7 +163,7 @@ fn a_wrong_sensitivity_fails_and_is_named() {
         // Those of another design.
         let mut other = reference_draft("macpherson");
         for place in &mut other.joints[1].at {
-            let PlaceDraft::At(place) = place else { panic!("coordinates") };
+            let LocationDraft::At(place) = place else { panic!("coordinates") };
             place.z += 0.02;
         }
         let other = Model::from_draft(&other).unwrap();
@@ -182,7 +183,8 @@ fn errors_are_found_by_body_and_by_output() {
     let analysis = Analysis::new(&model).unwrap();
     let solution = analysis.run();
     let step = (VariableId(0), 1e-3 * model.natural_step(VariableId(0)));
-    let difference = finite_differences(&analysis, &solution, Scheme::Central, &[step]).remove(0).unwrap();
+    let difference =
+        finite_differences(&analysis, &solution, DifferenceScheme::Central, &[step]).remove(0).unwrap();
     let comparison = Comparison::of(&model, &solution, &difference);
     let error = |name: String| {
         let found = comparison.errors().iter().find(|e| e.quantity == name);
@@ -248,7 +250,7 @@ fn whatever_an_analysis_solves_ends_at_the_next_output_time() {
     }
     interrupted(analysis.jerks(&[]).stop);
     interrupted(analysis.second(&[], std::slice::from_ref(&along), &[[0, 0]]).stop);
-    for method in [Method::Direct, Method::Adjoint] {
+    for method in [GradientMethod::Direct, GradientMethod::Adjoint] {
         interrupted(analysis.gradients(&[], &[0], method).stop);
     }
     let found = verify(&analysis, &nominal, &VerifyOptions::default(), |_| ControlFlow::Continue(()));

@@ -41,7 +41,7 @@ pub fn joint(
     at: &[[f64; 3]],
     axis: Option<[f64; 3]>,
 ) -> JointDraft {
-    let joint = JointDraft { axis: axis.map(LineDraft::from), ..JointDraft::new(name, kind, bodies) };
+    let joint = JointDraft { axis: axis.map(DirectionDraft::from), ..JointDraft::new(name, kind, bodies) };
     at.iter().fold(joint, |joint, place| joint.at(*place))
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use crate::draft::{CaseDraft, Rest, Section};
+use crate::draft::{CaseDraft, OtherDrivers, Section};
 use crate::law::Law;
 use crate::model::{Case, CaseId, DriverId};
 
@@ -21,7 +21,8 @@ impl Checker<'_> {
             if let Some(times) = &c.times {
                 self.times_of(times, here.key("time"));
             }
-            let mut laws = vec![(c.rest == Rest::Held).then(|| Law::constant(0.0)); self.model.drivers.len()];
+            let mut laws =
+                vec![(c.rest == OtherDrivers::Held).then(|| Law::constant(0.0)); self.model.drivers.len()];
             // The formulas of its laws are kept with it.
             let case = CaseId(self.model.cases.len());
             let times_of_case = times.clone();
@@ -91,7 +92,7 @@ impl Checker<'_> {
             .map(|d| format!("`{}`", d.name))
             .collect();
         let fault = self.fault("HP0235", here.key("name"), message);
-        if !held.is_empty() && c.rest == Rest::Held {
+        if !held.is_empty() && c.rest == OtherDrivers::Held {
             let [are, them] = if held.len() == 1 { ["is", "it"] } else { ["are", "them"] };
             fault.note(format!(
                 "{} {are} held as drawn, since the case gives no law for {them}",

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::design::{Interpolation, ShapeField};
-use crate::draft::{ChangeDraft, LineDraft, Locus, Section, ShapeDraft, VariableDraft};
+use crate::draft::{ChangeDraft, DirectionDraft, DraftLocation, Section, ShapeDraft, VariableDraft};
 use crate::model::change;
 use crate::model::{
     BodyId, Change, DesignVariable, Direction, DriverId, End, HardpointId, JointId, ParameterId,
@@ -129,7 +129,7 @@ impl Checker<'_> {
         let key = || here.key("field");
         Some(match field {
             ShapeDraft::Translate(v) => {
-                let (_, along) = self.line(&LineDraft::Along(*v), owner, here, "field")?;
+                let (_, along) = self.line(&DirectionDraft::Along(*v), owner, here, "field")?;
                 ShapeField::Translate(along)
             }
             ShapeDraft::Rotate { about, at } => {
@@ -271,7 +271,7 @@ impl Checker<'_> {
     }
 
     /// HP0217: a change that changes nothing.
-    fn not_null(&mut self, does_something: bool, owner: &str, at: Locus) {
+    fn not_null(&mut self, does_something: bool, owner: &str, at: DraftLocation) {
         if !does_something {
             let message = format!("a velocity of design variable `{owner}` is null or not finite");
             self.fault("HP0217", at, message);

@@ -2,7 +2,7 @@
 
 use crate::constraint::Row;
 use crate::draft::{
-    DrivenDraft, DriverDraft, LineDraft, Locus, MeasureKindDraft, PointRef, RayDraft, Section,
+    DirectionDraft, DraftLocation, DrivenDraft, DriverDraft, MeasureKindDraft, PointRef, RayDraft, Section,
 };
 use crate::expression::Expression;
 use crate::joint;
@@ -107,7 +107,7 @@ impl Checker<'_> {
         d: &DriverDraft,
         name: &str,
         coordinate: Option<&str>,
-        at: [Locus; 2],
+        at: [DraftLocation; 2],
     ) -> Option<Driven> {
         let joint = self.joint(name, at[0].clone())?;
         let coordinate = self.coordinate_at(joint, coordinate, at.clone())?;
@@ -120,8 +120,8 @@ impl Checker<'_> {
         &mut self,
         d: &DriverDraft,
         point: &PointRef,
-        along: &LineDraft,
-        at: [Locus; 2],
+        along: &DirectionDraft,
+        at: [DraftLocation; 2],
     ) -> Option<Driven> {
         let [at_point, at_line] = at;
         let point = self.point(point, &d.name, at_point);
@@ -132,7 +132,12 @@ impl Checker<'_> {
         self.driven_joint(d, &joint::TRAVEL, [GROUND, body], [at, at], Some(axes), Zero::Position)
     }
 
-    fn driven_distance(&mut self, d: &DriverDraft, points: [&PointRef; 2], at: [Locus; 2]) -> Option<Driven> {
+    fn driven_distance(
+        &mut self,
+        d: &DriverDraft,
+        points: [&PointRef; 2],
+        at: [DraftLocation; 2],
+    ) -> Option<Driven> {
         let [from, to] = at;
         let (a, b) = (self.point(points[0], &d.name, from), self.point(points[1], &d.name, to.clone()));
         let [i, j] = [a?, b?].map(|p| self.model.points[p.0].clone());
@@ -157,10 +162,10 @@ impl Checker<'_> {
             }
             MeasureKindDraft::Distance { from, to } => self.driven_distance(d, [from, to], [at.clone(), at]),
             MeasureKindDraft::Coordinates { point, along } => {
-                self.driven_position(d, point, &LineDraft::Along(*along), [at.clone(), at])
+                self.driven_position(d, point, &DirectionDraft::Along(*along), [at.clone(), at])
             }
             MeasureKindDraft::Angle {
-                from: RayDraft::Fixed { body: base, axis: LineDraft::Along(from) },
+                from: RayDraft::Fixed { body: base, axis: DirectionDraft::Along(from) },
                 to,
                 about: Some(about),
             } if base == GROUND_NAME => {
@@ -226,7 +231,13 @@ impl Checker<'_> {
     }
 
     /// HP0213: a measure that no driver can prescribe.
-    fn no_driver_of(&mut self, d: &DriverDraft, name: &str, what: &str, at: &Locus) -> Option<Driven> {
+    fn no_driver_of(
+        &mut self,
+        d: &DriverDraft,
+        name: &str,
+        what: &str,
+        at: &DraftLocation,
+    ) -> Option<Driven> {
         let message = format!("driver `{}` cannot prescribe measure `{name}`", d.name);
         let fault = self.fault("HP0213", at.clone(), message);
         fault.note(match what {
@@ -247,7 +258,7 @@ impl Checker<'_> {
         d: &DriverDraft,
         ray: &RayDraft,
         measure: &str,
-        at: &Locus,
+        at: &DraftLocation,
     ) -> Option<(BodyId, Direction)> {
         match ray {
             RayDraft::Fixed { body, axis } => {
@@ -277,7 +288,7 @@ impl Checker<'_> {
         [z, x]: [Vec3; 2],
         axis2: Direction,
         zero: Zero,
-        at: &Locus,
+        at: &DraftLocation,
     ) -> Option<Driven> {
         let e = self.vector(axis2)?.unit()?;
         if (e - z * z.dot(e)).norm() < HEADLESS {
@@ -391,7 +402,7 @@ impl Checker<'_> {
         name: &str,
         joint: JointId,
         coordinate: usize,
-        at: Locus,
+        at: DraftLocation,
     ) -> bool {
         let kind = self.model.joints[joint.0].kind;
         if let Some(other) = self.driver_of.get(&(joint, coordinate)) {

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::design::Effect;
-use crate::draft::{ChangeDraft, Draft, FormulaOf, Locus, NumberDraft, Section};
+use crate::draft::{ChangeDraft, Draft, DraftLocation, FormulaOf, NumberDraft, Section};
 use crate::expression::Expression;
 use crate::joint::Quantity;
 use crate::law::Law;
@@ -19,7 +19,7 @@ use super::{Checker, Here, LISTED_NAMES, extent_of_joints};
 /// A formula, and where it stands.
 pub(super) struct Written {
     formula: Formula,
-    at: Locus,
+    at: DraftLocation,
     /// What it gives, as messages say it.
     name: String,
     /// The case to whose laws it belongs.
@@ -91,7 +91,7 @@ impl<'a> Checker<'a> {
     }
 
     /// The formula of an expression, with its names resolved.
-    fn formula(&mut self, of: Target, expression: &Expression, at: &Locus) -> Option<Formula> {
+    fn formula(&mut self, of: Target, expression: &Expression, at: &DraftLocation) -> Option<Formula> {
         let per_metre = expression.per_metre();
         let inputs: Vec<_> = expression.names().iter().map(|name| self.source(name, per_metre, at)).collect();
         let quantity = match of {
@@ -109,7 +109,7 @@ impl<'a> Checker<'a> {
     }
 
     /// What a name in an expression means, and how many of the text's units make one SI unit of it.
-    fn source(&mut self, name: &str, per_metre: f64, at: &Locus) -> Option<(Source, f64)> {
+    fn source(&mut self, name: &str, per_metre: f64, at: &DraftLocation) -> Option<(Source, f64)> {
         let draft = self.draft;
         if let Some((hardpoint, axis)) = name.split_once('.') {
             let h = self.hardpoint(hardpoint, at.clone())?;
@@ -259,7 +259,7 @@ impl<'a> Checker<'a> {
     }
 
     /// The number that an expression gives in the nominal design, which follows the design from now on.
-    fn given(&mut self, of: Target, expression: &Expression, at: Locus, name: String) -> Option<f64> {
+    fn given(&mut self, of: Target, expression: &Expression, at: DraftLocation, name: String) -> Option<f64> {
         self.given_in(None, of, expression, at, name)
     }
 
@@ -269,7 +269,7 @@ impl<'a> Checker<'a> {
         case: Option<CaseId>,
         of: Target,
         expression: &Expression,
-        at: Locus,
+        at: DraftLocation,
         name: String,
     ) -> Option<f64> {
         let formula = self.formula(of, expression, &at)?;
@@ -281,7 +281,7 @@ impl<'a> Checker<'a> {
         &mut self,
         coordinates: &[Expression; 3],
         owner: &str,
-        at: Locus,
+        at: DraftLocation,
     ) -> Option<HardpointId> {
         let h = HardpointId(self.model.hardpoints.len());
         self.model.hardpoints.push(Hardpoint { name: owner.into(), position: Vec3::ZERO, unnamed: true });
@@ -301,7 +301,7 @@ impl<'a> Checker<'a> {
         number: &NumberDraft,
         owner: &str,
         key: &'static str,
-        at: Locus,
+        at: DraftLocation,
     ) -> Option<NumberId> {
         let id = NumberId(self.model.numbers.len());
         let (value, per_unit) = (number.value, number.per_unit);
@@ -320,14 +320,14 @@ impl<'a> Checker<'a> {
     }
 
     /// The length that a rod is given by an expression, if it is.
-    pub(super) fn formula_length(&mut self, name: &str, at: Locus) -> Option<Option<f64>> {
+    pub(super) fn formula_length(&mut self, name: &str, at: DraftLocation) -> Option<Option<f64>> {
         let expression = self.length_formulas.get(name).copied()?;
         let joint = JointId(self.model.joints.len());
         Some(self.given(Target::Length(joint), expression, at, format!("length of {name}")))
     }
 
     /// A driver's law with the parameters that expressions give.
-    pub(super) fn formula_law(&mut self, name: &str, law: &Law, at: &Locus) -> Option<Law> {
+    pub(super) fn formula_law(&mut self, name: &str, law: &Law, at: &DraftLocation) -> Option<Law> {
         let driver = DriverId(self.model.drivers.len());
         let given = self.law_formulas.get(name).cloned().unwrap_or_default();
         self.law_with(&given, None, (driver, name), law, at)
@@ -339,7 +339,7 @@ impl<'a> Checker<'a> {
         (case, case_name): (CaseId, &str),
         driver: (DriverId, &str),
         law: &Law,
-        at: &Locus,
+        at: &DraftLocation,
     ) -> Option<Law> {
         let given = self.case_formulas.get(&(case_name, driver.1)).cloned().unwrap_or_default();
         self.law_with(&given, Some(case), driver, law, at)
@@ -352,7 +352,7 @@ impl<'a> Checker<'a> {
         case: Option<CaseId>,
         (driver, name): (DriverId, &str),
         law: &Law,
-        at: &Locus,
+        at: &DraftLocation,
     ) -> Option<Law> {
         let mut law = law.clone();
         for &(parameter, expression) in given {
@@ -465,7 +465,7 @@ pub struct Nominal {
 
 /// Why an expression is no constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum NotConstant {
+pub enum ConstantError {
     /// It names what is no parameter.
     Unknown(String),
     /// It uses this parameter, which follows this (`design variable `b``, or `hardpoint `A``).
@@ -524,7 +524,7 @@ impl Nominal {
     ///
     /// # Errors
     /// Why it has none; that it follows the design is no reason.
-    pub fn value(&self, expression: &Expression) -> Result<f64, NotConstant> {
+    pub fn value(&self, expression: &Expression) -> Result<f64, ConstantError> {
         self.evaluated(expression, true)
     }
 
@@ -532,21 +532,21 @@ impl Nominal {
     ///
     /// # Errors
     /// Why it is no such constant.
-    pub fn constant(&self, expression: &Expression) -> Result<f64, NotConstant> {
+    pub fn constant(&self, expression: &Expression) -> Result<f64, ConstantError> {
         self.evaluated(expression, false)
     }
 
-    fn evaluated(&self, expression: &Expression, may_follow: bool) -> Result<f64, NotConstant> {
+    fn evaluated(&self, expression: &Expression, may_follow: bool) -> Result<f64, ConstantError> {
         let numbers = expression.names().iter().map(|name| {
-            let unknown = || NotConstant::Unknown(name.clone());
+            let unknown = || ConstantError::Unknown(name.clone());
             let (value, quantity, follows) = self.parameters.get(name).ok_or_else(unknown)?;
             if let (Some(follows), false) = (follows, may_follow) {
-                return Err(NotConstant::Follows(name.clone(), follows.clone()));
+                return Err(ConstantError::Follows(name.clone(), follows.clone()));
             }
             let per_unit = if *quantity == Quantity::Length { expression.per_metre() } else { 1.0 };
-            value.map(|value| value * per_unit).ok_or(NotConstant::Faulty)
+            value.map(|value| value * per_unit).ok_or(ConstantError::Faulty)
         });
         let value = expression.at(&numbers.collect::<Result<Vec<f64>, _>>()?);
-        if value.is_finite() { Ok(value) } else { Err(NotConstant::NotFinite) }
+        if value.is_finite() { Ok(value) } else { Err(ConstantError::NotFinite) }
     }
 }

@@ -1,7 +1,7 @@
 //! Checks of joints: their bodies, places, axes, lengths, leads and curves.
 
 use crate::constraint::Row;
-use crate::draft::{JointDraft, LineDraft, Section};
+use crate::draft::{DirectionDraft, JointDraft, Section};
 use crate::joint;
 use crate::joint::{JointType, Need};
 use crate::model::{Curve, Direction, GROUND, Hardpoint, HardpointId, Joint, JointId};
@@ -253,7 +253,7 @@ impl Checker<'_> {
             return Some([a, a]);
         }
         // Where the places are, or might be, is not known.
-        let by_axis = matches!(j.axis, Some(LineDraft::Through(..))) || self.unread(here, "axis");
+        let by_axis = matches!(j.axis, Some(DirectionDraft::Through(..))) || self.unread(here, "axis");
         if self.unread(here, "at") || j.at.is_empty() && kind.places == 1 && by_axis {
             return None;
         }

@@ -2,8 +2,8 @@
 
 use crate::draft::measure::Field;
 use crate::draft::{
-    FieldDraft, FieldKind, LineDraft, Locus, MeasureDraft, MetricDraft, NumberDraft, PointRef, RayDraft,
-    Section,
+    DirectionDraft, DraftLocation, FieldDraft, FieldKind, MeasureDraft, MetricDraft, NumberDraft, PointRef,
+    RayDraft, Section,
 };
 use crate::expression::Expression;
 use crate::model::{
@@ -99,14 +99,14 @@ impl Checker<'_> {
     }
 
     /// The wheel of that name.
-    fn wheel_named(&mut self, name: &str, at: Locus) -> Option<WheelId> {
+    fn wheel_named(&mut self, name: &str, at: DraftLocation) -> Option<WheelId> {
         let draft = self.draft;
         let k = self.find("wheel", name, at, draft.wheels.iter().map(|w| w.name.as_str()))?;
         self.wheel_ids[k]
     }
 
     /// The force of that name.
-    fn force(&mut self, name: &str, at: Locus) -> Option<ElementId> {
+    fn force(&mut self, name: &str, at: DraftLocation) -> Option<ElementId> {
         let draft = self.draft;
         let k = self.find("force", name, at, draft.forces.iter().map(|f| f.name.as_str()))?;
         let name = &draft.forces[k].name;
@@ -202,7 +202,7 @@ impl Checker<'_> {
     }
 
     /// The case of that name.
-    fn case(&mut self, name: &str, at: Locus) -> Option<CaseId> {
+    fn case(&mut self, name: &str, at: DraftLocation) -> Option<CaseId> {
         let draft = self.draft;
         if draft.grids.iter().any(|g| g.name == name) {
             self.fault("HP0204", at, format!("case `{name}` has a grid, and no motion to take a metric of")).help(
@@ -245,7 +245,7 @@ impl Checker<'_> {
     }
 
     /// The output of that name: a measure, or a component of a point.
-    fn output(&mut self, name: &str, at: Locus) -> Option<OutputSource> {
+    fn output(&mut self, name: &str, at: DraftLocation) -> Option<OutputSource> {
         let number = |what: &str, name: &str| self.numbers.get(what).and_then(|n| n.get(name)).copied();
         if let Some(k) = number("measure", name) {
             return Some(OutputSource::Measure(k));
@@ -480,13 +480,13 @@ field!(Option<SpringTable>, Table, Table: Option<Vec<[f64; 2]>>, may |points, ke
     None => Some(None),
 });
 field!(Vec3, Direction, Direction: Vec3, |v, key, c| {
-    Some(c.check.line(&LineDraft::Along(*v), c.owner, c.here, key)?.1)
+    Some(c.check.line(&DirectionDraft::Along(*v), c.owner, c.here, key)?.1)
 });
 field!(Option<Vec3>, Direction, Direction: Option<Vec3>, may |v, key, c| match v {
     Some(v) => Vec3::resolve(v, key, c).map(Some),
     None => Some(None),
 });
-field!(Direction, Line, Line: LineDraft, |line, key, c| Some(c.check.line(line, c.owner, c.here, key)?.0));
+field!(Direction, Line, Line: DirectionDraft, |line, key, c| Some(c.check.line(line, c.owner, c.here, key)?.0));
 field!(Ray, Ray, Ray: RayDraft, |ray, key, c| c.check.ray(ray, c.owner, c.here, key));
 field!(OutputSource, Output, Name: String, |name, key, c| c.check.output(name, c.here.key(key)));
 field!(BodyId, Body, Name: String, |name, key, c| c.check.body(name, c.here.key(key)));

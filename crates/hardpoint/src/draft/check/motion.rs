@@ -1,6 +1,6 @@
 //! Checks of what moves and is moved together: drivers and couplers, and the coordinates that they name.
 
-use crate::draft::{CouplerKindDraft, Locus, Section};
+use crate::draft::{CouplerKindDraft, DraftLocation, Section};
 use crate::joint;
 use crate::joint::CoordinateType;
 use crate::law::Law;
@@ -23,7 +23,7 @@ impl Checker<'_> {
         &mut self,
         joint: JointId,
         name: Option<&str>,
-        at: [Locus; 2],
+        at: [DraftLocation; 2],
     ) -> Option<usize> {
         let [at_joint, at_coordinate] = at;
         let kind = self.model.joints[joint.0].kind;
@@ -69,7 +69,7 @@ impl Checker<'_> {
     }
 
     /// HP0214: a law that is not finite, or too fast, at an output time.
-    pub(super) fn law_is_defined(&mut self, of: &str, law: &Law, times: &[f64], at: Locus) {
+    pub(super) fn law_is_defined(&mut self, of: &str, law: &Law, times: &[f64], at: DraftLocation) {
         let all = |t: f64, holds: &dyn Fn(&f64) -> bool| law.at(t).derivatives()[..3].iter().all(holds);
         if let Some(&t) = times.iter().find(|&&t| !all(t, &|x| x.abs() < LARGEST_RATE)) {
             let [f, fd, fdd, _] = law.at(t).derivatives();

@@ -4,9 +4,12 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::design::Effect;
 use crate::draft::{
-    ChangeDraft, GoalDraft, LimitDraft, LimitedDraft, Locus, OptimizationDraft, Section, VariableDraft,
+    ChangeDraft, DraftLocation, GoalDraft, LimitDraft, LimitTargetDraft, OptimizationSettingsDraft, Section,
+    VariableDraft,
 };
-use crate::model::{Dimension, Goal, JointId, Limit, Limited, Optimization, Source, Target, VariableId};
+use crate::model::{
+    Dimension, Goal, JointId, Limit, LimitTarget, OptimizationSettings, Source, Target, VariableId,
+};
 
 use super::formulas::AXES;
 use super::{Checker, Here, LISTED_NAMES};
@@ -60,11 +63,12 @@ impl Checker<'_> {
         let limits = limits.into_iter().map(|(_, limit)| limit).collect();
         let (margin, starts, iterations) = (o.margin, o.starts, o.iterations);
         let goals = goals.into_iter().flatten().collect();
-        self.model.optimization = Some(Optimization { variables, goals, limits, margin, starts, iterations });
+        self.model.optimization =
+            Some(OptimizationSettings { variables, goals, limits, margin, starts, iterations });
     }
 
     /// HP0236: the variables that may change, each with bounds, each once.
-    fn optimized(&mut self, o: &OptimizationDraft, here: Here) -> Option<Vec<VariableId>> {
+    fn optimized(&mut self, o: &OptimizationSettingsDraft, here: Here) -> Option<Vec<VariableId>> {
         let draft = self.draft;
         if self.unread(here, "variables") {
             return None;
@@ -110,7 +114,7 @@ impl Checker<'_> {
     }
 
     /// The place of a design variable in the draft.
-    pub(super) fn optimized_variable(&mut self, name: &str, at: Locus) -> Option<usize> {
+    pub(super) fn optimized_variable(&mut self, name: &str, at: DraftLocation) -> Option<usize> {
         let draft = self.draft;
         let known = self.number_of("design variable", name);
         // What could not be read may be this variable.
@@ -140,7 +144,7 @@ impl Checker<'_> {
     }
 
     /// The place of a metric in the model; `None`, without a second fault, where the metric itself is faulty.
-    pub(super) fn metric(&mut self, name: &str, at: Locus) -> Option<usize> {
+    pub(super) fn metric(&mut self, name: &str, at: DraftLocation) -> Option<usize> {
         let draft = self.draft;
         let known = self.find("metric", name, at, draft.metrics.iter().map(|m| m.name.as_str()));
         if known.is_none() && !self.lost("metric") {
@@ -217,7 +221,7 @@ impl Checker<'_> {
             }
             _ => {}
         }
-        let is_length = matches!(l.of, LimitedDraft::Distance(_) | LimitedDraft::Length(_));
+        let is_length = matches!(l.of, LimitTargetDraft::Distance(_) | LimitTargetDraft::Length(_));
         if let Some(most) = l.most.filter(|most| is_length && *most < 0.0) {
             let message = format!("limit `{}` cannot hold: no length is below zero", l.name);
             self.fault("HP0238", here.key("max"), message)
@@ -227,22 +231,24 @@ impl Checker<'_> {
         }
         let of = of?;
         let dimension = match of {
-            Limited::Metric(metric) => self.model.metric_dimension(&self.model.metrics[metric]),
-            Limited::Coordinate(..) | Limited::Distance(..) | Limited::Length(_) => Dimension::LENGTH,
+            LimitTarget::Metric(metric) => self.model.metric_dimension(&self.model.metrics[metric]),
+            LimitTarget::Coordinate(..) | LimitTarget::Distance(..) | LimitTarget::Length(_) => {
+                Dimension::LENGTH
+            }
         };
         let unit = per_si(dimension, l.per_metre, l.per_radian);
         let [least, most] = [l.least, l.most].map(|bound| bound.map(|x| x / unit));
         Some(Limit { name: l.name.clone(), of, least, most })
     }
 
-    fn limited(&mut self, l: &LimitDraft, here: Here) -> Option<Limited> {
+    fn limited(&mut self, l: &LimitDraft, here: Here) -> Option<LimitTarget> {
         Some(match &l.of {
-            LimitedDraft::Unread => return None,
-            LimitedDraft::Metric(name) => Limited::Metric(self.metric(name, here.key("metric"))?),
-            LimitedDraft::Coordinate(name, axis) => {
-                Limited::Coordinate(self.hardpoint(name, here.key("hardpoint"))?, *axis % 3)
+            LimitTargetDraft::Unread => return None,
+            LimitTargetDraft::Metric(name) => LimitTarget::Metric(self.metric(name, here.key("metric"))?),
+            LimitTargetDraft::Coordinate(name, axis) => {
+                LimitTarget::Coordinate(self.hardpoint(name, here.key("hardpoint"))?, *axis % 3)
             }
-            LimitedDraft::Distance(names) => {
+            LimitTargetDraft::Distance(names) => {
                 let found = [0, 1].map(|k| self.hardpoint(&names[k], here.item("between", k)));
                 let [a, b] = [found[0]?, found[1]?];
                 if a == b {
@@ -251,9 +257,9 @@ impl Checker<'_> {
                     self.fault("HP0216", here.key("between"), message).help("name two different hardpoints");
                     return None;
                 }
-                Limited::Distance(a, b)
+                LimitTarget::Distance(a, b)
             }
-            LimitedDraft::Length(name) => {
+            LimitTargetDraft::Length(name) => {
                 let joint = self.joint(name, here.key("length"))?;
                 let kind = self.model.joints[joint.0].kind;
                 if !kind.is_rod() {
@@ -264,7 +270,7 @@ impl Checker<'_> {
                         .help("name a rod or a leg; for two hardpoints write `between = [\"A\", \"B\"]`");
                     return None;
                 }
-                Limited::Length(joint)
+                LimitTarget::Length(joint)
             }
         })
     }
@@ -327,13 +333,13 @@ impl Checker<'_> {
         let mut fixed = Vec::new();
         for (here, limit) in limits {
             let (what, key) = match limit.of {
-                Limited::Coordinate(h, axis) if !moved.contains(&Source::Coordinate(h, axis)) => {
+                LimitTarget::Coordinate(h, axis) if !moved.contains(&Source::Coordinate(h, axis)) => {
                     (format!("{} of {}", AXES[axis], name(h)), AXES[axis])
                 }
-                Limited::Distance(a, b) if !moves(a) && !moves(b) => {
+                LimitTarget::Distance(a, b) if !moves(a) && !moves(b) => {
                     (format!("the distance of {} and {}", name(a), name(b)), "between")
                 }
-                Limited::Length(j) => {
+                LimitTarget::Length(j) => {
                     let joint = &model.joints[j.0];
                     let by_ends = joint.length.is_none() && joint.at.iter().any(|h| moves(*h));
                     if by_ends || joints.contains(&j) {
@@ -358,16 +364,16 @@ impl Checker<'_> {
 }
 
 /// Where the side of a box stands; of all else, the name.
-fn side_of(of: &LimitedDraft) -> &'static str {
-    if let LimitedDraft::Coordinate(_, axis) = of { AXES[axis % 3] } else { "name" }
+fn side_of(of: &LimitTargetDraft) -> &'static str {
+    if let LimitTargetDraft::Coordinate(_, axis) = of { AXES[axis % 3] } else { "name" }
 }
 
-fn key(of: Limited) -> Key {
+fn key(of: LimitTarget) -> Key {
     match of {
-        Limited::Metric(m) => (0, m, 0),
-        Limited::Coordinate(h, axis) => (1, h.0, axis),
-        Limited::Distance(a, b) => (2, a.0.min(b.0), a.0.max(b.0)),
-        Limited::Length(j) => (3, j.0, 0),
+        LimitTarget::Metric(m) => (0, m, 0),
+        LimitTarget::Coordinate(h, axis) => (1, h.0, axis),
+        LimitTarget::Distance(a, b) => (2, a.0.min(b.0), a.0.max(b.0)),
+        LimitTarget::Length(j) => (3, j.0, 0),
     }
 }
 

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::draft::{DesignListDraft, Section, SweepRangeDraft, SweepingDraft};
+use crate::draft::{DesignListDraft, Section, SweepRangeDraft, SweepSettingsDraft};
 use crate::joint::Quantity;
-use crate::model::{Dimension, SweepMethod, SweepRange, Sweeping, VariableId};
+use crate::model::{Dimension, SweepMethod, SweepRange, SweepSettings, VariableId};
 
 use super::optimization::per_si;
 use super::{Checker, Here};
@@ -25,19 +25,20 @@ impl Checker<'_> {
         };
         let curves = s.curves.iter().enumerate();
         let curves = curves.filter_map(|(k, name)| self.curve_of(name, HERE.item("curves", k))).collect();
-        let mut sweeping = Sweeping {
+        let mut sweeping = SweepSettings {
             metrics,
             curves,
             samples: s.samples,
             seed: s.seed,
-            ..Sweeping::of_bounds(&self.model)
+            ..SweepSettings::of_bounds(&self.model)
         };
         if self.unread(HERE, "designs") {
             return;
         }
         if let Some(list) = &s.designs {
             let Some((ranges, listed)) = self.design_list(list) else { return };
-            self.model.sweeping = Some(Sweeping { method: SweepMethod::Listed, ranges, listed, ..sweeping });
+            self.model.sweeping =
+                Some(SweepSettings { method: SweepMethod::Listed, ranges, listed, ..sweeping });
             return;
         }
         sweeping.method = s.method.unwrap_or(SweepMethod::Sobol);
@@ -54,7 +55,7 @@ impl Checker<'_> {
             );
         }
         if sweeping.count().is_none() && !unknown {
-            let message = format!("the sweep has more than {} designs", Sweeping::MOST);
+            let message = format!("the sweep has more than {} designs", SweepSettings::MOST);
             self.fault("HP0246", HERE.key("method"), message)
                 .note("every level of a variable multiplies their number")
                 .help("give fewer `levels`, or use `method = \"sobol\"` with as many `samples` as you have time for");
@@ -63,7 +64,7 @@ impl Checker<'_> {
     }
 
     /// HP0246: every range of a variable of its own, that rises.
-    fn ranges(&mut self, s: &SweepingDraft, ranges: &[SweepRangeDraft]) -> Vec<SweepRange> {
+    fn ranges(&mut self, s: &SweepSettingsDraft, ranges: &[SweepRangeDraft]) -> Vec<SweepRange> {
         let draft = self.draft;
         let mut found = Vec::new();
         for (index, one) in ranges.iter().enumerate() {
@@ -144,7 +145,7 @@ impl Checker<'_> {
             of.map(|((v, q), x)| self.in_si(*v, *q, *x, units)).collect()
         };
         let rows: Vec<Vec<f64>> = list.rows.iter().map(in_si).collect();
-        Some((Sweeping::spanned(&variables, &rows), rows))
+        Some((SweepSettings::spanned(&variables, &rows), rows))
     }
 
     /// A value of a variable as a file writes it, as a change in SI: of a parameter from its own value.
@@ -153,7 +154,7 @@ impl Checker<'_> {
     }
 
     /// The place of a measure in the model.
-    pub(super) fn curve_of(&mut self, name: &str, at: crate::draft::Locus) -> Option<usize> {
+    pub(super) fn curve_of(&mut self, name: &str, at: crate::draft::DraftLocation) -> Option<usize> {
         let draft = self.draft;
         self.find("measure", name, at, draft.measures.iter().map(|m| m.name.as_str()))?;
         self.model.measures.iter().position(|m| m.name == name)

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::draft::{CorrelationDraft, ScatterDraft, Section, ToleranceDraft, TolerancingDraft};
+use crate::draft::{CorrelationDraft, ScatterDraft, Section, ToleranceDraft, ToleranceSettingsDraft};
 use crate::linalg::semidefinite;
 use crate::model::{
-    Allocating, AllocationRule, Correlation, Dimension, Scatter, Tolerance, Tolerancing, VariableId,
+    AllocationRule, AllocationSettings, Correlation, Dimension, Scatter, Tolerance, ToleranceSettings,
+    VariableId,
 };
 
 use super::formulas::AXES;
@@ -49,8 +50,8 @@ impl Checker<'_> {
             return;
         }
         let (samples, seed) = (t.samples, t.seed);
-        let allocation = t.allocation.map(|rule| Allocating { rule });
-        self.model.tolerancing = Some(Tolerancing {
+        let allocation = t.allocation.map(|rule| AllocationSettings { rule });
+        self.model.tolerancing = Some(ToleranceSettings {
             tolerances,
             correlations,
             metrics,
@@ -63,7 +64,7 @@ impl Checker<'_> {
     }
 
     /// HP0241: every tolerance with a reach that can be, and each variable in one of them.
-    fn tolerances(&mut self, t: &TolerancingDraft) -> Vec<Tolerance> {
+    fn tolerances(&mut self, t: &ToleranceSettingsDraft) -> Vec<Tolerance> {
         let draft = self.draft;
         let mut of: BTreeMap<usize, &str> = BTreeMap::new();
         let mut found = Vec::new();
@@ -116,7 +117,7 @@ impl Checker<'_> {
 
     fn tolerance(
         &mut self,
-        t: &TolerancingDraft,
+        t: &ToleranceSettingsDraft,
         one: &ToleranceDraft,
         variables: Vec<usize>,
         here: Here,
@@ -182,7 +183,7 @@ impl Checker<'_> {
     }
 
     fn scatter_of(&self, own: ScatterDraft, all: ScatterDraft) -> Scatter {
-        let sigmas = own.sigmas.or(all.sigmas).unwrap_or(Tolerancing::SIGMAS);
+        let sigmas = own.sigmas.or(all.sigmas).unwrap_or(ToleranceSettings::SIGMAS);
         match own.kind.or(all.kind) {
             Some(0) => Scatter::Uniform,
             Some(2) => Scatter::Truncated { sigmas },
@@ -191,7 +192,7 @@ impl Checker<'_> {
     }
 
     /// HP0242: correlations of normal variables, of each pair one, that can hold together.
-    fn correlations(&mut self, t: &TolerancingDraft, tolerances: &[Tolerance]) -> Vec<Correlation> {
+    fn correlations(&mut self, t: &ToleranceSettingsDraft, tolerances: &[Tolerance]) -> Vec<Correlation> {
         let mut pairs: BTreeMap<[usize; 2], &str> = BTreeMap::new();
         let mut found = Vec::new();
         if t.correlations.len() > MOST_CORRELATIONS {
@@ -276,7 +277,7 @@ impl Checker<'_> {
     }
 
     /// HP0243: an allocation without what it is to find or keep.
-    fn allocation_needs(&mut self, t: &TolerancingDraft) {
+    fn allocation_needs(&mut self, t: &ToleranceSettingsDraft) {
         let Some(rule) = t.allocation else { return };
         if let AllocationRule::Rss { sigmas } = rule
             && !(sigmas > 0.0 && sigmas <= MOST_SIGMAS)

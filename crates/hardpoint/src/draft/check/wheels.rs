@@ -3,7 +3,7 @@
 use crate::draft::{AxleDraft, PointRef, Section, WheelDraft, WheelSpinDraft};
 use crate::model::{
     ArmPlane, Axle, AxleId, AxleMeasure, BodyId, BodyPoint, Direction, DriverId, HardpointId, MeasureKind,
-    PointId, Side, TorqueReaction, VehicleEnd, Wheel, WheelId, WheelMeasure, WheelNeed,
+    PointId, Side, TorqueReaction, VehicleEnd, Wheel, WheelId, WheelMeasure, WheelRequirement,
 };
 use crate::space::Vec3;
 
@@ -84,7 +84,7 @@ impl Checker<'_> {
             self.model.axles[axle.0].wheels.into_iter().find(|w| self.model.wheels[w.0].bump.is_none());
         if let Some(wheel) = unmoved.filter(|_| what.goes_by_driver()) {
             let wheel = self.model.wheels[wheel.0].name.clone();
-            self.needs_driver(what.name(), &wheel, WheelNeed::Bump, here);
+            self.needs_driver(what.name(), &wheel, WheelRequirement::Bump, here);
             return None;
         }
         Some(MeasureKind::Axle { axle, what })
@@ -94,13 +94,13 @@ impl Checker<'_> {
         self.draft.unread.any(Section::Vehicle, 0) || self.lost("vehicle")
     }
 
-    fn needs_driver(&mut self, what: &str, wheel: &str, need: WheelNeed, here: Here) {
+    fn needs_driver(&mut self, what: &str, wheel: &str, need: WheelRequirement, here: Here) {
         if self.lost("driver") {
             return;
         }
         let drivers: Vec<String> = self.draft.drivers.iter().map(|d| format!("`{}`", d.name)).collect();
         let (does, key) = match need {
-            WheelNeed::Steer => (format!("steers wheel `{wheel}`"), "steer"),
+            WheelRequirement::Steer => (format!("steers wheel `{wheel}`"), "steer"),
             _ => (format!("moves wheel `{wheel}` up and down"), "bump"),
         };
         let message = format!("`{what}` needs to know which driver {does}");
@@ -382,11 +382,11 @@ impl Checker<'_> {
         }
         let (given, help) = (&draft.wheels[k], "add to the wheel ");
         let lacks = match what.needs() {
-            WheelNeed::Planes if given.planes.is_none() && !self.unread(wheel, "planes") => Some((
+            WheelRequirement::Planes if given.planes.is_none() && !self.unread(wheel, "planes") => Some((
                 "planes of the arms",
                 "`planes = [LOWER, UPPER]`, each `{ body = ..., at = [PIVOT, PIVOT, BALL] }`",
             )),
-            WheelNeed::Spring if given.spring.is_none() && !self.unread(wheel, "spring") => {
+            WheelRequirement::Spring if given.spring.is_none() && !self.unread(wheel, "spring") => {
                 Some(("spring", "`spring = [END, END]`, each a point's name or `{ body = ..., at = ... }`"))
             }
             _ => None,

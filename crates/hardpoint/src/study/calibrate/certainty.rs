@@ -1,6 +1,6 @@
 //! How well readings tell the variables: covariance, and what cannot be told apart.
 
-use super::fit::{Bench, Search, weighed};
+use super::fit::{Bench, SearchResult, weighed};
 
 /// A direction whose standard deviation is more natural steps than this, about the mechanism's size, is not told.
 const VAGUE: f64 = 1.0;
@@ -15,7 +15,7 @@ pub struct Certainty {
     /// Their covariance, over the directions that are told.
     pub covariance: Vec<Vec<f64>>,
     /// What the readings do not tell.
-    pub untold: Vec<Untold>,
+    pub untold: Vec<UnidentifiableChange>,
     /// Readings that were compared, less the directions that they tell.
     pub freedom: usize,
     /// The standard deviation of the residuals: in the standard deviations that were given, where 1 is expected; in SI where none were
@@ -27,7 +27,7 @@ pub struct Certainty {
 
 /// A change of the design that changes nothing that was read, or next to nothing.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Untold {
+pub struct UnidentifiableChange {
     /// How far each variable goes; the one that goes farthest goes by a natural step.
     pub direction: Vec<f64>,
     /// Its standard deviation as a multiple of that; `None` where the readings tell nothing of it.
@@ -52,7 +52,7 @@ impl Known {
 
 impl Bench<'_> {
     /// What is known of each direction where a search ended.
-    pub(super) fn known(&self, search: &Search) -> Known {
+    pub(super) fn known(&self, search: &SearchResult) -> Known {
         let (found, told) = weighed(&search.at.d, &search.weights, self.variables.len());
         let mut known = Known::default();
         let mut nothing = Vec::new();
@@ -71,7 +71,7 @@ impl Bench<'_> {
     }
 
     /// How well the variables are known where a search ended.
-    pub(super) fn certainty(&self, search: &Search, known: &Known) -> Certainty {
+    pub(super) fn certainty(&self, search: &SearchResult, known: &Known) -> Certainty {
         let n = self.variables.len();
         let untold_part = |k: usize| known.untold.iter().map(|(v, _)| v[k].abs()).fold(0.0, f64::max);
         let in_steps = known.covariance(n);
@@ -83,7 +83,7 @@ impl Bench<'_> {
         let untold = |(v, sigma): &(Vec<f64>, Option<f64>)| {
             let most = v.iter().map(|x| x.abs()).fold(0.0, f64::max);
             let direction = v.iter().zip(&self.steps).map(|(x, step)| x / most * step).collect();
-            Untold { direction, sigma: sigma.map(|s| s * most) }
+            UnidentifiableChange { direction, sigma: sigma.map(|s| s * most) }
         };
         let told = known.told.len();
         let freedom = search.at.r.len().saturating_sub(told);

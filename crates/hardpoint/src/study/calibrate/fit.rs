@@ -8,12 +8,13 @@ use crate::linalg::svd::{Singular, singular};
 use crate::measure::Output;
 use crate::model::{Model, VariableId};
 use crate::run::Analysis;
-use crate::study::evaluation::Cost;
+use crate::study::evaluation::StudyCost;
 use crate::study::trust_region::{Recent, TrustRegion};
 
-use super::posture::{Stand, stand};
+use super::posture::{ReachedPosture, stand};
 use super::{
-    Calibrating, Calibration, CannotCalibrate, Certainty, FitStatus, Fitted, Loss, Next, NotReached, Reading,
+    Calibration, CalibrationError, CalibrationRequest, Certainty, FitStatus, FittedReading, Loss,
+    NextReading, Reading, UnreachedPosture,
 };
 
 /// Natural steps, about the mechanism's size or a radian, that a fit may go from the drawing: what is measured is near what was meant.
@@ -29,23 +30,23 @@ const MEDIAN_OF_NORMAL: f64 = 0.6745;
 pub(super) struct Bench<'b> {
     pub model: &'b Model,
     pub analyses: &'b [Analysis<'b>],
-    pub asked: &'b Calibrating<'b>,
+    pub asked: &'b CalibrationRequest<'b>,
     /// The variables that are sought, without those that cannot be followed.
     pub variables: Vec<VariableId>,
     left_out: Vec<VariableId>,
     /// A natural step of each.
     pub steps: Vec<f64>,
-    not_reached: Vec<NotReached>,
+    not_reached: Vec<UnreachedPosture>,
     /// The readings that are compared, by their place among all.
     pub compared: Vec<usize>,
     /// Whether standard deviations were given.
     pub has_sigmas: bool,
-    drawn: Vec<Option<Stand>>,
-    pub cost: RefCell<Cost>,
+    drawn: Vec<Option<ReachedPosture>>,
+    pub cost: RefCell<StudyCost>,
 }
 
 /// Where a search has come to.
-pub(super) struct Search {
+pub(super) struct SearchResult {
     pub status: FitStatus,
     /// Natural steps from the drawing.
     pub x: Vec<f64>,
@@ -67,7 +68,7 @@ pub(super) struct Rows {
 }
 
 impl<'b> Bench<'b> {
-    pub fn new(model: &'b Model, analyses: &'b [Analysis<'b>], asked: &'b Calibrating<'b>) -> Self {
+    pub fn new(model: &'b Model, analyses: &'b [Analysis<'b>], asked: &'b CalibrationRequest<'b>) -> Self {
         Self {
             model,
             analyses,
@@ -79,7 +80,7 @@ impl<'b> Bench<'b> {
             compared: Vec::new(),
             has_sigmas: asked.measured.readings.iter().all(|r| r.sigma.is_some()),
             drawn: Vec::new(),
-            cost: RefCell::new(Cost { designs: 1, ..Cost::default() }),
+            cost: RefCell::new(StudyCost { designs: 1, ..StudyCost::default() }),
         }
     }
 
@@ -88,11 +89,11 @@ impl<'b> Bench<'b> {
     }
 
     /// Which postures are reached, and which variables can be followed in them.
-    pub fn look_at_drawing(&mut self) -> Result<(), CannotCalibrate> {
+    pub fn look_at_drawing(&mut self) -> Result<(), CalibrationError> {
         for (posture, analysis) in self.analyses.iter().enumerate() {
             let found = stand(analysis, &[], &mut self.cost.borrow_mut());
             if let Err(stop) = &found {
-                self.not_reached.push(NotReached { posture, why: stop.headline(analysis.model()) });
+                self.not_reached.push(UnreachedPosture { posture, why: stop.headline(analysis.model()) });
             }
             self.drawn.push(found.ok());
         }
@@ -100,7 +101,7 @@ impl<'b> Bench<'b> {
         let follows = |v: &VariableId| stands().all(|stand| stand.follows(*v));
         (self.variables, self.left_out) = self.variables.iter().partition(|v| follows(v));
         if self.variables.is_empty() {
-            return Err(CannotCalibrate::NothingVaries);
+            return Err(CalibrationError::NothingVaries);
         }
         self.steps = self.variables.iter().map(|v| self.model.natural_step(*v)).collect();
         let is_known =
@@ -108,11 +109,11 @@ impl<'b> Bench<'b> {
         self.compared = (0..self.readings().len()).filter(|k| is_known(&self.readings()[*k])).collect();
         if self.compared.is_empty() {
             let why = self.not_reached.first().map_or(String::new(), |n| n.why.clone());
-            return Err(CannotCalibrate::NothingReached(why));
+            return Err(CalibrationError::NothingReached(why));
         }
         let (readings, variables) = (self.compared.len(), self.variables.len());
         if !self.has_sigmas && readings <= variables {
-            return Err(CannotCalibrate::TooFewReadings { readings, variables });
+            return Err(CalibrationError::TooFewReadings { readings, variables });
         }
         Ok(())
     }
@@ -127,10 +128,10 @@ impl<'b> Bench<'b> {
     }
 
     /// All postures that are reached as drawn, of a design; `None` where one is not, or the caller wants no more.
-    fn stands(&self, x: &[f64], more: &dyn Fn() -> bool) -> Option<Vec<Option<Stand>>> {
+    fn stands(&self, x: &[f64], more: &dyn Fn() -> bool) -> Option<Vec<Option<ReachedPosture>>> {
         let design = self.design(x);
         self.cost.borrow_mut().designs += 1;
-        let of = |(analysis, drawn): (&Analysis<'_>, &Option<Stand>)| {
+        let of = |(analysis, drawn): (&Analysis<'_>, &Option<ReachedPosture>)| {
             if drawn.is_none() {
                 return Some(None);
             }
@@ -142,7 +143,7 @@ impl<'b> Bench<'b> {
         self.analyses.iter().zip(&self.drawn).map(of).collect()
     }
 
-    fn rows(&self, stands: &[Option<Stand>]) -> Rows {
+    fn rows(&self, stands: &[Option<ReachedPosture>]) -> Rows {
         let mut rows = Rows::default();
         for k in &self.compared {
             let reading = &self.readings()[*k];
@@ -188,7 +189,7 @@ impl<'b> Bench<'b> {
     }
 
     /// From the drawing to where no small change fits better.
-    pub fn search(&self, progress: &mut dyn FnMut(usize, f64), more: &dyn Fn() -> bool) -> Search {
+    pub fn search(&self, progress: &mut dyn FnMut(usize, f64), more: &dyn Fn() -> bool) -> SearchResult {
         let n = self.variables.len();
         let mut x = vec![0.0; n];
         let mut at = self.rows(&self.drawn);
@@ -230,7 +231,7 @@ impl<'b> Bench<'b> {
         }
         let of = |at: &Rows| self.loss_of(&at.r, scale);
         let objective = [of(&first), of(&at)];
-        Search { status, x, at, weights, scale, objective, iterations }
+        SearchResult { status, x, at, weights, scale, objective, iterations }
     }
 
     /// The sum of the loss over all residuals.
@@ -297,9 +298,9 @@ impl<'b> Bench<'b> {
     /// All of it.
     pub fn calibration(
         self,
-        search: Search,
+        search: SearchResult,
         certainty: Certainty,
-        next: Vec<Next>,
+        next: Vec<NextReading>,
         outputs: Vec<Output>,
     ) -> Calibration {
         let mut fitted = vec![None; self.readings().len()];
@@ -307,7 +308,7 @@ impl<'b> Bench<'b> {
             let reading = &self.readings()[*k];
             let sigma = self.unit(reading);
             let drawn = self.drawn[reading.posture].as_ref().map_or(f64::NAN, |s| s.value(reading.output));
-            fitted[*k] = Some(Fitted {
+            fitted[*k] = Some(FittedReading {
                 before: drawn,
                 value: reading.value + sigma * search.at.r[row],
                 residual: search.at.r[row] / search.scale,

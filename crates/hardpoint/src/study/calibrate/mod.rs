@@ -17,12 +17,12 @@ mod posture;
 use crate::measure::{Output, outputs};
 use crate::model::{Model, VariableId};
 use crate::run::Analysis;
-use crate::topology::{Formulation, TopologyFault};
+use crate::topology::{Formulation, TopologyError};
 
-use super::evaluation::Cost;
+use super::evaluation::StudyCost;
 
-pub use certainty::{Certainty, Untold};
-pub use next::{Improvement, Next};
+pub use certainty::{Certainty, UnidentifiableChange};
+pub use next::{Improvement, NextReading};
 
 /// One value that was read in a posture. In SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,7 +85,7 @@ pub enum FitStatus {
 
 /// A posture that the mechanism as drawn does not reach, whose readings are left out.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NotReached {
+pub struct UnreachedPosture {
     /// The posture.
     pub posture: usize,
     /// What happened on the way.
@@ -94,7 +94,7 @@ pub struct NotReached {
 
 /// A reading beside what the design found gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fitted {
+pub struct FittedReading {
     /// As drawn, SI.
     pub before: f64,
     /// Of the design found.
@@ -119,9 +119,9 @@ pub struct Calibration {
     /// The columns.
     pub outputs: Vec<Output>,
     /// Of every reading; `None` where its posture is not reached.
-    pub fitted: Vec<Option<Fitted>>,
+    pub fitted: Vec<Option<FittedReading>>,
     /// Postures whose readings were left out.
-    pub not_reached: Vec<NotReached>,
+    pub not_reached: Vec<UnreachedPosture>,
     /// The sum that was made least, of the design as drawn and of the one found: of squared residuals in standard deviations, or of the
     /// loss. Where no standard deviations were given, in those that were found.
     pub objective: [f64; 2],
@@ -130,16 +130,16 @@ pub struct Calibration {
     /// How well the variables are known.
     pub certainty: Certainty,
     /// Which further readings would tell most, the best first.
-    pub next: Vec<Next>,
+    pub next: Vec<NextReading>,
     /// What it cost.
-    pub cost: Cost,
+    pub cost: StudyCost,
 }
 
 /// Why nothing can be fitted.
 #[derive(Clone, Debug)]
-pub enum CannotCalibrate {
+pub enum CalibrationError {
     /// The mechanism cannot be driven.
-    Topology(TopologyFault),
+    Topology(TopologyError),
     /// The mechanism as drawn reaches none of the postures; what happens on the way to the first.
     NothingReached(String),
     /// The mechanism can follow none of the variables.
@@ -155,7 +155,7 @@ pub enum CannotCalibrate {
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug)]
-pub struct Calibrating<'a> {
+pub struct CalibrationRequest<'a> {
     /// What was measured.
     pub measured: &'a Measurements,
     /// The variables that are sought.
@@ -175,12 +175,12 @@ pub struct Calibrating<'a> {
 /// Where nothing can be fitted.
 pub fn calibrate(
     model: &Model,
-    asked: &Calibrating<'_>,
+    asked: &CalibrationRequest<'_>,
     progress: &mut dyn FnMut(usize, f64),
     more: &dyn Fn() -> bool,
-) -> Result<Calibration, CannotCalibrate> {
+) -> Result<Calibration, CalibrationError> {
     let models: Vec<Model> = asked.measured.postures.iter().map(|p| posture::standing(model, p)).collect();
-    let analyses = posture::planned(&models, asked.formulation).map_err(CannotCalibrate::Topology)?;
+    let analyses = posture::planned(&models, asked.formulation).map_err(CalibrationError::Topology)?;
     let mut bench = fit::Bench::new(model, &analyses, asked);
     bench.look_at_drawing()?;
     let search = bench.search(progress, more);
@@ -197,17 +197,18 @@ pub fn calibrate(
 /// reached. In SI.
 ///
 /// # Errors
-/// A [`TopologyFault`] where the mechanism cannot be driven.
+/// A [`TopologyError`] where the mechanism cannot be driven.
 pub fn values_in_postures(
     model: &Model,
     design: &[f64],
     postures: &[Vec<f64>],
     formulation: Formulation,
-) -> Result<Vec<Result<Vec<f64>, String>>, TopologyFault> {
+) -> Result<Vec<Result<Vec<f64>, String>>, TopologyError> {
     let models: Vec<Model> = postures.iter().map(|p| posture::standing(model, p)).collect();
     let values = |analysis: &Analysis<'_>| {
-        let stand = posture::stand(analysis, design, &mut Cost::default());
-        let values = |stand: posture::Stand| (0..outputs(model).len()).map(|m| stand.value(m)).collect();
+        let stand = posture::stand(analysis, design, &mut StudyCost::default());
+        let values =
+            |stand: posture::ReachedPosture| (0..outputs(model).len()).map(|m| stand.value(m)).collect();
         stand.map(values).map_err(|stop| stop.headline(analysis.model()))
     };
     Ok(posture::planned(&models, formulation)?.iter().map(values).collect())

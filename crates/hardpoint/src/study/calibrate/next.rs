@@ -6,7 +6,7 @@ use crate::run::{Analysis, Run};
 
 use super::Certainty;
 use super::certainty::Known;
-use super::fit::{Bench, Search};
+use super::fit::{Bench, SearchResult};
 use super::posture::derivative;
 
 /// So many readings are proposed.
@@ -19,7 +19,7 @@ const TELLS: f64 = 1.0;
 
 /// A further reading, of the standard deviation that readings of its kind have. In SI.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Next {
+pub struct NextReading {
     /// The column of [`outputs`](crate::measure::outputs).
     pub output: usize,
     /// Where the drivers stand, as their laws count.
@@ -46,15 +46,20 @@ pub struct Improvement {
 
 /// A reading that could be taken: its derivatives by natural steps, in standard deviations.
 struct Candidate {
-    next: Next,
+    next: NextReading,
     g: Vec<f64>,
 }
 
 impl Bench<'_> {
     /// The best reading of each output, the best first.
-    pub(super) fn next(&self, search: &Search, known: &Known, certainty: &Certainty) -> Vec<Next> {
+    pub(super) fn next(
+        &self,
+        search: &SearchResult,
+        known: &Known,
+        certainty: &Certainty,
+    ) -> Vec<NextReading> {
         let covariance = known.covariance(self.variables.len());
-        let mut best: Vec<Option<(f64, Next)>> = vec![None; outputs(self.model).len()];
+        let mut best: Vec<Option<(f64, NextReading)>> = vec![None; outputs(self.model).len()];
         for candidate in self.candidates(search) {
             let (worth, next) = self.judged(candidate, known, &covariance, certainty);
             let best = &mut best[next.output];
@@ -62,7 +67,7 @@ impl Bench<'_> {
                 *best = Some((worth, next));
             }
         }
-        let mut found: Vec<(f64, Next)> = best.into_iter().flatten().collect();
+        let mut found: Vec<(f64, NextReading)> = best.into_iter().flatten().collect();
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
         found.into_iter().take(PROPOSED).map(|(_, next)| next).collect()
     }
@@ -74,7 +79,7 @@ impl Bench<'_> {
         known: &Known,
         covariance: &[Vec<f64>],
         certainty: &Certainty,
-    ) -> (f64, Next) {
+    ) -> (f64, NextReading) {
         let n = g.len();
         let along = |v: &Vec<f64>| v.iter().zip(&g).map(|(v, g)| v * g).sum::<f64>().abs();
         let new = known.untold.iter().map(|(v, _)| along(v)).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
@@ -100,7 +105,7 @@ impl Bench<'_> {
     }
 
     /// What could be read: every output in the postures that were measured, and along the motions of the model.
-    fn candidates(&self, search: &Search) -> Vec<Candidate> {
+    fn candidates(&self, search: &SearchResult) -> Vec<Candidate> {
         let readings = &self.asked.measured.readings;
         let known = outputs(self.model);
         let sigma_of = |output: usize| {
@@ -128,8 +133,13 @@ impl Bench<'_> {
                         |(v, step): (&VariableId, &f64)| derivative(&solution, k, output, *v) * step / sigma;
                     let g: Vec<f64> = self.variables.iter().zip(&self.steps).map(by).collect();
                     if g.iter().all(|g| g.is_finite()) {
-                        let next =
-                            Next { output, drivers: drivers.clone(), sigma, tells: None, improves: None };
+                        let next = NextReading {
+                            output,
+                            drivers: drivers.clone(),
+                            sigma,
+                            tells: None,
+                            improves: None,
+                        };
                         found.push(Candidate { next, g });
                     }
                 }

@@ -3,15 +3,15 @@
 use crate::model::{Case, CaseId, DriverId, LoadMode, Model, VariableId};
 use crate::motion::Stop;
 use crate::run::{Analysis, Run, Solution};
-use crate::study::evaluation::Cost;
+use crate::study::evaluation::StudyCost;
 use crate::study::grid::{STANDS, law_of};
-use crate::topology::{Formulation, TopologyFault};
+use crate::topology::{Formulation, TopologyError};
 
 /// A posture that was reached, the last of its motion.
 #[derive(Clone, Debug)]
-pub(super) struct Stand(Solution);
+pub(super) struct ReachedPosture(Solution);
 
-impl Stand {
+impl ReachedPosture {
     fn last(&self) -> usize {
         self.0.motion.len() - 1
     }
@@ -63,13 +63,17 @@ pub(super) fn standing(model: &Model, places: &[f64]) -> Model {
 ///
 /// # Errors
 /// What kept the mechanism from it.
-pub(super) fn stand(analysis: &Analysis<'_>, design: &[f64], cost: &mut Cost) -> Result<Stand, Box<Stop>> {
+pub(super) fn stand(
+    analysis: &Analysis<'_>,
+    design: &[f64],
+    cost: &mut StudyCost,
+) -> Result<ReachedPosture, Box<Stop>> {
     let solution = analysis.solve(Run::new().at(design));
     cost.motions += 1;
     cost.steps += solution.motion.len();
     match solution.stop {
         Some(stop) => Err(Box::new(stop)),
-        None => Ok(Stand(solution)),
+        None => Ok(ReachedPosture(solution)),
     }
 }
 
@@ -77,6 +81,6 @@ pub(super) fn stand(analysis: &Analysis<'_>, design: &[f64], cost: &mut Cost) ->
 pub(super) fn planned(
     models: &[Model],
     formulation: Formulation,
-) -> Result<Vec<Analysis<'_>>, TopologyFault> {
+) -> Result<Vec<Analysis<'_>>, TopologyError> {
     models.iter().map(|model| Analysis::with(model, formulation)).collect()
 }

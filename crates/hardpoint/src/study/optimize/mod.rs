@@ -18,11 +18,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use sobol_burley::sample;
 
-use crate::model::{Model, Optimization, VariableId};
+use crate::model::{Model, OptimizationSettings, VariableId};
 
-use super::evaluation::{Cost, Motions};
+use super::evaluation::{Motions, StudyCost};
 use gauss_newton::GaussNewton;
-pub use optimality::{Binding, Optimality};
+pub use optimality::{ActiveConstraint, Optimality};
 use problem::{Point, Problem, Refusal};
 use solver::{Memory, Sequential, Solver, least_squares};
 
@@ -81,23 +81,23 @@ const MOST_DIMENSIONS: usize = 256;
 
 /// What an optimisation found.
 #[derive(Clone, Debug)]
-pub struct Optimized {
+pub struct OptimizationResult {
     /// The design as drawn; `None` where it cannot be judged.
-    pub drawn: Option<Judged>,
+    pub drawn: Option<DesignAssessment>,
     /// Why not.
-    pub drawn_refused: Option<Refused>,
+    pub drawn_refused: Option<FailedDesign>,
     /// The searches, one per start, in order; that of number 0 starts from the design as drawn.
-    pub searches: Vec<Search>,
+    pub searches: Vec<SearchResult>,
     /// The best of them, by its place there: of those that keep all limits the one with the least objective, of others the one that
     /// exceeds them least. `None` where none could start.
     pub best: Option<usize>,
     /// All that it cost.
-    pub cost: Cost,
+    pub cost: StudyCost,
 }
 
 /// A design, judged.
 #[derive(Clone, Debug, Default)]
-pub struct Judged {
+pub struct DesignAssessment {
     /// The values of all variables of the model, m, rad or plain.
     pub design: Vec<f64>,
     /// What is made small: the sum over all goals, in no unit.
@@ -114,13 +114,13 @@ pub struct Judged {
 
 /// One search.
 #[derive(Clone, Debug)]
-pub struct Search {
+pub struct SearchResult {
     /// Where it started: the values of all variables.
     pub start: Vec<f64>,
     /// How it ended.
-    pub status: Status,
+    pub status: OptimizationStatus,
     /// What it found; `None` where it could not start.
-    pub found: Option<Judged>,
+    pub found: Option<DesignAssessment>,
     /// How near to optimal that is, and what binds.
     pub optimality: Optimality,
     /// Its iterations, in order, the start first.
@@ -129,14 +129,14 @@ pub struct Search {
     /// the step.
     pub work: Vec<f64>,
     /// Designs that could not be judged.
-    pub refused: Vec<Refused>,
+    pub refused: Vec<FailedDesign>,
     /// What it cost.
-    pub cost: Cost,
+    pub cost: StudyCost,
 }
 
 /// How a search ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
+pub enum OptimizationStatus {
     /// At an optimum.
     Optimal,
     /// Where no step gets any further, although the conditions of an optimum are not fulfilled.
@@ -147,7 +147,7 @@ pub enum Status {
     IterationLimit,
     /// By the caller.
     Interrupted,
-    /// It could not start: see [`Search::refused`].
+    /// It could not start: see [`SearchResult::refused`].
     NoStart,
 }
 
@@ -158,7 +158,7 @@ pub struct Iteration {
     pub number: usize,
     /// The objective there.
     pub objective: f64,
-    /// As [`Judged::violation`].
+    /// As [`DesignAssessment::violation`].
     pub violation: f64,
     /// How far the step went, as the largest part of a variable's bounds.
     pub step: f64,
@@ -172,7 +172,7 @@ pub struct Iteration {
 
 /// A design that could not be judged.
 #[derive(Clone, Debug)]
-pub struct Refused {
+pub struct FailedDesign {
     /// The values of all variables.
     pub design: Vec<f64>,
     /// In which motion.
@@ -183,17 +183,17 @@ pub struct Refused {
 
 /// What is told of a search under way.
 #[derive(Clone, Copy, Debug)]
-pub enum Progress<'s> {
+pub enum SearchProgress<'s> {
     /// It did an iteration.
     Iteration(&'s Iteration),
     /// It ended.
-    End(&'s Search),
+    End(&'s SearchResult),
 }
 
 /// How an optimisation is done, besides what is asked for.
-pub struct Searching<'w> {
+pub struct OptimizationRequest<'w> {
     /// Is told of every iteration and of the end of every search, by its number, and may end them all.
-    pub progress: &'w mut (dyn FnMut(usize, Progress<'_>) -> ControlFlow<()> + Send),
+    pub progress: &'w mut (dyn FnMut(usize, SearchProgress<'_>) -> ControlFlow<()> + Send),
     /// Is asked at every output time of every motion whether to go on.
     pub more: &'w (dyn Fn() -> bool + Sync),
     /// Searches run on so many threads; what they find does not depend on it.
@@ -208,12 +208,12 @@ pub struct Searching<'w> {
 pub fn optimize(
     model: &Model,
     motions: &Motions<'_>,
-    asked: &Optimization,
-    searching: Searching<'_>,
-) -> Optimized {
+    asked: &OptimizationSettings,
+    searching: OptimizationRequest<'_>,
+) -> OptimizationResult {
     let problem = Problem::new(model, motions, asked);
-    let Searching { progress, more, threads, first } = searching;
-    let mut cost = Cost::default();
+    let OptimizationRequest { progress, more, threads, first } = searching;
+    let mut cost = StudyCost::default();
     let (drawn, drawn_refused) = match problem.at(vec![0.0; model.variables.len()], &mut cost, more) {
         Ok(point) => (Some(judged(&problem, &point, &limit_scales(&problem, &point))), None),
         Err(refusal) => (None, Some(refused(vec![0.0; model.variables.len()], refusal))),
@@ -221,18 +221,18 @@ pub fn optimize(
     let starts: Vec<Vec<f64>> = (0..asked.starts.max(1)).map(|k| start(&problem, first + k)).collect();
     let (next, ended) = (AtomicUsize::new(0), std::sync::atomic::AtomicBool::new(false));
     let progress = Mutex::new(progress);
-    let searches = Mutex::new(starts.iter().map(|_| None).collect::<Vec<Option<Search>>>());
+    let searches = Mutex::new(starts.iter().map(|_| None).collect::<Vec<Option<SearchResult>>>());
     let more = || !ended.load(Ordering::Relaxed) && more();
     let work = || {
         while let Some(k) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|k| *k < starts.len()) {
-            let tell = |of: Progress<'_>| {
+            let tell = |of: SearchProgress<'_>| {
                 let told = (progress.lock().expect("no telling before has panicked"))(k, of);
                 if told.is_break() {
                     ended.store(true, Ordering::Relaxed);
                 }
             };
-            let search = search(&problem, &starts[k], &mut |i| tell(Progress::Iteration(i)), &more);
-            tell(Progress::End(&search));
+            let search = search(&problem, &starts[k], &mut |i| tell(SearchProgress::Iteration(i)), &more);
+            tell(SearchProgress::End(&search));
             searches.lock().expect("no search before has panicked")[k] = Some(search);
         }
     };
@@ -241,10 +241,10 @@ pub fn optimize(
         n => std::thread::scope(|scope| (0..n).for_each(|_| drop(scope.spawn(work)))),
     }
     let searches = searches.into_inner().expect("no search has panicked");
-    let searches: Vec<Search> =
+    let searches: Vec<SearchResult> =
         searches.into_iter().map(|s| s.expect("every start was searched from")).collect();
     searches.iter().for_each(|s| cost += s.cost);
-    Optimized { drawn, drawn_refused, best: best(&searches), searches, cost }
+    OptimizationResult { drawn, drawn_refused, best: best(&searches), searches, cost }
 }
 
 /// Judges one design, given by the values of all variables of the model.
@@ -254,13 +254,13 @@ pub fn optimize(
 pub fn judge(
     model: &Model,
     motions: &Motions<'_>,
-    asked: &Optimization,
+    asked: &OptimizationSettings,
     design: &[f64],
-) -> Result<Judged, Refused> {
+) -> Result<DesignAssessment, FailedDesign> {
     let problem = Problem::new(model, motions, asked);
     let design = design.iter().copied().chain(std::iter::repeat(0.0)).take(model.variables.len()).collect();
     let judged_at = |point: Point| judged(&problem, &point, &limit_scales(&problem, &point));
-    match problem.at(design, &mut Cost::default(), &|| true) {
+    match problem.at(design, &mut StudyCost::default(), &|| true) {
         Ok(point) => Ok(judged_at(point)),
         Err(refusal) => Err(refused(Vec::new(), refusal)),
     }
@@ -278,7 +278,7 @@ fn start(problem: &Problem<'_>, k: usize) -> Vec<f64> {
 }
 
 /// The best of some searches.
-fn best(searches: &[Search]) -> Option<usize> {
+fn best(searches: &[SearchResult]) -> Option<usize> {
     let found = |k: &usize| searches[*k].found.as_ref();
     let rank = |k: &usize| {
         let judged = found(k).expect("only those that found something are ranked");
@@ -299,14 +299,14 @@ fn best(searches: &[Search]) -> Option<usize> {
     (0..searches.len()).filter(as_good).min_by(|a, b| residual(a).total_cmp(&residual(b)))
 }
 
-fn refused(design: Vec<f64>, Refusal { motion, why, .. }: Refusal) -> Refused {
-    Refused { design, motion, why }
+fn refused(design: Vec<f64>, Refusal { motion, why, .. }: Refusal) -> FailedDesign {
+    FailedDesign { design, motion, why }
 }
 
-fn judged(problem: &Problem<'_>, point: &Point, scales: &[f64]) -> Judged {
+fn judged(problem: &Problem<'_>, point: &Point, scales: &[f64]) -> DesignAssessment {
     let goals = problem.goals.iter().zip(&point.goal_values).map(|(t, v)| (t.of, t.motion, *v));
     let limits = problem.limits.iter().zip(&point.limit_values);
-    Judged {
+    DesignAssessment {
         design: point.design.clone(),
         objective: point.objective(),
         violation: point.violation(|k| scales[k]),
@@ -333,7 +333,7 @@ fn search(
     start: &[f64],
     tell: &mut dyn FnMut(&Iteration),
     more: &(dyn Fn() -> bool + Sync),
-) -> Search {
+) -> SearchResult {
     let memory = Memory::new(problem, more);
     let n = start.len();
     // A start that cannot be judged is drawn nearer to the design as drawn, half of the way each time.
@@ -347,15 +347,19 @@ fn search(
     let judged_start =
         |start: Vec<f64>| memory.at(&start, |found| found.as_ref().ok().cloned()).map(|p| (start, p));
     let point = starts.into_iter().find_map(judged_start);
-    let mut search = Search {
+    let mut search = SearchResult {
         start: problem.design(point.as_ref().map_or(start, |(start, _)| start)),
-        status: if memory.interrupted() { Status::Interrupted } else { Status::NoStart },
+        status: if memory.interrupted() {
+            OptimizationStatus::Interrupted
+        } else {
+            OptimizationStatus::NoStart
+        },
         found: None,
         optimality: Optimality { residual: f64::INFINITY, ..Optimality::default() },
         iterations: Vec::new(),
         work: vec![0.0; n],
         refused: Vec::new(),
-        cost: Cost::default(),
+        cost: StudyCost::default(),
     };
     if let Some((start, point)) = point {
         let mut run = Descent::new(problem, &memory, &start, point);
@@ -444,7 +448,7 @@ impl<'p> Descent<'p> {
         }
     }
 
-    fn go(&mut self, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
+    fn go(&mut self, search: &mut SearchResult, tell: &mut dyn FnMut(&Iteration)) {
         self.note(search, None, tell);
         let squares = self.here.is_squares();
         let mut idle = 0;
@@ -481,7 +485,7 @@ impl<'p> Descent<'p> {
     ///
     /// Small misfits lie in narrow curved valleys, and on curved limits: a step along them leaves them. Up to [`CORRECTIONS`]
     /// further steps with much greater damping lead back before the designs are compared.
-    fn polish(&mut self, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
+    fn polish(&mut self, search: &mut SearchResult, tell: &mut dyn FnMut(&Iteration)) {
         let n = self.at.len();
         let promise =
             |run: &Self, damping| GaussNewton::new(run.problem, &run.best, &run.scales, damping).promise;
@@ -551,7 +555,7 @@ impl<'p> Descent<'p> {
     }
 
     /// Lets a solver run to its end; the first time, least squares only as long as they gain much.
-    fn descend(&mut self, run: usize, search: &mut Search, tell: &mut dyn FnMut(&Iteration)) {
+    fn descend(&mut self, run: usize, search: &mut SearchResult, tell: &mut dyn FnMut(&Iteration)) {
         let squares = run.is_multiple_of(2) && self.here.is_squares();
         let Some(mut solver) = self.solver(squares) else { return };
         let hands_over = self.here.has_only_squares();
@@ -605,7 +609,12 @@ impl<'p> Descent<'p> {
     }
 
     /// Notes an iteration, given where it came from.
-    fn note(&self, search: &mut Search, before: Option<(Vec<f64>, Point)>, tell: &mut dyn FnMut(&Iteration)) {
+    fn note(
+        &self,
+        search: &mut SearchResult,
+        before: Option<(Vec<f64>, Point)>,
+        tell: &mut dyn FnMut(&Iteration),
+    ) {
         let n = self.at.len();
         let mut step = 0.0;
         let mut most = None;
@@ -635,14 +644,14 @@ impl<'p> Descent<'p> {
         search.iterations.push(iteration);
     }
 
-    fn status(&self, search: &Search) -> Status {
+    fn status(&self, search: &SearchResult) -> OptimizationStatus {
         let kept = self.violation(&self.best) <= KEPT;
         match () {
-            () if self.memory.interrupted() => Status::Interrupted,
-            () if kept && search.optimality.residual <= OPTIMAL => Status::Optimal,
-            () if self.ran_out => Status::IterationLimit,
-            () if kept => Status::Stuck,
-            () => Status::LimitsNotKept,
+            () if self.memory.interrupted() => OptimizationStatus::Interrupted,
+            () if kept && search.optimality.residual <= OPTIMAL => OptimizationStatus::Optimal,
+            () if self.ran_out => OptimizationStatus::IterationLimit,
+            () if kept => OptimizationStatus::Stuck,
+            () => OptimizationStatus::LimitsNotKept,
         }
     }
 }

@@ -20,12 +20,12 @@ const LEAST_SCALE: f64 = 1e-6;
 
 /// What keeps a design from getting better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Binding {
-    /// The lower bound of a searched variable, by its place in [`Optimization::variables`](crate::model::Optimization::variables).
+pub enum ActiveConstraint {
+    /// The lower bound of a searched variable, by its place in [`OptimizationSettings::variables`](crate::model::Optimization::variables).
     Lower(usize),
     /// Its upper bound.
     Upper(usize),
-    /// The lower end of a limit, by its place in [`Optimization::limits`](crate::model::Optimization::limits), in a motion.
+    /// The lower end of a limit, by its place in [`OptimizationSettings::limits`](crate::model::Optimization::limits), in a motion.
     Least(usize, Option<usize>),
     /// The upper end of a limit.
     Most(usize, Option<usize>),
@@ -44,7 +44,7 @@ pub struct Optimality {
     /// True if all goals are squares that vanish to round-off: nothing is left to gain.
     pub met: bool,
     /// What binds, and by how much the objective would get less if it gave way by one SI unit (its Lagrange multiplier).
-    pub binding: Vec<(Binding, f64)>,
+    pub binding: Vec<(ActiveConstraint, f64)>,
 }
 
 /// A row that may bind: its gradient by the parts of the bounds, and what it is.
@@ -54,7 +54,7 @@ struct Row {
     peak: Option<usize>,
     equal: bool,
     /// What it is, and how much one SI unit of it is in the unit of its gradient.
-    binding: Option<(Binding, f64)>,
+    binding: Option<(ActiveConstraint, f64)>,
 }
 
 /// The derivatives of those that are greatest.
@@ -76,13 +76,13 @@ impl Optimality {
         let mut rows = Vec::new();
         for (v, part) in problem.parts(&point.design).into_iter().enumerate() {
             let unit = |sign: f64| (0..n).map(|i| if i == v { sign } else { 0.0 }).collect();
-            let mut push = |d: Vec<f64>, binding: Binding| {
+            let mut push = |d: Vec<f64>, binding: ActiveConstraint| {
                 rows.push(Row { d, peak: None, equal: false, binding: Some((binding, spans[v])) });
             };
             if part < BINDS {
-                push(unit(-1.0), Binding::Lower(v));
+                push(unit(-1.0), ActiveConstraint::Lower(v));
             } else if part > 1.0 - BINDS {
-                push(unit(1.0), Binding::Upper(v));
+                push(unit(1.0), ActiveConstraint::Upper(v));
             }
         }
         for row in &point.limits {
@@ -90,8 +90,11 @@ impl Optimality {
             if row.equal || row.exceeds > -BINDS * scale {
                 let (limit, taken) = problem.limits[row.of];
                 let motion = taken.map(|t| t.motion);
-                let binding =
-                    if row.upper { Binding::Most(limit, motion) } else { Binding::Least(limit, motion) };
+                let binding = if row.upper {
+                    ActiveConstraint::Most(limit, motion)
+                } else {
+                    ActiveConstraint::Least(limit, motion)
+                };
                 let mut push = |d: &[f64]| {
                     let d = by_parts(d).iter().map(|d| d / scale).collect();
                     rows.push(Row { d, peak: None, equal: row.equal, binding: Some((binding, scale)) });
@@ -144,7 +147,7 @@ impl Optimality {
         };
         let left = (0..n).map(left).fold(0.0, f64::max);
         let (residual, left_of_start) = if met { (0.0, 0.0) } else { (left / scale, left / weight) };
-        let mut binding: Vec<(Binding, f64)> = Vec::new();
+        let mut binding: Vec<(ActiveConstraint, f64)> = Vec::new();
         for (row, multiplier) in active.iter().zip(multipliers) {
             let Some((what, scale)) = rows[*row].binding else { continue };
             // One limit may bind at several places of a curve at once.

@@ -1,9 +1,9 @@
 //! What a search asks of a design: goals and limits as numbers, with their exact derivatives.
 
-use crate::model::{Limit, Limited, Model, Optimization, Reduction, VariableId};
+use crate::model::{Limit, LimitTarget, Model, OptimizationSettings, Reduction, VariableId};
 use crate::motion::Margin;
 use crate::number::Dual;
-use crate::study::evaluation::{Cost, Evaluated, Motions};
+use crate::study::evaluation::{DesignEvaluation, Motions, StudyCost};
 use crate::study::metric::{MetricParts, misfits, peaks};
 
 /// A search for the best design: goals, limits, and the motions that they are taken of.
@@ -12,7 +12,7 @@ pub(super) struct Problem<'m> {
     /// The model with all of its cases.
     pub model: &'m Model,
     pub motions: &'m Motions<'m>,
-    pub asked: &'m Optimization,
+    pub asked: &'m OptimizationSettings,
     /// Per searched variable, its bounds, in its unit.
     pub bounds: Vec<[f64; 2]>,
     /// What every goal is taken of: the goal, the motion, the metric's place there.
@@ -154,7 +154,7 @@ impl Point {
 }
 
 impl<'m> Problem<'m> {
-    pub fn new(model: &'m Model, motions: &'m Motions<'m>, asked: &'m Optimization) -> Self {
+    pub fn new(model: &'m Model, motions: &'m Motions<'m>, asked: &'m OptimizationSettings) -> Self {
         let taken = |of: usize, metric: usize| {
             let Model { metrics, .. } = model;
             let wanted = &metrics[metric];
@@ -166,7 +166,7 @@ impl<'m> Problem<'m> {
         };
         let goals = asked.goals.iter().enumerate().flat_map(|(k, goal)| taken(k, goal.metric)).collect();
         let limit = |(k, limit): (usize, &Limit)| match limit.of {
-            Limited::Metric(metric) => taken(k, metric).map(|t| (k, Some(t))).collect::<Vec<_>>(),
+            LimitTarget::Metric(metric) => taken(k, metric).map(|t| (k, Some(t))).collect::<Vec<_>>(),
             _ => vec![(k, None)],
         };
         let limits = asked.limits.iter().enumerate().flat_map(limit).collect();
@@ -196,13 +196,13 @@ impl<'m> Problem<'m> {
             let mut values: Vec<Dual> = design.iter().map(|b| Dual::constant(*b)).collect();
             values[v.0] = Dual::variable(design[v.0]);
             match limit.of {
-                Limited::Coordinate(h, axis) => map.places(&values)[h.0][axis],
-                Limited::Distance(a, b) => {
+                LimitTarget::Coordinate(h, axis) => map.places(&values)[h.0][axis],
+                LimitTarget::Distance(a, b) => {
                     let places = map.places(&values);
                     (places[a.0] - places[b.0]).norm()
                 }
-                Limited::Length(joint) => map.geometry(&values).kept[joint.0].distance,
-                Limited::Metric(_) => unreachable!("it is taken of a motion"),
+                LimitTarget::Length(joint) => map.geometry(&values).kept[joint.0].distance,
+                LimitTarget::Metric(_) => unreachable!("it is taken of a motion"),
             }
         };
         let found: Vec<Dual> = self.asked.variables.iter().map(|v| derivative(*v)).collect();
@@ -213,7 +213,7 @@ impl<'m> Problem<'m> {
     pub fn at(
         &self,
         design: Vec<f64>,
-        cost: &mut Cost,
+        cost: &mut StudyCost,
         more: &(dyn Fn() -> bool + Sync),
     ) -> Result<Point, Refusal> {
         let found = self.motions.evaluate(&design, cost, more).map_err(|rejected| Refusal {
@@ -234,7 +234,7 @@ impl<'m> Problem<'m> {
     }
 
     /// Whether all motions keep away from singular positions.
-    fn margins(&self, found: &Evaluated) -> Result<(), Refusal> {
+    fn margins(&self, found: &DesignEvaluation) -> Result<(), Refusal> {
         let Some(limit) = self.asked.margin else { return Ok(()) };
         for (motion, solution) in found.solutions.iter().enumerate() {
             let Some((k, Margin { value, .. })) = solution.motion.least_margin() else { continue };
@@ -249,7 +249,7 @@ impl<'m> Problem<'m> {
         Ok(())
     }
 
-    fn add_goal(&self, taken: Taken, found: &Evaluated, point: &mut Point) -> Result<(), Refusal> {
+    fn add_goal(&self, taken: Taken, found: &DesignEvaluation, point: &mut Point) -> Result<(), Refusal> {
         let goal = &self.asked.goals[taken.of];
         let (value, d) = self.metric(taken, found)?;
         point.goal_values.push(value);
@@ -292,7 +292,7 @@ impl<'m> Problem<'m> {
         place: usize,
         limit: usize,
         taken: Option<Taken>,
-        found: &Evaluated,
+        found: &DesignEvaluation,
         point: &mut Point,
     ) -> Result<(), Refusal> {
         let asked = &self.asked.limits[limit];
@@ -351,7 +351,7 @@ impl<'m> Problem<'m> {
     }
 
     /// A metric with its derivatives by the searched variables.
-    fn metric(&self, taken: Taken, found: &Evaluated) -> Result<(f64, Vec<f64>), Refusal> {
+    fn metric(&self, taken: Taken, found: &DesignEvaluation) -> Result<(f64, Vec<f64>), Refusal> {
         let value = &found.metrics[taken.motion][taken.metric];
         let name = &self.motions.model(taken.motion).metrics[taken.metric].name;
         let refusal = |why: String| Refusal { motion: Some(taken.motion), why, interrupted: false };
@@ -440,27 +440,27 @@ mod tests {
         model
     }
 
-    fn everything() -> Optimization {
+    fn everything() -> OptimizationSettings {
         let goal =
             |metric: usize, target: Option<f64>| Goal { name: String::new(), metric, target, weight: 1.7 };
-        let limit = |of: Limited, least: f64, most: f64| Limit {
+        let limit = |of: LimitTarget, least: f64, most: f64| Limit {
             name: String::new(),
             of,
             least: Some(least),
             most: Some(most),
         };
-        Optimization {
+        OptimizationSettings {
             variables: (0..4).map(VariableId).collect(),
             goals: (0..8)
                 .map(|k| goal(k, None))
                 .chain([goal(2, Some(0.1)), goal(4, Some(0.2)), goal(7, Some(0.3))])
                 .collect(),
             limits: (2..8)
-                .map(|k| limit(Limited::Metric(k), -0.4, 0.7))
+                .map(|k| limit(LimitTarget::Metric(k), -0.4, 0.7))
                 .chain([
-                    limit(Limited::Coordinate(HardpointId(1), 0), 0.0, 0.1),
-                    limit(Limited::Distance(HardpointId(1), HardpointId(3)), 0.1, 0.2),
-                    limit(Limited::Length(JointId(2)), 0.4, 0.4),
+                    limit(LimitTarget::Coordinate(HardpointId(1), 0), 0.0, 0.1),
+                    limit(LimitTarget::Distance(HardpointId(1), HardpointId(3)), 0.1, 0.2),
+                    limit(LimitTarget::Length(JointId(2)), 0.4, 0.4),
                 ])
                 .collect(),
             margin: None,
@@ -488,7 +488,8 @@ mod tests {
         let models = model.motions();
         let motions = Motions::of(&models, Formulation::Relative).unwrap();
         let problem = Problem::new(&model, &motions, &asked);
-        let at = |parts: &[f64]| problem.at(problem.design(parts), &mut Cost::default(), &|| true).unwrap();
+        let at =
+            |parts: &[f64]| problem.at(problem.design(parts), &mut StudyCost::default(), &|| true).unwrap();
         let parts = [0.37, 0.52, 0.61, 0.44];
         let here = numbers(&at(&parts));
         assert!(here.len() > 300, "{} numbers", here.len());
@@ -519,7 +520,7 @@ mod tests {
         let (model, asked) = (four_bar(), everything());
         let models = model.motions();
         let motions = Motions::of(&models, Formulation::Relative).unwrap();
-        let found = motions.evaluate(&[], &mut Cost::default(), &|| true).unwrap();
+        let found = motions.evaluate(&[], &mut StudyCost::default(), &|| true).unwrap();
         let (solution, one) = (&found.solutions[0], motions.model(0));
         let value = |name: &str| {
             let k = one.metrics.iter().position(|m| m.name == name).unwrap();

@@ -11,7 +11,7 @@ use basin::{
 };
 
 use crate::linalg::folded_rows;
-use crate::study::evaluation::Cost;
+use crate::study::evaluation::StudyCost;
 use crate::study::trust_region::{Recent, TrustRegion, next};
 
 use super::problem::{LimitRow, Point, Problem, Refusal, Rows};
@@ -33,7 +33,7 @@ pub(super) struct Memory<'p> {
     more: &'p (dyn Fn() -> bool + Sync),
     recent: Recent<Found>,
     pub refused: RefCell<Vec<(Vec<f64>, Refusal)>>,
-    pub cost: RefCell<Cost>,
+    pub cost: RefCell<StudyCost>,
 }
 
 impl<'p> Memory<'p> {

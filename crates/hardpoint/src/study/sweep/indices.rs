@@ -65,7 +65,7 @@ const ROUND_OFF: f64 = 1e-12;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{SweepMethod, SweepRange, Sweeping, VariableId};
+    use crate::model::{SweepMethod, SweepRange, SweepSettings, VariableId};
     use crate::study::sweep::SweepPlan;
 
     /// The values of a function in the designs that indices take.
@@ -76,7 +76,7 @@ mod tests {
             high: *high,
             levels: 2,
         };
-        let asked = Sweeping {
+        let asked = SweepSettings {
             method: SweepMethod::Indices,
             ranges: ranges.iter().enumerate().map(range).collect(),
             listed: Vec::new(),

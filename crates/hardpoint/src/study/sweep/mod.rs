@@ -8,15 +8,15 @@ mod statistics;
 use std::num::NonZero;
 use std::ops::{ControlFlow, Range};
 
-use crate::model::{Model, OutputSource, Sweeping};
+use crate::model::{Model, OutputSource, SweepSettings};
 use crate::run::{Run, Solution};
 
-use super::evaluation::{Cost, Motions};
+use super::evaluation::{Motions, StudyCost};
 use super::metric::{metric_number, place_of};
-use super::samples::{Gathered, SampleRun};
+use super::samples::{SampleBlock, SampleRun};
 
 pub use indices::{SobolIndex, sobol_indices};
-pub use plan::{NoPlan, SweepPlan};
+pub use plan::{SweepPlan, SweepPlanError};
 pub(super) use statistics::quantile;
 pub use statistics::{Distribution, rank_correlation};
 
@@ -43,7 +43,7 @@ pub struct SweptBlock {
     /// What happened to designs that do not move to the end, motion by motion.
     pub failures: Vec<SweptFailure>,
     /// What it cost.
-    pub cost: Cost,
+    pub cost: StudyCost,
 }
 
 /// The curves of some designs in one motion.
@@ -72,7 +72,7 @@ pub struct SweptFailure {
 #[derive(Clone, Debug)]
 pub struct Sweep<'a> {
     motions: &'a Motions<'a>,
-    asked: &'a Sweeping,
+    asked: &'a SweepSettings,
     plan: SweepPlan<'a>,
     metrics: Vec<SweptMetric>,
 }
@@ -86,8 +86,8 @@ impl<'a> Sweep<'a> {
         model: &Model,
         motions: &'a Motions<'a>,
         numbers: &[usize],
-        asked: &'a Sweeping,
-    ) -> Result<Self, NoPlan> {
+        asked: &'a SweepSettings,
+    ) -> Result<Self, SweepPlanError> {
         let plan = SweepPlan::new(asked, model)?;
         let of_motion = |(metric, (motion, number)): (usize, (usize, &usize))| {
             Some(SweptMetric { metric, motion, place: place_of(model, metric, *number)? })
@@ -129,8 +129,8 @@ impl<'a> Sweep<'a> {
         let see = |block: &mut SweptBlock, number: usize, motion: usize, solution: &Solution| {
             self.see(block, number, motion, solution);
         };
-        let mut told = |Gathered { numbers, found }: Gathered<SweptBlock>| {
-            let cost = Cost { designs: numbers.len(), ..found.cost };
+        let mut told = |SampleBlock { numbers, found }: SampleBlock<SweptBlock>| {
+            let cost = StudyCost { designs: numbers.len(), ..found.cost };
             done(SweptBlock { numbers, cost, ..found })
         };
         let run = SampleRun { numbers: from..self.plan.count(), design: &design, threads, more };

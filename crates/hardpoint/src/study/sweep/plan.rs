@@ -1,13 +1,13 @@
 //! The designs of a sweep, each by its number.
 
-use crate::model::{Model, SweepMethod, Sweeping};
+use crate::model::{Model, SweepMethod, SweepSettings};
 
 use super::sobol::{Sobol, mixed};
 
 /// The designs of a sweep. Each follows from its number alone, and from nothing that came before it.
 #[derive(Clone, Debug)]
 pub struct SweepPlan<'a> {
-    asked: &'a Sweeping,
+    asked: &'a SweepSettings,
     variables: usize,
     count: usize,
     sobol: Option<Sobol>,
@@ -15,12 +15,12 @@ pub struct SweepPlan<'a> {
 
 /// Why designs cannot be chosen so.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NoPlan {
+pub enum SweepPlanError {
     /// No variable changes.
     NoRanges,
     /// There are none.
     NoDesigns,
-    /// There are more than [`Sweeping::MOST`].
+    /// There are more than [`SweepSettings::MOST`].
     TooMany,
     /// There are no Sobol sequences of so many dimensions, but of so many.
     TooManyDimensions(usize),
@@ -31,18 +31,18 @@ impl<'a> SweepPlan<'a> {
     ///
     /// # Errors
     /// Where they cannot be chosen.
-    pub fn new(asked: &'a Sweeping, model: &Model) -> Result<Self, NoPlan> {
+    pub fn new(asked: &'a SweepSettings, model: &Model) -> Result<Self, SweepPlanError> {
         Self::of(asked, model.variables.len())
     }
 
     /// The same of a model with so many variables.
-    pub(super) fn of(asked: &'a Sweeping, variables: usize) -> Result<Self, NoPlan> {
-        let count = asked.count().ok_or(NoPlan::TooMany)?;
+    pub(super) fn of(asked: &'a SweepSettings, variables: usize) -> Result<Self, SweepPlanError> {
+        let count = asked.count().ok_or(SweepPlanError::TooMany)?;
         if asked.ranges.is_empty() {
-            return Err(NoPlan::NoRanges);
+            return Err(SweepPlanError::NoRanges);
         }
         if count == 0 {
-            return Err(NoPlan::NoDesigns);
+            return Err(SweepPlanError::NoDesigns);
         }
         let dimensions = match asked.method {
             SweepMethod::Sobol => asked.ranges.len(),
@@ -50,7 +50,7 @@ impl<'a> SweepPlan<'a> {
             _ => 0,
         };
         if dimensions > Sobol::MOST {
-            return Err(NoPlan::TooManyDimensions(Sobol::MOST));
+            return Err(SweepPlanError::TooManyDimensions(Sobol::MOST));
         }
         let sobol = (dimensions > 0).then(|| Sobol::new(dimensions, asked.seed));
         Ok(Self { asked, variables, count, sobol })

@@ -9,10 +9,10 @@
 //! conditions of optimality is the optimum. It is found by a barrier and Newton's method.
 
 use crate::linalg::semidefinite;
-use crate::model::{Allocating, AllocationRule};
+use crate::model::{AllocationRule, AllocationSettings};
 
 use super::monte_carlo::MonteCarlo;
-use super::{Examination, Study, dot};
+use super::{Study, ToleranceResult, dot};
 
 /// No tolerance is made looser than so many times what it is: beyond that no limit has a say in it, and no derivative either.
 const MOST: f64 = 1000.0;
@@ -34,8 +34,8 @@ pub struct Allocation {
     /// What had to stay within the limits.
     pub rule: AllocationRule,
     /// Per tolerance that has a cost.
-    pub tolerances: Vec<Allocated>,
-    /// Per limit, in the order of [`Examination::limits`]: what it is worth, as the cost that would be saved if its room grew by
+    pub tolerances: Vec<AllocatedTolerance>,
+    /// Per limit, in the order of [`ToleranceResult::limits`]: what it is worth, as the cost that would be saved if its room grew by
     /// one SI unit; 0 where it does not bind.
     pub worth: Vec<f64>,
     /// The sum of `cost / reach` before and after.
@@ -43,14 +43,14 @@ pub struct Allocation {
     /// What is left of the gradient of the costs that the limits do not take up, as a part of it.
     pub residual: f64,
     /// Why there is none: a limit that no tolerances keep.
-    pub impossible: Option<Impossible>,
+    pub impossible: Option<AllocationError>,
     /// Designs drawn from these tolerances.
     pub sampled: Option<MonteCarlo>,
 }
 
 /// A tolerance that was sought.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Allocated {
+pub struct AllocatedTolerance {
     /// Which of the tolerances.
     pub tolerance: usize,
     /// Its reach before.
@@ -61,12 +61,12 @@ pub struct Allocated {
 
 /// Why there are no tolerances that keep the limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Impossible {
+pub enum AllocationError {
     /// Nothing has a cost.
     NoCosts,
     /// There is no limit.
     NoLimits,
-    /// This limit (in the order of [`Examination::limits`]) is not kept by the design as drawn.
+    /// This limit (in the order of [`ToleranceResult::limits`]) is not kept by the design as drawn.
     AsDrawn(usize),
     /// Tolerances without a cost use up the room of this one.
     Fixed(usize),
@@ -84,7 +84,7 @@ struct Room {
 }
 
 /// Seeks them.
-pub(super) fn allocate(study: &Study<'_>, asked: Allocating, found: &Examination) -> Allocation {
+pub(super) fn allocate(study: &Study<'_>, asked: AllocationSettings, found: &ToleranceResult) -> Allocation {
     let tolerances = &study.asked.tolerances;
     let blocks = &study.deviations.blocks;
     let free: Vec<usize> =
@@ -109,13 +109,13 @@ pub(super) fn allocate(study: &Study<'_>, asked: Allocating, found: &Examination
     let problem =
         Problem { costs: &costs, free: &free, rooms: &rooms, blocks: blocks.len(), rule: asked.rule };
     allocation.impossible = match () {
-        () if free.is_empty() => Some(Impossible::NoCosts),
-        () if rooms.is_empty() => Some(Impossible::NoLimits),
+        () if free.is_empty() => Some(AllocationError::NoCosts),
+        () if rooms.is_empty() => Some(AllocationError::NoLimits),
         () => {
-            let missed = rooms.iter().find(|r| !(r.room > 0.0)).map(|r| Impossible::AsDrawn(r.limit));
+            let missed = rooms.iter().find(|r| !(r.room > 0.0)).map(|r| AllocationError::AsDrawn(r.limit));
             let nothing = problem.whole(&vec![0.0; free.len()]);
             let used = |r: &&Room| !(problem.slack(r, &nothing) > 0.0);
-            missed.or_else(|| rooms.iter().find(used).map(|r| Impossible::Fixed(r.limit)))
+            missed.or_else(|| rooms.iter().find(used).map(|r| AllocationError::Fixed(r.limit)))
         }
     };
     if allocation.impossible.is_some() {
@@ -129,7 +129,7 @@ pub(super) fn allocate(study: &Study<'_>, asked: Allocating, found: &Examination
     }
     let reach = |(b, x): (&usize, &f64)| {
         let (tolerance, before) = (blocks[*b].tolerance, blocks[*b].reach);
-        Allocated { tolerance, before, after: (*x < 0.999 * MOST).then_some(before * x) }
+        AllocatedTolerance { tolerance, before, after: (*x < 0.999 * MOST).then_some(before * x) }
     };
     allocation.tolerances = free.iter().zip(&x).map(reach).collect();
     allocation
@@ -147,7 +147,7 @@ impl Allocation {
 }
 
 /// What every limit asks for: of one with two ends, the nearer one.
-fn rooms(study: &Study<'_>, rule: AllocationRule, found: &Examination) -> Vec<Room> {
+fn rooms(study: &Study<'_>, rule: AllocationRule, found: &ToleranceResult) -> Vec<Room> {
     let deviations = study.deviations;
     let room = |(k, limit): (usize, &super::LimitYield)| {
         let (asked, of) = (&study.asked.limits[limit.limit], &found.metrics[limit.spread]);

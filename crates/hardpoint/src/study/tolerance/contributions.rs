@@ -1,8 +1,8 @@
 //! The part of the variance of a metric that each variable contributes, from the model of its spread.
 
-use crate::model::{Model, Tolerancing};
+use crate::model::{Model, ToleranceSettings};
 
-use super::{Examination, NONLINEAR};
+use super::{NONLINEAR, ToleranceResult};
 
 /// Drawn designs differ from a linear answer where this number of standard errors is between them.
 const ERRORS: f64 = 3.0;
@@ -37,7 +37,7 @@ pub struct Contributions {
     pub together: Option<f64>,
 }
 
-impl Examination {
+impl ToleranceResult {
     /// Returns whether linear statistics of a metric are off: by second derivatives, or by the designs drawn.
     pub fn is_nonlinear(&self, metric: usize) -> bool {
         self.metrics[metric].is_nonlinear() || self.drawn_differ(metric) || self.fails_often()
@@ -55,7 +55,7 @@ impl Examination {
         self.sampled.as_ref().is_some_and(|s| s.failed as f64 > FAILING * s.samples as f64)
     }
 
-    pub(super) fn add_contributions(&mut self, model: &Model, asked: &Tolerancing) {
+    pub(super) fn add_contributions(&mut self, model: &Model, asked: &ToleranceSettings) {
         let deviations: Option<Vec<Vec<f64>>> = self.sampled.as_ref().map(|sampled| {
             let drawn = self.deviations(model, asked);
             (0..sampled.samples).map(drawn).collect()

@@ -17,17 +17,17 @@ pub struct CurveBands {
     pub measure: usize,
     /// The motion, by its place among those studied.
     pub motion: usize,
-    /// Its column in [`Measured`](crate::measure::Measured).
+    /// Its column in [`MeasureResults`](crate::measure::Measured).
     pub column: usize,
     /// Output times, s.
     pub times: Vec<f64>,
     /// One for each of them.
-    pub bands: Vec<Band>,
+    pub bands: Vec<BandPoint>,
 }
 
 /// The same at one output time, in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Band {
+pub struct BandPoint {
     /// As drawn.
     pub nominal: f64,
     /// The standard deviation to first order.
@@ -41,7 +41,7 @@ pub struct Band {
 impl CurveBands {
     /// Mean and standard deviation at output time k, to the highest order that is known.
     pub fn moments(&self, k: usize) -> [f64; 2] {
-        let Band { nominal, sigma, second, .. } = self.bands[k];
+        let BandPoint { nominal, sigma, second, .. } = self.bands[k];
         second.map_or([nominal, sigma], |s| [nominal + s.shift, s.sigma])
     }
 }
@@ -76,7 +76,7 @@ impl Study<'_> {
                 let reach = reach(deviations, &g);
                 let second =
                     bend.and_then(|m| Some(deviations.second_order(&g, &seconds.as_ref()?.at(k, m))));
-                Band {
+                BandPoint {
                     nominal,
                     sigma: deviations.sigma(&g),
                     worst: [nominal - reach, nominal + reach],

@@ -1,15 +1,15 @@
 //! Deviations of the design variables: how they scatter, alone and together, and what that makes of a function with known derivatives.
 
 use crate::linalg::semidefinite;
-use crate::model::{Model, Scatter, Tolerancing, VariableId};
+use crate::model::{Model, Scatter, ToleranceSettings, VariableId};
 use crate::study::random::{design_stream, draw, moments};
 
-use super::{SecondOrder, Tolerated, dot};
+use super::{SecondOrder, TolerancedVariable, dot};
 
 /// The variables that may be off, and how.
 #[derive(Clone, Debug)]
 pub(super) struct Deviations {
-    pub variables: Vec<Tolerated>,
+    pub variables: Vec<TolerancedVariable>,
     /// The coordinates of each tolerance stand together: where, with its reach and its scatter.
     pub blocks: Vec<Block>,
     /// The root of the matrix of correlations, row by row; none where nothing is correlated.
@@ -36,18 +36,18 @@ impl Block {
 }
 
 impl Deviations {
-    pub fn new(model: &Model, asked: &Tolerancing, left_out: &[VariableId]) -> Self {
+    pub fn new(model: &Model, asked: &ToleranceSettings, left_out: &[VariableId]) -> Self {
         assert!(asked.tolerances.iter().flat_map(|t| &t.variables).all(|v| v.0 < model.variables.len()));
         let reaches: Vec<f64> = asked.tolerances.iter().map(|t| t.reach).collect();
         Self::of(asked, &reaches, |v| !left_out.contains(&v))
     }
 
     /// The same variables with other reaches, one for each tolerance.
-    pub fn with_reaches(&self, asked: &Tolerancing, reaches: &[f64]) -> Self {
+    pub fn with_reaches(&self, asked: &ToleranceSettings, reaches: &[f64]) -> Self {
         Self::of(asked, reaches, |v| self.variables.iter().any(|of| of.variable == v))
     }
 
-    fn of(asked: &Tolerancing, reaches: &[f64], varies: impl Fn(VariableId) -> bool) -> Self {
+    fn of(asked: &ToleranceSettings, reaches: &[f64], varies: impl Fn(VariableId) -> bool) -> Self {
         let (mut variables, mut blocks) = (Vec::new(), Vec::new());
         for (tolerance, one) in asked.tolerances.iter().enumerate() {
             let moved: Vec<VariableId> = one.variables.iter().copied().filter(|v| varies(*v)).collect();
@@ -58,14 +58,14 @@ impl Deviations {
             let (first, len, reach) = (variables.len(), moved.len(), reaches[tolerance]);
             let of = moments(one.scatter, len, reach);
             blocks.push(Block { tolerance, first, len, reach, scatter: one.scatter, kurtosis: of.kurtosis });
-            variables.extend(moved.into_iter().map(|variable| Tolerated {
+            variables.extend(moved.into_iter().map(|variable| TolerancedVariable {
                 variable,
                 tolerance,
                 sigma: of.sigma,
                 kurtosis: of.kurtosis,
             }));
         }
-        let place = |v: VariableId| variables.iter().position(|of: &Tolerated| of.variable == v);
+        let place = |v: VariableId| variables.iter().position(|of: &TolerancedVariable| of.variable == v);
         let matrix = || {
             let n = variables.len();
             let unit = |i: usize| (0..n).map(|j| f64::from(u8::from(i == j))).collect();

@@ -14,19 +14,19 @@ mod worst;
 use std::num::NonZero;
 use std::ops::ControlFlow;
 
-use crate::model::{Limited, Model, Tolerancing, VariableId};
+use crate::model::{LimitTarget, Model, ToleranceSettings, VariableId};
 use crate::number::Real;
 use crate::run::Run;
 use crate::sensitivity::Admissibility;
 
-use super::evaluation::{Cost, Evaluated, Motions, Rejection};
+use super::evaluation::{DesignEvaluation, EvaluationError, Motions, StudyCost};
 use super::magnitude::Magnitude;
 use super::metric::{metric_numbers, place_of};
-pub use allocation::{Allocated, Allocation, Impossible};
+pub use allocation::{AllocatedTolerance, Allocation, AllocationError};
 pub use contributions::{Contributions, SpreadModel};
-pub use curves::{Band, CurveBands};
+pub use curves::{BandPoint, CurveBands};
 use deviations::Deviations;
-pub use monte_carlo::{Failure, MonteCarlo, SampledCurve, SampledMetric, Yield};
+pub use monte_carlo::{FailureGroup, MonteCarlo, SampledCurve, SampledMetric, Yield};
 pub use worst::Extreme;
 
 /// Where the second-order part of a deviation, or the shift of its mean, is more than this part of the first-order standard deviation, the
@@ -38,9 +38,9 @@ const STEP: f64 = 1e-4;
 
 /// What tolerances come to.
 #[derive(Clone, Debug)]
-pub struct Examination {
+pub struct ToleranceResult {
     /// The variables that may be off, in the order of the tolerances.
-    pub variables: Vec<Tolerated>,
+    pub variables: Vec<TolerancedVariable>,
     /// Variables with a tolerance that the mechanism cannot follow: they stay as drawn.
     pub left_out: Vec<VariableId>,
     /// Per metric and motion.
@@ -58,14 +58,14 @@ pub struct Examination {
     /// The loosest tolerances, if they were asked for.
     pub allocation: Option<Allocation>,
     /// What it cost.
-    pub cost: Cost,
+    pub cost: StudyCost,
     /// Whether it was ended before all was done.
     pub interrupted: bool,
 }
 
 /// A variable that may be off.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tolerated {
+pub struct TolerancedVariable {
     /// Which.
     pub variable: VariableId,
     /// By which of the tolerances.
@@ -117,9 +117,9 @@ pub struct SecondOrder {
 /// Whether a limit will be kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitYield {
-    /// Its place in [`Tolerancing::limits`].
+    /// Its place in [`ToleranceSettings::limits`].
     pub limit: usize,
-    /// The place of its metric and motion in [`Examination::metrics`].
+    /// The place of its metric and motion in [`ToleranceResult::metrics`].
     pub spread: usize,
     /// The part of all made that keeps it, if the metric is normal with the moments that derivatives give.
     pub by_moments: f64,
@@ -127,9 +127,9 @@ pub struct LimitYield {
     pub sampled: Option<Yield>,
 }
 
-impl Examination {
+impl ToleranceResult {
     /// The deviations of the variables that may be off in the sample of a number, for the tolerances that were asked.
-    pub fn deviations(&self, model: &Model, asked: &Tolerancing) -> impl Fn(usize) -> Vec<f64> + use<> {
+    pub fn deviations(&self, model: &Model, asked: &ToleranceSettings) -> impl Fn(usize) -> Vec<f64> + use<> {
         let (deviations, seed) = (Deviations::new(model, asked, &self.left_out), asked.seed);
         move |number| deviations.drawn(seed, number)
     }
@@ -138,7 +138,7 @@ impl Examination {
 /// The designs that are drawn within tolerances, by their numbers: all variables, in SI. Those that are left out stay as drawn.
 pub fn toleranced_designs(
     model: &Model,
-    asked: &Tolerancing,
+    asked: &ToleranceSettings,
     left_out: &[VariableId],
 ) -> impl Fn(usize) -> Vec<f64> + use<> {
     let (deviations, seed, variables) =
@@ -148,16 +148,16 @@ pub fn toleranced_designs(
 
 /// Why nothing can be said.
 #[derive(Clone, Debug)]
-pub enum ToleranceFailure {
+pub enum ToleranceError {
     /// The design as drawn does not come to its end in some motion, or it was ended there.
-    Drawn(Rejection),
+    Drawn(EvaluationError),
     /// The mechanism can follow none of the variables with a tolerance.
     NothingVaries,
 }
 
 /// What is told of a study under way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stage {
+pub enum ToleranceStage {
     /// So many gradients of so many are differenced.
     Derivatives(usize, usize),
     /// So many designs of so many were solved.
@@ -192,26 +192,26 @@ impl MetricSpread {
 /// ([`Model::motions`]). `tell` is told how far it is and may end it, `more` is asked at every output time of single designs.
 ///
 /// # Errors
-/// A [`ToleranceFailure`] where there is nothing to go by.
+/// A [`ToleranceError`] where there is nothing to go by.
 pub fn tolerance(
     model: &Model,
     motions: &Motions<'_>,
     numbers: &[usize],
-    asked: &Tolerancing,
+    asked: &ToleranceSettings,
     threads: NonZero<usize>,
-    tell: &mut (dyn FnMut(Stage) -> ControlFlow<()> + Send),
+    tell: &mut (dyn FnMut(ToleranceStage) -> ControlFlow<()> + Send),
     more: &(dyn Fn() -> bool + Sync),
-) -> Result<Examination, ToleranceFailure> {
-    let mut cost = Cost::default();
-    let drawn = motions.evaluate(&[], &mut cost, more).map_err(ToleranceFailure::Drawn)?;
+) -> Result<ToleranceResult, ToleranceError> {
+    let mut cost = StudyCost::default();
+    let drawn = motions.evaluate(&[], &mut cost, more).map_err(ToleranceError::Drawn)?;
     let (deviations, left_out) = deviations(model, &drawn, asked);
     if deviations.variables.is_empty() {
-        return Err(ToleranceFailure::NothingVaries);
+        return Err(ToleranceError::NothingVaries);
     }
     let study = Study { model, motions, numbers, asked, deviations: &deviations, drawn: &drawn };
     let (taken, unknown) = study.taken();
     let mut interrupted = false;
-    let mut tell = |stage: Stage| {
+    let mut tell = |stage: ToleranceStage| {
         let told = tell(stage);
         interrupted |= told.is_break();
         told
@@ -224,7 +224,7 @@ pub fn tolerance(
         .collect();
     let curves = study.curves(more);
     let limits = study.limits(&metrics);
-    let mut found = Examination {
+    let mut found = ToleranceResult {
         variables: deviations.variables.clone(),
         left_out,
         metrics,
@@ -270,9 +270,9 @@ struct Study<'s> {
     motions: &'s Motions<'s>,
     /// Per motion, its number among those of the model.
     numbers: &'s [usize],
-    asked: &'s Tolerancing,
+    asked: &'s ToleranceSettings,
     deviations: &'s Deviations,
-    drawn: &'s Evaluated,
+    drawn: &'s DesignEvaluation,
 }
 
 /// A metric in one motion.
@@ -285,7 +285,11 @@ struct Taken {
 }
 
 /// The variables that may be off, and those of them that the mechanism cannot follow.
-fn deviations(model: &Model, drawn: &Evaluated, asked: &Tolerancing) -> (Deviations, Vec<VariableId>) {
+fn deviations(
+    model: &Model,
+    drawn: &DesignEvaluation,
+    asked: &ToleranceSettings,
+) -> (Deviations, Vec<VariableId>) {
     let cannot = |v: VariableId| {
         let known = |s: &crate::run::Solution| {
             matches!(s.sensitivities.admissibility.get(v.0), Some(Admissibility::CannotFollow { .. }))
@@ -302,7 +306,7 @@ impl Study<'_> {
     fn taken(&self) -> (Vec<Taken>, Vec<(usize, usize)>) {
         let mut asked = self.asked.metrics.clone();
         let of_limit = |limit: &crate::model::Limit| match limit.of {
-            Limited::Metric(m) => Some(m),
+            LimitTarget::Metric(m) => Some(m),
             _ => None,
         };
         asked.extend(self.asked.limits.iter().filter_map(of_limit));
@@ -325,8 +329,8 @@ impl Study<'_> {
     fn hessians(
         &self,
         taken: &[Taken],
-        cost: &mut Cost,
-        tell: &mut dyn FnMut(Stage) -> ControlFlow<()>,
+        cost: &mut StudyCost,
+        tell: &mut dyn FnMut(ToleranceStage) -> ControlFlow<()>,
         more: &(dyn Fn() -> bool + Sync),
     ) -> Vec<Option<Vec<Vec<f64>>>> {
         let variables = &self.deviations.variables;
@@ -335,13 +339,13 @@ impl Study<'_> {
         for (j, tolerated) in variables.iter().enumerate() {
             let h = STEP * self.model.natural_step(tolerated.variable);
             let sides = [h, -h].map(|by| {
-                if columns.iter().all(Option::is_none) || tell(Stage::Derivatives(j, n)).is_break() {
+                if columns.iter().all(Option::is_none) || tell(ToleranceStage::Derivatives(j, n)).is_break() {
                     return None;
                 }
                 self.motions.evaluate(&self.model.alone(tolerated.variable, by), cost, more).ok()
             });
             for (one, columns) in taken.iter().zip(&mut columns) {
-                let gradient = |side: &Option<Evaluated>| {
+                let gradient = |side: &Option<DesignEvaluation>| {
                     let value = &side.as_ref()?.metrics[one.motion][one.place];
                     value.value.is_some().then(|| self.by_tolerated(&value.d))
                 };
@@ -365,7 +369,7 @@ impl Study<'_> {
         self.deviations.variables.iter().map(|v| d[v.variable.0]).collect()
     }
 
-    fn spread(&self, one: &Taken, hessian: Option<&[Vec<f64>]>, cost: &mut Cost) -> MetricSpread {
+    fn spread(&self, one: &Taken, hessian: Option<&[Vec<f64>]>, cost: &mut StudyCost) -> MetricSpread {
         let value = &self.drawn.metrics[one.motion][one.place];
         let nominal = value.value.expect("only metrics with a value are taken");
         let d = self.by_tolerated(&value.d);
@@ -376,7 +380,7 @@ impl Study<'_> {
             let design = self.deviations.design(self.model.variables.len(), &extreme.deviations);
             let analysis = &self.motions.analyses()[one.motion];
             let solution = analysis.solve(Run::new().at(&design).without_sensitivities());
-            *cost += Cost { designs: 1, motions: 1, steps: solution.motion.len() };
+            *cost += StudyCost { designs: 1, motions: 1, steps: solution.motion.len() };
             match &solution.stop {
                 Some(stop) => extreme.why = Some(stop.headline(analysis.model())),
                 None => extreme.exact = metric_numbers(analysis.model(), &solution).nth(one.place).flatten(),
@@ -406,7 +410,7 @@ impl Study<'_> {
         let mut found = Vec::new();
         for (k, limit) in self.asked.limits.iter().enumerate() {
             for (spread, of) in
-                metrics.iter().enumerate().filter(|(_, m)| limit.of == Limited::Metric(m.metric))
+                metrics.iter().enumerate().filter(|(_, m)| limit.of == LimitTarget::Metric(m.metric))
             {
                 let below = |x: f64| normal_below(x, of.mean(), of.best_sigma());
                 let by_moments = limit.most.map_or(1.0, below) - limit.least.map_or(0.0, below);

@@ -7,34 +7,34 @@ use crate::measure::Output;
 use crate::model::Dimension;
 use crate::motion::StopKind;
 use crate::run::Solution;
-use crate::study::evaluation::Cost;
+use crate::study::evaluation::StudyCost;
 use crate::study::metric::{metric_numbers, place_of};
-use crate::study::samples::{Gathered, SampleRun};
+use crate::study::samples::{SampleBlock, SampleRun};
 use crate::study::sweep::quantile;
 use crate::study::whatif::value_beside;
 
 use super::deviations::Deviations;
-use super::{CurveBands, Examination, MetricSpread, Stage, Study};
+use super::{CurveBands, MetricSpread, Study, ToleranceResult, ToleranceStage};
 
 /// What was found of designs that were drawn. All in SI.
 #[derive(Clone, Debug, Default)]
 pub struct MonteCarlo {
     /// So many were solved.
     pub samples: usize,
-    /// Of the metrics, in the order of [`Examination::metrics`].
+    /// Of the metrics, in the order of [`ToleranceResult::metrics`].
     pub metrics: Vec<SampledMetric>,
-    /// Of the curves, in the order of [`Examination::curves`].
+    /// Of the curves, in the order of [`ToleranceResult::curves`].
     pub curves: Vec<SampledCurve>,
-    /// Of the limits, in the order of [`Examination::limits`].
+    /// Of the limits, in the order of [`ToleranceResult::limits`].
     pub limits: Vec<Yield>,
     /// Those that keep all limits.
     pub all: Option<Yield>,
     /// Designs that do not move to the end in some motion, by what happens there.
-    pub failures: Vec<Failure>,
+    pub failures: Vec<FailureGroup>,
     /// How many designs these are.
     pub failed: usize,
     /// What it cost.
-    pub cost: Cost,
+    pub cost: StudyCost,
 }
 
 /// A metric of all designs drawn that have it.
@@ -80,7 +80,7 @@ pub struct Yield {
 
 /// Designs that failed alike.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Failure {
+pub struct FailureGroup {
     /// In which motion, by its place among those studied.
     pub motion: usize,
     /// What happened to the first of them.
@@ -145,7 +145,7 @@ struct Block {
     /// Per curve, per output time.
     curves: Vec<Vec<Growing>>,
     failures: Vec<(usize, usize, StopKind, String)>,
-    cost: Cost,
+    cost: StudyCost,
 }
 
 impl Study<'_> {
@@ -153,9 +153,9 @@ impl Study<'_> {
     pub(super) fn sample(
         &self,
         deviations: &Deviations,
-        found: &Examination,
+        found: &ToleranceResult,
         threads: NonZero<usize>,
-        tell: &mut (dyn FnMut(Stage) -> ControlFlow<()> + Send),
+        tell: &mut (dyn FnMut(ToleranceStage) -> ControlFlow<()> + Send),
         more: &(dyn Fn() -> bool + Sync),
     ) -> MonteCarlo {
         let (seed, asked) = (self.asked.seed, self.asked.samples);
@@ -190,15 +190,15 @@ impl Study<'_> {
         let mut all = Block { metrics: vec![Vec::new(); places.len()], ..Block::default() };
         all.curves = found.curves.iter().map(|c| vec![Growing::NONE; c.bands.len()]).collect();
         let mut samples = 0;
-        let mut done = |Gathered { numbers, found: block }: Gathered<Block>| {
+        let mut done = |SampleBlock { numbers, found: block }: SampleBlock<Block>| {
             samples = numbers.end;
-            all.cost += Cost { designs: numbers.len(), ..block.cost };
+            all.cost += StudyCost { designs: numbers.len(), ..block.cost };
             all.failures.extend(block.failures);
             all.metrics.iter_mut().zip(block.metrics).for_each(|(all, some)| all.extend(some));
             for (all, some) in all.curves.iter_mut().zip(block.curves) {
                 all.iter_mut().zip(some).for_each(|(all, some)| all.join(&some));
             }
-            tell(Stage::Designs(samples, asked))
+            tell(ToleranceStage::Designs(samples, asked))
         };
         let run = SampleRun { numbers: 0..asked, design: &design, threads, more };
         self.motions.sample(&run, &see, &mut done);
@@ -225,7 +225,7 @@ impl Study<'_> {
         }
     }
 
-    fn told(&self, found: &Examination, samples: usize, all: Block) -> MonteCarlo {
+    fn told(&self, found: &ToleranceResult, samples: usize, all: Block) -> MonteCarlo {
         let metrics: Vec<SampledMetric> = all.metrics.into_iter().map(SampledMetric::of).collect();
         let curve = |points: Vec<Growing>| SampledCurve {
             mean: points.iter().map(|p| p.mean).collect(),
@@ -246,13 +246,13 @@ impl Study<'_> {
         });
         let limits = limits.collect();
         let mut failed = vec![false; samples];
-        let mut failures: Vec<(std::mem::Discriminant<StopKind>, Failure)> = Vec::new();
+        let mut failures: Vec<(std::mem::Discriminant<StopKind>, FailureGroup)> = Vec::new();
         for (number, motion, kind, why) in all.failures {
             failed[number] = true;
             let kind = std::mem::discriminant(&kind);
             match failures.iter_mut().find(|(k, f)| *k == kind && f.motion == motion) {
                 Some((_, failure)) => failure.count += 1,
-                None => failures.push((kind, Failure { motion, why, first: number, count: 1 })),
+                None => failures.push((kind, FailureGroup { motion, why, first: number, count: 1 })),
             }
         }
         let whole = |k: &usize| {

@@ -285,7 +285,7 @@ pub fn open(rng: &mut Rng) -> Option<Draft> {
             j.length = Some((b - a).norm() * rng.between(0.95, 1.05));
             opened += 1;
         } else if joint.kind.places == 1 && j.at.len() == 1 && rng.chance(0.15) && !planar {
-            j.at.push(PlaceDraft::At(a + rng.direction() * (size * rng.between(0.001, 0.01))));
+            j.at.push(LocationDraft::At(a + rng.direction() * (size * rng.between(0.001, 0.01))));
             opened += 1;
         }
     }
@@ -350,29 +350,29 @@ impl<'r> Drawing<'r> {
     }
 
     /// A place there, by coordinates or by a new hardpoint's name.
-    fn place(&mut self, position: Vec3) -> PlaceDraft {
+    fn place(&mut self, position: Vec3) -> LocationDraft {
         if self.rng.chance(0.4) {
-            return PlaceDraft::At(position);
+            return LocationDraft::At(position);
         }
         let name = format!("h{}", self.draft.hardpoints.len());
         self.draft.hardpoints.push(HardpointDraft::new(name.clone(), position));
-        PlaceDraft::Hardpoint(name)
+        LocationDraft::Hardpoint(name)
     }
 
     /// Somewhere, now and then at a hardpoint that is there already.
-    fn somewhere(&mut self) -> (PlaceDraft, Vec3) {
+    fn somewhere(&mut self) -> (LocationDraft, Vec3) {
         if !self.draft.hardpoints.is_empty() && self.rng.chance(0.15) {
             let h = self.rng.pick(&self.draft.hardpoints);
-            return (PlaceDraft::Hardpoint(h.name), h.position);
+            return (LocationDraft::Hardpoint(h.name), h.position);
         }
         let p = self.spot();
         (self.place(p), p)
     }
 
     /// A line that way: along a vector of some length, or through two hardpoints.
-    fn line(&mut self, along: Vec3) -> LineDraft {
+    fn line(&mut self, along: Vec3) -> DirectionDraft {
         if self.rng.chance(0.7) {
-            return LineDraft::Along(along * self.rng.between(0.3, 3.0));
+            return DirectionDraft::Along(along * self.rng.between(0.3, 3.0));
         }
         let from = self.spot();
         let to = from + along * (self.size * self.rng.between(0.3, 0.6));
@@ -381,7 +381,7 @@ impl<'r> Drawing<'r> {
         for (name, position) in names.iter().zip([from, to]) {
             self.draft.hardpoints.push(HardpointDraft::new(name.clone(), position));
         }
-        LineDraft::Through(names[0].clone(), names[1].clone())
+        DirectionDraft::Through(names[0].clone(), names[1].clone())
     }
 
     /// A direction square to that one.
@@ -440,7 +440,7 @@ impl<'r> Drawing<'r> {
         match kind.places {
             0 => {}
             1 => match &j.axis {
-                Some(LineDraft::Through(..)) if self.rng.chance(0.3) => {}
+                Some(DirectionDraft::Through(..)) if self.rng.chance(0.3) => {}
                 _ => j.at = vec![first],
             },
             _ => {
@@ -479,7 +479,7 @@ impl<'r> Drawing<'r> {
         };
         let n = 12 + self.rng.below(20);
         let points = (0..n).map(|k| std::f64::consts::TAU * k as f64 / n as f64);
-        let points = points.map(|angle| PlaceDraft::At(p + at(angle, r(angle)))).collect();
+        let points = points.map(|angle| LocationDraft::At(p + at(angle, r(angle)))).collect();
         j.curve = Some(CurveDraft { points, closed: true });
         let angle = self.rng.between(0.0, 6.25);
         let above = z * (self.size * self.rng.between(-0.1, 0.1));
@@ -502,16 +502,16 @@ impl<'r> Drawing<'r> {
             name,
             kind: "cam".into(),
             bodies,
-            axis: Some(LineDraft::Along(z)),
+            axis: Some(DirectionDraft::Along(z)),
             ..JointDraft::default()
         };
         let d = self.curve(&mut j, p, z);
-        j.at = vec![PlaceDraft::At(p), PlaceDraft::At(p + d)];
+        j.at = vec![LocationDraft::At(p), LocationDraft::At(p + d)];
         let way = (d - z * z.dot(d)).unit().expect("off the axis");
         self.draft.joints.push(j);
         let mut slide = self.joint(named("translational").expect("a type"), [base, follower]);
-        slide.axis = Some(LineDraft::Along(way));
-        slide.at = vec![PlaceDraft::At(p + d)];
+        slide.axis = Some(DirectionDraft::Along(way));
+        slide.at = vec![LocationDraft::At(p + d)];
         self.draft.joints.push(slide);
     }
 
@@ -671,7 +671,7 @@ impl<'r> Drawing<'r> {
             1 => {
                 let ends = self.two_bodies();
                 let (a, d) = (self.spot(), self.rng.direction() * (0.5 * self.size));
-                let on = |body: String, at: PlaceDraft| PointRef::On { body, at };
+                let on = |body: String, at: LocationDraft| PointRef::On { body, at };
                 let (from, to) = (self.place(a), self.place(a + d));
                 DrivenDraft::Distance { from: on(self.name(ends[0]), from), to: on(self.name(ends[1]), to) }
             }
@@ -750,8 +750,8 @@ impl<'r> Drawing<'r> {
             kind: kind.name.into(),
             bodies: bodies.map(|b| self.name(b)),
             at,
-            axis: axis.map(LineDraft::Along),
-            axis2: (kind.axis2 != Need::Unused).then_some(LineDraft::Along(x)),
+            axis: axis.map(DirectionDraft::Along),
+            axis2: (kind.axis2 != Need::Unused).then_some(DirectionDraft::Along(x)),
             ..JointDraft::default()
         }
     }
@@ -787,7 +787,7 @@ impl<'r> Drawing<'r> {
         let from = self.spot();
         let to = from + self.rng.direction() * (0.5 * self.size);
         let (from, to) = (self.place(from), self.place(to));
-        let on = |body: String, at: PlaceDraft| PointRef::On { body, at };
+        let on = |body: String, at: LocationDraft| PointRef::On { body, at };
         self.measure(MeasureKindDraft::Distance { from: on(self.name(a), from), to: on(self.name(b), to) });
         let along = self.rng.direction();
         self.measure(MeasureKindDraft::Coordinates { point: PointRef::Named(format!("p{body}")), along });
@@ -803,7 +803,7 @@ impl<'r> Drawing<'r> {
         self.measure(MeasureKindDraft::Velocity { point: moving(), along: velocity });
         self.measure(MeasureKindDraft::Acceleration { point: moving(), along: acceleration });
         self.measure(MeasureKindDraft::AngularVelocity { body: self.name(body), along: velocity });
-        let ray = |body: String, axis: Vec3| RayDraft::Fixed { body, axis: LineDraft::Along(axis) };
+        let ray = |body: String, axis: Vec3| RayDraft::Fixed { body, axis: DirectionDraft::Along(axis) };
         let (from, to) = (ray(self.name(a), spin), ray(self.name(b), along));
         self.measure(MeasureKindDraft::Angle { from, to, about: None });
         let driven = self.draft.drivers.iter().find_map(|d| match &d.drives {
@@ -849,7 +849,7 @@ impl<'r> Drawing<'r> {
                     };
                     ChangeDraft::Move { hardpoint, velocity }
                 }
-                2 => ChangeDraft::Tilt { joint, about: LineDraft::Along(w) },
+                2 => ChangeDraft::Tilt { joint, about: DirectionDraft::Along(w) },
                 3 | 4 => ChangeDraft::Marker { joint, end, position, rotation },
                 5 if j.length.is_some() => ChangeDraft::Length { joint, rate: self.rng.signed(0.5, 2.0) },
                 6 if !self.draft.drivers.is_empty() => {
@@ -909,7 +909,7 @@ fn spoil(d: &mut Draft, rng: &mut Rng) {
         }
         2 => {
             let body = d.bodies[rng.below(d.bodies.len())].name.clone();
-            let about = LineDraft::Along(rng.direction());
+            let about = DirectionDraft::Along(rng.direction());
             let drives = DrivenDraft::Orientation { body, relative_to: None, about };
             d.drivers.push(DriverDraft::new("more", drives, Law::constant(0.0)));
         }
@@ -918,7 +918,10 @@ fn spoil(d: &mut Draft, rng: &mut Rng) {
         5 => each_place(d, &mut |p| *p = Vec3::ZERO),
         6 => {
             let z = rng.direction();
-            d.joints.iter_mut().filter(|j| j.axis.is_some()).for_each(|j| j.axis = Some(LineDraft::Along(z)));
+            d.joints
+                .iter_mut()
+                .filter(|j| j.axis.is_some())
+                .for_each(|j| j.axis = Some(DirectionDraft::Along(z)));
         }
         7 => {
             for j in d.joints.iter_mut().filter(|j| j.at.len() == 2) {
@@ -927,7 +930,7 @@ fn spoil(d: &mut Draft, rng: &mut Rng) {
         }
         8 => d.joints[joint].length = Some(any(rng)),
         9 => d.joints[joint].lead = Some(any(rng)),
-        10 => d.joints[joint].axis = Some(LineDraft::Along(Vec3::new(any(rng), any(rng), 0.0))),
+        10 => d.joints[joint].axis = Some(DirectionDraft::Along(Vec3::new(any(rng), any(rng), 0.0))),
         11 => d.joints[joint].kind = rng.pick(ALL).name.into(),
         12 => d.joints[joint].bodies.swap(0, 1),
         13 => d.joints.iter_mut().for_each(|j| j.cut = true),
@@ -987,7 +990,7 @@ fn spoil(d: &mut Draft, rng: &mut Rng) {
 fn each_place(d: &mut Draft, change: &mut dyn FnMut(&mut Vec3)) {
     d.hardpoints.iter_mut().for_each(|h| change(&mut h.position));
     for place in d.joints.iter_mut().flat_map(|j| &mut j.at) {
-        if let PlaceDraft::At(p) = place {
+        if let LocationDraft::At(p) = place {
             change(p);
         }
     }

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use hardpoint::motion::{Execution, StopKind};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::{Pose, Vec3};
-use hardpoint::study::{Comparison, Scheme, finite_differences};
-use hardpoint::topology::{Formulation, Role, SetBy};
+use hardpoint::study::{Comparison, DifferenceScheme, finite_differences};
+use hardpoint::topology::{Formulation, JointRole, SetBy};
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint::{draft::*, model::*};
 
@@ -350,7 +350,7 @@ impl Case<'_> {
         let (model, topology) = (analysis.model(), analysis.topology());
         let used = &mut self.tally.used;
         for (k, joint) in model.joints.iter().enumerate().filter(|(_, j)| !j.unnamed) {
-            let place = if matches!(topology.roles[k], Role::Tree { .. }) { "tree" } else { "cut" };
+            let place = if matches!(topology.roles[k], JointRole::Tree { .. }) { "tree" } else { "cut" };
             used.insert(format!("{} {place}", joint.kind.name));
         }
         for d in &model.drivers {
@@ -426,7 +426,7 @@ impl Case<'_> {
             let part =
                 [3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6].map(|part| (v, part * natural * margin.sqrt()));
             let mut best = Comparison::default();
-            for d in finite_differences(analysis, s, Scheme::Central, &part).into_iter().flatten() {
+            for d in finite_differences(analysis, s, DifferenceScheme::Central, &part).into_iter().flatten() {
                 best.keep_better(Comparison::of(model, s, &d));
             }
             let Some(worst) = best.worst() else {
@@ -669,13 +669,13 @@ fn flat(model: &Model, s: &Solution, size: f64, moved: Option<Pose>, anywhere: b
 /// The mechanism with everything in it moved and turned.
 fn moved(draft: &Draft, to: Pose) -> Draft {
     let mut d = draft.clone();
-    let place = |p: &mut PlaceDraft| {
-        if let PlaceDraft::At(v) = p {
+    let place = |p: &mut LocationDraft| {
+        if let LocationDraft::At(v) = p {
             *v = to.point(*v);
         }
     };
-    let line = |l: &mut LineDraft| {
-        if let LineDraft::Along(v) = l {
+    let line = |l: &mut DirectionDraft| {
+        if let DirectionDraft::Along(v) = l {
             *v = to.rot * *v;
         }
     };
