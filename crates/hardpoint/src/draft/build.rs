@@ -137,7 +137,7 @@ impl Draft {
 /// # use hardpoint::draft::*;
 /// // A screw that advances by 20 mm per turn, on the line between two hardpoints, cut rather than carrying the tree.
 /// let screw = JointDraft::new("screw", "screw", ["shaft", "nut"]).at("A").axis(["A", "B"]).lead(0.02).cut();
-/// assert_eq!(screw.axis, Some(LineDraft::Through("A".into(), "B".into())));
+/// assert_eq!(screw.axis, Some(DirectionDraft::Through("A".into(), "B".into())));
 /// ```
 impl JointDraft {
     /// A joint of one of the types of [`ALL`](crate::joint::ALL), by name, between bodies i and j (`ground` is one).

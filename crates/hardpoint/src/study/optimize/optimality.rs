@@ -21,11 +21,11 @@ const LEAST_SCALE: f64 = 1e-6;
 /// What keeps a design from getting better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ActiveConstraint {
-    /// The lower bound of a searched variable, by its place in [`OptimizationSettings::variables`](crate::model::Optimization::variables).
+    /// The lower bound of a searched variable, by its place in [`OptimizationSettings::variables`](crate::model::OptimizationSettings::variables).
     Lower(usize),
     /// Its upper bound.
     Upper(usize),
-    /// The lower end of a limit, by its place in [`OptimizationSettings::limits`](crate::model::Optimization::limits), in a motion.
+    /// The lower end of a limit, by its place in [`OptimizationSettings::limits`](crate::model::OptimizationSettings::limits), in a motion.
     Least(usize, Option<usize>),
     /// The upper end of a limit.
     Most(usize, Option<usize>),
