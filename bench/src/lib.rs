@@ -93,7 +93,7 @@ pub fn chain(n: usize, steps: usize) -> Draft {
     draft
 }
 
-/// The chain of [`chain`] with so many design variables, at most one per loop and spread evenly: each moves one of the
+/// The chain of [`chain`] with that many design variables, at most one per loop and spread evenly: each moves one of the
 /// pivots on the ground along x, which all loops from there on follow.
 pub fn chain_with_variables(n: usize, variables: usize, steps: usize) -> Draft {
     let mut draft = chain(n, steps);
@@ -181,7 +181,7 @@ pub fn truss_with_variables(n: usize, steps: usize) -> Draft {
     draft.point("tip", format!("node{}", n - 1), format!("P{}", n - 1).as_str())
 }
 
-/// n x m scissors, pinned to each other at their corners, that open and close together; the first one stands on the ground, and
+/// n x m scissors, pinned to each other at their corners, that open and close together; the first one is on the ground, and
 /// the crossing of scissor `at` is driven.
 pub fn scissors(n: usize, m: usize, at: [usize; 2], steps: usize) -> Draft {
     let (name, crossing) = (format!("{n} x {m} scissors"), format!("cross{}_{}", at[0], at[1]));

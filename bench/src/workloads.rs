@@ -31,19 +31,19 @@ const STATE: usize = 24;
 pub enum Workload {
     /// A slider-crank, 2001 steps; with its 6 sensitivities or without.
     SliderCrank {
-        /// Whether with sensitivities: W1s.
+        /// True if with sensitivities: W1s.
         sensitivities: bool,
     },
     /// A MacPherson strut, 1001 steps; with its 24 sensitivities or without.
     Strut {
-        /// Whether with sensitivities: W2s.
+        /// True if with sensitivities: W2s.
         sensitivities: bool,
     },
     /// A chain of that many four-bars, 201 steps.
     Chain(usize),
     /// A thousand designs of the strut, 101 steps each; with 24 sensitivities each or without.
     Designs {
-        /// Whether with sensitivities: W4s.
+        /// True if with sensitivities: W4s.
         sensitivities: bool,
     },
 }
@@ -151,7 +151,7 @@ pub fn measure(workload: Workload, reference: Option<&Path>, once: bool) -> io::
     Ok(Figures { us_per_step, errors })
 }
 
-/// Milliseconds of CPU time that it takes to read and check the file of a chain of so many loops, and to plan its solution.
+/// Milliseconds of CPU time that it takes to read and check the file of a chain of that many loops, and to plan its solution.
 ///
 /// # Panics
 /// Where the file is refused.

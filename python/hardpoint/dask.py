@@ -54,11 +54,11 @@ Columns = Mapping[str, Any]
 """Cells by the names of columns, units in brackets behind."""
 
 PART = 8192
-"""So many designs are a part, where nothing is said."""
+"""That many designs are a part, where nothing is said."""
 BLOCK = 512
-"""Designs are solved in blocks of so many; parts begin with one, so that their last bits do not depend on how they are cut."""
+"""Designs are solved in blocks of that many; parts begin with one, so that their last bits do not depend on how they are cut."""
 AHEAD = 3
-"""So many tasks are under way for each thread of the workers: one is solved, the others wait beside it."""
+"""That many tasks are under way for each thread of the workers: one is solved, the others wait beside it."""
 PATIENCE = 600.0
 """Seconds in which no task ends and no worker is at one, after which a sweep ends with an error."""
 LOOK = 1.0
@@ -87,11 +87,11 @@ def sweep(
     **asked,
 ) -> Stored:
     """Solves the designs of `model.sweep(**asked)` on the workers of `client`, and keeps them at `store`: in parts of `part` designs,
-    `designs-00000000.parquet` with the number of its first design, and likewise `curves-` where `curves` are asked for. The numbers are
+    `designs-00000000.parquet` with the number of its first design, and likewise `curves-` where `curves` are requested. The numbers are
     those of `model.sweep`, bit for bit.
 
     Called again after an interruption it goes on: parts that are there and whole are not solved again. A store that holds anything
-    else is refused; `overwrite` empties it first. `progress` is told designs. Raises `StudyError` when for `patience` seconds no part has
+    else is refused; `overwrite` empties it first. `progress` is reported designs. Raises `StudyError` when for `patience` seconds no part has
     ended and no worker was at work; `math.inf` waits for workers however long they take to come.
     """
     listed = asked.pop("designs", None)
@@ -130,7 +130,7 @@ class Searches(NamedTuple):
     """The best of them, as `model.optimize` chooses: of those that keep all limits the one with the least objective, of others the one
     that exceeds them least."""
     studies: tuple[Study, ...]
-    """All of them, in order of starts; that of number 0 starts from the design as drawn."""
+    """All of them, in order of starts; that of number 0 starts from the nominal design."""
 
 
 def multi_start(
@@ -142,7 +142,7 @@ def multi_start(
     progress: Progress = None,
     patience: float = PATIENCE,
 ) -> Searches:
-    """Searches for the best design (`model.optimize`) from several starts, each on a worker. `progress` is told searches."""
+    """Searches for the best design (`model.optimize`) from several starts, each on a worker. `progress` is reported searches."""
     if starts < 1:
         raise UsageError.saying("there is nothing to start from; give at least one start")
     _check(client)
@@ -214,7 +214,7 @@ class Stored:
 def _plain(value: Any) -> Any:
     if hasattr(value, "tolist"):
         return value.tolist()
-    raise UsageError.saying(f"a sweep is asked for with numbers, texts, lists and dictionaries; {value!r} is none of them")
+    raise UsageError.saying(f"a sweep is requested with numbers, texts, lists and dictionaries; {value!r} is none of them")
 
 
 # What is solved

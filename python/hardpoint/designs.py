@@ -50,7 +50,7 @@ class Designs:
 
     def _asked(self, array: np.ndarray) -> np.ndarray:
         if not self._with_d:
-            raise UsageError.saying("the designs were asked for no sensitivities; leave `sensitivities=False` out")
+            raise UsageError.saying("the designs were requested no sensitivities; leave `sensitivities=False` out")
         return array
 
     def __len__(self) -> int:

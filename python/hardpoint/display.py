@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from .studies import Study
 
 CURVES = 6
-"""So many curves of a run are drawn."""
+"""That many curves of a run are drawn."""
 WIDTH, HEIGHT = 260, 90
 
 
@@ -102,7 +102,7 @@ def study(shown: Study) -> str:
 
 
 def counter():
-    """Tells progress on the standard error."""
+    """Indicates progress on the standard error."""
 
     def told(done: int, total: int) -> None:
         sys.stderr.write(f"\r{done} of {total}" + ("\n" if done >= total else ""))

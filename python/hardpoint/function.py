@@ -85,7 +85,7 @@ class Function:
 
     @property
     def start(self) -> np.ndarray:
-        """The values of the variables as drawn."""
+        """The values of the variables in the design configuration."""
         return np.array([self.model.variables[name].drawn for name in self.variables])
 
     @property

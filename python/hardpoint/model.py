@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 Design = Union[Mapping[str, float], "ArrayLike", None]
-"""A design: values by the names of design variables, or all of them in order. What is left out, and NaN, stays as drawn."""
+"""A design: values by the names of design variables, or all of them in order. What is left out, and NaN, stays in the design configuration."""
 Progress = Union[Callable[[int, int], Any], bool, None]
-"""Is told how much is done of how much; `True` writes it to the standard error."""
+"""Is reported how much is done of how much; `True` writes it to the standard error."""
 
 MOST_RANKED = 200
 """Of more hardpoints than these the coordinates are no variables of a what-if."""
@@ -35,12 +35,12 @@ ORDERS = {0: 0, 1: 1, 2: 2, "value": 0, "rate": 1, "acceleration": 2}
 
 @dataclass(frozen=True)
 class Variable:
-    """A design variable. Of a parameter its value is the parameter's own, of all others it is a change: zero as drawn."""
+    """A design variable. Of a parameter its value is the parameter's own, of all others it is a change: zero in the design configuration."""
 
     name: str
     unit: str
     drawn: float
-    """Its value as drawn."""
+    """Its value in the design configuration."""
     bounds: tuple[float, float] | None
     """Between which values it may lie."""
     typical: float | None
@@ -69,7 +69,7 @@ class Model:
     """A mechanism that has been read, checked and planned.
 
     A model never changes; all methods may be called from several threads at once, and long ones leave the interpreter free.
-    Models pickle. A model with cases is asked for one of them, `model.case("bump").run()` or `model.run(case="bump")`; studies take
+    Models pickle. A model with cases is requested one of them, `model.case("bump").run()` or `model.run(case="bump")`; studies take
     all of them.
     """
 
@@ -236,7 +236,7 @@ class Model:
     # Studies
 
     def what_if(self, design: Design, *, case: str | None = None) -> Study:
-        """What a changed design does to every measure and metric: exactly, and as foreseen to first and second order.
+        """What a changed design does to every measure and metric: exactly, and as predicted to first and second order.
 
         As on the command line, coordinates of hardpoints are variables too: `{"tie_rod_outer.z": 2.0}`.
         """
@@ -246,7 +246,7 @@ class Model:
 
     @cached_property
     def _whole(self) -> Model:
-        """The model with a variable for every coordinate, unless there are so many that nobody reads what each does."""
+        """The model with a variable for every coordinate, unless there are that many that nobody reads what each does."""
         return self.with_coordinates() if len(self.hardpoints) <= MOST_RANKED else self
 
     def verify(self, *, case: str | None = None, progress: Progress = None) -> Study:
@@ -397,7 +397,7 @@ class Model:
 
 
 def listener(progress: Progress) -> Callable[[int, int], Any] | None:
-    """What is told of progress."""
+    """What is informed of progress."""
     return display.counter() if progress is True else progress or None
 
 

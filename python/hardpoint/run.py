@@ -112,7 +112,7 @@ class Run:
 
     def _derivatives(self, order: int) -> np.ndarray:
         if not self._followed:
-            raise UsageError.saying("the run was asked for no sensitivities; leave `sensitivities=False` out")
+            raise UsageError.saying("the run was requested no sensitivities; leave `sensitivities=False` out")
         if order not in self._by_order:
             self._by_order[order] = self._native.sensitivities(order)
         return self._by_order[order]
@@ -167,7 +167,7 @@ class Run:
         """Its derivatives by a design variable."""
         by = self._follow(variable)
         if not self._followed:
-            raise UsageError.saying("the run was asked for no sensitivities; leave `sensitivities=False` out")
+            raise UsageError.saying("the run was requested no sensitivities; leave `sensitivities=False` out")
         return BodySensitivity(name, self._native.body_sensitivity(self._body(name), by))
 
     # What it comes to

@@ -71,7 +71,7 @@ class SweepResult(Study):
         self.columns: dict[str, np.ndarray | list[str]] = columns
         """The table of designs: number, variables, metrics, and why a design failed (docs/sweep.md). NaN where there is no number."""
         self.curves: dict[str, np.ndarray | list[str]] = curves
-        """The table of curves; empty where none were asked for."""
+        """The table of curves; empty where none were requested."""
 
     def __len__(self) -> int:
         return len(self.columns["design"])

@@ -5,7 +5,7 @@ use hardpoint_file::ModelFile;
 
 use crate::failure::Failure;
 
-/// The changes, in SI, of a design: a value for every variable, NaN for what stays as drawn, or nothing at all.
+/// The changes, in SI, of a design: a value for every variable, NaN for what stays in the design configuration, or nothing at all.
 pub(crate) fn changes(file: &ModelFile, values: &[f64]) -> Result<Vec<f64>, Failure> {
     let model = &file.model;
     if !values.is_empty() && values.len() != model.variables.len() {
@@ -29,7 +29,7 @@ pub(crate) fn changes(file: &ModelFile, values: &[f64]) -> Result<Vec<f64>, Fail
     values.iter().enumerate().map(change).collect()
 }
 
-/// The value of a variable as drawn.
+/// The value of a variable in the design configuration.
 pub(crate) fn drawn(file: &ModelFile, variable: VariableId) -> f64 {
     shown(file, variable, 0.0)
 }

@@ -20,7 +20,7 @@ use crate::model::Model;
 use crate::run::derivatives;
 use crate::watch::patiently;
 
-/// So many threads as are asked for, or one for each core.
+/// Number of threads as are requested, or one for each core.
 pub(crate) fn threads(asked: Option<usize>) -> NonZero<usize> {
     let asked = asked.and_then(NonZero::new);
     asked.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZero::<usize>::MIN)
@@ -277,7 +277,7 @@ fn keep(
     }
 }
 
-/// Whether to go on, for what asks so.
+/// True if to go on, for what asks so.
 pub(crate) fn flow(more: bool) -> ControlFlow<()> {
     if more { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }

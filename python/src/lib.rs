@@ -1,7 +1,7 @@
 //! The engine as `hardpoint._native`: arrays in and out, everything else as JSON. What users see is the package around it
 //! (`python/hardpoint`).
 //!
-//! Numbers are in the units of the model file. Designs are values of all design variables, NaN for what stays as drawn: of a parameter
+//! Numbers are in the units of the model file. Designs are values of all design variables, NaN for what stays in the design configuration: of a parameter
 //! its own value, of all others a change.
 
 mod array;

@@ -191,7 +191,7 @@ impl Run {
         array(py, whole, [steps, 19])
     }
 
-    /// Its derivatives by a variable: `[time, 18]`, position, rotation vector, velocity, angular velocity, acceleration, angular
+    /// Derivatives by a variable: `[time, 18]`, position, rotation vector, velocity, angular velocity, acceleration, angular
     /// acceleration.
     fn body_sensitivity<'py>(
         &self,

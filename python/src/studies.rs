@@ -255,7 +255,7 @@ impl Model {
         Ok((outcome(&facts, &facts.tables()), self.values_of(&found.design)))
     }
 
-    /// What a changed design does, exactly and as foreseen.
+    /// What a changed design does, exactly and as predicted.
     fn what_if(&self, py: Python<'_>, case: usize, design: Vec<f64>) -> PyResult<String> {
         let (file, analysis, changes) = (&self.cases[case], self.analysis(case)?, self.changes(&design)?);
         let facts = patiently(py, None, |watch| {

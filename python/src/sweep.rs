@@ -105,7 +105,7 @@ impl Model {
             }
         }
         if all.metrics.is_empty() && all.curves.is_empty() {
-            return refused("the model has no metrics that designs could be told apart by; name curves that are to be kept".into());
+            return refused("the model has no metrics that designs could be distinguished by; name curves that are to be kept".into());
         }
         Ok(all)
     }
@@ -180,7 +180,7 @@ fn table<'py>(
 
 #[pymethods]
 impl Sweep {
-    /// How many designs there are.
+    /// Number of designs there are.
     #[getter]
     fn count(&self) -> PyResult<usize> {
         Ok(self.with(|swept| swept.sweep.plan().count())?)

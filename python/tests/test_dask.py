@@ -79,7 +79,7 @@ def same(table, columns):
 
 
 def files(store):
-    """The parts that are there: what tells whether one was touched."""
+    """The parts that are there: what indicates whether one was touched."""
     return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns, path.read_bytes()) for path in Path(store).glob("*.parquet")}
 
 
@@ -223,7 +223,7 @@ TASKS = 5
 
 @pytest.fixture
 def load():
-    """Processes that keep every core busy, where stress is asked for."""
+    """Processes that keep every core busy, where stress is requested."""
     burning = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(STRESS > 1 and os.cpu_count() or 0)]
     yield
     for process in burning:

@@ -1,4 +1,4 @@
-"""What goes wrong is told by class, code, element, file and line, as the command line tells it."""
+"""What goes wrong is reported by class, code, element, file and line, as the command line indicates it."""
 
 import pickle
 import signal
@@ -64,7 +64,7 @@ def test_designs_that_lock_are_named_or_kept_apart(strut):
         (lambda m: m.run({"ball_joint_z": float("inf")}), "infinite"),
         (lambda m: m.designs(np.zeros((2, 3))), "14 variables"),
         (lambda m: m.gradients("toe", method="both"), "no method"),
-        (lambda m: m.run(sensitivities=False).sensitivity("toe", "ball_joint_z"), "asked for no sensitivities"),
+        (lambda m: m.run(sensitivities=False).sensitivity("toe", "ball_joint_z"), "requested no sensitivities"),
         (lambda m: m.sweep(ranges={"ball_joint_q": (0, 1)}), "did you mean"),
         (lambda m: m.sweep(colour="red"), "unknown field"),
         (lambda m: hardpoint.Function(m, ["ball_joint_z"], ["nothing"]), "no metric or measure"),

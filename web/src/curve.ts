@@ -65,7 +65,7 @@ const WITH_IT = 0.1
 
 /**
  * How much `y` changes per change of `x` along the motion, from the rates and accelerations of both: where `x` turns back, and
- * its rate with that of `y` is nothing, from the accelerations. NaN where neither tells; and where `x` is about to turn while `y` goes
+ * its rate with that of `y` is nothing, from the accelerations. NaN where neither indicates; and where `x` is about to turn while `y` goes
  * on: there `y` does not follow `x`, and what it is at a certain `x` says nothing.
  */
 export function slope(y: readonly [Curve, Curve, Curve], x: readonly [Curve, Curve, Curve]): Curve {

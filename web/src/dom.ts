@@ -57,7 +57,7 @@ export function onSchemeChange(callback: () => void, signal?: AbortSignal): void
   }
 }
 
-/** Categorical colours that colour-blind readers can tell apart (Okabe and Ito), tuned per scheme in the style sheet. */
+/** Categorical colours that colour-blind readers can distinguishes (Okabe and Ito), tuned per scheme in the style sheet. */
 const HUES = 8
 
 export function hue(index: number): string {

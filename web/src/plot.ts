@@ -87,13 +87,13 @@ export class Plot {
   #band = el('div', { class: 'band', hidden: true })
   /** Where a drag began that chooses the part that is seen, px. */
   #from?: number
-  /** The left end of the curves on the screen, px; asked for once where the pointer comes in. */
+  /** The left end of the curves on the screen, px; requested once where the pointer comes in. */
   #left?: number
   /** What is seen where the curves are over another quantity. */
   #own = new Zoom()
   #closer = el('button', { type: 'button', class: 'icon', 'data-testid': 'closer', title: 'Closer (+); drag along the axis, or with Shift, to choose what is seen', 'aria-label': 'see closer', onclick: () => this.#scale(CLOSER) }, svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, svg('path', { d: GLASS })))
   #whole = el('button', { type: 'button', class: 'icon', 'data-testid': 'whole', title: 'The whole (0)', 'aria-label': 'show the whole', onclick: () => this.#see(undefined) }, 'whole')
-  /** Of the area, px, as its observer told. */
+  /** Of the area, px, as its observer reported. */
   #extent?: { width: number; height: number }
 
   constructor(
@@ -299,7 +299,7 @@ export class Plot {
     return shiftKey && share ? () => this.content.part && this.#see(moved(this.content.part, share)) : undefined
   }
 
-  /** So many times as much of the abscissa, round the moment shown where it is seen. */
+  /** Number of times as much of the abscissa, round the moment shown where it is seen. */
   #scale(factor: number): void {
     const part = this.content.part ?? this.#all()
     const [low, high] = part

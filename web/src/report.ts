@@ -172,7 +172,7 @@ function curves(item: Curves, decode: Decode): ByOrder<Curve> {
   return [decode(item.value), decode(item.rate), decode(item.accel)]
 }
 
-/** Its curves are decoded when they are asked for: of a large model, most never are. */
+/** Curves are decoded when they are requested: of a large model, most never are. */
 function sensitivity(item: wire.Sensitivity, steps: number, decode: Decode): Sensitivity {
   const analytic = once(() => curves(item, decode))
   const extremes = once((): ByOrder<number> => byOrder(analytic().map(extreme)))
@@ -198,7 +198,7 @@ function byOrder<T>([value, rate, accel]: T[]): ByOrder<T> {
   return [value, rate, accel]
 }
 
-/** What a function gives, found when it is first asked for. */
+/** What a function gives, found when it is first requested. */
 function once<T>(find: () => T): () => T {
   let found: { it: T } | undefined
   return () => (found ??= { it: find() }).it

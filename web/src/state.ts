@@ -16,9 +16,9 @@ export interface Choice {
   trace?: [body: number, point: number]
   /** The measured distance that is pointed at, else the selected one: an index into the report's distances. */
   distance?: number
-  /** Whether hardpoints are named in the view. */
+  /** True if hardpoints are named in the view. */
   labels: boolean
-  /** Whether forces are drawn in the view. */
+  /** True if forces are drawn in the view. */
   forces: boolean
   /** The design that the present one is compared with; the one as loaded where there is none. */
   compared?: number
@@ -31,11 +31,11 @@ export class State {
   readonly changes: number[]
   /** The same of coordinates of hardpoints that no variable is, by name. */
   readonly moves = new Map<string, number>()
-  /** Solves the design that the changes make, and tells it by `solved`. Without it changes are foreseen to first order. */
+  /** Solves the design that the changes make, and indicates it by `solved`. Without it changes are predicted to first order. */
   solver?: () => void
-  /** The bound that keeps the design from going as far as was asked for. */
+  /** The bound that keeps the design from going as far as was requested. */
   bound = ''
-  /** Why the design does not go as far as was asked for. */
+  /** Why the design does not go as far as was requested. */
   refusal = ''
   /** Designs that were kept to be compared with. */
   readonly kept: Design[] = []
@@ -92,7 +92,7 @@ export class State {
     return [...changed, ...[...this.moves].map(([name, by]) => ({ name, by }))]
   }
 
-  /** Tells one drawn design from another. */
+  /** Indicates one drawn design from another. */
   get edition(): string {
     return `${this.#edition} ${this.choice.compared}`
   }
@@ -102,12 +102,12 @@ export class State {
     return this.#sensed?.report ?? this.report
   }
 
-  /** Whether the sensitivities shown are those of the present design. */
+  /** True if the sensitivities shown are those of the present design. */
   get sensed(): boolean {
     return (this.#sensed?.settings ?? '[]') === JSON.stringify(this.settings)
   }
 
-  /** The solved design that the changes make; none where they are foreseen, or there are none. */
+  /** The solved design that the changes make; none where they are predicted, or there are none. */
   get present(): Design | undefined {
     if (this.#solved) return this.#solved
     if (this.moves.size > 0) return undefined
@@ -119,22 +119,22 @@ export class State {
     return this.choice.compared === undefined ? undefined : this.designs[this.choice.compared]
   }
 
-  /** Whether the present design differs from the one that it is compared with. */
+  /** True if the present design differs from the one that it is compared with. */
   get compares(): boolean {
     return this.former ? this.former !== this.present : this.present !== undefined || this.changed
   }
 
-  /** Whether any variable is changed from the model as loaded. */
+  /** True if any variable is changed from the model as loaded. */
   get changed(): boolean {
     return this.moves.size > 0 || this.changes.some((by) => by !== 0)
   }
 
-  /** Whether the present design is foreseen to first order instead of solved. */
+  /** True if the present design is predicted to first order instead of solved. */
   get foreseen(): boolean {
     return this.changed && !this.present
   }
 
-  /** A quantity of the present design, solved or foreseen to first order. */
+  /** A quantity of the present design, solved or predicted to first order. */
   curve(quantity: number, order: Order): Curve {
     const loaded = this.report.quantities[quantity].curves[order]
     const { present } = this
@@ -265,7 +265,7 @@ export class State {
   #changed(variable = this.choice.variable): void {
     const other = variable !== this.choice.variable
     this.choice.variable = variable
-    // What is solved is shown when it is; what is foreseen, at once.
+    // What is solved is shown when it is; what is predicted, at once.
     if (!this.solver) this.#edition++
     if (!this.solver || other) this.choose({})
     this.solver?.()

@@ -62,7 +62,7 @@ function interleaved(tracks: Curve[]): Curve {
   return together
 }
 
-/** The tracks of a block, read when they are asked for. */
+/** The tracks of a block, read when they are requested. */
 class Tracks {
   readonly #forms: Uint8Array
   readonly #lengths: Uint32Array

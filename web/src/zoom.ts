@@ -31,7 +31,7 @@ export function between(a: number, b: number): Part {
   return a < b ? [a, b] : [b, a]
 }
 
-/** So many times as wide, with `at` where it was on the screen. */
+/** Number of times as wide, with `at` where it was on the screen. */
 export function scaled([low, high]: Part, factor: number, at: number): Part {
   return [at - (at - low) * factor, at + (high - at) * factor]
 }

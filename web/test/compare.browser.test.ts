@@ -28,7 +28,7 @@ describe('a changed design beside the one as loaded', () => {
     expect(Number(await page.getByTestId('variable-tie_rod_outer_z').getByTestId('change-value').inputValue())).toBe(6)
   })
 
-  test('can be compared with what was foreseen: the dashed curve and the dashed mechanism follow', async () => {
+  test('can be compared with what was predicted: the dashed curve and the dashed mechanism follow', async () => {
     const before = { view: await picture(page), curve: await curve(page, 'plot-0') }
     const options = page.getByTestId('compare').locator('option')
     const foreseen = (await options.allInnerTexts()).findIndex((name) => name.includes('first order'))
@@ -40,13 +40,13 @@ describe('a changed design beside the one as loaded', () => {
     expect((await picture(page)).equals(before.view)).toBe(true)
   })
 
-  test('gives way to the design as loaded when all changes are taken back', async () => {
+  test('deflects to the design as loaded when all changes are taken back', async () => {
     await page.getByTestId('reset-all').click()
     expect(await page.locator('.ghost-key').isVisible()).toBe(false)
     expect(await lines()).not.toMatch(/as loaded/)
   })
 
-  test('was asked for nothing else, and told nothing on the console', () => {
+  test('was requested nothing else, and reported nothing on the console', () => {
     expect(visited.complaints).toEqual([])
   })
 })

@@ -78,7 +78,7 @@ test.each(files)('%s is understood and solved as the command does', async (file)
   expect(new Uint8Array(found[3])).toEqual(new Uint8Array(wanted[3]))
 })
 
-test('a search tells of its iterations and finds what the native one finds', async () => {
+test('a search indicates of its iterations and finds what the native one finds', async () => {
   const told: ProgressReply[] = []
   const ask = await engine((news) => told.push(news))
   const strut = model('studies/strut_toe.toml')

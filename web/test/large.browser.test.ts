@@ -45,7 +45,7 @@ describe('a model of 81 bodies and 240 variables', () => {
     return (await count()) - before
   }
 
-  /** Scrolls by so many pixels in every frame. */
+  /** Scrolls by that many pixels in every frame. */
   const scroll = (selector: string, by: number) =>
     page.locator(selector).evaluate(async (window, { by, frames }) => {
       for (let k = 0; k < frames; k++) {
@@ -108,7 +108,7 @@ describe('a model of 81 bodies and 240 variables', () => {
     expect(await page.locator('.variables [aria-current=true] .name').innerText()).toBe(await page.locator('.variables .name').nth(7 * FRAMES).innerText())
   })
 
-  test('was asked for nothing else, and told nothing on the console', () => {
+  test('was requested nothing else, and reported nothing on the console', () => {
     expect(visited.complaints).toEqual([])
   })
 })

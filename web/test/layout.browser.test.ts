@@ -132,7 +132,7 @@ describe('with the keyboard only', () => {
     await page.context().close()
   })
 
-  test('a variable is chosen and changed, a view taken, the time moved, a file asked for', async () => {
+  test('a variable is chosen and changed, a view taken, the time moved, a file requested', async () => {
     const { page } = await visit(browser, models.macpherson, { viewport: { width: 1440, height: 900 } })
     const row = page.getByTestId('variables').locator('[data-testid^=variable-]:has(.name)').nth(1)
     const name = await row.locator('.name').innerText()

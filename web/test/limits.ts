@@ -1,6 +1,6 @@
 /**
  * Time limits, in milliseconds. No result may depend on how fast or how busy the machine is: a limit is there only so that what hangs
- * ends, and names itself, while the rest is still told. Each is many times what the slowest takes on a quiet machine.
+ * ends, and names itself, while the rest is still reported. Each is many times what the slowest takes on a quiet machine.
  */
 
 /** One wait: for an element, for a state of the page, for the browser. What hangs is named by this before its test ends. */

@@ -96,7 +96,7 @@ describe('a hardpoint of the strut in the hand', () => {
     expect(await coordinate('z')).toBeCloseTo(z, 6)
   })
 
-  test('goes by the arrow keys along an axis', async () => {
+  test('depends on the arrow keys along an axis', async () => {
     await grip('strut_top').focus()
     await page.keyboard.press('Enter')
     const before = await coordinate('y')
@@ -126,7 +126,7 @@ describe('a hardpoint of the strut in the hand', () => {
 describe('the model in the page', () => {
   beforeEach(() => open('macpherson'))
 
-  test('follows a slider: solved, not foreseen', async () => {
+  test('follows a slider: solved, not predicted', async () => {
     await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
     await settled()
     expect(await page.getByTestId('plot-0').innerText()).toContain('changed')
@@ -195,7 +195,7 @@ async function toml(): Promise<string> {
 }
 
 describe('studies in the page', () => {
-  test('a search tells how it goes, and its design is taken', async () => {
+  test('a search indicates how it goes, and its design is taken', async () => {
     await openText('studies/strut_toe.toml')
     await page.getByTestId('open-optimise').click()
     await page.getByTestId('optimise-run').click()

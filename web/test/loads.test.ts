@@ -15,7 +15,7 @@ const LOADS: Load[] = [
   { name: 'push', joint: null, at: { body: 1, at: [200, 0, 0] }, force: brief, is_part: false },
 ]
 
-test('a force that stands goes round as the body sees it, the other way', () => {
+test('a force that is goes round as the body sees it, the other way', () => {
   const plane = planeAcross(new Vector3(0, 0, 1))
   expect(plane.names).toEqual(['x', 'y'])
   const seen = pathOf(steady, crank().bodies[1].poses, plane, 1)
@@ -24,7 +24,7 @@ test('a force that stands goes round as the body sees it, the other way', () => 
     expect(x).toBeCloseTo(expected[k][0], 4)
     expect(y).toBeCloseTo(expected[k][1], 4)
   })
-  // From ground it stands, and what the crank puts on ground is opposite.
+  // From ground it is, and what the crank puts on ground is opposite.
   for (const [x, y] of pathOf(steady, crank().bodies[0].poses, plane, -1)) expect([x, y]).toEqual([-30, 0])
 })
 

@@ -229,7 +229,7 @@ describe('the former design', () => {
     expect(drawn(new Mechanism(crank({ drivers: [] }), today, today))).toEqual([])
   })
 
-  test('of a body that one hardpoint stands for has no line', () => {
+  test('of a body that one hardpoint represents has no line', () => {
     const block = (x: number) => {
       const report = crank({ drivers: [] })
       return { ...report, bodies: report.bodies.map((body, k) => (k === 1 ? { ...body, skeleton: [[x, 0, 0] as [number, number, number]], labels: ['pin'], roles: ['joint' as const] } : body)) }
@@ -328,7 +328,7 @@ describe('the path of a point', () => {
     expect(size.y).toBeCloseTo(400)
   })
 
-  test('that is a joint, or stands still, or belongs to a vehicle is not drawn', () => {
+  test('that is a joint, or is at rest, or belongs to a vehicle is not drawn', () => {
     expect(shown('joint')).toEqual([])
     expect(shown('measured', { vehicle: { forward: [1, 0, 0], up: [0, 0, 1] } })).toEqual([])
     const still = crank().bodies.map((body) => ({ ...body, poses: crank().bodies[0].poses }))

@@ -49,7 +49,7 @@ test('a measured distance has its dimension line and its value in the view while
   await page.context().close()
 })
 
-// Both of the paper's examples: a planar mechanism, and a spatial one that belongs to a vehicle. Without the engine, what changes is foreseen.
+// Both of the paper's examples: a planar mechanism, and a spatial one that belongs to a vehicle. Without the engine, what changes is predicted.
 describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
   let visited: Visit
   let page: Page
@@ -231,7 +231,7 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
     await rows(page).first().locator('.name').click()
   })
 
-  test('changes a variable with its slider, sees what is foreseen, and takes it back', async () => {
+  test('changes a variable with its slider, sees what is predicted, and takes it back', async () => {
     const before = { view: await picture(page), curve: await curve(page, 'plot-0') }
     await slide(page, CHANGE, await page.locator(CHANGE).getAttribute('max').then(Number))
     expect((await picture(page)).equals(before.view)).toBe(false)
@@ -318,7 +318,7 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
     expect(await page.getByTestId('heat').isVisible()).toBe(true)
   })
 
-  test('was asked for nothing else, and told nothing on the console', () => {
+  test('was requested nothing else, and reported nothing on the console', () => {
     expect(visited.complaints).toEqual([])
   })
 })

@@ -9,7 +9,7 @@ const BODIES = ['body-0', 'body-1', 'body-2', 'body-3', 'body-4', 'body-5']
 const MARKS = ['driver', 'chosen', 'trace']
 
 describe.each(Object.entries(schemes))('in the %s scheme', (_, palette) => {
-  // Distances at which two colours beside each other are told apart without doubt.
+  // Distances at which two colours beside each other are distinguished without doubt.
   test.each([
     ['bodies', BODIES, 16],
     ['marks', MARKS, 19],

@@ -62,7 +62,7 @@ test('the margin is decoded, and may be missing', () => {
   expect(read({ ...payload, margin: null }, decode).margin).toBeUndefined()
 })
 
-test('curves of sensitivities and shifts are decoded once, and not before they are asked for', () => {
+test('curves of sensitivities and shifts are decoded once, and not before they are requested', () => {
   const asked: number[] = []
   const counted = (curve: Curve) => (asked.push(...curve), decode(curve))
   const moving = { ...variable('moving', 'mm', 3), shifts: [encode(1, 2, 3, 4, 5, 6)] }

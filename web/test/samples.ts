@@ -13,7 +13,7 @@ export interface Samples {
   whole: string
   /** The same, stopping on its way. */
   partial: string
-  /** The strut with one end of its tie rod moved: today's design, the exact changed one and what was foreseen. */
+  /** The strut with one end of its tie rod moved: today's design, the exact changed one and what was predicted. */
   changed: string
   /** The tutorial's: the strut whose rack is held, with its rack higher. */
   tutorial: string

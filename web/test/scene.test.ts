@@ -129,7 +129,7 @@ describe('the corner that a mechanism is seen from', () => {
     expect(readerOf([[new Vector3(), new Vector3(60, 0, 0), new Vector3(0, 0, 60)]], size)).toEqual(READER)
   })
 
-  test('is another where one joint stands before another', () => {
+  test('is another where one joint is before another', () => {
     const reader = readerOf(behind(READER), size)
     expect(reader.clone().normalize().dot(READER.clone().normalize())).toBeLessThan(0.9)
   })

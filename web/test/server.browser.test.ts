@@ -91,7 +91,7 @@ test('what is found on this machine is taken, saved in place, and no news to the
   expect(await page.getByTestId('note-changed').count()).toBe(0)
 })
 
-test('a file that changed on disk is told: mine is kept and saved over it, or theirs is loaded', async () => {
+test('a file that changed on disk is reported: mine is kept and saved over it, or theirs is loaded', async () => {
   const page = await open(await start())
   const theirs = `${text}# theirs\n`
   writeFileSync(file, theirs)

@@ -11,7 +11,7 @@ const radius = ([x, y]: Flat) => Math.hypot(x, y)
 const circle = (r: number, count = 360): Flat[] =>
   Array.from({ length: count }, (_, k) => [r * Math.cos((2 * Math.PI * k) / count), r * Math.sin((2 * Math.PI * k) / count)])
 
-/** Whether a point is inside an outline. */
+/** True if a point is inside an outline. */
 function inside([x, y]: Flat, outline: Flat[]): boolean {
   return outline.reduce((odd, [ax, ay], k) => {
     const [bx, by] = outline[(k + 1) % outline.length]

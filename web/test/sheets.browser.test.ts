@@ -36,7 +36,7 @@ describe('every model', () => {
   })
   afterAll(() => browser?.close())
 
-  /** The view as it stands, which must show something and cut nothing off. */
+  /** The view as it is, which must show something and cut nothing off. */
   async function whole(page: Page, what: string): Promise<Buffer> {
     const png = await picture(page)
     const seen = await examine(desk, png, await paper(page))
@@ -82,7 +82,7 @@ describe('every model', () => {
 
   test.skipIf(!IMAGES)("the strut's page is the README's picture", async () => {
     const { page } = await visit(browser, models.macpherson, { viewport: { width: 1440, height: 900 } })
-    // Not a moment at which everything stands as drawn.
+    // Not a moment at which everything is in the design configuration.
     await scrub(page, 120)
     await drawn(page)
     writeFileSync(join(IMAGES!, 'report.png'), await page.screenshot())

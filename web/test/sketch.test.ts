@@ -58,12 +58,12 @@ describe('a target in the text', () => {
   const table = '[metrics.toe_error]\nof = "toe"\nover = "wheel_travel"\ntake = "rms"\nwindow = [-40, 40]\ntarget = [[-40, 0.4], [40, 0]]'
   const inline = '{ of = "toe", over = "wheel_travel", take = "rms", window = [-40, 40], target = [[-40, 0.4], [40, 0]] }'
 
-  test('stands after the measures where there are no metrics', () => {
+  test('is after the measures where there are no metrics', () => {
     const text = 'name = "x"\n\n[measures.toe]\ntype = "toe" # deg\n\n# The times.\n[time]\nend = 1\n'
     expect(targetToml(text, curve)).toEqual({ name: 'toe_error', text: `name = "x"\n\n[measures.toe]\ntype = "toe" # deg\n\n${table}\n\n# The times.\n[time]\nend = 1\n` })
   })
 
-  test('stands with the other metrics, under another name where its own is taken', () => {
+  test('is with the other metrics, under another name where its own is taken', () => {
     const text = '[metrics.toe_error]\nof = "toe"\n# at = 5\n\n[time]\nend = 1\n'
     const made = targetToml(text, curve)
     expect(made.name).toBe('toe_error_2')
@@ -76,7 +76,7 @@ describe('a target in the text', () => {
     expect(targetToml(text, curve).text).toBe(`[metrics.a]\nof = "toe"\n\n${table}\n# The times.\n[time]\n`)
   })
 
-  test('goes on with metrics that are listed in one table', () => {
+  test('continues with metrics that are listed in one table', () => {
     expect(targetToml('[metrics]\na = { of = "x", take = "range" } # one\n\n[time]\n', curve).text).toBe(`[metrics]\na = { of = "x", take = "range" } # one\ntoe_error = ${inline}\n\n[time]\n`)
     expect(targetToml('[metrics]\n', curve).text).toBe(`[metrics]\ntoe_error = ${inline}\n`)
     expect(targetToml('metrics = { a = { of = "x", take = "max" } }\nname = "x"\n', curve).text).toBe(`metrics = { a = { of = "x", take = "max" }, toe_error = ${inline} }\nname = "x"\n`)
@@ -84,7 +84,7 @@ describe('a target in the text', () => {
     expect(targetToml('metrics.a.of = "x"\nname = "x"\n[time]\n', curve).text).toBe(`metrics.a.of = "x"\nmetrics.toe_error = ${inline}\nname = "x"\n[time]\n`)
   })
 
-  test('stands at the end where nothing tells better, in the line breaks of the text', () => {
+  test('is at the end where nothing indicates better, in the line breaks of the text', () => {
     expect(targetToml('name = "x"', curve).text).toBe(`name = "x"\n\n${table}\n`)
     expect(targetToml('name = "x"\r\n[measures.toe]\r\ntype = "toe"\r\n', curve).text).toBe(`name = "x"\n[measures.toe]\ntype = "toe"\n\n${table}\n`.replaceAll('\n', '\r\n'))
   })

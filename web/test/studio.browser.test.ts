@@ -86,12 +86,12 @@ describe('the designs that were gone through', () => {
 })
 
 describe('a study', () => {
-  const table = { title: 'Goals', note: '', header: ['goal', 'as drawn', 'found', 'wanted'], rows: [['toe_error (bump)', '0.40243 deg', '0.0058794 deg', '0 deg']] }
+  const table = { title: 'Goals', note: '', header: ['goal', 'nominal', 'found', 'wanted'], rows: [['toe_error (bump)', '0.40243 deg', '0.0058794 deg', '0 deg']] }
   const found = { tables: [table], change: [{ name: 'rack_z', by: 2 }], text: 'name = "found"', message: 'an optimum within the bounds' }
   const last = () => page.evaluate(() => ({ ...window.studies.at(-1)! }))
   const end = (result: typeof found | { tables: never[]; change: null; text: null; message: string }) => page.evaluate((result) => window.studies.at(-1)!.end(result), result)
 
-  test('is asked for by a form, tells how far it is, and its design is taken', async () => {
+  test('is requested by a form, indicates how far it is, and its design is taken', async () => {
     await page.getByTestId('search-outer_z').getByRole('checkbox').uncheck()
     await page.getByLabel('highest of rack_z').fill('20.5')
     await page.getByTestId('goal-camber_range').getByRole('checkbox').check()
@@ -127,7 +127,7 @@ describe('a study', () => {
     expect(await page.getByTestId('optimise-run').isEnabled()).toBe(true)
   })
 
-  test('says why it cannot be asked for, and what went wrong', async () => {
+  test('says why it cannot be requested, and what went wrong', async () => {
     const why = () => page.getByTestId('optimise-why').innerText()
     await page.getByTestId('search-top_x').getByRole('checkbox').check()
     expect(await why()).toBe('top_x needs a lowest and a highest value.')
@@ -151,7 +151,7 @@ describe('a study', () => {
     expect(await page.evaluate(() => window.taken[0].studied)).toBe('name = "strut"')
   })
 
-  test('follows the text, but keeps what was chosen until it is told to read it again', async () => {
+  test('follows the text, but keeps what was chosen until it is reported to read it again', async () => {
     await page.getByTestId('optimise-starts').fill('5')
     const change = (text: string) => page.evaluate((text) => {
       window.model = text

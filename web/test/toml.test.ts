@@ -24,7 +24,7 @@ function pieces(text: string, wanted: Kind): string[] {
 }
 
 describe('pieces of TOML', () => {
-  test('keys, values and comments are told apart, in tables within a line too', () => {
+  test('keys, values and comments are distinguished, in tables within a line too', () => {
     const text = 'a.b = { x = 1.5e-3, "y z" = [true, "#no", 1979-05-27] } # yes'
     expect(pieces(text, 'key')).toEqual(['a', 'b', 'x', '"y z"'])
     expect(pieces(text, 'number')).toEqual(['1.5e-3'])

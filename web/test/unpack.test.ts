@@ -20,7 +20,7 @@ test('numbers of one step stand together', () => {
   expect([...poses.slice(7, 14)]).toEqual([1, 0, 0, 1, 0, 0, 0])
 })
 
-test('gaps stay gaps, and what stands around them keeps its place', () => {
+test('gaps stay gaps, and what is around them keeps its place', () => {
   const margin = decode(payload.margin!.value)
   expect([...margin]).toEqual(steps.map((k) => (k === 3 || k === 4 ? NaN : Math.fround(Math.sin(0.1 * k)))))
 })

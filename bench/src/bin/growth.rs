@@ -129,7 +129,7 @@ fn report() -> Result<()> {
     write_part("gradients", &gradients()?)
 }
 
-/// Writes what stands between two marks in `docs/performance.md`.
+/// Writes what is between two marks in `docs/performance.md`.
 fn write_part(name: &str, text: &str) -> Result<()> {
     print!("{text}");
     let path = docs().join("performance.md");
@@ -213,7 +213,7 @@ fn both() -> Result<String> {
     ))
 }
 
-/// Gradients of a model's first outputs by so many variables: those of the model, over and over where there are more.
+/// Gradients of a model's first outputs by that many variables: those of the model, over and over where there are more.
 fn gradients() -> Result<String> {
     let (truss_nodes, steps) = (100, 40);
     let mut rows = String::new();

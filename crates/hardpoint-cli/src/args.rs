@@ -9,7 +9,7 @@ use hardpoint::space::Angles;
 use hardpoint::study::DifferenceScheme;
 use hardpoint::topology::Formulation;
 
-/// So many designs at most are drawn from tolerances, and swept over.
+/// Maximum number of designs are drawn from tolerances, and swept over.
 pub const MOST_DRAWN: u32 = 10_000_000;
 pub const MOST_SWEPT: u32 = 1_000_000_000;
 
@@ -65,7 +65,7 @@ pub enum Command {
     Run(Run),
     /// Examine a model: mobility, loops, redundancy, margins, and whether its design variables can be followed
     Check(Check),
-    /// Write a model as a file of another program, and say what that cannot say
+    /// Write a model as a file of another program, and say what that does not support
     Export(Export),
     /// Make a model file of a mechanism of another program, and check it
     Import(Import),
@@ -122,7 +122,7 @@ pub struct Motions {
 }
 
 impl Common {
-    /// The coordinates asked for.
+    /// The coordinates requested.
     pub fn formulation(&self) -> Formulation {
         if self.absolute { Formulation::Absolute } else { Formulation::Relative }
     }
@@ -155,7 +155,7 @@ pub struct New {
     /// The name of the model, and of its file unless that ends with `.toml`
     #[arg(value_name = "NAME", required_unless_present = "list")]
     pub name: Option<PathBuf>,
-    /// What to begin from; without it, it is asked for on a terminal
+    /// What to begin from; without it, it is requested on a terminal
     #[arg(short, long, value_name = "TEMPLATE")]
     pub template: Option<String>,
     /// List the templates
@@ -180,13 +180,13 @@ Writes into the folder, each file whole or not at all:
   sensitivity.csv  derivatives of measures and points by every design variable
                    (of bodies where the model has neither, and is small)
   summary.json     the model, how the run went, the largest sensitivities
-and if asked for
+and if requested
   motion.xlsx      an Excel workbook with charts (--workbook)
   report.pdf       facts, key figures, curves and rankings on paper (--pdf)
   motion.glb       the motion as animated glTF (--gltf)
   jerk.csv         third time derivatives (--jerk)
 Of a model with cases, each case gets a folder of its own there, and summary.json says how
-each of them went. What stands in which column: docs/results.md. Files of an earlier run that this one
+each of them went. What is in which column: docs/results.md. Files of an earlier run that this one
 does not write are removed. Ctrl-C while it solves writes the part that was solved;
 while it writes, the files of the earlier run stay.
 
@@ -365,7 +365,7 @@ const AFTER_WHATIF: &str = "\
 Without --set: ranks all variables of the model, and all coordinates of its
 hardpoints, by how much they move each measure. With --set: the design is
 changed, and today's curves stand beside
-  1st order     foreseen from today's exact sensitivities
+  1st order     predicted from today's exact sensitivities
   2nd order     and from their exact derivative along the change
   exact         the changed design, solved again
 so that the predictions' errors can be read.
@@ -391,7 +391,7 @@ pub struct Whatif {
     /// A change of the design; may be given several times
     #[arg(long, value_name = "NAME=CHANGE")]
     pub set: Vec<String>,
-    /// Make the nearest change that keeps all joints closed, where the one asked for does not
+    /// Make the nearest change that keeps all joints closed, where the one requested does not
     #[arg(long, requires = "set")]
     pub admissible: bool,
     /// Show this measure only; may be given several times
@@ -409,7 +409,7 @@ pub struct Whatif {
 }
 
 const AFTER_COMPARE: &str = "\
-Both are solved at the output times of the first. What differs is told in its
+Both are solved at the output times of the first. What differs is reported in its
 units: hardpoints, parameters, metrics, the curves of measures, and what only
 one of them has. Cases are compared with those of the same name.
 
@@ -449,7 +449,7 @@ A design whose motion does not assemble, locks or reaches a dead point is a step
 that is not taken. Ctrl-C ends the search with the best design so far.
 
 With --output it writes into the folder:
-  report.html   the design found beside the one as drawn (report-CASE.html for each case)
+  report.html   the design found beside the one in the design configuration (report-CASE.html for each case)
   summary.json  all that is printed, with every variable's start and end
 
 Examples:
@@ -471,19 +471,19 @@ pub struct Optimize {
     /// Write the model file with the design found, its comments and layout kept
     #[arg(long, value_name = "FILE")]
     pub save: Option<PathBuf>,
-    /// Start from so many designs, the one as drawn and others spread within the bounds [default: as the file says, or 1]
+    /// Start from that many designs, the one in the design configuration and others spread within the bounds [default: as the file says, or 1]
     #[arg(long, value_name = "N")]
     pub starts: Option<NonZero<usize>>,
-    /// End a search after so many iterations [default: as the file says, or 100]
+    /// End a search after that many iterations [default: as the file says, or 100]
     #[arg(long, value_name = "N")]
     pub iterations: Option<NonZero<usize>>,
-    /// Search from several starts on so many threads; what is found does not depend on it [default: one for each core]
+    /// Search from several starts on that many threads; what is found does not depend on it [default: one for each core]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZero<usize>>,
 }
 
 const AFTER_EXPORT: &str = "\
-The ending of the file tells the format; `--list` names the formats. What a format cannot
+The ending of the file indicates the format; `--list` names the formats. What a format cannot
 say, as motions in URDF, is named; the file is written all the same (docs/import.md).
 The motion itself is written by `hardpoint run`.
 
@@ -504,7 +504,7 @@ pub struct Export {
     /// Write this file
     #[arg(short, long, value_name = "FILE", required_unless_present = "list")]
     pub output: Option<PathBuf>,
-    /// Write it as this format [default: as its ending tells]
+    /// Write it as this format [default: as its ending indicates]
     #[arg(long, value_name = "NAME")]
     pub format: Option<String>,
     /// List the formats
@@ -517,7 +517,7 @@ pub struct Export {
 
 const AFTER_IMPORT: &str = "\
 The format shows in the file; `--list` names the formats. Names of bodies and joints are
-kept. What nothing drives in the source gets a driver that holds it as drawn; where that
+kept. What nothing drives in the source gets a driver that holds it in the design configuration; where that
 is the only freedom, it swings. Shapes are written beside the model, as FILE_meshes/BODY.stl.
 The report says what was taken, approximated and refused, with the place in the source
 (docs/import.md). Then the model is checked as by `hardpoint check`, whose exit codes
@@ -586,7 +586,7 @@ pub struct Tolerance {
     /// Write a report, tables and summary.json into this folder
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
-    /// Draw so many designs and solve them exactly, 0 for none [default: as the file says, or 10000]
+    /// Draw that many designs and solve them exactly, 0 for none [default: as the file says, or 10000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=i64::from(MOST_DRAWN)))]
     pub samples: Option<u32>,
     /// Draw them from this number [default: as the file says, or 1]
@@ -595,7 +595,7 @@ pub struct Tolerance {
     /// Seek the loosest tolerances that keep the limits, by the root of the sum of squares (rss) or at worst (worst-case)
     #[arg(long, value_enum, value_name = "RULE")]
     pub allocate: Option<Allocate>,
-    /// Solve designs on so many threads; what is found does not depend on it [default: one for each core]
+    /// Solve designs on that many threads; what is found does not depend on it [default: one for each core]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZero<usize>>,
 }
@@ -605,13 +605,13 @@ The measured file is a CSV table. Its first line names drivers, what was measure
 (measures, and points as P.x) and, for each, how exactly (`sigma toe`); each line below
 is a posture, in the units of the model file. Empty cells were not measured; a name that
 begins with # leaves its column out. Drivers count as their laws do; those that the table
-does not name stood as drawn. Readings of one kind may go without standard deviations:
+does not name stood in the design configuration. Readings of one kind may go without standard deviations:
 then these come from the residuals (docs/calibration.md).
 
 With --output it writes into the folder:
-  residuals.csv    a row for each reading: measured, as drawn, found, the difference
+  residuals.csv    a row for each reading: measured, in the design configuration, found, the difference
   covariance.csv   the covariance of the variables
-  report.html      the mechanism as drawn and as found, residuals as points
+  report.html      the mechanism in the design configuration and as found, residuals as points
   summary.json     all that is printed
 
 Examples:
@@ -640,7 +640,7 @@ pub struct Calibrate {
     /// What a residual far from the others counts
     #[arg(long, value_enum, default_value_t = LossWord::Squares)]
     pub loss: LossWord,
-    /// End after so many iterations
+    /// End after that many iterations
     #[arg(long, value_name = "N", default_value = "100")]
     pub iterations: NonZero<usize>,
     /// Write the model with the design found into this file, with its comments and layout
@@ -651,7 +651,7 @@ pub struct Calibrate {
 /// What a residual counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LossWord {
-    /// Its square: best where errors are normal
+    /// Square: best where errors are normal
     Squares,
     /// Less than its square beyond 1.345 standard deviations: where some readings are off
     Huber,
@@ -694,13 +694,13 @@ pub struct Sweep {
     /// How designs are chosen within the ranges [default: as the file says, or sobol]
     #[arg(long, value_enum)]
     pub method: Option<Method>,
-    /// Choose so many designs; with indices so many pairs of them [default: as the file says, or 1000]
+    /// Choose that many designs; with indices that many pairs of them [default: as the file says, or 1000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SWEPT)))]
     pub samples: Option<u32>,
     /// Choose them from this number [default: as the file says, or 1]
     #[arg(long, value_name = "N")]
     pub seed: Option<u32>,
-    /// In a factorial, so many values of every variable [default: as the file says, or 3]
+    /// In a factorial, that many values of every variable [default: as the file says, or 3]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     pub levels: Option<u32>,
     /// Solve the designs of a CSV file, whose first line names design variables
@@ -715,7 +715,7 @@ pub struct Sweep {
     /// Write tables as text, or as Parquet
     #[arg(long, value_enum, default_value_t = TableForm::Csv)]
     pub format: TableForm,
-    /// Solve designs on so many threads; what is found does not depend on it [default: one for each core]
+    /// Solve designs on that many threads; what is found does not depend on it [default: one for each core]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZero<usize>>,
     /// Begin anew where the folder holds a sweep that has not ended
@@ -725,7 +725,7 @@ pub struct Sweep {
 
 const AFTER_STUDIO: &str = "\
 The page is the one that `run` writes. The server adds what a page cannot do: it
-saves the model in place, tells the page when the file changes on disk, opens other
+saves the model in place, indicates the page when the file changes on disk, opens other
 models of the folder, and runs long studies natively. It listens on this machine
 only, and answers who has the token of the address that it prints. Ctrl-C ends it.
 

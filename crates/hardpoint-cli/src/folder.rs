@@ -70,7 +70,7 @@ impl Folder {
         Ok(())
     }
 
-    /// Writes a file beside its place, and hands back what `content` tells of it.
+    /// Writes a file beside its place, and hands back what `content` indicates of it.
     pub fn write<T>(
         &mut self,
         name: &str,
@@ -82,7 +82,7 @@ impl Folder {
     }
 
     /// Puts all files in their places, the last one last; files of this family that were not written now are removed, so that
-    /// nothing stands beside them that is not of the same run.
+    /// nothing is next to them that is not of the same run.
     pub fn commit(mut self, family: &[&str]) -> Result<(), NotWritten> {
         let last = self.pending.last().map(|(_, path)| path.clone());
         for path in family.iter().map(|name| self.path.join(name)) {

@@ -91,7 +91,7 @@ fn format_named(session: &Session, name: &str) -> Result<&'static Format, Outcom
     })
 }
 
-/// Tells what is wrong with a source.
+/// Indicates what is wrong with a source.
 fn refused(session: &Session, problems: &ImportErrors) -> Outcome {
     if session.is_json() {
         let list: Vec<_> = problems.list().collect();
@@ -111,7 +111,7 @@ fn beside(folder: &Path, path: &str) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// The model and what it refers to; the model comes last, so that it never stands there without them.
+/// The model and what it refers to; the model comes last, so that it never is there without them.
 fn write(to: &Path, imported: &ImportedModel) -> Result<(), NotWritten> {
     let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     for (name, bytes) in &imported.files {

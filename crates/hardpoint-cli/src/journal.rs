@@ -28,7 +28,7 @@ pub struct Journal {
     end: u64,
 }
 
-/// Why a journal cannot be gone on with.
+/// Why a journal cannot be resumed.
 pub enum NoJournal {
     /// It is of another sweep.
     Other,
@@ -107,7 +107,7 @@ impl Journal {
         self.file.seek(SeekFrom::Start(at)).map(drop)
     }
 
-    /// So many designs are in it, the first ones.
+    /// Number of designs are in it, the first ones.
     pub fn designs(&self) -> usize {
         self.blocks.iter().map(|(_, designs)| designs).sum()
     }

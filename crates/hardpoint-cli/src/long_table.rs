@@ -17,7 +17,7 @@ use parquet::schema::types::{Type, TypePtr};
 use hardpoint_report::GENERATOR;
 use hardpoint_report::cells::Cells;
 
-/// A row group of Parquet has so many rows, fewer where they would have more than so many cells, so that the table need not fit
+/// A row group of Parquet has that many rows, fewer where they would have more than that many cells, so that the table need not fit
 /// into memory.
 const GROUP_ROWS: usize = 1 << 16;
 const GROUP_CELLS: usize = 1 << 22;
@@ -29,7 +29,7 @@ pub type Kinds = Vec<(String, Cells)>;
 pub enum TableFormat {
     /// Text, one row a line.
     Csv,
-    /// Apache Parquet, not compressed: numbers hardly give way.
+    /// Apache Parquet, not compressed: numbers hardly deflect.
     Parquet,
 }
 

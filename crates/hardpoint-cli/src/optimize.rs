@@ -107,7 +107,7 @@ fn judged_as_written(
     judge(&file.model, &motions, wanted, &[]).map_err(|refused| refused.why)
 }
 
-/// What is asked for, by the file and besides: one case of it, so many starts and iterations.
+/// The request, by the file and besides: one case of it, that many starts and iterations.
 pub fn asked(
     session: &Session,
     file: &ModelFile,

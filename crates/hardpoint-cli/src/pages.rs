@@ -1,4 +1,4 @@
-//! The pages of studies: one for each motion, with what the study found beside the design as drawn.
+//! The pages of studies: one for each motion, with what the study found beside the nominal design.
 
 use std::io::Write;
 use std::num::NonZero;
@@ -23,7 +23,7 @@ pub type Page = (Option<String>, String);
 pub trait Study {
     /// The model that was studied.
     fn file(&self) -> &ModelFile;
-    /// Its motions that were.
+    /// Motions that were.
     fn motions(&self) -> &Motions<'_>;
     /// Of one of them, its number among all of the model.
     fn number(&self, motion: usize) -> usize;
@@ -50,13 +50,13 @@ pub trait Study {
 
 /// The design that a study found.
 pub struct Found<'a> {
-    /// Its change of every variable, in SI.
+    /// Change of every variable, in SI.
     pub design: &'a [f64],
     /// What it is, in a sentence.
     pub note: &'a str,
 }
 
-/// The page of one motion as drawn, and as found; `finish` adds what the study has to say. `None` where it does not move at all.
+/// The page of one motion in the design configuration, and as found; `finish` adds what the study has to say. `None` where it does not move at all.
 pub fn page(
     file: &ModelFile,
     analysis: &Analysis<'_>,
@@ -85,7 +85,7 @@ pub fn page(
     Some(report(&request, &|page| finish(page, &today)).expect("a payload is plain data"))
 }
 
-/// So many threads as are asked for, or one for each core.
+/// Number of threads as are requested, or one for each core.
 pub fn threads(asked: Option<NonZero<usize>>) -> NonZero<usize> {
     asked.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZero::<usize>::MIN)
 }

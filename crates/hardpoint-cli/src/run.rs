@@ -45,7 +45,7 @@ const NOT_THE_SAME: &str = "with the output times that are kept, the motion does
 /// What is said where sensitivities of bodies are not kept.
 const TOO_MANY: &str = "the sensitivities were not compared with re-solved designs, because they are too many to be held; \
     `hardpoint verify` does that for fewer output times";
-/// Jerks of so many output times are held at once.
+/// Jerks of that many output times are held at once.
 const JERK_ROWS: usize = 256;
 
 /// All files that a run may write; the last one vouches for the others.

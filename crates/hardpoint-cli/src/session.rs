@@ -26,7 +26,7 @@ use crate::meter::{Listener, Meter};
 use crate::outcome::Outcome;
 use crate::text;
 
-/// Whom a session tells what it does.
+/// Whom a session indicates what it does.
 enum Audience {
     /// Somebody who reads.
     Terminal,
@@ -48,11 +48,11 @@ pub struct Session {
     case: Mutex<Option<String>>,
 }
 
-/// Results of so many bytes are held at once while a motion is solved: little enough to be written in no time.
+/// Results of that many bytes are held at once while a motion is solved: little enough to be written in no time.
 const WINDOW_BYTES: usize = 4 << 20;
 /// A window holds one output time per lane at least; where that takes more than this, the work is not begun.
 const MOST_BYTES: usize = 512 << 20;
-/// Motions that are studied as a whole may take so many bytes; longer ones are looked at every so many output times.
+/// Motions that are studied as a whole may take that many bytes; longer ones are looked at every that many output times.
 const STUDY_BYTES: usize = 96 << 20;
 
 impl Session {
@@ -131,13 +131,13 @@ impl Session {
         }
     }
 
-    /// Whether what is done now ends by itself soon after a request to stop, and has something to save. What is not patient is
-    /// ended where it stands.
+    /// True if what is done now ends by itself soon after a request to stop, and has something to save. What is not patient is
+    /// ended where it is.
     pub fn patient(&self, yes: bool) {
         self.patient.store(yes, Ordering::SeqCst);
     }
 
-    /// Whether the user asked to stop.
+    /// True if the user asked to stop.
     pub fn interrupted(&self) -> bool {
         self.interrupted.load(Ordering::SeqCst)
     }
@@ -147,7 +147,7 @@ impl Session {
         self.started.elapsed().as_secs_f64()
     }
 
-    /// Reads the model, or tells what is wrong with it.
+    /// Reads the model, or indicates what is wrong with it.
     pub fn read(&self, path: &Path) -> Result<ModelFile, Outcome> {
         hardpoint_file::read(path).map_err(|error: ReadError| {
             self.not_read(error.diagnostics());
@@ -170,7 +170,7 @@ impl Session {
         })
     }
 
-    /// Tells what is wrong with a file that was read.
+    /// Indicates what is wrong with a file that was read.
     pub fn not_read(&self, diagnostics: &Diagnostics) {
         match &self.audience {
             Audience::Program => self.print_error(diagnostics.list()),
@@ -182,7 +182,7 @@ impl Session {
     }
 
     /// Reads the model and does a command for its motion; of a model with cases, for one case or for each of them, one after the
-    /// other. `each` is told the case where there are several.
+    /// other. `each` is reported the case where there are several.
     ///
     /// # Errors
     /// Where nothing could be begun. What one case comes to does not keep the others from being done.
@@ -279,7 +279,7 @@ impl Session {
     /// Writes the model file with a changed design, whole or not at all.
     ///
     /// # Errors
-    /// Where the text cannot say the changed design, or the file cannot be written.
+    /// Where the text does not support the changed design, or the file cannot be written.
     pub fn save(&self, file: &ModelFile, design: &[f64], to: &Path) -> Result<(), Outcome> {
         let text = self.edited(file, design)?;
         write_text(to, &text).map_err(|e| self.not_written(&e))
@@ -325,7 +325,7 @@ impl Session {
     /// The model's text with a changed design.
     ///
     /// # Errors
-    /// Where the text cannot say it.
+    /// Where the text does not support it.
     pub fn edited(&self, file: &ModelFile, design: &[f64]) -> Result<String, Outcome> {
         file.edit(design).map_err(|diagnostics| {
             self.fail(file, diagnostics.list());
@@ -333,7 +333,7 @@ impl Session {
         })
     }
 
-    /// The folder for results, where one is asked for.
+    /// The folder for results, where one is requested.
     ///
     /// # Errors
     /// Where nothing can be written there.
@@ -364,7 +364,7 @@ impl Session {
         }
     }
 
-    /// Plans the solution, or tells why the mechanism cannot be driven.
+    /// Plans the solution, or indicates why the mechanism cannot be driven.
     pub fn plan<'m>(&self, file: &'m ModelFile, formulation: Formulation) -> Result<Analysis<'m>, Outcome> {
         let analysis = Analysis::with(&file.model, formulation);
         let analysis = analysis.map_err(|fault| self.cannot_be_driven(file, &fault))?;
@@ -378,13 +378,13 @@ impl Session {
         })
     }
 
-    /// Tells why the mechanism cannot be driven.
+    /// Indicates why the mechanism cannot be driven.
     pub fn cannot_be_driven(&self, file: &ModelFile, fault: &TopologyError) -> Outcome {
         self.fail(file, &[diagnose::topology_fault(file, fault)]);
         Outcome::CannotBeDriven
     }
 
-    /// Whether the result is one JSON document.
+    /// True if the result is one JSON document.
     pub fn is_json(&self) -> bool {
         matches!(self.audience, Audience::Program)
     }
@@ -441,7 +441,7 @@ impl Session {
         Ok(gathering.end(&whole))
     }
 
-    /// Makes the motion of a model short enough to be studied as a whole, by leaving out output times, and tells that.
+    /// Makes the motion of a model short enough to be studied as a whole, by leaving out output times, and indicates that.
     pub fn fits(&self, file: &mut ModelFile) {
         let most = usize::max(STUDY_BYTES / Footprint::of(&file.model, true).bytes().max(1), 2);
         let steps = file.model.times.len();
@@ -487,7 +487,7 @@ impl Session {
         }
     }
 
-    /// Tells why there is no result.
+    /// Indicates why there is no result.
     pub fn fail(&self, file: &ModelFile, diagnostics: &[Diagnostic]) {
         match &self.audience {
             Audience::Program => self.print_error(diagnostics),
@@ -499,19 +499,19 @@ impl Session {
         }
     }
 
-    /// Tells that the command line asks for something that the model does not have.
+    /// Indicates that the command line asks for something that the model does not have.
     pub fn misunderstood(&self, why: &str) -> Outcome {
         self.refuse("HP0602", why, None, "nothing was solved", "see `hardpoint help`");
         Outcome::Misunderstood
     }
 
-    /// Tells that a server cannot do its work.
+    /// Indicates that a server cannot do its work.
     pub fn not_served(&self, what: &str, why: &str, help: &str) -> Outcome {
         self.refuse("HP0604", what, None, why, help);
         Outcome::Misunderstood
     }
 
-    /// Tells that a model cannot be begun.
+    /// Indicates that a model cannot be begun.
     pub fn not_begun(&self, what: &str, why: &str, help: &str) -> Outcome {
         self.refuse("HP0605", what, None, why, help);
         Outcome::Misunderstood
@@ -524,13 +524,13 @@ impl Session {
         }
     }
 
-    /// Tells that the user ended a run while it wrote.
+    /// Indicates that the user ended a run while it wrote.
     pub fn ended_while_writing(&self, folder: &Path) {
         let note = format!("nothing in `{}` has changed", folder.display());
         self.refuse("HP0405", "interrupted while the results were written", None, &note, "run it again");
     }
 
-    /// Tells that a result could not be written.
+    /// Indicates that a result could not be written.
     pub fn not_written(&self, failure: &NotWritten) -> Outcome {
         let message = format!("`{}` cannot be written", failure.path.display());
         let help = "name a folder that you may write to with `-o`";
@@ -538,7 +538,7 @@ impl Session {
         Outcome::NotWritten
     }
 
-    /// Tells that stdout could not be written, if it could not; then that is how the command ends.
+    /// Indicates that stdout could not be written, if it could not; then that is how the command ends.
     pub fn not_printed(outcome: Outcome) -> Outcome {
         match text::failed() {
             None => outcome,
@@ -551,7 +551,7 @@ impl Session {
         }
     }
 
-    /// Tells what is wrong but not in the model's file.
+    /// Indicates what is wrong but not in the model's file.
     fn refuse(&self, code: &str, message: &str, file: Option<&Path>, note: &str, help: &str) {
         let diagnostics = || {
             json!([{

@@ -17,7 +17,7 @@ use crate::{maps, run, text};
 /// Where models are, where none are named.
 const MODELS: &str = "models";
 
-/// Writes the site; what cannot be shown is left out and told.
+/// Writes the site; what cannot be shown is left out and reported.
 pub fn run(options: &Site) -> Outcome {
     let session = Session::begin(false);
     site_in(&session, options).unwrap_or_else(|outcome| outcome)

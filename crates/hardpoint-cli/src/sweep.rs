@@ -95,7 +95,7 @@ fn swept<X>(
     Ok((facts, made))
 }
 
-/// What is asked for, by the file and by the command line.
+/// The request, by the file and by the command line.
 fn asked(session: &Session, file: &ModelFile, options: &Sweep) -> Result<SweepSettings, Outcome> {
     let model = &file.model;
     let mut asked = model.sweeping.clone().unwrap_or_else(|| SweepSettings::of_bounds(model));
@@ -152,7 +152,7 @@ fn asked(session: &Session, file: &ModelFile, options: &Sweep) -> Result<SweepSe
     }
     if asked.metrics.is_empty() && asked.curves.is_empty() {
         let why = format!(
-            "`{}` has no metrics that designs could be told apart by; declare some in `[metrics]`, or keep curves with `--curves NAME`",
+            "`{}` has no metrics that designs could be distinguished by; declare some in `[metrics]`, or keep curves with `--curves NAME`",
             file.file_name()
         );
         return Err(session.misunderstood(&why));
@@ -384,7 +384,7 @@ impl Study for Pages<'_> {
         self.swept.numbers[motion]
     }
 
-    /// The design as drawn, with what the sweep found.
+    /// The nominal design, with what the sweep found.
     fn page(&self, motion: usize) -> Option<String> {
         let finish = |page, today: &Solution| {
             self.facts.page(&self.swept, self.plot, motion, page, &today.measured.outputs)

@@ -18,9 +18,9 @@ use crate::folder::{Folder, NotWritten, Writing};
 use crate::long_table::{TableFormat, TableWriter};
 use crate::session::json_text;
 
-/// The motion of more bodies than this is written only where it is asked for.
+/// The motion of more bodies than this is written only where it is requested.
 const MOST_BODIES: usize = 100;
-/// Sensitivities of more bodies times variables than this are written only where they are asked for.
+/// Sensitivities of more bodies times variables than this are written only where they are requested.
 const MOST_MOVED: usize = 200;
 /// What is larger than this is announced before the work.
 const LARGE: u64 = 100 << 20;
@@ -59,7 +59,7 @@ impl<'m> Plan<'m> {
             sensitivity: some(sensitivity).filter(|_| wanted),
             left_out: [
                 (!motion.bodies).then_some("the motion of the bodies"),
-                // Of a model with measures or points, these are what the user asked for.
+                // Of a model with measures or points, these are what the user requested.
                 (!sensitivity.bodies && wanted && (!has_outputs || !motion.bodies))
                     .then_some("the sensitivities of the bodies"),
             ],

@@ -87,7 +87,7 @@ pub fn shown(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// Whether stderr shows colours.
+/// True if stderr shows colours.
 pub fn stderr_in_color() -> bool {
     anstream::AutoStream::choice(&std::io::stderr()) != anstream::ColorChoice::Never
 }
@@ -119,7 +119,7 @@ pub fn notes(summary: &Summary) -> String {
     if lines.is_empty() { lines } else { format!("\n{lines}") }
 }
 
-/// Columns of text may be narrowed to so many characters; to less only where no single word is that long.
+/// Columns of text may be narrowed to that many characters; to less only where no single word is that long.
 const NARROW: usize = 14;
 
 /// A table under its title, as wide as the terminal, or as it needs to be where there is none.
@@ -164,7 +164,7 @@ fn laid_out(mut grid: comfy_table::Table, table: &Table) -> String {
     format!("{}\n{lines}", bold(&table.title))
 }
 
-/// Whether a cell is a number with its unit, or stands where there is none.
+/// True if a cell is a number with its unit, or is where there is none.
 fn is_number(cell: &str) -> bool {
     let digits = cell.trim_start_matches(['-', '+', '±', '≥', '≤', '<', '>', ' ']);
     matches!(cell, "–" | "-")

@@ -59,10 +59,10 @@ fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, Outco
 /// The tables that are written, and the summary, which vouches for them.
 const FILES: [&str; 5] = ["metrics.csv", "contributions.csv", "bands.csv", "samples.csv", "summary.json"];
 
-/// What is asked for besides what the file says.
+/// The request besides what the file says.
 #[derive(Default)]
 pub struct Asking {
-    /// So many designs are drawn.
+    /// Number of designs are drawn.
     pub samples: Option<u32>,
     /// From this number.
     pub seed: Option<u32>,
@@ -70,7 +70,7 @@ pub struct Asking {
     pub allocate: Option<Allocate>,
 }
 
-/// What is asked for, by the file and besides.
+/// The request, by the file and besides.
 pub fn asked(session: &Session, file: &ModelFile, options: &Asking) -> Result<ToleranceSettings, Outcome> {
     let asked = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
     let Some(mut asked) = asked else {
@@ -126,7 +126,7 @@ pub fn examine(
     let found = tolerance(&file.model, motions, numbers, asked, threads(most_threads), &mut tell, &more);
     found.map_err(|failure| match failure {
         ToleranceError::Drawn(rejection) if rejection.interrupted() => {
-            session.misunderstood("interrupted before the design as drawn was solved");
+            session.misunderstood("interrupted before the nominal design was solved");
             Outcome::Interrupted
         }
         ToleranceError::Drawn(rejection) => {
@@ -200,7 +200,7 @@ impl Study for Results<'_> {
         self.studied.numbers[motion]
     }
 
-    /// The design as drawn, with the bands beside its curves.
+    /// The nominal design, with the bands beside its curves.
     fn page(&self, motion: usize) -> Option<String> {
         let finish =
             |page, today: &Solution| self.studied.page(&self.facts, motion, page, &today.measured.outputs);

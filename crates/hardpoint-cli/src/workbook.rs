@@ -1,6 +1,6 @@
 //! `motion.xlsx`: a run as an Excel workbook, for those who read results there.
 //!
-//! What does not fit into a sheet, or is more than a person scrolls through, is told on the first sheet with the file that has it.
+//! What does not fit into a sheet, or is more than a person scrolls through, is reported on the first sheet with the file that has it.
 
 use std::io::Write;
 
@@ -24,15 +24,15 @@ use rust_xlsxwriter::{
 const MOST_ROWS: usize = 1_048_576;
 const MOST_COLUMNS: usize = 16_384;
 const MOST_LETTERS: usize = 32_767;
-/// What is written of a sheet over time is in memory until all of it is: so many numbers at most.
+/// What is written of a sheet over time is in memory until all of it is: at most that many numbers.
 const MOST_CELLS: usize = 1_000_000;
-/// So many curves have a chart.
+/// Number of curves have a chart.
 const MOST_CHARTS: usize = 100;
 /// A chart, in pixels; rows of sheets are 20 high.
 const CHART: (u32, u32) = (560, 300);
 const CHART_ROWS: u32 = 16;
 const CHART_COLUMNS: u16 = 9;
-/// So many significant digits are shown; the cells have all of them.
+/// That many significant digits are shown; the cells have all of them.
 const SHOWN_DIGITS: i32 = 6;
 
 /// The names of the sheets.
@@ -46,7 +46,7 @@ const HARDPOINTS: &str = "Hardpoints";
 pub struct Contents<'a> {
     /// The model.
     pub file: &'a ModelFile,
-    /// Its motion.
+    /// Motion.
     pub course: &'a Course,
     /// How the run went.
     pub summary: &'a Summary,
@@ -70,7 +70,7 @@ struct Series {
 }
 
 impl Contents<'_> {
-    /// Writes the workbook, and tells what is not in it.
+    /// Writes the workbook, and indicates what is not in it.
     ///
     /// # Errors
     /// Where `out` cannot be written.
@@ -156,7 +156,7 @@ impl Contents<'_> {
             ]
         };
         page.table(
-            "Design variables (of a parameter its value, of all others the change of the design as drawn)",
+            "Design variables (of a parameter its value, of all others the change of the nominal design)",
             &["variable", "value", "unit", "change", "over the motion"],
             summary.model.variables.iter().enumerate().map(variable),
         )?;
@@ -181,7 +181,7 @@ impl Contents<'_> {
         Ok(page.sheet)
     }
 
-    /// Every how-many-th of the output times that were kept go into so many columns, and what there is to say of that.
+    /// Every how-many-th of the output times that were kept go into that many columns, and what there is to say of that.
     fn every(&self, columns: usize) -> (usize, Option<String>) {
         let rows = usize::min(MOST_ROWS - 1, MOST_CELLS / columns.max(1)).max(1);
         let every = self.solution().motion.len().div_ceil(rows).max(1);
@@ -430,7 +430,7 @@ impl Contents<'_> {
         Ok(Sheet {
             worksheet: page.sheet,
             name: HARDPOINTS,
-            about: "the places of the hardpoints as drawn".into(),
+            about: "the places of the hardpoints in the design configuration".into(),
             left_out: None,
         })
     }

@@ -2,7 +2,7 @@
 //!
 //! A [`Program`] becomes code for x86-64: eight lanes in one register of AVX-512, or twice four in registers of AVX2. It gives bit
 //! for bit what its instructions say in IEEE arithmetic: nothing is re-associated, nothing fused that was not. A NaN is a
-//! NaN: its bits are not told. Of zeros of either sign, [`Instruction::Larger`](hardpoint_tape::Instruction::Larger) gives any.
+//! NaN: its bits are not reported. Of zeros of either sign, [`Instruction::Larger`](hardpoint_tape::Instruction::Larger) gives any.
 //!
 //! ```
 //! use hardpoint_code::{Code, Scratch};
@@ -55,7 +55,7 @@ impl Width {
     /// All there are, the narrowest first.
     pub const ALL: [Self; 2] = [Self::Avx2, Self::Avx512];
 
-    /// Whether this CPU and this system have it, and code can be made for it.
+    /// True if this CPU and this system have it, and code can be made for it.
     pub fn is_here(self) -> bool {
         x86_64::has(self)
     }
@@ -86,7 +86,7 @@ pub enum Unsupported {
     /// The CPU is too old, or the system hides what it has.
     #[error("the CPU has neither AVX2 with fused multiplication nor AVX-512")]
     Cpu,
-    /// The width that was asked for is not there.
+    /// The width that was requested is not there.
     #[error("the CPU has no {0}")]
     Width(Width),
     /// The system gives no memory, or does not let it be made executable.
@@ -100,7 +100,7 @@ pub enum Unsupported {
     Size {
         /// Of what there are too many.
         what: &'static str,
-        /// How many there are.
+        /// Number of there are.
         count: usize,
     },
 }
@@ -118,7 +118,7 @@ pub struct Counts {
     pub copies: usize,
     /// Instructions that put a number aside because registers ran out.
     pub spills: usize,
-    /// How many numbers are put aside at the same time, at the most.
+    /// Number of numbers are put aside at the same time, at the most.
     pub slots: usize,
 }
 

@@ -101,7 +101,7 @@ pub fn animation(file: &ModelFile, motion: &Motion) -> io::Result<Vec<u8>> {
     scene.end(model, nodes, times, tracks)
 }
 
-/// The output times, but those that come after another by less than single precision tells.
+/// The output times, but those that come after another by less than single precision indicates.
 fn moments(motion: &Motion) -> Vec<usize> {
     let Some(start) = motion.times.first() else { return Vec::new() };
     let mut last = None;
@@ -124,7 +124,7 @@ fn quaternion(pose: Pose) -> [f64; 4] {
 fn from_z(d: Vec3) -> [f64; 4] {
     let length = d.norm();
     let w = length + d.z;
-    // Half round, about any axis square to z.
+    // Half round, about any axis perpendicular to z.
     if !(w > 1e-9 * length) {
         return [1.0, 0.0, 0.0, 0.0];
     }

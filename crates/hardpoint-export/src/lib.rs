@@ -1,4 +1,4 @@
-//! Models of Hardpoint as files of other programs, and what these cannot say.
+//! Models of Hardpoint as files of other programs, and what these does not support.
 //!
 //! ```
 //! let text = r#"
@@ -41,12 +41,12 @@ pub struct ExportedModel {
     pub unsaid: Vec<UnsupportedFeature>,
 }
 
-/// Something that a format cannot say.
+/// Something that a format does not support.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct UnsupportedFeature {
     /// What it is in the model: `joint`, `driver`.
     pub kind: &'static str,
-    /// Its name there.
+    /// Name there.
     pub name: String,
     /// Why, or how else it is said.
     pub why: String,
@@ -55,7 +55,7 @@ pub struct UnsupportedFeature {
 /// A format.
 #[derive(Clone, Copy)]
 pub struct Format {
-    /// The name by which it can be asked for.
+    /// The name by which it can be requested.
     pub name: &'static str,
     /// What it is.
     pub about: &'static str,

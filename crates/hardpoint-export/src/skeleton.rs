@@ -27,12 +27,12 @@ pub enum Carrier {
     Loops,
 }
 
-/// The place of a joint on each of its bodies, as drawn.
+/// The place of a joint on each of its bodies, in the design configuration.
 pub fn places(model: &Model, joint: &Joint) -> [Vec3; 2] {
     joint.at.map(|h| model.hardpoints[h.0].position)
 }
 
-/// The axis of a joint, as drawn.
+/// The axis of a joint, in the design configuration.
 pub fn axis(joint: &Joint) -> Vec3 {
     joint.frames[0].cols[2]
 }
@@ -74,7 +74,7 @@ impl<'m> Skeleton<'m> {
             out.unsaid(
                 "body",
                 &model.bodies[body].name,
-                "no joint that the format has leads to it from a body that stands",
+                "no joint that the format has leads to it from a body that is",
             );
         }
         for &k in &named {
@@ -106,7 +106,7 @@ impl<'m> Skeleton<'m> {
         }
     }
 
-    /// Whether a joint carries a body.
+    /// True if a joint carries a body.
     pub fn is_carrier(&self, joint: usize) -> bool {
         self.carrier.iter().any(|c| matches!(c, Some(Carrier::Joint(k, _)) if *k == joint))
     }
@@ -126,7 +126,7 @@ impl<'m> Skeleton<'m> {
     }
 }
 
-/// Whether both places of a joint are one.
+/// True if both places of a joint are one.
 pub fn is_closed(model: &Model, joint: &Joint) -> bool {
     let [i, j] = places(model, joint);
     i == j

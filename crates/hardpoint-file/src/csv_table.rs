@@ -6,7 +6,7 @@ use std::io::{self, Write};
 /// Characters with which a formula begins in the common spreadsheet programs.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
-/// Returns the cell that stands for a text in a table: a text that begins like a formula gets an apostrophe before it, which
+/// Returns the cell that represents a text in a table: a text that begins like a formula gets an apostrophe before it, which
 /// spreadsheets do not show. A number is itself, whatever its sign.
 pub fn neutral(text: &str) -> Cow<'_, str> {
     if text.starts_with(FORMULA) && text.parse::<f64>().is_err() {
@@ -16,7 +16,7 @@ pub fn neutral(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// Returns the text that a cell stands for: the inverse of [`neutral`].
+/// Returns the text that a cell represents: the inverse of [`neutral`].
 pub fn original(cell: &str) -> &str {
     cell.strip_prefix('\'').filter(|text| text.starts_with(FORMULA)).unwrap_or(cell)
 }

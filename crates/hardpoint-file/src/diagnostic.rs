@@ -7,7 +7,7 @@ use std::sync::Arc;
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use serde::Serialize;
 
-/// How many diagnostics are shown at most; the others are counted.
+/// Maximum number of diagnostics are shown; the others are counted.
 const SHOWN: usize = 50;
 /// Lines longer than this are not shown, only named.
 const LONG_LINE: usize = 2000;
@@ -171,7 +171,7 @@ impl Source {
         Self { file: file.into(), text: all.into(), lines, files: files.into() }
     }
 
-    /// Where a file of all begins and ends; the first is the one that was asked for.
+    /// Where a file of all begins and ends; the first is the one that was requested.
     pub fn range(&self, file: usize) -> Range<usize> {
         self.files[file].1.clone()
     }
@@ -308,7 +308,7 @@ fn remedy(code: &str) -> Option<&'static str> {
         "HP0223" => "remove it, or give a length above zero, a lead other than zero",
         "HP0224" => "give every joint a number other than zero, and name two coordinates",
         "HP0225" => "give the rod a `length`, or move one of its hardpoints",
-        "HP0226" => "give three points or more (four, if closed) in one plane square to `axis`",
+        "HP0226" => "give three points or more (four, if closed) in one plane perpendicular to `axis`",
         _ if code.starts_with("HP02") => {
             "correct the underlined part; `docs/diagnostics.md` says more about this code"
         }

@@ -22,7 +22,7 @@ pub struct Mesh {
     pub file: String,
     /// What the vertices count from.
     pub frame: MeshFrame,
-    /// Its vertices, m.
+    /// Vertices, m.
     pub vertices: Vec<Vec3>,
     /// Three vertices each.
     pub triangles: Vec<[u32; 3]>,

@@ -96,7 +96,7 @@ impl ModelFile {
         self.origins.names.contains_key(name)
     }
 
-    /// Whether the new text says the changed design.
+    /// True if the new text says the changed design.
     fn read_back(&self, text: &str, values: &[f64]) -> Result<(), Diagnostics> {
         let saved = parsed(Folder::Given(&self.texts), text, self.file_name())?;
         let Some((what, name)) = difference(&self.model, values, &saved.model) else { return Ok(()) };
@@ -216,15 +216,15 @@ impl Edit<'_> {
         changed.flat_map(|(k, (v, value))| v.changes.iter().map(move |change| (k, change, *value)))
     }
 
-    /// Whether a mirror makes this from something else: its numbers are written there, and are right if both change alike.
+    /// True if a mirror makes this from something else: its numbers are written there, and are right if both change alike.
     fn is_image(&self, name: &str) -> bool {
         self.file.origins.names.contains_key(name)
     }
 
-    /// What is written in another file cannot be saved in this one: whether that was told.
+    /// What is written in another file cannot be saved in this one: whether that was reported.
     fn is_elsewhere(&mut self, variables: &str, name: &str) -> bool {
         let Some(file) = self.file.origins.included.get(name) else { return false };
-        let why = format!("`{name}` stands in the included file `{file}`");
+        let why = format!("`{name}` is in the included file `{file}`");
         self.refuse(
             variables,
             why,
@@ -626,7 +626,7 @@ fn value_at<'d>(document: &'d mut DocumentMut, way: &[Step<'_>]) -> Option<&'d m
     item.as_value_mut()
 }
 
-/// Whether a number is written with a point; none for what is no number.
+/// True if a number is written with a point; none for what is no number.
 fn number_style(value: &Value) -> Option<bool> {
     match value {
         Value::Integer(_) => Some(false),

@@ -1,4 +1,4 @@
-//! The format as data: which tables a model file has, which keys these have, and what stands there.
+//! The format as data: which tables a model file has, which keys these have, and what is there.
 //!
 //! Every table is declared once, beside the code that reads it. From the declarations come the keys that the reader knows, its
 //! defaults and examples, the JSON Schema (`schema.rs`), and the tables of `docs/file-format.md` (`format/docs.rs`).
@@ -22,7 +22,7 @@ pub(crate) struct Key {
     pub doc: &'static str,
 }
 
-/// Whether a key must be there.
+/// True if a key must be there.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Need {
     Required,
@@ -89,9 +89,9 @@ impl Table {
 /// A table that is one of several kinds.
 pub(crate) struct Kinds {
     pub name: &'static str,
-    /// What it is; `{keys}` stands for the first keys of its kinds.
+    /// What it is; `{keys}` represents the first keys of its kinds.
     pub doc: &'static str,
-    /// Whether a key `type` says which kind it is; else the first key of a kind leads it.
+    /// True if a key `type` says which kind it is; else the first key of a kind leads it.
     pub typed: bool,
     pub tables: fn() -> Vec<&'static Table>,
 }
@@ -144,7 +144,7 @@ pub(crate) enum Shape {
     Known(&'static str, fn() -> Vec<(&'static str, String)>),
     /// One of some whole numbers.
     OneOf(&'static [u32]),
-    /// A list of at least and at most so many.
+    /// A list of at least and at most that many.
     List(&'static Shape, [usize; 2]),
     /// A table with one entry for each name of such a thing, like "a joint".
     Entries(&'static str, &'static Shape),
@@ -155,7 +155,7 @@ pub(crate) enum Shape {
 }
 
 impl Shape {
-    /// So many of these.
+    /// That many of these.
     pub const fn exactly(count: usize, of: &'static Shape) -> Self {
         Self::List(of, [count; 2])
     }

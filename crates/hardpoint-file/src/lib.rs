@@ -74,9 +74,9 @@ use tree::{Folder, Reader};
 
 /// Files larger than this are not read, bytes.
 pub const LARGEST_FILE: u64 = 64 << 20;
-/// How many syntax errors are shown: after a few, they follow from the ones before.
+/// Number of syntax errors are shown: after a few, they follow from the ones before.
 const SYNTAX_ERRORS: usize = 5;
-/// So many files of a folder are named where the one asked for is not there.
+/// Number of files of a folder are named where the one requested is not there.
 const LISTED_FILES: usize = 12;
 
 /// A model, and the text that it was read from.
@@ -297,7 +297,7 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, (String, Option<String>, Option<Stri
     if meta.len() > LARGEST_FILE {
         return Err(too_large(format!("{} MiB", meta.len() >> 20)));
     }
-    // A pipe or device tells no length beforehand.
+    // A pipe or device indicates no length beforehand.
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(io)?;
     file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(io)?;
@@ -451,7 +451,7 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
     }
 }
 
-/// What is no TOML in the file that stands there.
+/// What is no TOML in the file that is there.
 fn syntax_errors(source: &Source, errors: &[toml::de::Error], file: &Range<usize>) -> Vec<Diagnostic> {
     let mut list: Vec<Diagnostic> = Vec::new();
     let mut last = (0, "");

@@ -17,7 +17,7 @@ pub struct MeasuredData {
     pub measurements: Measurements,
     /// The line of the file that each posture is on.
     pub lines: Vec<u64>,
-    /// Drivers that the file does not name: they stand as drawn.
+    /// Drivers that the file does not name: they stand in the design configuration.
     pub as_drawn: Vec<DriverId>,
 }
 
@@ -225,14 +225,14 @@ impl ModelFile {
         Ok(given)
     }
 
-    /// HP0248, HP0249: readings of what stands still, all with standard deviations or all alike.
+    /// HP0248, HP0249: readings of what is at rest, all with standard deviations or all alike.
     fn can_be_compared(&self, found: &MeasuredData, file: &str) -> Result<(), Refusal> {
         let outputs = outputs(&self.model);
         let readings = &found.measurements.readings;
         let moving = readings.iter().map(|r| &outputs[r.output]);
         if let Some(output) = moving.clone().find(|o| !self.model.is_known_at_rest(o.source)) {
             let message = format!(
-                "`{}` cannot be compared: it is nothing of a mechanism that stands still",
+                "`{}` cannot be compared: it is nothing of a mechanism that is at rest",
                 output.name
             );
             return Err(Refusal::new("HP0248", message, "remove its column, or let `#` head it")

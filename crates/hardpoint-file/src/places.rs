@@ -6,14 +6,14 @@ use hardpoint::draft::{DraftLocation, Section};
 
 use crate::tree::{Fields, Value};
 
-/// Where one entry of a list stands.
+/// Where one entry of a list is.
 #[derive(Clone, Debug)]
 pub(crate) struct EntryPlace {
     name: Range<usize>,
     keys: Vec<KeyPlace>,
 }
 
-/// Where the value of one key stands, and its elements if it is a list.
+/// Where the value of one key is, and its elements if it is a list.
 #[derive(Clone, Debug)]
 struct KeyPlace {
     key: &'static str,

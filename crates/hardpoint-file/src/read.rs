@@ -55,7 +55,7 @@ pub(crate) const MODEL: Table = table! {
     may "description": Shape::Text, "\"...\"";
     /// The units of all numbers in this file. Time is always in seconds.
     must "units": Shape::Table(&UNITS), "{ length = \"mm\", angle = \"deg\" }";
-    /// Named numbers, which expressions in quotes may use wherever a number stands. Each is a design variable, unless it says
+    /// Named numbers, which expressions in quotes may use wherever a number is. Each is a design variable, unless it says
     /// otherwise or is itself given by an expression.
     may "parameters": Shape::Entries("a parameter", &parameters::PARAMETER), "{ hub = { value = 60, unit = \"length\" } }";
     /// Named points of the design configuration: `name = [x, y, z]`, global, in the length unit. Expressions may use
@@ -85,7 +85,7 @@ pub(crate) const MODEL: Table = table! {
     or("\"dynamic\"") "loads": LOADS, "\"static\"";
     /// What has mass, for loads.
     may "masses": Shape::Entries("a mass", &Shape::Kinds(&elements::MASS)), "{}";
-    /// What pushes: springs, dampers, friction, given forces; and what gives way.
+    /// What pushes: springs, dampers, friction, given forces; and what deflects.
     may "forces": Shape::Entries("a force", &Shape::Kinds(&elements::FORCE)), "{}";
     /// Numbers to compute from the motion, with their sensitivities.
     may "measures": Shape::Entries("a measure", &results::MEASURE), "{}";
@@ -157,10 +157,10 @@ const BODY_SHAPE: Shape = Shape::Any(
 const BODY: Table = table! {
     /// A body; `{}` is enough.
     "Body":
-    /// Its reference frame in the design configuration. Default: origin at the mean of the body's joint places, axes parallel
+    /// Reference frame in the design configuration. Default: origin at the mean of the body's joint places, axes parallel
     /// to the global ones. Only results expressed in the frame depend on it.
     may "frame": Shape::Kinds(&FRAME), "{ position = [0, 0, 0] }";
-    /// Its shape, for the drawing, and for masses of `type = "mesh"`: a file of triangles in the model's folder or below it, STL, OBJ or glTF.
+    /// Shape, for the drawing, and for masses of `type = "mesh"`: a file of triangles in the model's folder or below it, STL, OBJ or glTF.
     may "mesh": mesh::MESH, "\"knuckle.stl\"";
 };
 const FRAME: Kinds = Kinds {
@@ -212,19 +212,19 @@ const JOINT: Table = table! {
     may "at": Shape::Any("Places", "", &[PLACE, Shape::exactly(2, &PLACE)]), "\"A\"";
     /// The axis, in the design configuration; where the joint type has one it must be given.
     may "axis": LINE, "\"z\"";
-    /// The second axis: square to the first, or the axis on body j, as the joint type has it.
+    /// The second axis: perpendicular to the first, or the axis on body j, as the joint type has it.
     may "axis2": LINE, "\"x\"";
     /// The global axis across which the joint is the mirror image of another one, as [`[mirror]`](#mirror) writes it: where `axis2` is left
     /// out, its default is the image of that joint's default.
     may "mirror": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
-    /// Length of a rod or leg, or distance of a point from its curve, in the length unit. Default: as drawn. Where it differs from
+    /// Length of a rod or leg, or distance of a point from its curve, in the length unit. Default: the value in the design configuration. Where it differs from
     /// that, the mechanism is assembled to it.
     may "length": LENGTH, "250";
     /// Advance of a screw per turn, in the length unit; negative for a left-hand thread. A `screw` needs it, others have none.
     may "lead": LENGTH, "5";
     /// The curve on body i that a point of body j follows, for the joint type `point_on_curve`.
     may "curve": Shape::Table(&CURVE), "{ points = [\"A\", \"B\", \"C\"] }";
-    /// Whether loops should be cut at this joint rather than elsewhere. It changes the effort, not the results.
+    /// True if loops should be cut at this joint rather than elsewhere. It changes the effort, not the results.
     or("false") "cut": Shape::Flag, "true";
     /// What it is drawn as, for a rod, a leg, or a joint that slides along its axis. It changes no result. Default: a leg is a cylinder.
     may "draw": DRAW, "\"coilover\"";
@@ -232,11 +232,11 @@ const JOINT: Table = table! {
 /// What something that has a length is drawn as.
 pub(crate) const DRAW: Shape = Shape::Any("Draw", "", &[Shape::Words(FORMS)]);
 const CURVE: Table = table! {
-    /// A smooth curve through points in the design configuration, in the plane square to the joint's axis.
+    /// A smooth curve through points in the design configuration, in the plane perpendicular to the joint's axis.
     "Curve":
-    /// Its points in order: hardpoints' names or coordinates.
+    /// Points in order: hardpoints' names or coordinates.
     must "points": Shape::list(&PLACE), "[\"A\", \"B\", \"C\"]";
-    /// Whether it returns to its first point, as the curve of a cam does; that point is not repeated.
+    /// True if it returns to its first point, as the curve of a cam does; that point is not repeated.
     or("false") "closed": Shape::Flag, "true";
 };
 const JOINT_TYPE: Shape =
@@ -856,7 +856,7 @@ impl Reader<'_> {
         self.given(fields, key, |r, f| r.place(f.value, &fields.subject(f.key)))
     }
 
-    /// The next entry of a list of the draft is read: where it stands, and what of it could not be read.
+    /// The next entry of a list of the draft is read: where it is, and what of it could not be read.
     fn push(&mut self, raw: &mut Raw, section: Section, place: EntryPlace) {
         let index = raw.places.list(section).len();
         self.unread.drain(..).for_each(|key| raw.draft.unread.note(section, index, key));

@@ -162,7 +162,7 @@ fn one_of(words: impl Iterator<Item = (&'static str, String)>) -> Value {
 /// JSON with what a person looks for first in front.
 struct Ordered<'a> {
     value: &'a Value,
-    /// Whether its keys are names that the schema gives, rather than words of JSON Schema.
+    /// True if its keys are names that the schema gives, rather than words of JSON Schema.
     names: bool,
 }
 

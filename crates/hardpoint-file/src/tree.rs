@@ -23,7 +23,7 @@ pub(crate) type Value<'a> = Spanned<DeValue<'a>>;
 
 /// Names longer than this are surely not meant as names.
 const LONGEST_NAME: usize = 100;
-/// What was meant is guessed of so many problems, and among so many names.
+/// What was meant is guessed of that many problems, and among that many names.
 const GUESSED_PROBLEMS: usize = 50;
 const GUESSED_NAMES: usize = 5000;
 /// The most entries that a table or list may have. It bounds the time that any text can take.
@@ -33,7 +33,7 @@ pub(crate) const MOST_ENTRIES: usize = 200_000;
 #[derive(Clone, Copy)]
 pub(crate) struct Field<'a> {
     pub key: &'static str,
-    /// Where the key stands.
+    /// Where the key is.
     pub at: (usize, usize),
     pub value: &'a Value<'a>,
 }
@@ -42,11 +42,11 @@ pub(crate) struct Field<'a> {
 pub(crate) struct Fields<'a> {
     /// What the table is, as messages say it: "joint `J1`".
     pub what: String,
-    /// Where its name stands.
+    /// Where its name is.
     pub at: Range<usize>,
     keys: Vec<&'static Key>,
     list: Vec<Field<'a>>,
-    /// Whether there is something else in place of the table, so that nothing more is to be said of its keys.
+    /// True if there is something else in place of the table, so that nothing more is to be said of its keys.
     pub lost: bool,
 }
 
@@ -144,7 +144,7 @@ pub(crate) struct Reader<'s> {
     pub nominal: Nominal,
     /// What is said of the shapes of bodies, by their names.
     pub meshes: BTreeMap<String, BodyMesh>,
-    /// How many bytes of included files it has been made of.
+    /// Number of bytes of included files it has been made of.
     pub included: u64,
     /// What was made from something else, by name.
     pub origins: Origins,
@@ -422,7 +422,7 @@ impl Reader<'_> {
         (name.is_some() || fields.get(key).is_none()).then_some(name)
     }
 
-    /// The names in a list of so many.
+    /// The names in a list of that many.
     pub fn names_of<const N: usize>(&mut self, fields: &Fields<'_>, key: &str) -> Option<[String; N]> {
         let (subject, expected) = (fields.subject(key), fields.key(key).shape.noun());
         self.given(fields, key, |r, f| match f.value.get_ref().as_array() {
@@ -437,7 +437,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Exactly so many numbers, in SI as far as they are declared to be lengths or angles.
+    /// Exactly that many numbers, in SI as far as they are declared to be lengths or angles.
     pub fn list_of<const N: usize>(
         &mut self,
         fields: &Fields<'_>,
@@ -557,7 +557,7 @@ impl Reader<'_> {
                 let message = format!("{} cannot follow parameter `{name}`", subject.name);
                 let d = self.report("HP0230", at, message);
                 d.notes.push(format!(
-                    "{what} changes `{name}`, and what stands here is the same in every design"
+                    "{what} changes `{name}`, and what is here is the same in every design"
                 ));
                 d.help =
                     Some("write `design = false` for the parameter that changes, or a number here".into());
@@ -565,12 +565,12 @@ impl Reader<'_> {
             ConstantError::NotFinite => {
                 self.senseless(at, format!("{} is not a finite number", subject.name));
             }
-            // What is wrong with it is reported where it stands.
+            // What is wrong with it is reported where it is.
             ConstantError::Faulty => {}
         }
     }
 
-    /// Where a part of a text stands in the file; the whole text where escapes make that unclear.
+    /// Where a part of a text is in the file; the whole text where escapes make that unclear.
     pub fn inside(&self, value: &Value<'_>, text: &str, part: Range<usize>) -> Range<usize> {
         let whole = value.span();
         let written = self.source.text.get(whole.clone()).unwrap_or_default();
@@ -731,7 +731,7 @@ impl Reader<'_> {
     }
 }
 
-/// Whether a text is a mere number, or one with a unit, as in `100 mm`: a slip, and of an angle not in radians.
+/// True if a text is a mere number, or one with a unit, as in `100 mm`: a slip, and of an angle not in radians.
 fn is_number_with_unit(text: &str) -> bool {
     let text = text.trim();
     if text.parse::<f64>().is_ok() {
@@ -755,7 +755,7 @@ pub(crate) fn axis_named(word: &str) -> Option<Vec3> {
     Some(Vec3::AXES[k] * sign)
 }
 
-/// The remedy for a key of the model that stands below a `[table]` and so became a part of that.
+/// The remedy for a key of the model that is below a `[table]` and so became a part of that.
 pub(crate) fn above_tables(name: &str) -> Option<String> {
     ["name", "description", "units"]
         .contains(&name)

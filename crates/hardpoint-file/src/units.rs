@@ -44,7 +44,7 @@ impl LengthUnit {
         }
     }
 
-    /// How many of it make a metre.
+    /// Number of it make a metre.
     pub const fn per_metre(self) -> f64 {
         match self {
             Self::Millimetre => 1000.0,
@@ -54,7 +54,7 @@ impl LengthUnit {
         }
     }
 
-    /// A length of so many units, in m.
+    /// A length of that many units, in m.
     pub fn metres(self, length: f64) -> f64 {
         // Multiplying by 1e-3 would round twice: 345.44 mm must be the double nearest to 0.34544 m.
         match self {
@@ -93,7 +93,7 @@ impl AngleUnit {
         }
     }
 
-    /// How many of it make a radian.
+    /// Number of it make a radian.
     pub const fn per_radian(self) -> f64 {
         match self {
             Self::Degree => 180.0 / std::f64::consts::PI,
@@ -101,7 +101,7 @@ impl AngleUnit {
         }
     }
 
-    /// An angle of so many units, in rad.
+    /// An angle of that many units, in rad.
     pub fn radians(self, angle: f64) -> f64 {
         match self {
             Self::Degree => angle.to_radians(),
@@ -147,14 +147,14 @@ impl Units {
         }
     }
 
-    /// How many of the user's units make one SI unit.
+    /// Number of the user's units make one SI unit.
     pub fn per_si(self, of: impl Into<Dimension>) -> f64 {
         let of = of.into();
         // Moments, energies and powers are in N m, J and W.
         power(self.length.per_metre(), of.length_in_units()) * power(self.angle.per_radian(), of.angle)
     }
 
-    /// How many of the user's units of such a number of a mass or force make one SI unit: what loads are made of is in kg, N and N m,
+    /// Number of the user's units of such a number of a mass or force make one SI unit: what loads are made of is in kg, N and N m,
     /// and per the user's unit of length or angle.
     pub fn per_si_of(self, unit: ElementUnit) -> f64 {
         let (length, angle) = (self.length.per_metre(), self.angle.per_radian());

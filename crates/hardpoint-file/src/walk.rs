@@ -29,7 +29,7 @@ pub(crate) enum Leaf<'v, 'a> {
     Quaternion(&'v mut DeArray<'a>),
 }
 
-/// Who is told of all leaves, each with the key that it stands under.
+/// Who is informed of all leaves, each with the key that it is under.
 pub(crate) type Visit<'f, 'a> = dyn FnMut(&str, Leaf<'_, 'a>) + 'f;
 
 /// Visits all leaves of a value that has this shape, as far as it has.
@@ -69,7 +69,7 @@ pub(crate) fn walk<'a>(key: &str, shape: Shape, value: &mut Value<'a>, visit: &m
             let exact = |shape: &&Shape| matches!(shape, Shape::List(_, [least, most]) if least == most);
             let of = all.iter().filter(fits).find(exact).or_else(|| all.iter().find(fits));
             let Some(Shape::List(of, [least, most])) = of else { return };
-            // What stands in them is visited before they are as a whole.
+            // What is in them is visited before they are as a whole.
             list.iter_mut().for_each(|value| walk(key, **of, value, visit));
             match (of, least == most, list.len()) {
                 (Shape::Number(Quantity::Angle), true, 3) => visit(key, Leaf::Angles(list)),
@@ -139,7 +139,7 @@ fn keys_of(all: &[Shape], table: &DeTable<'_>) -> Vec<&'static Key> {
     all.iter().flat_map(keys).collect()
 }
 
-/// Says the names in an expression in another way: all that stands for a number, with its coordinate behind a point, like `A.x`.
+/// Says the names in an expression in another way: all that represents a number, with its coordinate behind a point, like `A.x`.
 pub(crate) fn in_expression<'a>(text: &mut Cow<'a, str>, say: impl Fn(&str) -> Option<String>) {
     let (mut out, mut changed, mut rest) = (String::with_capacity(text.len()), false, &**text);
     let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '.';

@@ -316,7 +316,7 @@ impl Reader<'_> {
             let id = s.reference(key);
             match id.and_then(|id| self.markers.get(id)) {
                 Some(marker) => found.push(*marker),
-                // That is told already.
+                // That is reported already.
                 None if id.is_some_and(|id| self.faulty.contains(id)) => {}
                 None => {
                     let what = id.map_or(format!("has no `{key}`"), |id| {
@@ -486,7 +486,7 @@ impl Reader<'_> {
                 "MOTION",
                 &s.label,
                 Some(s.at),
-                format!("{why}; what it drives is held as drawn"),
+                format!("{why}; what it drives is fixed in the design configuration"),
             );
         };
         let order = if s.flag("VELOCITY") { 1 } else { 2 * usize::from(s.flag("ACCELERATION")) };
@@ -614,7 +614,7 @@ impl Reader<'_> {
         let text =
             law::translate_with(function.trim().trim_matches(['\'', '"']), Language::Adams, self.time)?;
         let mut first = |key: &str| s.numbers(key, self.notes).and_then(|list| list.first().copied());
-        // Where it starts: as it is said, or else as drawn.
+        // Where it starts: as it is said, or else in the design configuration.
         let [start, rate] = [first("ICDISP"), first("ICVEL")];
         let per_second = self.per_second().powi(order as i32);
         let begin = start.map_or(0.0, |x| x * scale - drawn);
@@ -629,7 +629,7 @@ impl Reader<'_> {
         Ok(if begin == 0.0 { Law::Text(text) } else { Law::Text(counted(&text, -begin, turns)) })
     }
 
-    /// How many of the source's units of time a second has.
+    /// Number of the source's units of time a second has.
     fn per_second(&self) -> f64 {
         law::translate_with("time", Language::Adams, self.time)
             .ok()
@@ -883,7 +883,7 @@ impl Reader<'_> {
             let zero = value.split([',', SEAM]).all(|w| number(w.trim()) == Some(0.0));
             if ["ICTRAN", "ICROT", "IC"].contains(&key) {
                 if !zero {
-                    let why = "where the joint starts is left out: the model begins as drawn";
+                    let why = "where the joint starts is left out: the model begins in the design configuration";
                     self.notes.refused(key, &s.label, Some(s.at), why);
                 }
                 continue;

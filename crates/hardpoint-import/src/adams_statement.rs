@@ -5,7 +5,7 @@ use hardpoint::space::Vec3;
 use crate::markers::Called;
 use crate::report::{ImportLog, SourceSpan};
 
-/// Words may be cut short to so many letters.
+/// Words may be cut short to that many letters.
 pub const SHORTEST: usize = 3;
 /// The statements whose names may be cut short, first those that are often so.
 const NAMES: [&str; 10] =
@@ -21,38 +21,38 @@ pub struct Statement {
     pub name: String,
     /// The number behind the stroke.
     pub id: String,
-    /// Where it stands.
+    /// Where it is.
     pub at: SourceSpan,
     /// What the modeller calls it, from the comment before it.
     pub label: String,
-    /// In capital letters, with what stands behind the equals sign; flags with nothing.
+    /// In capital letters, with what is behind the equals sign; flags with nothing.
     pub keys: Vec<(String, String)>,
 }
 
 impl Statement {
-    /// What stands behind a key, which may be cut short as far as it is clear.
+    /// What is behind a key, which may be cut short as far as it is clear.
     pub fn text(&self, key: &str) -> Option<&str> {
         let short = |k: &str| k.len() >= SHORTEST && key.starts_with(k);
         let found = self.keys.iter().find(|(k, _)| k == key);
         found.or_else(|| self.keys.iter().find(|(k, v)| !v.is_empty() && short(k))).map(|(_, v)| v.as_str())
     }
 
-    /// Whether it has a key.
+    /// True if it has a key.
     pub fn has(&self, key: &str) -> bool {
         self.text(key).is_some()
     }
 
-    /// Whether it has a flag, which may be cut short.
+    /// True if it has a flag, which may be cut short.
     pub fn flag(&self, flag: &str) -> bool {
         self.keys.iter().any(|(k, v)| v.is_empty() && k.len() >= SHORTEST && flag.starts_with(k.as_str()))
     }
 
-    /// What it is called, and where it stands.
+    /// What it is called, and where it is.
     pub fn called(&self) -> Called<'_> {
         Called { kind: &self.name, name: &self.label, at: Some(self.at) }
     }
 
-    /// Numbers behind a key; angles in rad. What is wrong with them is told.
+    /// Numbers behind a key; angles in rad. What is wrong with them is reported.
     pub fn numbers(&self, key: &str, notes: &mut ImportLog) -> Option<Vec<f64>> {
         let text = self.text(key)?;
         let words =
@@ -184,7 +184,7 @@ fn statement(at: SourceSpan, code: &str, label: &str) -> Option<Statement> {
 const FLAGS: [&str; 5] = ["ROTATIONAL", "TRANSLATIONAL", "DISPLACEMENT", "VELOCITY", "ACCELERATION"];
 
 /// The parts between commas outside of parentheses; a backslash parts too, and a seam before a key or a flag: the comma at the beginning
-/// of a line only continues it where it stands in the middle of a list or a function.
+/// of a line only continues it where it is in the middle of a list or a function.
 fn parts_of(text: &str) -> Vec<String> {
     let (mut out, mut depth) = (vec![String::new()], 0_i32);
     let chars: Vec<char> = text.chars().collect();

@@ -28,7 +28,7 @@ pub const FORMAT: Format = Format {
 
 /// Lines are nested so deep at most.
 const DEEPEST: usize = 64;
-/// So many output times at most; more are asked for in no file.
+/// Maximum number of output times; more are requested in no file.
 const MOST_TIMES: f64 = 100_000.0;
 
 /// Parts that are stored nearer than this to where they are drawn, in the file's unit and rad, are not moved.
@@ -219,7 +219,7 @@ fn times(assembly: &Node<'_>, notes: &mut ImportLog) -> Option<Times> {
             "SimulationParameters",
             "",
             Some(s.at),
-            "`hout` does not divide the time into so many intervals: one second in a hundred is taken",
+            "`hout` does not divide the time into that many intervals: one second in a hundred is taken",
         );
         return None;
     }
@@ -236,7 +236,7 @@ struct Reader<'n> {
     parts: BTreeMap<String, usize>,
     /// Where the stored motion has the parts when it begins.
     closed: BTreeMap<String, Pose>,
-    /// How many are drawn elsewhere.
+    /// Number of are drawn elsewhere.
     moved: usize,
 }
 
@@ -453,7 +453,7 @@ impl Reader<'_> {
                 match said(self, "theIzJz").filter(|a| (a.cos() - drawn.cos()).abs() > 1e-6) {
                     Some(said) => {
                         let why =
-                            format!("drawn at {drawn} rad where {said} rad are said: it is taken as drawn");
+                            format!("drawn at {drawn} rad where {said} rad are said: it is taken in the design configuration");
                         self.notes.approximated(joint.text, joint.name(), Some(joint.at), why);
                         Some(self.m.joint(angle))
                     }
@@ -461,7 +461,7 @@ impl Reader<'_> {
                 }
             }
             "angle" => join(&mut self.m, self.notes, called, "parallel", [i, j]),
-            // The origin of marker J stays on a plane square to z of marker I, `offset` from it.
+            // The origin of marker J stays on a plane perpendicular to z of marker I, `offset` from it.
             "planar" | "inplane" | "line_in_plane" => {
                 let offset = said(self, "offset").unwrap_or(0.0);
                 let i = Marker { body: i.body, pose: Pose { r: i.pose.r + i.z() * offset, ..i.pose } };
@@ -561,7 +561,7 @@ impl Reader<'_> {
                     motion.text,
                     motion.name(),
                     Some(motion.at),
-                    format!("{why}; what it drives is held as drawn"),
+                    format!("{why}; what it drives is fixed in the design configuration"),
                 );
             }
         }

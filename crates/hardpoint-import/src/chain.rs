@@ -1,4 +1,4 @@
-//! A motion that prescribes how one frame stands to another, all six coordinates of it: slides and hinges one behind the other, each
+//! A motion that prescribes how one frame is to another, all six coordinates of it: slides and hinges one behind the other, each
 //! driven, with bodies between them.
 
 use hardpoint::law::Law as Function;

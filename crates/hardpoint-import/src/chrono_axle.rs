@@ -177,9 +177,9 @@ impl Axle<'_> {
         );
         let drives = Drives::Coordinate(Coordinate { joint: slide, name: "displacement" });
         let steering =
-            self.m.driver("steering", "no law in the source: held as drawn".into(), drives, Law::Held);
+            self.m.driver("steering", "no law in the source: fixed in the design configuration".into(), drives, Law::Held);
         self.m.steering = Some(steering);
-        let why = "the steering is a file of its own: its link slides along the drag link, and a driver holds it as drawn";
+        let why = "the steering is a file of its own: its link slides along the drag link, and a driver holds it in the design configuration";
         self.notes.approximated("motion", "steering_slide", self.at(part), why);
         self.rod("drag_link", [rack, crank], [from, to], ["steering", "crank"], self.at(part));
         Some(())
@@ -198,7 +198,7 @@ impl Axle<'_> {
         let z = Vec3::from([0.0, 0.0, 1.0]);
         let axis = if is_solid { (drag - pivot).cross(tie - pivot) } else { z };
         let Some(axis) = axis.unit() else {
-            let message = "the points of the bell crank lie on one line: its axis is square to them";
+            let message = "the points of the bell crank lie on one line: its axis is perpendicular to them";
             self.notes.problem_with("HP0804", at, message, "correct one of them");
             return None;
         };

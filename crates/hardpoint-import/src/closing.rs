@@ -15,9 +15,9 @@ const TYPES: [&str; 6] = ["spherical", "fixed", "revolute", "cylindrical", "tran
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// Frames nearer than this part of the mechanism's size are at one place.
 const SAME_PLACE: f64 = 1e-6;
-/// Number of pairs of frames that are named at most.
+/// Maximum number of pairs of frames that are named.
 const MOST_NAMED: usize = 8;
-/// Number of frames that are searched for pairs at most.
+/// Maximum number of frames that are searched for pairs.
 const MOST_FRAMES: usize = 1000;
 /// Words in the names of frames that are made for loops.
 const OF_LOOPS: [&str; 6] = ["loop", "clos", "cut", "weld", "constraint", "mate"];

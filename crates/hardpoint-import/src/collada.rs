@@ -10,7 +10,7 @@ use crate::xml::{self, child, children, named};
 
 /// Nodes of a scene are nested so deep at most.
 const DEEPEST: usize = 60;
-/// A mesh has so many triangles at most.
+/// A mesh has at most that many triangles.
 const MOST: usize = 1_000_000;
 
 type Triangle = [Vec3; 3];

@@ -363,18 +363,18 @@ pub enum Mount {
 /// A rod of constant length from the body to the upright.
 #[derive(Clone, Debug)]
 pub struct Link {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its ends, inboard first.
+    /// Ends, inboard first.
     pub ends: [Vec3; 2],
     /// Both pins of the cross at its inner end, of the body's and of its own, where the source has one.
     pub pins: Option<[Vec3; 2]>,
-    /// Where it stands.
+    /// Where it is.
     pub at: Option<SourceSpan>,
 }
 
 impl Link {
-    /// The pins of its cross, square to each other: the source's as nearly as can be, or else ones across it.
+    /// The pins of its cross, perpendicular to each other: the source's as nearly as can be, or else ones across it.
     fn cross(&self) -> [Vec3; 2] {
         let along = (self.ends[1] - self.ends[0]).unit().unwrap_or(X.into());
         let square = |a: Vec3, b: Vec3| Some([a.unit()?, from_z_and_x(a, b)?.cols[0]]);
@@ -389,7 +389,7 @@ impl Link {
 pub struct Corner {
     /// What is put behind the names of its bodies and joints.
     pub suffix: String,
-    /// Its hardpoints, by what they are.
+    /// Hardpoints, by what they are.
     pub points: BTreeMap<Role, Vec3>,
     /// Further links between body and upright.
     pub links: Vec<Link>,
@@ -399,7 +399,7 @@ pub struct Corner {
     pub spring_on: Option<Mount>,
     /// What the damper is on, where that is something else.
     pub damper_on: Option<Mount>,
-    /// Whether a rack moves the tie rod.
+    /// True if a rack moves the tie rod.
     pub rack: bool,
     /// From the wheel's centre to the ground.
     pub radius: Option<f64>,
@@ -655,13 +655,13 @@ impl Corner {
                 .along([0.0, 1.0, 0.0].into()),
         );
         let drives = Drives::Coordinate(Coordinate { joint: slide, name: "displacement" });
-        let steering = m.driver("steering", "no law in the source: held as drawn".into(), drives, Law::Held);
+        let steering = m.driver("steering", "no law in the source: fixed in the design configuration".into(), drives, Law::Held);
         m.steering = Some(steering);
         notes.approximated(
             "motion",
             "rack_slide",
             self.at,
-            "nothing drives it in the source: a driver holds it as drawn",
+            "nothing drives it in the source: a driver holds it in the design configuration",
         );
         *rack = Some(body);
         body

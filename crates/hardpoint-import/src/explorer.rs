@@ -205,7 +205,7 @@ fn vehicle(root: &Tree, m: &mut Mechanism, notes: &mut ImportLog) {
     let road = m.wheels.first().map_or(0.0, |wheel| {
         let down = wheel.spin_axis.unit().map_or(1.0, |n| (1.0 - n.z * n.z).max(0.0).sqrt());
         let road = wheel.centre.z - wheel.radius * down;
-        // Files have few digits: a wheel that stands on z = 0 to these does.
+        // Files have few digits: a wheel that is on z = 0 to these does.
         if road.abs() <= FEW_DIGITS * wheel.radius { 0.0 } else { road }
     });
     m.vehicle = Vehicle {
@@ -327,7 +327,7 @@ fn collect(
                 }
             }
             _ => {
-                let why = "what is at it does not follow from its name: it stands in the list alone";
+                let why = "what is at it does not follow from its name: it is in the list alone";
                 notes.approximated("hardpoint", &name, Some(*at), why);
             }
         }

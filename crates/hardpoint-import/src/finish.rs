@@ -25,9 +25,9 @@ const STROKE: f64 = 0.05;
 const OFF: f64 = 1e-6;
 /// Output times at which such a swing is tried.
 const TRIED: usize = 20;
-/// So many output times show which design variables are followed.
+/// That many output times show which design variables are followed.
 const MOST_TIMES: usize = 200;
-/// Mechanisms with more motions left open than this are told as they are.
+/// Mechanisms with more motions left open than this are reported as they are.
 const MOST_HELD: usize = 400;
 
 /// Holds what nothing holds, and drives what nothing drives. What remains wrong is handed back: the model is written all the same, for
@@ -66,7 +66,7 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
         tried.insert(held.clone());
         let before = m.drivers.len();
         for (name, drives) in held.drivers(m) {
-            let why = "nothing drives it in the source: held as drawn".into();
+            let why = "nothing drives it in the source: fixed in the design configuration".into();
             m.driver(&format!("{name}_held"), why, drives, Law::Held);
         }
         match freedom(m, notes) {
@@ -77,7 +77,7 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
             {
                 left = now;
                 for driver in m.drivers[before..].iter().filter(|_| !only_one) {
-                    let why = "nothing drives it in the source: a driver holds it as drawn";
+                    let why = "nothing drives it in the source: a driver holds it in the design configuration";
                     notes.approximated("motion", driver.name.trim_end_matches("_held"), None, why);
                 }
             }
@@ -105,10 +105,10 @@ pub fn remark(m: &Mechanism, notes: &mut ImportLog, closes: bool) {
         if is_tree { format!("; it is a tree, in which no loop is closed{how}") } else { String::new() };
     let motions =
         if held == 1 { "its one motion is".to_owned() } else { format!("all of its {held} motions are") };
-    notes.remark(format!("nothing in the source drives it: {motions} held as drawn{loops}"));
+    notes.remark(format!("nothing in the source drives it: {motions} fixed in the design configuration{loops}"));
 }
 
-/// Takes as closed what is drawn open where it does not close, since what nothing drives is held as drawn.
+/// Takes as closed what is drawn open where it does not close, since what nothing drives is fixed in the design configuration.
 fn as_drawn(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
     let rods = ["distance", "leg", "revolute_spherical"];
     let is_open = |j: &Joint| j.length.is_some() || (j.at.len() > 1 && !rods.contains(&j.kind));
@@ -139,14 +139,14 @@ fn as_drawn(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
     if assembles(&closed) {
         *m = closed;
         let why = format!(
-            "what is held as drawn keeps them from closing: they are taken as they are drawn: {}",
+            "what is fixed in the design configuration keeps them from closing: they are taken as they are drawn: {}",
             names.join(", ")
         );
         notes.approximated("joints", "", None, why);
     }
 }
 
-/// Whether it assembles at its first time.
+/// True if it assembles at its first time.
 fn assembles(m: &Mechanism) -> bool {
     parsed(m).is_ok_and(|mut file| {
         file.model.times.truncate(1);
@@ -281,7 +281,7 @@ struct Left {
     joints: Vec<usize>,
     /// The bodies that move in them.
     bodies: Vec<usize>,
-    /// Why that may be so as drawn only: a driver tells, since what moves by its special proportions looks alike.
+    /// Why that may be so in the design configuration only: a driver indicates, since what moves by its special proportions looks alike.
     singular: Option<Box<Diagnostic>>,
 }
 
@@ -467,12 +467,12 @@ fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
         }
     }
     let d = &mut m.drivers[driver];
-    (d.law, d.note) = (Law::Held, "nothing drives it in the source: held as drawn".into());
+    (d.law, d.note) = (Law::Held, "nothing drives it in the source: fixed in the design configuration".into());
     notes.approximated(
         "motion",
         &name,
         None,
-        "nothing drives it in the source, and it does not swing freely: a driver holds it as drawn",
+        "nothing drives it in the source, and it does not swing freely: a driver holds it in the design configuration",
     );
 }
 

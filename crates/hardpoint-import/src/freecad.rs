@@ -138,7 +138,7 @@ impl<'a, 'i> Object<'a, 'i> {
         listed.or(TYPES.get(k).copied()).map(str::to_owned)
     }
 
-    /// Where it stands in what it is in.
+    /// Where it is in what it is in.
     fn pose(&self, notes: &mut ImportLog) -> Pose {
         let of_link = self.placement("LinkPlacement", notes);
         self.placement("Placement", notes).or(of_link).unwrap_or_else(home)
@@ -181,18 +181,18 @@ impl<'a, 'i> Object<'a, 'i> {
         self.link("LinkedObject").map(|(name, ..)| name)
     }
 
-    /// Whether it is a link to an object of another document.
+    /// True if it is a link to an object of another document.
     fn is_elsewhere(&self) -> bool {
         self.link("LinkedObject").is_some_and(|(_, _, file)| !file.is_empty())
     }
 
-    /// Whether it has a shape of its own, in whose frame what is in it is drawn.
+    /// True if it has a shape of its own, in whose frame what is in it is drawn.
     fn is_shape(&self) -> bool {
         self.kind.starts_with("PartDesign::Body")
             || (self.kind.starts_with("Part::") && !self.kind.starts_with("Part::Datum"))
     }
 
-    /// Whether it is in a body with a frame of its own: a sketch, a datum.
+    /// True if it is in a body with a frame of its own: a sketch, a datum.
     fn is_drawn_in_its_frame(&self) -> bool {
         const DATUMS: [&str; 4] = ["Plane", "Line", "Point", "CoordinateSystem"];
         let datum = self.kind.strip_prefix("PartDesign::").is_some_and(|k| DATUMS.contains(&k));
@@ -326,7 +326,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         for motion in motions {
             let (label, at) = (self.objects[motion].label(), self.objects[motion].at());
             if let Err(why) = self.motion(motion) {
-                self.notes.refused("motion", label, at, format!("{why}; what it drives is held as drawn"));
+                self.notes.refused("motion", label, at, format!("{why}; what it drives is fixed in the design configuration"));
             }
         }
         self.times();
@@ -510,8 +510,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         ["Face", "Edge", "Vertex"].into_iter().find(|e| last.starts_with(e)).unwrap_or_default()
     }
 
-    /// A distance between two surfaces, lines or points. What kind of surface a face is stands in its shape alone; how its frame lies as
-    /// drawn, where the distance holds, mostly tells.
+    /// A distance between two surfaces, lines or points. What kind of surface a face is is in its shape alone; how its frame lies as
+    /// drawn, where the distance holds, mostly indicates.
     fn distance(&mut self, called: Called<'_>, elements: [&str; 2], ends: [Marker; 2], said: f64) {
         // The face, or else the edge, comes first.
         let rank = |e: &str| ["Face", "Edge", "Vertex"].iter().position(|x| *x == e).unwrap_or(3);
@@ -540,7 +540,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             self.notes.refused(called.kind, called.name, called.at, why);
             return;
         }
-        // What the joints tell of themselves is told of the distance instead.
+        // What the joints tell of themselves is informed of the distance instead.
         let told = self.notes.report.entries.len();
         let name = match how {
             "spherical" => {

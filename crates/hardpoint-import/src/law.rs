@@ -5,7 +5,7 @@
 pub enum Language {
     /// Adams/Solver: `30D` is an angle, `**` a power, names in any case.
     Adams,
-    /// OndselSolver: `2.0d` is a number, `<n>` a new line, what stands in quotes a comment.
+    /// OndselSolver: `2.0d` is a number, `<n>` a new line, what is in quotes a comment.
     Ondsel,
     /// FreeCAD's formulas of a simulation: as those of Ondsel.
     FreeCad,
@@ -169,7 +169,7 @@ impl Parser {
             return Ok(());
         }
         Err(match self.tokens.get(self.at) {
-            Some(found) => format!("`{sign}` is expected where `{}` stands", found.shown()),
+            Some(found) => format!("`{sign}` is expected where `{}` is", found.shown()),
             None => format!("`{sign}` is missing at the end"),
         })
     }
@@ -243,7 +243,7 @@ impl Parser {
                 self.take(")")?;
                 Ok(format!("({inner})"))
             }
-            Token::Sign(s) => Err(format!("`{s}` stands where a value is expected")),
+            Token::Sign(s) => Err(format!("`{s}` is where a value is expected")),
             Token::Name(name) if self.sign() == Some("(") => {
                 self.at += 1;
                 let mut arguments = Vec::new();

@@ -1,6 +1,6 @@
 //! Mechanisms of other programs as model files of Hardpoint.
 //!
-//! Each format is one file that makes a [`Mechanism`] of a source and tells what became of each element of it ([`Report`]). One writer
+//! Each format is one file that makes a [`Mechanism`] of a source and indicates what became of each element of it ([`Report`]). One writer
 //! makes the model file; what the source leaves undriven is held, or driven where it plainly is the input, and the report says so.
 //!
 //! ```
@@ -14,7 +14,7 @@
 //! </robot>"#;
 //! let imported = hardpoint_import::import(urdf.as_bytes(), "door.urdf", &|_| None).unwrap();
 //! let file = hardpoint_file::parse(&imported.text, "door.toml").unwrap();
-//! assert_eq!(file.model.joints.len(), 2); // the hinge, and the frame that stands on the ground
+//! assert_eq!(file.model.joints.len(), 2); // the hinge, and the frame that is on the ground
 //! ```
 
 mod adams;
@@ -74,17 +74,17 @@ pub struct ImportedModel {
     pub files: Vec<(String, Vec<u8>)>,
     /// The motion that the source has stored.
     pub series: Option<Series>,
-    /// Why the model cannot be driven as it stands, if so. The text is there all the same, for somebody to mend it.
+    /// Why the model cannot be driven as it is, if so. The text is there all the same, for somebody to mend it.
     pub fault: Option<ImportErrors>,
 }
 
 /// A source under way through its importer.
 pub struct Input<'s> {
-    /// Its bytes.
+    /// Bytes.
     pub bytes: &'s [u8],
     /// The text of it.
     pub text: &'s str,
-    /// Its name without folder and ending.
+    /// Name without folder and ending.
     pub stem: &'s str,
     /// Other files that it names.
     pub resolve: Resolve<'s>,
@@ -97,17 +97,17 @@ pub struct Input<'s> {
 /// A format.
 #[derive(Clone, Copy)]
 pub struct Format {
-    /// The name by which it can be asked for.
+    /// The name by which it can be requested.
     pub name: &'static str,
     /// What it is.
     pub about: &'static str,
     /// How names of its files end.
     pub endings: &'static [&'static str],
-    /// Whether a text (the first part of it) looks like it.
+    /// True if a text (the first part of it) looks like it.
     looks: fn(&str) -> bool,
     /// Makes a mechanism of it; problems go to the notes.
     read: fn(&mut Input<'_>, &mut ImportLog) -> Option<Mechanism>,
-    /// Whether it is no text.
+    /// True if it is no text.
     binary: bool,
 }
 
@@ -319,7 +319,7 @@ fn read_as(
         if is_robot {
             finish::end_point(&mut m, &mut notes);
         }
-        // Robots say which frames meet: only what few digits leave open is closed where it stands.
+        // Robots say which frames meet: only what few digits leave open is closed where it is.
         let closed = if is_robot { FEW_DIGITS } else { f64::INFINITY };
         let fault = finish::finish(&mut m, &mut notes, closed);
         finish::remark(&m, &mut notes, is_robot);
@@ -382,8 +382,8 @@ impl Input<'_> {
         std::iter::once(local.to_owned()).chain(tails).find_map(|p| (self.resolve)(&p))
     }
 
-    /// Shows a mesh that the source names, or tells why not.
-    #[expect(clippy::too_many_arguments, reason = "what is shown, where, and what is told of it")]
+    /// Shows a mesh that the source names, or indicates why not.
+    #[expect(clippy::too_many_arguments, reason = "what is shown, where, and what is informed of it")]
     fn mesh(
         &mut self,
         body: usize,

@@ -17,12 +17,12 @@ pub const FORMAT: Format = Format {
     binary: false,
 };
 
-/// A point is told in so many lines: its name, five of words, and three of numbers.
+/// A point is reported in that many lines: its name, five of words, and three of numbers.
 const LINES_OF_A_POINT: usize = 9;
-/// A template has so many parts and points at most.
+/// A template has that many parts and points at most.
 const MOST: usize = 500;
 
-/// A line and where it stands.
+/// A line and where it is.
 #[derive(Clone, Copy)]
 struct Line<'t> {
     text: &'t str,
@@ -30,7 +30,7 @@ struct Line<'t> {
 }
 
 impl Line<'_> {
-    /// Its numbers, if it has nothing else.
+    /// Numbers, if it has nothing else.
     fn numbers(&self) -> Vec<f64> {
         let words = self.text.split(|c: char| c.is_whitespace() || c == ',').filter(|w| !w.is_empty());
         let list: Option<Vec<f64>> =

@@ -15,7 +15,7 @@ const APART: f64 = 1e-7;
 /// Axes nearer than this, in rad, are one: files have about six digits.
 const AWRY: f64 = 1e-5;
 
-/// A frame on a body, as drawn.
+/// A frame on a body, in the design configuration.
 #[derive(Clone, Copy, Debug)]
 pub struct Marker {
     /// The body.
@@ -25,27 +25,27 @@ pub struct Marker {
 }
 
 impl Marker {
-    /// Its z axis.
+    /// Z axis.
     pub fn z(&self) -> Vec3 {
         self.pose.rot.cols[2]
     }
 
-    /// Its x axis.
+    /// X axis.
     pub fn x(&self) -> Vec3 {
         self.pose.rot.cols[0]
     }
 
-    /// Its y axis.
+    /// Y axis.
     pub fn y(&self) -> Vec3 {
         self.pose.rot.cols[1]
     }
 }
 
-/// How the second marker stands to the first, as the coordinates of joints count.
+/// How the second marker is to the first, as the coordinates of joints count.
 pub struct Offset {
-    /// Its turn about the first's z, in rad.
+    /// Turn about the first's z, in rad.
     pub angle: f64,
-    /// Its way along the first's z.
+    /// Way along the first's z.
     pub displacement: f64,
 }
 
@@ -54,14 +54,14 @@ pub fn offset(i: &Marker, j: &Marker) -> Offset {
     Offset { angle: angle_about(i.z(), i.x(), j.x()), displacement: i.z().dot(j.pose.r - i.pose.r) }
 }
 
-/// What a joint is called and where it stands in the source.
+/// What a joint is called and where it is in the source.
 #[derive(Clone, Copy, Debug)]
 pub struct Called<'s> {
     /// What it is in the source.
     pub kind: &'s str,
-    /// Its name.
+    /// Name.
     pub name: &'s str,
-    /// Where it stands.
+    /// Where it is.
     pub at: Option<SourceSpan>,
 }
 
@@ -75,7 +75,7 @@ impl Called<'_> {
     }
 }
 
-/// Adds a joint of a type whose geometry follows from two markers, body i's and body j's; its number. What is drawn open is told.
+/// Adds a joint of a type whose geometry follows from two markers, body i's and body j's; its number. What is drawn open is reported.
 pub fn join(
     m: &mut Mechanism,
     notes: &mut ImportLog,
@@ -153,10 +153,10 @@ pub fn join(
     }
     if open && ["revolute", "spherical", "universal", "constant_velocity"].contains(&kind) {
         joint = joint.between(i.pose.r, j.pose.r);
-        let why = "its markers lie apart as drawn: the mechanism is assembled there before it moves";
+        let why = "its markers lie apart in the design configuration: the mechanism is assembled there before it moves";
         notes.approximated(called.kind, called.name, called.at, why);
     } else if open {
-        let why = "its markers do not meet as drawn: it is taken as closed where the bodies stand";
+        let why = "its markers do not meet in the design configuration: it is taken as closed where the bodies stand";
         notes.approximated(called.kind, called.name, called.at, why);
     } else if turn.is_some() {
         let why = "its markers' axes are turned against each other in the file: the mechanism is assembled there before it moves";
@@ -191,13 +191,13 @@ fn turn_between(kind: &str, [i, j]: [&Marker; 2]) -> Option<Mat3> {
 /// Numbers of a source that differ by less than this part of the mechanism's size from what is drawn say the same as that.
 const SAID: f64 = 1e-6;
 
-/// Whether a length that the source says is the drawn one.
+/// True if a length that the source says is the drawn one.
 pub fn is_drawn(m: &Mechanism, said: f64, drawn: f64) -> bool {
     (said - drawn).abs() <= SAID * m.size().max(said.abs())
 }
 
 /// Two joints with a link between them, which has a body of its own: the parts keep a distance from axis to axis, or from an axis to a
-/// point. The first joint, of body i, and the link's, are about z of the first marker; of the second the type is told.
+/// point. The first joint, of body i, and the link's, are about z of the first marker; of the second the type is reported.
 pub fn linked(
     m: &mut Mechanism,
     notes: &mut ImportLog,
@@ -315,9 +315,9 @@ pub fn screw(
 /// A joint that was made of two markers.
 #[derive(Clone, Copy, Debug)]
 pub struct Joined {
-    /// Its number.
+    /// Number.
     pub number: usize,
-    /// Its type.
+    /// Type.
     pub kind: &'static str,
     /// The markers of body i and of body j.
     pub markers: [Marker; 2],

@@ -1,4 +1,4 @@
-//! What every format says, in one form: bodies, joints, couplers, drivers as drawn. Importers fill it, one writer makes a model file of it.
+//! What every format says, in one form: bodies, joints, couplers, drivers in the design configuration. Importers fill it, one writer makes a model file of it.
 
 use std::collections::{HashMap, HashSet};
 
@@ -11,7 +11,7 @@ pub const GROUND: usize = 0;
 /// A mechanism between two formats. Coordinates are global, in the units that it names.
 #[derive(Clone, Debug)]
 pub struct Mechanism {
-    /// Its name, for headings.
+    /// Name, for headings.
     pub name: String,
     /// Unit of every length, as model files name it.
     pub length: &'static str,
@@ -157,20 +157,20 @@ pub struct Times {
     pub start: f64,
     /// The last.
     pub end: f64,
-    /// How many intervals.
+    /// Number of intervals.
     pub steps: usize,
 }
 
 /// A body.
 #[derive(Clone, Debug)]
 pub struct Body {
-    /// Its name in the model file.
+    /// Name in the model file.
     pub name: String,
     /// What the source calls it.
     pub note: String,
-    /// Its reference frame as drawn.
+    /// Reference frame in the design configuration.
     pub pose: Option<Pose>,
-    /// Its shape.
+    /// Shape.
     pub mesh: Option<Mesh>,
 }
 
@@ -184,7 +184,7 @@ pub struct Mesh {
 /// A joint.
 #[derive(Clone, Debug)]
 pub struct Joint {
-    /// Its name in the model file.
+    /// Name in the model file.
     pub name: String,
     /// What the source calls it.
     pub note: String,
@@ -192,13 +192,13 @@ pub struct Joint {
     pub kind: &'static str,
     /// Bodies i and j.
     pub bodies: [usize; 2],
-    /// Its place, or one on each body.
+    /// Place, or one on each body.
     pub at: Vec<Vec3>,
-    /// Its axis.
+    /// Axis.
     pub axis: Option<Vec3>,
     /// Two places that its axis goes through, where the source has it so: it follows them.
     pub through: Option<[Vec3; 2]>,
-    /// Its second axis.
+    /// Second axis.
     pub axis2: Option<Vec3>,
     /// Advance of a screw per turn.
     pub lead: Option<f64>,
@@ -222,7 +222,7 @@ pub struct Coordinate {
 /// A linear relation of joint coordinates: the sum of the terms is the constant.
 #[derive(Clone, Debug)]
 pub struct Coupler {
-    /// Its name in the model file.
+    /// Name in the model file.
     pub name: String,
     /// What the source calls it.
     pub note: String,
@@ -235,7 +235,7 @@ pub struct Coupler {
 /// A prescribed number.
 #[derive(Clone, Debug)]
 pub struct Driver {
-    /// Its name in the model file.
+    /// Name in the model file.
     pub name: String,
     /// What the source calls it.
     pub note: String,
@@ -254,7 +254,7 @@ pub enum Drives {
     Way {
         /// The body.
         body: usize,
-        /// The point as drawn.
+        /// The point in the design configuration.
         at: Vec3,
         /// The direction.
         along: Vec3,
@@ -273,7 +273,7 @@ pub enum Drives {
 /// How a driven number goes over time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {
-    /// It stays as drawn.
+    /// It stays in the design configuration.
     Held,
     /// It stays at this value.
     Set(f64),
@@ -286,26 +286,26 @@ pub enum Law {
 /// A point.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// Its name in the model file.
+    /// Name in the model file.
     pub name: String,
     /// The body.
     pub body: usize,
-    /// Where it is as drawn.
+    /// Where it is in the design configuration.
     pub at: Vec3,
 }
 
 /// A road wheel.
 #[derive(Clone, Debug)]
 pub struct Wheel {
-    /// Its name in the model file.
+    /// Name in the model file.
     pub name: String,
     /// The body that it turns on.
     pub body: usize,
-    /// Its centre.
+    /// Centre.
     pub centre: Vec3,
-    /// Its spin axis, outboard.
+    /// Spin axis, outboard.
     pub spin_axis: Vec3,
-    /// Whether that comes from this place to the centre.
+    /// True if that comes from this place to the centre.
     pub spindle: Option<Vec3>,
     /// From the centre to the ground.
     pub radius: f64,
@@ -425,12 +425,12 @@ impl Mechanism {
         self.frames.push(NamedFrame { name: name.to_owned(), body, pose, bare });
     }
 
-    /// Whether something prescribes this coordinate.
+    /// True if something prescribes this coordinate.
     pub fn is_driven(&self, coordinate: Coordinate) -> bool {
         self.drivers.iter().any(|d| matches!(d.drives, Drives::Coordinate(c) if c == coordinate))
     }
 
-    /// Whether joints connect two bodies, by way of others or not.
+    /// True if joints connect two bodies, by way of others or not.
     pub fn are_connected(&self, [from, to]: [usize; 2]) -> bool {
         let mut reached = vec![false; self.bodies.len()];
         let mut waiting = vec![from];
@@ -514,7 +514,7 @@ impl Joint {
     }
 }
 
-/// Names of model files have so many characters at most.
+/// Names of model files have at most that many characters.
 const LONGEST_NAME: usize = 100;
 
 /// Returns a name without the characters that no name may hold.

@@ -31,9 +31,9 @@ pub const FORMAT: Format = Format {
 const DEEPEST: usize = 100;
 /// Points nearer to each other than this part of the mechanism's size are one.
 const CLOSED: f64 = 1e-7;
-/// So many files are included at most.
+/// Maximum number of files are included.
 const MOST_INCLUDED: usize = 100;
-/// Number of times that files are put into each other at most.
+/// Maximum number of times that files are put into each other.
 const MOST_EXPANDED: usize = 20_000;
 /// Sections that do not concern how bodies and joints move.
 const IRRELEVANT: [&str; 8] =
@@ -311,7 +311,7 @@ struct Reader<'d, 'n> {
     shapes: Vec<Shown<'d>>,
     /// The names of all joints.
     names: BTreeSet<String>,
-    /// The places of the includes that have been told of.
+    /// The places of the includes that have been reported of.
     told: BTreeSet<(usize, usize)>,
     /// Number of times that files were put into each other.
     expanded: usize,
@@ -498,7 +498,7 @@ impl<'d, 'n> Reader<'d, 'n> {
             self.notes.not_understood(a.name(), &name, xml::attribute_at(text, node, a.name()), why);
         }
         if node.attribute("mocap") == Some("true") {
-            let why = "a body that a program moves while it runs: it stands as drawn";
+            let why = "a body that a program moves while it runs: it is in the design configuration";
             self.notes.approximated("mocap", &name, at, why);
         }
         let mut joints = Vec::new();
@@ -525,7 +525,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         if joints.is_empty() {
             self.m.joint(Joint::new(
                 &format!("{name}_fixed"),
-                "a body without joints stands on the one that it is in".into(),
+                "a body without joints is on the one that it is in".into(),
                 "fixed",
                 [outer.body, body],
                 pose.r,
@@ -621,7 +621,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         };
         let limited = self.attribute(element, "limited", class).map_or("auto".into(), |(l, _)| l);
         if limited == "true" || (limited == "auto" && self.compiler.auto_limits) {
-            // Ranges count from `ref`, which is the value as drawn.
+            // Ranges count from `ref`, which is the value in the design configuration.
             let [zero] = self.numbers::<1>(element, "ref", class).unwrap_or_default();
             let range = self.range(element, class);
             let scaled = |x: f64| if coordinate == Some("angle") { self.angle(x - zero) } else { x - zero };

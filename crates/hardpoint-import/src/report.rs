@@ -6,11 +6,11 @@ use std::fmt;
 use hardpoint_file::{Diagnostic, Severity, Source};
 use serde::Serialize;
 
-/// So many entries of one kind are listed in a text; the others are counted.
+/// Number of entries of one kind are listed in a text; the others are counted.
 const LISTED: usize = 40;
-/// So many problems are shown; the others are counted.
+/// Number of problems are shown; the others are counted.
 const SHOWN: usize = 50;
-/// Number of problems that are listed at most; the others are counted. Nobody corrects more of them at a time.
+/// Maximum number of problems that are listed; the others are counted. Nobody corrects more of them at a time.
 const MOST_PROBLEMS: usize = 200;
 /// Distance of marks in a text, bytes; each mark has the number of characters before it.
 const MARK: usize = 1024;
@@ -25,24 +25,24 @@ pub enum ElementOutcome {
     Approximated,
     /// It does not concern how things move.
     Ignored,
-    /// The model cannot say it.
+    /// The model does not support it.
     Refused,
     /// The importer does not know it: it may concern how things move.
     NotUnderstood,
 }
 
-/// Where something stands: bytes of one of the texts that a source consists of.
+/// Where something is: bytes of one of the texts that a source consists of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SourceSpan {
     /// Which text: the file itself is the first, what it includes follows.
     pub text: usize,
-    /// Its first byte.
+    /// First byte.
     pub start: usize,
     /// The byte behind it.
     pub end: usize,
 }
 
-/// Where something stands, for people.
+/// Where something is, for people.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SourceLocation {
     /// The file's name.
@@ -60,9 +60,9 @@ pub struct Entry {
     pub fate: ElementOutcome,
     /// What it is in the source: `joint`, `PART`.
     pub kind: String,
-    /// Its name there, or none.
+    /// Name there, or none.
     pub name: String,
-    /// Where it stands in the source.
+    /// Where it is in the source.
     pub place: Option<SourceLocation>,
     /// Why, or how.
     pub why: String,
@@ -189,7 +189,7 @@ impl fmt::Display for ImportErrors {
 
 impl std::error::Error for ImportErrors {}
 
-/// What an importer tells while it reads.
+/// What an importer indicates while it reads.
 #[derive(Debug)]
 pub struct ImportLog {
     /// The texts that there are.
@@ -375,7 +375,7 @@ impl ImportLog {
         self.entry(ElementOutcome::NotUnderstood, kind, name, at, why.as_ref());
     }
 
-    /// The model cannot say it.
+    /// The model does not support it.
     pub fn refused(&mut self, kind: &str, name: &str, at: Option<SourceSpan>, why: impl AsRef<str>) {
         self.entry(ElementOutcome::Refused, kind, name, at, why.as_ref());
     }

@@ -263,7 +263,7 @@ pub fn weld(
     let held = Joint::new(called.name, note, kind, [body, j.body], j.pose.r);
     let number = m.joint(if apart { held.between(i.pose.r, j.pose.r) } else { held });
     if apart || turned {
-        let why = "its frames lie apart as drawn: the mechanism is assembled to it before it moves";
+        let why = "its frames lie apart in the design configuration: the mechanism is assembled to it before it moves";
         notes.approximated(called.kind, called.name, called.at, why);
     } else {
         notes.taken(called.kind, called.name, called.at);

@@ -27,9 +27,9 @@ pub const FORMAT: Format = Format {
 
 /// Models contain models, and frames refer to frames, so deep at most.
 const DEEPEST: usize = 40;
-/// So many files are included at most.
+/// Maximum number of files are included.
 const MOST_INCLUDED: usize = 100;
-/// Number of times that models are placed at most; nested ones count more than once.
+/// Maximum number of times that models are placed; nested ones count more than once.
 const MOST_PLACED: usize = 20_000;
 /// Known content of a link.
 const LINK: Vocabulary = Vocabulary {
@@ -211,7 +211,7 @@ struct Model<'d> {
     /// The element that includes it, and the number of that one's text.
     include: Option<(usize, Node<'d, 'd>)>,
     is_static: bool,
-    /// Whether what is in it belongs to the model that includes it.
+    /// True if what is in it belongs to the model that includes it.
     is_merged: bool,
     /// The models in it.
     inner: Vec<usize>,
@@ -252,7 +252,7 @@ struct Reader<'d, 'n> {
     /// The names of all joints, likewise.
     names: BTreeSet<String>,
     joints: BTreeMap<String, Joined>,
-    /// Whether the file has more than one model: then names have their model's before them.
+    /// True if the file has more than one model: then names have their model's before them.
     several: bool,
     shapes: Vec<Shown<'d>>,
     /// Number of models, links, frames and joints.
@@ -437,7 +437,7 @@ impl<'d> Reader<'d, '_> {
             };
             let held = child(node, "child").and_then(|c| c.text()).unwrap_or_default().trim();
             if node.has_tag_name("joint") && self.frame(&model.scope, held).is_none() {
-                // That is told where it is joined.
+                // That is reported where it is joined.
                 continue;
             }
             let name = node.attribute("name").unwrap_or_default();
@@ -447,7 +447,7 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// Whether a model in another could be placed.
+    /// True if a model in another could be placed.
     fn place_inner(&mut self, k: usize, outer: &Model<'d>, of_outer: Frame) -> bool {
         let inner = self.models[k].clone();
         // What includes it says where it is, if it does.
@@ -472,7 +472,7 @@ impl<'d> Reader<'d, '_> {
         true
     }
 
-    /// Whether the frame of a link, joint or `frame` could be placed.
+    /// True if the frame of a link, joint or `frame` could be placed.
     fn place_frame(&mut self, node: Node<'d, 'd>, model: &Model<'d>, of_model: Frame) -> bool {
         let (text, scope) = (model.text, &model.scope);
         let name = node.attribute("name").unwrap_or_default().trim();

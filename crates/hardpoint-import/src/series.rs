@@ -30,7 +30,7 @@ pub struct StoredPose {
 /// By how much a solution differs from what was stored, at most, over all bodies and times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Difference {
-    /// How many times were compared.
+    /// Number of times were compared.
     pub times: usize,
     /// Of places, in the file's unit.
     pub place: f64,

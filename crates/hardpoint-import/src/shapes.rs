@@ -8,9 +8,9 @@ use hardpoint::space::{Pose, Vec3};
 use crate::mechanism::{GROUND, Mechanism, Mesh};
 use crate::report::{ImportLog, SourceSpan};
 
-/// A body is drawn with so many triangles at most.
+/// A body is drawn with at most that many triangles.
 const MOST: usize = 200_000;
-/// Cylinders and balls have so many sides: round enough to look at.
+/// Cylinders and balls have that many sides: round enough to look at.
 const SIDES: usize = 24;
 
 type Triangle = [Vec3; 3];

@@ -292,7 +292,7 @@ impl Parameters {
     }
 }
 
-/// Whether the line says the unit of length.
+/// True if the line says the unit of length.
 fn unit(m: &mut Mechanism, line: &str, at: SourceSpan, notes: &mut ImportLog) -> bool {
     let Some((key, value)) = line.split_once('=') else { return false };
     if !key.trim().eq_ignore_ascii_case("LENGTH") {

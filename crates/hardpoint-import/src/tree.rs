@@ -9,7 +9,7 @@ use crate::report::{ImportLog, SourceSpan};
 /// Maps and lists are nested so deep at most.
 const DEEPEST: usize = 60;
 
-/// A value and where it stands.
+/// A value and where it is.
 #[derive(Clone, Debug)]
 pub struct Tree {
     /// Where.
@@ -25,7 +25,7 @@ pub enum Value {
     Map(Vec<(String, SourceSpan, Tree)>),
     /// Values.
     List(Vec<Tree>),
-    /// A text or number as it is written, and whether it stands in quotes.
+    /// A text or number as it is written, and whether it is in quotes.
     Scalar(String, bool),
 }
 
@@ -73,7 +73,7 @@ impl Tree {
     }
 }
 
-/// The tree of a YAML text; what is wrong with it is told.
+/// The tree of a YAML text; what is wrong with it is reported.
 pub fn yaml(text: &str, notes: &mut ImportLog) -> Option<Tree> {
     parse(text, text, "YAML", notes)
 }
@@ -163,7 +163,7 @@ fn parse(original: &str, text: &str, language: &str, notes: &mut ImportLog) -> O
                 Some(Tree { at, value })
             }
             Event::Alias(_) => {
-                let help = "write the value out where the alias stands";
+                let help = "write the value out where the alias is";
                 notes.problem_with("HP0805", Some(at), "aliases are not read here", help);
                 return None;
             }

@@ -216,7 +216,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     (m.bodies.len() > 1).then_some(m)
 }
 
-/// Whether the file has yet to be expanded by xacro.
+/// True if the file has yet to be expanded by xacro.
 fn xml_macros(robot: Node<'_, '_>, notes: &mut ImportLog) -> bool {
     let is_macro = |n: &Node<'_, '_>| {
         let declared = n.tag_name().namespace().is_some_and(|s| s.contains("xacro"));
@@ -233,7 +233,7 @@ struct Reader<'a, 'i, 'n> {
     m: Mechanism,
     notes: &'n mut ImportLog,
     links: BTreeMap<String, Node<'a, 'i>>,
-    /// Bodies and poses of the links as drawn.
+    /// Bodies and poses of the links in the design configuration.
     poses: BTreeMap<String, (usize, Pose)>,
     /// The numbers of joints with one coordinate, and which.
     joints: BTreeMap<String, Coordinate>,
@@ -402,7 +402,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         if let Some(j) = waiting.first().map(|k| &joints[*k]) {
             let message = format!("the links `{}` and `{}` carry each other in a circle", j.parent, j.child);
             let help =
-                "one of them has to be carried by a link that stands; loops are closed by `loop_joint`";
+                "one of them has to be carried by a link that is; loops are closed by `loop_joint`";
             self.notes.problem_with("HP0803", xml::at(0, j.node), message, help);
             return;
         }
@@ -488,7 +488,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     }
 }
 
-/// Where a joint stands as drawn: at zero, or where the joint that it follows puts it.
+/// Where a joint is in the design configuration: at zero, or where the joint that it follows puts it.
 fn value_as_drawn(joints: &[Written<'_, '_>], k: usize, depth: usize) -> f64 {
     let Some(mimic) = &joints[k].mimic else { return 0.0 };
     let master = joints.iter().position(|j| j.name == mimic.joint).filter(|_| depth < DEEPEST);

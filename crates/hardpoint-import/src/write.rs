@@ -14,7 +14,7 @@ pub(crate) const SAME_PLACE: f64 = 1e-9;
 const ROUND_OFF: f64 = 1e-13;
 /// A model with more hardpoints than this gets no design variables of its own accord: a page with three hundred helps nobody.
 const MOST_VARIED: usize = 24;
-/// Without output times of the source there are so many intervals in one second.
+/// Without output times of the source there are that many intervals in one second.
 const STEPS: i64 = 100;
 
 /// The text of a model file: of a vehicle whose right side is the image of the left one the left side, with a mirror.

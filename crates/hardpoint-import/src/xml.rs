@@ -6,14 +6,14 @@ use roxmltree::{Document, Node, ParsingOptions};
 
 use crate::report::{ImportLog, SourceSpan};
 
-/// A document has so many nodes at most.
+/// A document has at most that many nodes.
 const MOST_NODES: u32 = 2_000_000;
 /// Elements are nested so deep at most.
 pub const DEEPEST: usize = 200;
 /// Limits as far off as this say that there are none: SDFormat's own default is 1e16.
 const UNLIMITED: f64 = 1e15;
 
-/// Number of attributes of an element at most: parsers compare each with all others.
+/// Maximum number of attributes of an element: parsers compare each with all others.
 const MOST_ATTRIBUTES: usize = 1000;
 
 /// Why a text is not handed to the parser.
@@ -48,7 +48,7 @@ fn options<'t>() -> ParsingOptions<'t> {
     ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() }
 }
 
-/// The document of a text; what is wrong with it is told.
+/// The document of a text; what is wrong with it is reported.
 pub fn parse<'t>(text: &'t str, number: usize, notes: &mut ImportLog) -> Option<Document<'t>> {
     if let Some(unfit) = unfit(text) {
         let (start, message, help) = unfit.message();
@@ -230,7 +230,7 @@ fn offset(text: &str, pos: roxmltree::TextPos) -> usize {
     line + column
 }
 
-/// Where an element stands: its name.
+/// Where an element is: its name.
 pub fn at(text: usize, node: Node<'_, '_>) -> Option<SourceSpan> {
     let start = node.range().start;
     Some(SourceSpan { text, start, end: start + 1 + node.tag_name().name().len() })
@@ -294,7 +294,7 @@ pub fn numbers(text: &str) -> Option<Vec<f64>> {
     list.filter(|list| list.iter().all(|x: &f64| x.is_finite()))
 }
 
-/// So many numbers of a text; what is wrong with them is told.
+/// Number of numbers of a text; what is wrong with them is reported.
 pub fn exactly<const N: usize>(
     text: &str,
     what: &str,
@@ -310,7 +310,7 @@ pub fn exactly<const N: usize>(
     list
 }
 
-/// A bound of a range, which may be infinite; what is wrong with it is told.
+/// A bound of a range, which may be infinite; what is wrong with it is reported.
 pub fn bound(text: &str, what: &str, at: Option<SourceSpan>, notes: &mut ImportLog) -> Option<f64> {
     let value = text.trim().parse().ok().filter(|x: &f64| !x.is_nan());
     if value.is_none() {
@@ -325,13 +325,13 @@ pub fn range(low: f64, high: f64) -> Option<[f64; 2]> {
     (low < high && low.abs() < UNLIMITED && high.abs() < UNLIMITED).then_some([low, high])
 }
 
-/// Where an attribute's value stands.
+/// Where an attribute's value is.
 pub fn attribute_at(text: usize, node: Node<'_, '_>, name: &str) -> Option<SourceSpan> {
     let range = node.attribute_node(name)?.range_value();
     Some(SourceSpan { text, start: range.start, end: range.end })
 }
 
-/// An attribute of so many numbers, where there is one.
+/// An attribute of that many numbers, where there is one.
 pub fn attribute<const N: usize>(
     text: usize,
     node: Node<'_, '_>,

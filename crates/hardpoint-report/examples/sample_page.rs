@@ -8,7 +8,7 @@ use num_dual::{Dual2, Dual64, DualNum};
 use std::{env, error::Error, f64::consts::TAU, fs};
 
 const STEPS: usize = 241;
-/// Differences are drawn at every so many steps.
+/// Differences are drawn at every that many steps.
 const MARKED: usize = 7;
 const DURATION: f64 = 2.0;
 const CRANK: f64 = 50.0;

@@ -27,7 +27,7 @@ pub struct AssemblyFact {
 pub struct GapFact {
     /// `joint`, `driver` or `coupler`.
     pub kind: &'static str,
-    /// Its name.
+    /// Name.
     pub name: String,
     /// By how much it is open.
     pub size: f64,
@@ -105,7 +105,7 @@ impl AssemblyFact {
             table(
                 "Assembled",
                 "These were open in the drawing and are closed before the motion starts, with every driver at zero.",
-                ["what", "open as drawn by"],
+                ["what", "open in the design configuration by"],
                 self.gaps.iter().map(gap),
             ),
             table(

@@ -17,13 +17,13 @@ use crate::figures::{count, number, rounded, seconds, some_of, symbol, unit, wit
 use crate::optimize::{Evaluations, MovedHardpoint, moved};
 use crate::page::{Curve, Fact, Payload, SweepAxis, SweepPlot, Table};
 
-/// A residual of more standard deviations than this is told: of a thousand normal ones three are.
+/// A residual of more standard deviations than this is reported: of a thousand normal ones three are.
 const FAR: f64 = 3.0;
-/// So many of them are listed.
+/// That many of them are listed.
 const LISTED: usize = 10;
-/// Variables that go together by more than this are told as a pair.
+/// Variables that go together by more than this are reported as a pair.
 const TOGETHER: f64 = 0.95;
-/// The scatter of residuals fits what was given where it is within so many standard deviations of 1.
+/// The scatter of residuals fits what was given where it is within that many standard deviations of 1.
 const FITS: f64 = 4.0;
 /// A part of an untold direction that is less than this is not shown.
 const SLIGHT: f64 = 1e-4;
@@ -41,11 +41,11 @@ pub struct CalibrateFacts {
     pub file: String,
     /// The file of what was measured.
     pub data: String,
-    /// How it ended: `found`, `not_told` (found, but not all variables are told), `iteration_limit` or `interrupted`.
+    /// How it ended: `found`, `not_told` (found, but not all variables are reported), `iteration_limit` or `interrupted`.
     pub status: &'static str,
     /// The same in words, and what to do.
     pub message: String,
-    /// The sum of squared residuals, or of the loss, in standard deviations: as drawn, and of the design found.
+    /// The sum of squared residuals, or of the loss, in standard deviations: in the design configuration, and of the design found.
     pub objective: [f64; 2],
     /// What it cost.
     pub evaluations: Evaluations,
@@ -61,21 +61,21 @@ pub struct CalibrateFacts {
     pub scatter_unit: String,
     /// The variables that were sought.
     pub variables: Vec<CalibratedVariable>,
-    /// Pairs of variables that these readings hardly tell apart, with their correlation.
+    /// Pairs of variables that these readings hardly distinguishes, with their correlation.
     pub together: Vec<(String, String, f64)>,
     /// What they do not tell at all.
     pub untold: Vec<UntoldFact>,
     /// Variables that the mechanism cannot follow, and that stay.
     pub left_out: Vec<String>,
-    /// Drivers that the file does not name: they stand as drawn.
+    /// Drivers that the file does not name: they stand in the design configuration.
     pub as_drawn: Vec<String>,
     /// Hardpoints that the design found has elsewhere.
     pub hardpoints: Vec<MovedHardpoint>,
     /// Readings that are far off, the farthest first.
     pub far_off: Vec<FarOff>,
-    /// How many there are.
+    /// Number of there are.
     pub far_off_count: usize,
-    /// Postures that the mechanism as drawn does not reach: their readings are left out.
+    /// Postures that the mechanism in the design configuration does not reach: their readings are left out.
     pub not_reached: Vec<NotReachedFact>,
     /// Which further readings would tell most, the best first.
     pub next: Vec<NextFact>,
@@ -88,15 +88,15 @@ pub struct CalibrateFacts {
 /// A variable that was sought.
 #[derive(Clone, Debug, Serialize)]
 pub struct CalibratedVariable {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
-    /// As drawn; of a parameter its value, of all others the change, 0.
+    /// In the design configuration; of a parameter its value, of all others the change, 0.
     pub start: f64,
     /// In the design found.
     pub end: f64,
-    /// Its standard deviation; `null` where the readings do not tell it.
+    /// Standard deviation; `null` where the readings do not tell it.
     pub sigma: Option<f64>,
 }
 
@@ -142,15 +142,15 @@ pub struct NextFact {
     pub measure: String,
     /// The standard deviation that is assumed, with `unit`.
     pub sigma: f64,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// Where the drivers stand: name, place, unit.
     pub drivers: Vec<(String, f64, String)>,
-    /// The number of what is not told, from 1, that it would tell.
+    /// The number of what is not reported, from 1, that it would tell.
     pub tells: Option<usize>,
     /// The variable that it makes surest.
     pub variable: Option<String>,
-    /// Its standard deviation now, and with the reading.
+    /// Standard deviation now, and with the reading.
     pub sigmas: Option<[f64; 2]>,
     /// The variable's unit.
     pub variable_unit: Option<String>,
@@ -270,7 +270,7 @@ impl Calibrated<'_> {
             [
                 "unit",
                 "measured",
-                "as drawn",
+                "nominal",
                 "found",
                 "standard deviation",
                 "residual [standard deviations]",
@@ -301,7 +301,7 @@ impl Calibrated<'_> {
         Ok(())
     }
 
-    /// The covariance of the variables, over what is told: a row and a column for each, in products of their units.
+    /// The covariance of the variables, over what is reported: a row and a column for each, in products of their units.
     ///
     /// # Errors
     /// Where `out` cannot be written.
@@ -434,9 +434,9 @@ impl CalibrateFacts {
             None => String::new(),
         };
         match self.status {
-            "found" => format!("found: all {} are told{fit}", count(self.variables.len(), "variable")),
+            "found" => format!("found: all {} are reported{fit}", count(self.variables.len(), "variable")),
             "not_told" => format!(
-                "found, but {} of the design {} not told by these readings{fit}",
+                "found, but {} of the design {} not reported by these readings{fit}",
                 count(self.untold.len(), "direction"),
                 if self.untold.len() == 1 { "is" } else { "are" }
             ),
@@ -453,7 +453,7 @@ impl CalibrateFacts {
         let of = format!("{} in {}", count(self.readings, "reading"), count(self.postures, "posture"));
         rows.push(("compared", of));
         let [before, after] = self.objective.map(number);
-        rows.push(("objective", format!("{before} as drawn, {after} found")));
+        rows.push(("objective", format!("{before} in the design configuration, {after} found")));
         if let Some(scatter) = self.scatter {
             let (unit, free) = (&self.scatter_unit, self.freedom);
             let said = if unit.is_empty() {
@@ -474,7 +474,7 @@ impl CalibrateFacts {
             rows.push(("left out", format!("{names}: the mechanism cannot follow")));
         }
         if !self.as_drawn.is_empty() {
-            rows.push(("as drawn", format!("{} stood as drawn", some_of(&self.as_drawn, ", "))));
+            rows.push(("nominal", format!("{} stood in the design configuration", some_of(&self.as_drawn, ", "))));
         }
         for n in self.not_reached.iter().take(LISTED) {
             rows.push(("not reached", format!("line {}: {}", n.line, n.why)));
@@ -487,7 +487,7 @@ impl CalibrateFacts {
         rows
     }
 
-    /// What is printed besides: variables, what is not told, readings far off, what to measure next.
+    /// What is printed besides: variables, what is not reported, readings far off, what to measure next.
     pub fn tables(&self) -> Vec<Table> {
         let header = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
         let table = |title: &str, note: &str, names: &[&str], rows: Vec<Vec<String>>| {
@@ -495,7 +495,7 @@ impl CalibrateFacts {
             (!rows.is_empty()).then(|| Table { title, note, header: header(names), rows })
         };
         let variable = |v: &CalibratedVariable| {
-            let sigma = v.sigma.map_or("not told".into(), |s| format!("± {}", with_unit(s, &v.unit)));
+            let sigma = v.sigma.map_or("not reported".into(), |s| format!("± {}", with_unit(s, &v.unit)));
             let change = v.end - v.start;
             let sure = v.sigma.filter(|s| *s > 0.0).map_or(String::new(), |s| rounded(change / s, 3));
             vec![v.name.clone(), with_unit(v.start, &v.unit), with_unit(v.end, &v.unit), sigma, sure]
@@ -519,7 +519,7 @@ impl CalibrateFacts {
                 .map(|(name, place, unit)| format!("{name} {}", with_unit(*place, unit)))
                 .collect();
             let does = match (n.tells, &n.variable, n.sigmas, &n.variable_unit) {
-                (Some(k), ..) => format!("tells {k}, which is not told"),
+                (Some(k), ..) => format!("indicates {k}, which is not reported"),
                 (None, Some(variable), Some([before, after]), Some(unit)) => {
                     format!("{variable}: from ± {} to ± {}", number(before), with_unit(after, unit))
                 }
@@ -535,22 +535,22 @@ impl CalibrateFacts {
             table(
                 "Design",
                 "",
-                &["variable", "as drawn", "found", "standard deviation", "change in these"],
+                &["variable", "nominal", "found", "standard deviation", "change in these"],
                 self.variables.iter().map(variable).collect(),
             ),
             table(
-                "Hardly told apart",
-                "Variables whose errors go together; what they do together is told better than each.",
+                "Hardly distinguished",
+                "Variables whose errors go together; what they do together is reported better than each.",
                 &["variable", "and", "correlation"],
                 self.together.iter().map(together).collect(),
             ),
             table(
-                "Not told",
+                "Not reported",
                 "Changes of the design that change nothing that was read, or too little. The design found has none of them.",
                 &["", "a change by", "what readings tell of it"],
                 self.untold.iter().enumerate().map(untold).collect(),
             ),
-            table("Hardpoints that move", "", &["hardpoint", "as drawn", "found"], self.hardpoints.iter().map(moved).collect()),
+            table("Hardpoints that move", "", &["hardpoint", "nominal", "found"], self.hardpoints.iter().map(moved).collect()),
             table(
                 "Readings far off",
                 "By more than three standard deviations.",
@@ -569,7 +569,7 @@ impl CalibrateFacts {
         .collect()
     }
 
-    /// The page of the design found becomes that of the calibration: residuals as points, and what is told here first among its checks.
+    /// The page of the design found becomes that of the calibration: residuals as points, and what is reported here first among its checks.
     pub fn page(&self, of: &Calibrated<'_>, mut page: Payload, outputs: &[Output]) -> Payload {
         let first = of.compared().next().map(|(r, _)| &of.output(r.output).name);
         page.first = first.and_then(|name| outputs.iter().position(|o| o.name == *name)).or(page.first);

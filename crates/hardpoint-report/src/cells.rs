@@ -12,7 +12,7 @@ pub enum Cells {
 }
 
 impl Cells {
-    /// How many there are.
+    /// Number of there are.
     pub fn len(&self) -> usize {
         match self {
             Self::Whole(cells) => cells.len(),
@@ -44,7 +44,7 @@ impl Cells {
         }
     }
 
-    /// Whether there is none.
+    /// True if there is none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -66,7 +66,7 @@ impl Cells {
         }
     }
 
-    /// What goes beyond so many cells.
+    /// What goes beyond that many cells.
     pub fn split_off(&mut self, at: usize) -> Self {
         match self {
             Self::Whole(cells) => Self::Whole(cells.split_off(at.min(cells.len()))),

@@ -1,4 +1,4 @@
-//! What stands in which column of the files of results: one rule for all of them (`docs/results.md`).
+//! What is in which column of the files of results: one rule for all of them (`docs/results.md`).
 //!
 //! A component of a vector is called after its order: `wheel.x`, `wheel.vx`, `wheel.ax`, `wheel.jx`; of an angular vector
 //! `wheel.omega_x`, `wheel.alpha_x`. What is a number by itself has the order in words: `toe`, `toe rate`,
@@ -20,7 +20,7 @@ use crate::figures::order_unit;
 pub struct Column {
     /// What it holds.
     pub name: String,
-    /// Its unit; `1` for a plain number.
+    /// Unit; `1` for a plain number.
     pub unit: String,
 }
 
@@ -40,15 +40,15 @@ impl Column {
 pub struct Columns<'m> {
     /// The model.
     pub model: &'m Model,
-    /// Its units.
+    /// Units.
     pub units: Units,
-    /// Whether bodies are among them.
+    /// True if bodies are among them.
     pub bodies: bool,
     /// The angles that the motion of bodies has beside their quaternions, if it has any.
     pub angles: Option<Angles>,
 }
 
-/// What stands before a component of a position's derivative by time.
+/// What is before a component of a position's derivative by time.
 const LETTERS: [&str; 4] = ["", "v", "a", "j"];
 
 impl Columns<'_> {

@@ -38,7 +38,7 @@ pub struct CompareFacts {
     pub metrics: Vec<Difference>,
     /// What only the first file has, and what only the second one.
     pub only_in: [Vec<String>; 2],
-    /// How many output times each was solved for.
+    /// Number of output times each was solved for.
     pub steps: [usize; 2],
     /// Output times, s.
     pub times: Vec<f64>,
@@ -49,9 +49,9 @@ pub struct CompareFacts {
 /// A number of both files.
 #[derive(Clone, Debug, Serialize)]
 pub struct Difference {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its unit; `1` for a plain number.
+    /// Unit; `1` for a plain number.
     pub unit: String,
     /// In the first file, and in the second; `null` where a motion does not reach it.
     pub values: [Option<f64>; 2],
@@ -62,7 +62,7 @@ pub struct Difference {
 pub struct CurveDifference {
     /// The measure's name.
     pub measure: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// The largest difference, second less first, with its sign.
     pub difference: Option<f64>,
@@ -75,9 +75,9 @@ pub struct CurveDifference {
 /// A model file, and its motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Solved<'a> {
-    /// The model, and where it stands.
+    /// The model, and where it is.
     pub file: &'a ModelFile,
-    /// Its solution.
+    /// Solution.
     pub solution: &'a Solution,
 }
 
@@ -103,7 +103,7 @@ impl CompareFacts {
         }
     }
 
-    /// Whether nothing that both have differs.
+    /// True if nothing that both have differs.
     pub fn is_same(&self) -> bool {
         self.hardpoints.is_empty() && self.parameters.is_empty() && self.only_in.iter().all(Vec::is_empty)
     }
@@ -206,7 +206,7 @@ fn shown_difference(by: Option<f64>, unit: &str) -> String {
     by.map_or("-".into(), |by| format!("{}{unit}", rounded(by, 4)))
 }
 
-/// Whether two mechanisms have the same bodies and outputs in the same order, so that they can be drawn beside each other.
+/// True if two mechanisms have the same bodies and outputs in the same order, so that they can be drawn beside each other.
 pub fn are_alike(both: [Solved<'_>; 2]) -> bool {
     let bodies = both.map(|s| s.file.model.bodies.iter().map(|b| &b.name).collect::<Vec<_>>());
     let outputs =

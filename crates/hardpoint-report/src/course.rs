@@ -9,16 +9,16 @@ use hardpoint::{Footprint, SampledResults, Sampling, Solution};
 
 use crate::shifts::Shifts;
 
-/// What is kept of a run for the page and what is compared afterwards: so many bytes.
+/// What is kept of a run for the page and what is compared afterwards: that many bytes.
 const KEPT_BYTES: usize = 64 << 20;
-/// Sensitivities of bodies are kept where so many output times of them fit.
+/// Sensitivities of bodies are kept where that many output times of them fit.
 const ENOUGH_ROWS: usize = 512;
-/// Curves that metrics are taken from may have so many bytes.
+/// Curves that metrics are taken from may have that many bytes.
 const METRIC_BYTES: usize = 256 << 20;
 /// The first time of a largest value is the first that comes this near to it: of the periods of a motion the first, whatever its
 /// last digits.
 const AS_LARGE: f64 = 1e-9;
-/// A value that exceeds the largest so far by less than this part is not told from it.
+/// A value that exceeds the largest so far by less than this part is not reported from it.
 const SAME: f64 = 1e-12;
 
 /// Gathers what a run comes to.
@@ -44,13 +44,13 @@ pub struct Course {
     pub margins: MarginCourse,
     /// Some of the output times, with the facts of all.
     pub kept: Solution,
-    /// Of so many output times, each is kept.
+    /// Of that many output times, each is kept.
     pub stride: usize,
     /// The curves of the metrics, where they are not taken from what is kept.
     curves: Option<Solution>,
     /// How bodies move with the variables, where that is kept apart.
     shifts: Option<Shifts>,
-    /// Of so many output times, metrics are taken from each.
+    /// Of that many output times, metrics are taken from each.
     pub metric_stride: usize,
     /// Of the motion.
     magnitude: Magnitude,
@@ -166,7 +166,7 @@ impl Course {
         self.curves.as_ref().unwrap_or(&self.kept)
     }
 
-    /// How bodies move with the variables was kept at each of so many output times of those that are kept; `None` where it was not.
+    /// How bodies move with the variables was kept at each of that many output times of those that are kept; `None` where it was not.
     pub(crate) fn shift_stride(&self) -> Option<usize> {
         if self.has_bodies() {
             return Some(1);
@@ -190,13 +190,13 @@ impl Course {
         }
     }
 
-    /// Whether sensitivities of bodies were kept.
+    /// True if sensitivities of bodies were kept.
     pub fn has_bodies(&self) -> bool {
         let sensitivities = &self.kept.sensitivities;
         sensitivities.variables == 0 || sensitivities.bodies > 0
     }
 
-    /// Whether the mechanism can follow a variable, as far as it was solved.
+    /// True if the mechanism can follow a variable, as far as it was solved.
     pub fn follows(&self, b: usize) -> bool {
         let answers = &self.kept.sensitivities.admissibility;
         self.steps > 0 && answers.get(b).is_some_and(|a| !matches!(a, Admissibility::CannotFollow { .. }))

@@ -1,7 +1,7 @@
 //! `motion.csv`, `sensitivity.csv` and `jerk.csv`: solved numbers in the user's units, with all their digits.
 //!
 //! Numbers are the shortest decimals that read back as the same double; where there is no number, the field is empty. A
-//! column's unit stands in its header. In `sensitivity.csv` that is the unit of the numerator; that of the denominator is in
+//! column's unit is in its header. In `sensitivity.csv` that is the unit of the numerator; that of the denominator is in
 //! column `per`. What each column is: `docs/results.md`.
 
 use std::borrow::Cow;
@@ -119,7 +119,7 @@ pub fn without_variables(
     out: &mut impl Write,
     mut go_on: impl FnMut() -> bool,
 ) -> csv::Result<bool> {
-    /// So many rows, and so many bytes, are copied between two questions whether to go on.
+    /// Number of rows, and that many bytes, are copied between two questions whether to go on.
     const ROWS: u64 = 1 << 16;
     const BYTES: u64 = 1 << 24;
     let mut reader = Reader::from_reader(&mut file);

@@ -20,7 +20,7 @@ use crate::figures::{names, number, quoted, rounded, some_in_words, some_of, sym
 use crate::margin::MarginFact;
 use crate::summary::Summary;
 
-/// So many gaps that stay open are told one by one.
+/// Number of gaps that stay open are reported one by one.
 const MOST_GAPS: usize = 5;
 
 /// Everything to tell of a run, warnings first; `outputs` names what was written of a motion that stopped.
@@ -255,7 +255,7 @@ fn residual(file: &ModelFile, facts: &Facts, residual: f64) -> Option<Diagnostic
 fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
     let (model, found) = (&file.model, &course.kept);
     let has_none = |m: usize| (0..found.measured.len()).find(|k| found.measured.value(*k, m)[0].is_nan());
-    // What redundant constraints share of friction is asked for once, where it is wanted at all.
+    // What redundant constraints share of friction is requested once, where it is wanted at all.
     let mut shared = None;
     let mut list = Vec::new();
     for (m, measure) in model.measures.iter().enumerate() {
@@ -301,11 +301,11 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
                 d.note(format!("the friction of {} has two solutions there: it is so large that it makes the forces that it needs", names_of(&of)))
                     .help("give less friction, thinner pins or longer guides")
             } else if shared.is_empty() {
-                d.note(format!("{} jams there: so much friction stands against the motion that no forces move it", names_of(&names(&|_| true))))
+                d.note(format!("{} jams there: so much friction is against the motion that no forces move it", names_of(&names(&|_| true))))
                     .help("give less friction, thinner pins or longer guides")
             } else {
                 let of = names(&|e| shared.iter().any(|s| s.0 == e));
-                d.note(format!("redundant constraints share what presses where {} rubs, by how stiff they are", names_of(&of)))
+                d.note(format!("redundant constraints share what presses where {} has friction, by how stiff they are", names_of(&of)))
                     .help("remove a redundant constraint: `check` names them; or the friction")
             }
         });
@@ -313,7 +313,7 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
     list
 }
 
-/// Whether a spring or a damper has both ends at one place at an output time.
+/// True if a spring or a damper has both ends at one place at an output time.
 fn has_no_length(model: &Model, motion: &Motion, k: usize, kind: &ElementKind) -> bool {
     let ElementKind::Spring { from, to, .. } = kind else { return false };
     let [p, q] = [from, to].map(|p| {

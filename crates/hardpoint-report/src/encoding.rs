@@ -33,7 +33,7 @@ use crate::page::{Curve, Design, Payload};
 pub const ERROR: f64 = 1e-5;
 /// Steps of the grid within the range: half a step is 0.83e-5 of it, which leaves some of [`ERROR`] for the rounding to `f32`.
 const STEPS: f64 = 60_000.0;
-/// Where values are larger than so many ranges, the rounding to `f32` would take the rest of [`ERROR`].
+/// Where values are larger than that many ranges, the rounding to `f32` would take the rest of [`ERROR`].
 const LARGEST: f64 = 25.0;
 /// Highest order of differences: beyond it the rounding grows faster than the curve's own part shrinks.
 const MOST_DIFFERENCES: u8 = 4;
@@ -60,12 +60,12 @@ pub(crate) fn packed(payload: &Payload) -> Result<Vec<u8>, serde_json::Error> {
     Ok(deflated(&block(payload)?))
 }
 
-/// How many bytes of the page a packed payload takes.
+/// Number of bytes of the page a packed payload takes.
 pub(crate) fn size_in_page(packed: &[u8]) -> usize {
     packed.len().div_ceil(3) * 4
 }
 
-/// As it stands in the page.
+/// As it is in the page.
 pub(crate) fn base64(bytes: &[u8]) -> String {
     BASE64_STANDARD.encode(bytes)
 }
@@ -180,7 +180,7 @@ struct Tracks {
 }
 
 impl Tracks {
-    /// The tracks of a curve with so many numbers per step.
+    /// The tracks of a curve with that many numbers per step.
     fn add(&mut self, values: &[f32], precision: Precision, parts: usize) -> Vec<u32> {
         if values.is_empty() {
             return Vec::new();

@@ -16,7 +16,7 @@ pub fn number(value: f64) -> String {
     rounded(value, 5)
 }
 
-/// A number with so many significant digits at most, without trailing zeros; a dash where there is none.
+/// A number with that many significant digits at most, without trailing zeros; a dash where there is none.
 pub fn rounded(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return "–".into();
@@ -176,7 +176,7 @@ pub fn quoted<'a>(what: &'a str, names: &'a [String]) -> impl Iterator<Item = St
     names.iter().map(move |n| format!("{what} `{n}`"))
 }
 
-/// Whether a character is not to be shown as it is: control characters, and those that turn the direction of writing or
+/// True if a character is not to be shown as it is: control characters, and those that turn the direction of writing or
 /// separate lines unseen.
 pub fn is_odd(c: char) -> bool {
     c.is_control()
@@ -188,7 +188,7 @@ pub fn count(n: usize, one: &str) -> String {
     if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") }
 }
 
-/// So many items of a long list are shown.
+/// Number of items of a long list are shown.
 const SHOWN: usize = 8;
 
 /// The items with commas between; of a long list the first few, and how many more there are.

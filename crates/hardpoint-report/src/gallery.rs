@@ -6,7 +6,7 @@ use crate::page::{escape_text, fill};
 
 /// A model in the gallery.
 pub struct Card {
-    /// Its name.
+    /// Name.
     pub title: String,
     /// What it says about itself.
     pub description: Option<String>,

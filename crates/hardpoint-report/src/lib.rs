@@ -10,13 +10,13 @@
 //! | [`margin`] | how far the motion stays from singular positions |
 //! | [`assembly`] | what was open in the drawing, and how it closed |
 //! | [`verdict`] | `verify.json`: sensitivities against re-solved designs |
-//! | [`whatif`] | `whatif.json`, `.csv` and `.html`: a changed design, foreseen and exact |
+//! | [`whatif`] | `whatif.json`, `.csv` and `.html`: a changed design, predicted and exact |
 //! | [`compare`] | `compare.json`, `.csv` and `.html`: two model files beside each other |
 //! | [`optimize`] | what a search comes to: `summary.json` and tables |
 //! | [`tolerance`] | what tolerances come to: `summary.json`, `metrics.csv`, `contributions.csv`, `bands.csv`, `samples.csv` |
 //! | [`sweep`], [`cells`] | what a sweep comes to: `summary.json`, and the columns of `designs` and `curves` |
 //! | [`maps`] | `maps.csv`, `map_sensitivity.csv`, `maps.json`: measures over grids of two drivers |
-//! | [`columns`] | what stands in which column of the files of results |
+//! | [`columns`] | what is in which column of the files of results |
 //! | [`csv`], [`npy`] | `motion`, `sensitivity` and `jerk` as text, or as arrays |
 //! | [`payload`], [`page`], [`encoding`] | `report.html` |
 //! | [`gallery`] | the page of all models, and that of one that cannot be shown |

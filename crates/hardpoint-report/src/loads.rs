@@ -1,4 +1,4 @@
-//! `loads.csv`: what joints put on bodies, for whoever goes on with finite elements; `drivers.csv`: what drives them.
+//! `loads.csv`: what joints put on bodies, for whoever continues with finite elements; `drivers.csv`: what drives them.
 
 use std::io::Write;
 
@@ -51,7 +51,7 @@ pub fn write_drivers(model: &Model, units: Units, loads: &Loads, out: impl Write
 }
 
 /// Writes a row for every output time and joint: where it is on its second body, and the force and moment that it puts on that body, global
-/// and along the global axes as drawn, which have turned with the body. What redundant constraints leave open is empty.
+/// and along the global axes in the design configuration, which have turned with the body. What redundant constraints leave open is empty.
 ///
 /// # Errors
 /// Where `out` cannot be written.

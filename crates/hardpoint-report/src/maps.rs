@@ -13,7 +13,7 @@ use crate::facts::variable_unit;
 use crate::figures::{number, per, unit, with_unit};
 use crate::page::{Curve, GridDriver, GridMap as GridPage, GridQuantity, GridSensitivity, Payload, Table};
 
-/// Pages hold so many derivatives of a map: about 2 MB.
+/// Pages hold that many derivatives of a map: about 2 MB.
 const MOST_NUMBERS: usize = 1_000_000;
 
 /// A map, as `maps.json` has it. Figures are in the model's units; what has no number is `null`.
@@ -21,19 +21,19 @@ const MOST_NUMBERS: usize = 1_000_000;
 pub struct MapFact {
     /// The case.
     pub name: String,
-    /// The two drivers and where each of them stands.
+    /// The two drivers and where each of them is.
     pub drivers: [MapDriver; 2],
-    /// How many positions were reached.
+    /// Number of positions were reached.
     pub solved: usize,
-    /// How many there are.
+    /// Number of there are.
     pub asked: usize,
-    /// Whether the user ended it before all were tried.
+    /// True if the user ended it before all were tried.
     pub interrupted: bool,
     /// Why the others were not reached, row by row.
     pub gaps: Vec<MapGap>,
     /// Per position, which of these ended its row before; `null` where it was reached or not tried.
     pub gap: Vec<Vec<Option<usize>>>,
-    /// The measures that follow from positions, or go by a driver; of a model without any measures, its points.
+    /// The measures that follow from positions, or depend on a driver; of a model without any measures, its points.
     pub measures: Vec<MapMeasure>,
 }
 
@@ -44,9 +44,9 @@ pub struct MapLine {
     pub name: String,
     /// The two drivers.
     pub drivers: [String; 2],
-    /// How many positions were reached.
+    /// Number of positions were reached.
     pub solved: usize,
-    /// How many there are.
+    /// Number of there are.
     pub asked: usize,
     /// Why the others were not reached.
     pub gaps: Vec<String>,
@@ -55,11 +55,11 @@ pub struct MapLine {
 /// A driver of a map.
 #[derive(Clone, Debug, Serialize)]
 pub struct MapDriver {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
-    /// Where it stands, counted as its laws are.
+    /// Where it is, counted as its laws are.
     pub values: Vec<f64>,
 }
 
@@ -77,13 +77,13 @@ pub struct MapGap {
 /// A measure over a map. Tables have a row for each value of the second driver, with a number for each value of the first.
 #[derive(Clone, Debug, Serialize)]
 pub struct MapMeasure {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
-    /// Its values.
+    /// Values.
     pub values: Vec<Vec<Option<f64>>>,
-    /// Its derivatives by the design variables.
+    /// Derivatives by the design variables.
     pub sensitivities: Vec<MapSensitivity>,
 }
 
@@ -92,7 +92,7 @@ pub struct MapMeasure {
 pub struct MapSensitivity {
     /// The variable.
     pub variable: String,
-    /// Its unit.
+    /// Unit.
     pub per: String,
     /// The derivative's unit.
     pub unit: String,

@@ -14,7 +14,7 @@ use crate::figures::{number, rounded, some_in_words, some_of, symbol};
 const COMFORTABLE: f64 = 1e-3;
 /// Below this the user is warned.
 const THIN: f64 = 1e-6;
-/// A singular position this near to the end, as part of the run, is told.
+/// A singular position this near to the end, as part of the run, is reported.
 const SOON: f64 = 0.1;
 
 /// Margins over the output times: 1 is best, 0 is a singular position.
@@ -22,11 +22,11 @@ const SOON: f64 = 0.1;
 pub struct MarginFact {
     /// The least of all.
     pub least: f64,
-    /// Its time, s.
+    /// Time, s.
     pub time: f64,
     /// The joints of the loop that has it.
     pub joints: Vec<String>,
-    /// How many of about 16 digits of the velocities are lost there.
+    /// Number of about 16 digits of the velocities are lost there.
     pub digits_lost: f64,
     /// Where the motion starts.
     pub start: f64,
@@ -56,7 +56,7 @@ pub struct DriverTravel {
 
 impl MarginFact {
     /// The margins of a motion; `None` where nothing was solved, or nothing but single unknowns, one after the other:
-    /// a single equation's condition number is 1 however it stands.
+    /// a single equation's condition number is 1 however it is.
     pub fn new(
         model: &Model,
         units: Units,
@@ -96,7 +96,7 @@ impl MarginFact {
         })
     }
 
-    /// Whether velocities near the least margin are not to be relied on.
+    /// True if velocities near the least margin are not to be relied on.
     pub fn is_thin(&self) -> bool {
         !(self.least >= THIN)
     }

@@ -10,27 +10,27 @@ use crate::facts::variable_unit;
 use crate::figures::{number, per, rounded, unit, with_unit};
 use crate::page::Table;
 
-/// An interpolation error beyond this part of the curve's range (of a slope: of the slope) is told: metrics are read to three
+/// An interpolation error beyond this part of the curve's range (of a slope: of the slope) is reported: metrics are read to three
 /// digits.
 const COARSE: f64 = 1e-3;
 
 /// The value of a metric, with its sensitivities. Figures are in the model's units.
 #[derive(Clone, Debug, Serialize)]
 pub struct MetricFact {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// What it is, in words.
     pub what: String,
-    /// Its value; `null` where the motion does not reach what is asked for.
+    /// Value; `null` where the motion does not reach the request.
     pub value: Option<f64>,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// When it is taken, s; `null` for what is taken of the whole curve.
     pub time: Option<f64>,
     /// How far it may be from that of the curve between the output times, which is interpolated; `null` for a mean, and where there
     /// are too few output times to say.
     pub interpolation_error: Option<f64>,
-    /// Whether that is more than a thousandth of the curve's range.
+    /// True if that is more than a thousandth of the curve's range.
     pub coarse: bool,
     /// By every design variable that the mechanism can follow, the strongest first within each unit of variables.
     pub sensitivities: Vec<MetricSensitivity>,
@@ -41,7 +41,7 @@ pub struct MetricFact {
 pub struct MetricSensitivity {
     /// The variable.
     pub variable: String,
-    /// Its unit.
+    /// Unit.
     pub per: String,
     /// The derivative.
     pub value: f64,
@@ -52,13 +52,13 @@ pub struct MetricSensitivity {
 /// A metric of a changed design.
 #[derive(Clone, Debug, Serialize)]
 pub struct MetricChange {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// Today's value.
     pub today: Option<f64>,
-    /// As foreseen to first order.
+    /// As predicted to first order.
     pub first: Option<f64>,
     /// Re-solved.
     pub exact: Option<f64>,
@@ -164,7 +164,7 @@ impl MetricChange {
             let change = m.exact.zip(m.today).map(|(x, now)| x - now);
             vec![m.name.clone(), shown(m.today), shown(m.first), shown(m.exact), shown(change)]
         };
-        let header = ["metric", "today", "foreseen, 1st order", "changed", "change"];
+        let header = ["metric", "today", "predicted, 1st order", "changed", "change"];
         (!changes.is_empty()).then(|| Table {
             title: "Metrics".into(),
             note: String::new(),

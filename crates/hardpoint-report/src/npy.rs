@@ -1,6 +1,6 @@
 //! `motion.npy` and `sensitivity.npy`: arrays of doubles as NumPy reads them, half as large as CSV and much faster to read.
 //!
-//! What the columns are stands in `columns.json` beside them. Where there is no number, there is NaN.
+//! What the columns are is in `columns.json` beside them. Where there is no number, there is NaN.
 
 use std::io::{self, Seek, SeekFrom, Write};
 
@@ -48,7 +48,7 @@ impl<W: Write + Seek> Npy<W> {
         Ok(())
     }
 
-    /// In the first `rows`, so many numbers from `first` on are none.
+    /// In the first `rows`, that many numbers from `first` on are none.
     ///
     /// # Errors
     /// Where they cannot be written.

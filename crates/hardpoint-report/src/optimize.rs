@@ -16,9 +16,9 @@ use crate::facts::variable_unit;
 use crate::figures::{error, number, seconds, some_of, symbol, unit, with_unit};
 use crate::page::{Payload, Table};
 
-/// What binds by less than this part of the objective per whole range of a variable is not told.
+/// What binds by less than this part of the objective per whole range of a variable is not reported.
 const SLIGHT: f64 = 1e-9;
-/// So many designs that were refused are told.
+/// Number of designs that were refused are reported.
 const REFUSED: usize = 20;
 
 /// An optimisation, in the model's units. As JSON it is `summary.json` of `hardpoint optimize`.
@@ -37,7 +37,7 @@ pub struct OptimizeFacts {
     pub status: &'static str,
     /// The same in words, and what to do.
     pub message: String,
-    /// What is made small, a sum over the goals without a unit: as drawn, and of the best design.
+    /// What is made small, a sum over the goals without a unit: in the design configuration, and of the best design.
     pub objective: BeforeAfter,
     /// By how much the limit is exceeded that is exceeded most, as a part of what the bounds of the variables make of it.
     pub violation: BeforeAfter,
@@ -47,7 +47,7 @@ pub struct OptimizeFacts {
     pub saved: Option<SavedFact>,
     /// The part of the gradient that neither bounds nor limits balance, relative to the scale of the goals; 0 where all misfits vanish.
     pub kkt: Option<f64>,
-    /// The start of the best search: 0 is the design as drawn.
+    /// The start of the best search: 0 is the nominal design.
     pub best_start: Option<usize>,
     /// What it cost.
     pub evaluations: Evaluations,
@@ -65,7 +65,7 @@ pub struct OptimizeFacts {
     pub starts: Vec<StartFact>,
     /// Designs that could not be judged, the first of them.
     pub refused: Vec<RefusedFact>,
-    /// How many there were.
+    /// Number of there were.
     pub refused_count: usize,
     /// What is worth knowing besides.
     pub diagnostics: Vec<Diagnostic>,
@@ -75,10 +75,10 @@ pub struct OptimizeFacts {
     pub seconds: f64,
 }
 
-/// A number of the design as drawn, and of the best one.
+/// A number of the nominal design, and of the best one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct BeforeAfter {
-    /// As drawn; `null` where it cannot be judged.
+    /// In the design configuration; `null` where it cannot be judged.
     pub before: Option<f64>,
     /// Of the best design; `null` where none was found.
     pub after: Option<f64>,
@@ -113,7 +113,7 @@ pub struct Evaluations {
 /// A goal in one motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct GoalFact {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The metric that it is taken of.
     pub metric: String,
@@ -133,13 +133,13 @@ pub struct GoalFact {
 /// A limit, in one motion where it is on a metric.
 #[derive(Clone, Debug, Serialize)]
 pub struct LimitFact {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// What it is on.
     pub of: String,
     /// In which case.
     pub case: Option<String>,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// It must not be less.
     pub min: Option<f64>,
@@ -157,9 +157,9 @@ pub struct LimitFact {
 /// A variable that was searched.
 #[derive(Clone, Debug, Serialize)]
 pub struct SearchedVariable {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// Start of the best search, as a change of the design configuration.
     pub start: f64,
@@ -180,9 +180,9 @@ pub struct SearchedVariable {
 /// A hardpoint that the best design has elsewhere, in the length unit.
 #[derive(Clone, Debug, Serialize)]
 pub struct MovedHardpoint {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// As drawn.
+    /// In the design configuration.
     pub before: [f64; 3],
     /// In the best design.
     pub after: [f64; 3],
@@ -191,7 +191,7 @@ pub struct MovedHardpoint {
 /// An iteration.
 #[derive(Clone, Debug, Serialize)]
 pub struct IterationFact {
-    /// Its number; 0 is the start.
+    /// Number; 0 is the start.
     pub iteration: usize,
     /// The objective.
     pub objective: f64,
@@ -203,7 +203,7 @@ pub struct IterationFact {
     pub moved: Option<String>,
     /// By how much, in its unit.
     pub by: Option<f64>,
-    /// Its unit.
+    /// Unit.
     pub unit: Option<String>,
     /// Designs looked at so far.
     pub designs: usize,
@@ -212,7 +212,7 @@ pub struct IterationFact {
 /// A search.
 #[derive(Clone, Debug, Serialize)]
 pub struct StartFact {
-    /// Its number; 0 starts from the design as drawn.
+    /// Number; 0 starts from the nominal design.
     pub start: usize,
     /// How it ended.
     pub status: &'static str,
@@ -329,7 +329,7 @@ fn rounded_to(file: &ModelFile, asked: &OptimizationSettings, design: &[f64], fi
 
 /// The header-free line of a search that ended.
 pub fn start_line(k: usize, search: &SearchResult) -> String {
-    let from = if k == 0 { "as drawn".into() } else { format!("start {k}") };
+    let from = if k == 0 { "nominal".into() } else { format!("start {k}") };
     let found = search.found.as_ref().map_or("-".into(), |f| number(f.objective));
     let status = in_words(search.status);
     format!("{from:>9}  objective {found:<12}  {status}, {} designs", search.cost.designs)
@@ -450,7 +450,7 @@ impl OptimizeFacts {
                 let case = drawn.and_then(|r| case_name(model, r.motion?));
                 let case = case.map_or(String::new(), |case| format!("case `{case}`: "));
                 let why = drawn.map_or("", |r| r.why.as_str());
-                format!("no design could be judged, not even the one as drawn: {case}{why}")
+                format!("no design could be judged, not even the one in the design configuration: {case}{why}")
             }
         }
     }
@@ -477,7 +477,7 @@ impl OptimizeFacts {
         let mut tables = vec![Table {
             title: "Goals".into(),
             note: String::new(),
-            header: header(&["goal", "as drawn", "found", "wanted"]),
+            header: header(&["goal", "nominal", "found", "wanted"]),
             rows: self.goals.iter().map(goal).collect(),
         }];
         if !self.limits.is_empty() {
@@ -499,7 +499,7 @@ impl OptimizeFacts {
             tables.push(Table {
                 title: "Limits".into(),
                 note: String::new(),
-                header: header(&["limit", "as drawn", "found", "wanted", "binds"]),
+                header: header(&["limit", "nominal", "found", "wanted", "binds"]),
                 rows: self.limits.iter().map(limit).collect(),
             });
         }
@@ -539,7 +539,7 @@ impl OptimizeFacts {
             tables.push(Table {
                 title: "Hardpoints that move".into(),
                 note: String::new(),
-                header: header(&["hardpoint", "as drawn", "found"]),
+                header: header(&["hardpoint", "nominal", "found"]),
                 rows: self.hardpoints.iter().map(row).collect(),
             });
         }
@@ -553,7 +553,7 @@ impl OptimizeFacts {
         let Evaluations { designs, motions, .. } = self.evaluations;
         let mut rows = vec![
             ("result", self.message.clone()),
-            ("objective", format!("{} as drawn, {} found", shown(before), shown(after))),
+            ("objective", format!("{} in the design configuration, {} found", shown(before), shown(after))),
         ];
         rows.extend(
             self.kkt.map(|kkt| ("optimality", format!("{} of the goals' gradient is left", error(kkt)))),
@@ -562,7 +562,7 @@ impl OptimizeFacts {
             let before = self.margin.before.map_or("-".into(), number);
             rows.push((
                 "margin",
-                format!("{before} as drawn, {} found, to a singular position", number(after)),
+                format!("{before} in the design configuration, {} found, to a singular position", number(after)),
             ));
         }
         if let Some(saved) = &self.saved {
@@ -580,7 +580,7 @@ impl OptimizeFacts {
         if self.starts.len() > 1 {
             let ended = self.starts.iter().filter(|s| s.status == "optimal").count();
             let best = self.best_start.map_or("none".into(), |k| {
-                if k == 0 { "the design as drawn".into() } else { format!("start {k}") }
+                if k == 0 { "the nominal design".into() } else { format!("start {k}") }
             });
             rows.push((
                 "starts",
@@ -623,7 +623,7 @@ impl OptimizeFacts {
                 .is_some_and(|(value, objective)| squares(value, objective))
     }
 
-    /// The page of the design as drawn becomes that of the search: what is told here comes first among its checks, and it opens on what
+    /// The page of the nominal design becomes that of the search: what is reported here comes first among its checks, and it opens on what
     /// the first goal of this motion is taken of, drawn over its abscissa.
     pub fn page(&self, mut page: Payload, model: &Model, outputs: &[Output]) -> Payload {
         let place = |of: OutputSource| outputs.iter().position(|o| o.source == of);
@@ -707,7 +707,7 @@ impl LimitFact {
     }
 }
 
-/// A limit that is exceeded by less than this part of its value, in the unit of the file, is told as kept.
+/// A limit that is exceeded by less than this part of its value, in the unit of the file, is reported as kept.
 const MISSED: f64 = 1e-7;
 
 fn goals(

@@ -33,7 +33,7 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// Its values.
+    /// Values.
     pub fn values(&self) -> &[f32] {
         &self.values
     }
@@ -79,7 +79,7 @@ pub struct Payload {
     pub generator: String,
     /// The user's units.
     pub units: Units,
-    /// Whether the whole motion was solved.
+    /// True if the whole motion was solved.
     pub status: Status,
     /// A handful of figures for the top of the page.
     pub summary: Vec<Fact>,
@@ -111,7 +111,7 @@ pub struct Payload {
     pub first: Option<usize>,
     /// The quantity over which the page draws that one at first, an index into [`Payload::quantities`]; over time where there is none.
     pub over: Option<usize>,
-    /// Other designs over the same motion, to be compared with this one: changed, foreseen, re-solved.
+    /// Other designs over the same motion, to be compared with this one: changed, predicted, re-solved.
     pub designs: Vec<Design>,
     /// Measures over grids of two drivers.
     pub maps: Vec<GridMap>,
@@ -147,7 +147,7 @@ pub struct ModelText {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Detail {
-    /// Every so many steps of those that are kept.
+    /// Every that many steps of those that are kept.
     pub stride: usize,
     /// Curves of body origins.
     pub origins: bool,
@@ -267,7 +267,7 @@ pub struct JointMark {
     pub curve: Option<JointCurve>,
     /// How it is to be drawn, where the model says so: `coilover`, `spring`, `damper`, `cylinder` or `rod`.
     pub draw: Option<String>,
-    /// Whether the joint closes a loop instead of carrying body j.
+    /// True if the joint closes a loop instead of carrying body j.
     pub cut: bool,
 }
 
@@ -275,9 +275,9 @@ pub struct JointMark {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct JointCurve {
-    /// Whether its last point is followed by its first.
+    /// True if its last point is followed by its first.
     pub closed: bool,
-    /// Its points in the frame of the body.
+    /// Points in the frame of the body.
     pub points: Vec<[f64; 3]>,
     /// Unit normal of its plane.
     pub normal: [f64; 3],
@@ -291,7 +291,7 @@ pub struct CouplerMark {
     pub name: String,
     /// `gear`, `bevel`, `rack`, `belt`, `screw`, `linear`: as the model file says.
     pub kind: String,
-    /// Its terms: of a rack first the rack, then the pinion.
+    /// Terms: of a rack first the rack, then the pinion.
     pub terms: Vec<CouplerTerm>,
     /// Teeth of two gears, radii of two pulleys, radius of a rack's pinion, lead of a screw: as the model file says.
     pub sizes: Vec<f64>,
@@ -303,7 +303,7 @@ pub struct CouplerMark {
 pub struct CouplerTerm {
     /// Index into [`Payload::joints`].
     pub joint: usize,
-    /// Whether the coordinate is an angle; a length otherwise.
+    /// True if the coordinate is an angle; a length otherwise.
     pub turns: bool,
     /// Per length unit or per radian of the coordinate.
     pub coefficient: f64,
@@ -319,7 +319,7 @@ pub struct DriverMark {
     pub law: String,
     /// Index into [`Payload::joints`], where a joint is driven that is drawn.
     pub joint: Option<usize>,
-    /// Whether the driven coordinate is an angle; a length otherwise.
+    /// True if the driven coordinate is an angle; a length otherwise.
     pub turns: bool,
     /// The body whose point is driven, and the point in its frame, where that is so.
     pub point: Option<BodyPlace>,
@@ -348,7 +348,7 @@ pub struct BodyPlace {
 pub struct WheelMark {
     /// The user's name.
     pub name: String,
-    /// Its centre, on the body that carries it.
+    /// Centre, on the body that carries it.
     pub centre: BodyPlace,
     /// Unit vector along its spin axis, outboard, in that body's frame.
     pub axis: [f64; 3],
@@ -384,7 +384,7 @@ pub struct LoadMark {
     pub at: BodyPlace,
     /// Three numbers per step: the force in the world, N. What redundant constraints leave open is left out; not a number where nothing is known.
     pub force: Curve,
-    /// Whether something is left out of it at any time.
+    /// True if something is left out of it at any time.
     pub is_part: bool,
 }
 
@@ -406,7 +406,7 @@ pub struct Value {
     pub name: String,
     /// Kind of value, in a few words: `design configuration`, `at the start`, `range`, `largest`, ...
     pub what: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// The number, where the motion reaches it.
     pub value: Option<f64>,
@@ -416,7 +416,7 @@ pub struct Value {
     pub quantity: Option<usize>,
     /// Least and largest value that is wanted, where the model says so.
     pub target: Option<[Option<f64>; 2]>,
-    /// Its derivatives by every design variable, in the order of [`Payload::variables`]; none where one cannot be followed.
+    /// Derivatives by every design variable, in the order of [`Payload::variables`]; none where one cannot be followed.
     pub sensitivities: Vec<Option<f64>>,
 }
 
@@ -434,15 +434,15 @@ pub struct Design {
     pub note: String,
     /// Poses of its bodies, as in [`BodyTrack::poses`].
     pub poses: Vec<Curve>,
-    /// Its hardpoints in the bodies' frames, as in [`BodyTrack::skeleton`].
+    /// Hardpoints in the bodies' frames, as in [`BodyTrack::skeleton`].
     pub skeletons: Vec<Vec<[f64; 3]>>,
-    /// Its forces, as in [`LoadMark::force`], in the order of [`Payload::loads`].
+    /// Forces, as in [`LoadMark::force`], in the order of [`Payload::loads`].
     pub loads: Vec<Curve>,
-    /// Its quantities, in the order of [`Payload::quantities`].
+    /// Quantities, in the order of [`Payload::quantities`].
     pub quantities: Vec<Option<DesignCurves>>,
-    /// Its values, in the order of [`Payload::values`].
+    /// Values, in the order of [`Payload::values`].
     pub values: Vec<Option<f64>>,
-    /// Its distance from singular positions.
+    /// Distance from singular positions.
     pub margin: Option<Curve>,
 }
 
@@ -467,9 +467,9 @@ pub enum DesignKind {
 pub struct DesignCurves {
     /// The quantity, `n` steps.
     pub value: Curve,
-    /// Its first time derivative.
+    /// First time derivative.
     pub rate: Curve,
-    /// Its second time derivative.
+    /// Second time derivative.
     pub accel: Curve,
 }
 
@@ -489,9 +489,9 @@ pub struct Quantity {
     pub group: String,
     /// The quantity, `n` steps.
     pub value: Curve,
-    /// Its first time derivative.
+    /// First time derivative.
     pub rate: Curve,
-    /// Its second time derivative.
+    /// Second time derivative.
     pub accel: Curve,
     /// What a metric wants it to be, `n` steps; empty where none does.
     pub wanted: Curve,
@@ -503,13 +503,13 @@ pub struct Quantity {
 pub struct SweepPlot {
     /// What a point is: `design`, or `posture`.
     pub what: String,
-    /// So many were solved.
+    /// That many were solved.
     pub designs: usize,
     /// Point k is design `k * step`.
     pub step: usize,
     /// The swept variables, then the metrics.
     pub axes: Vec<SweepAxis>,
-    /// Sobol's indices, where they were asked for.
+    /// Sobol's indices, where they were requested.
     pub indices: Vec<SweepIndex>,
 }
 
@@ -517,13 +517,13 @@ pub struct SweepPlot {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct SweepAxis {
-    /// Its name, and the case where there are several.
+    /// Name, and the case where there are several.
     pub name: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
-    /// Whether it is a metric.
+    /// True if it is a metric.
     pub metric: bool,
-    /// Its value in each point.
+    /// Value in each point.
     pub values: Curve,
 }
 
@@ -549,7 +549,7 @@ pub struct GridMap {
     pub name: String,
     /// The two drivers.
     pub drivers: [GridDriver; 2],
-    /// How many positions were reached, and why others were not.
+    /// Number of positions were reached, and why others were not.
     pub note: String,
     /// What is measured.
     pub quantities: Vec<GridQuantity>,
@@ -559,11 +559,11 @@ pub struct GridMap {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct GridDriver {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
-    /// Where it stands, increasing.
+    /// Where it is, increasing.
     pub places: Vec<f64>,
 }
 
@@ -571,13 +571,13 @@ pub struct GridDriver {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct GridQuantity {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
-    /// Its values, row by row.
+    /// Values, row by row.
     pub values: Curve,
-    /// Its derivatives by design variables; none where they would be too many for a page.
+    /// Derivatives by design variables; none where they would be too many for a page.
     pub sensitivities: Vec<GridSensitivity>,
 }
 
@@ -613,7 +613,7 @@ pub struct Variable {
     pub description: String,
     /// Unit of the variable, `1` for a pure number.
     pub unit: String,
-    /// Whether every joint stays intact under this design change.
+    /// True if every joint stays intact under this design change.
     pub admissibility: Admissibility,
     /// A sentence with the joints concerned and their defect; empty when there is nothing to say.
     pub note: String,
@@ -632,7 +632,7 @@ pub struct Variable {
     pub sensitivities: Vec<Sensitivity>,
 }
 
-/// Whether a mechanism can follow a design variable.
+/// True if a mechanism can follow a design variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
@@ -671,7 +671,7 @@ pub struct Sensitivity {
     pub rate: Curve,
     /// Derivative of its second time derivative.
     pub accel: Curve,
-    /// The same by re-solving a changed design, when that was asked for.
+    /// The same by re-solving a changed design, when that was requested.
     pub fd: Option<FiniteDifference>,
 }
 
@@ -679,7 +679,7 @@ pub struct Sensitivity {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct FiniteDifference {
-    /// The curves hold every so many of the `n` steps, from the first: they are drawn as a few marks.
+    /// The curves hold every that many of the `n` steps, from the first: they are drawn as a few marks.
     pub stride: usize,
     /// Difference quotient of the quantity.
     pub value: Curve,
@@ -742,7 +742,7 @@ pub(crate) fn file(title: &str, packed: &[u8]) -> String {
 /// Where a page hears of the server that it comes from: empty in a file.
 const SERVER: &str = "<script type=\"application/json\" id=\"server\">";
 
-/// A page as a server sends it, told `about` the server. Pages are those of this crate.
+/// A page as a server sends it, reported `about` the server. Pages are those of this crate.
 ///
 /// # Errors
 /// When that does not serialise.

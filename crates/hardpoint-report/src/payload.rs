@@ -39,9 +39,9 @@ use crate::validity::ValidityFact;
 const MOST_STEPS: usize = 1000;
 /// Everything but the page's code takes at most this many bytes of it.
 const MOST_BYTES: usize = 8 << 20;
-/// A value of a smooth curve takes between so many bytes of the page; measured where that leaves it open whether all fits.
+/// A value of a smooth curve takes between that many bytes of the page; measured where that leaves it open whether all fits.
 const BYTES_PER_VALUE: [f64; 2] = [0.2, 3.0];
-/// Differences are drawn as so many marks beside the curve that they are compared with.
+/// Differences are drawn as that many marks beside the curve that they are compared with.
 const MARKS: usize = 36;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -54,7 +54,7 @@ pub struct Request<'a> {
     pub analysis: &'a Analysis<'a>,
     /// What was gathered of the whole motion.
     pub course: &'a Course,
-    /// Its facts.
+    /// Facts.
     pub summary: &'a Summary,
     /// `differences[b]` are those of variable b, where there are any; of no variable where this is empty.
     pub differences: &'a [Option<Difference>],
@@ -79,7 +79,7 @@ pub fn payload(request: &Request<'_>) -> Payload {
     fitted(request, &|payload| payload).0
 }
 
-/// A changed design as it stands on the page of today's, which shows so much; `request` is of today's.
+/// A changed design as it is on the page of today's, which shows so much; `request` is of today's.
 pub fn design(request: &Request<'_>, changed: &Changed<'_>, shown: Detail) -> Design {
     let compose = Compose::new(request, None, shown);
     let (bodies, values) = (compose.bodies(), compose.values(request.summary));
@@ -217,7 +217,7 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
 enum Bodies {
     /// All orders.
     Whole,
-    /// Places and turns, at each of so many output times.
+    /// Places and turns, at each of that many output times.
     Places(usize),
     /// Nothing.
     Nothing,
@@ -243,7 +243,7 @@ struct Size {
     outputs: usize,
     /// Forces on bodies.
     loads: usize,
-    /// Whether there are differences to compare with.
+    /// True if there are differences to compare with.
     compared: bool,
     /// Other designs that are shown beside this one.
     designs: usize,
@@ -279,7 +279,7 @@ impl Detail {
         levels
     }
 
-    /// How many values the curves of the page have.
+    /// Number of values the curves of the page have.
     fn values(self, size: Size) -> f64 {
         let steps = size.steps.div_ceil(self.stride);
         let origins = 3 * size.bodies;
@@ -295,7 +295,7 @@ impl Detail {
     }
 }
 
-/// Of so many output times that are shown, differences are drawn at each of these, rounded, so that the marks are nearest to the number
+/// Of that many output times that are shown, differences are drawn at each of these, rounded, so that the marks are nearest to the number
 /// that is wanted.
 pub fn stride_of_marks(steps: usize) -> usize {
     ((steps + MARKS / 2) / MARKS).max(1)
@@ -461,7 +461,7 @@ impl<'a> Compose<'a> {
         self.steps.iter().map(|&k| value(k)).collect()
     }
 
-    /// Of value, rate and acceleration so many; the others are empty.
+    /// Of value, rate and acceleration that many; the others are empty.
     fn curves(&self, orders: usize, value: impl Fn(usize, usize) -> f64) -> [Curve; 3] {
         [0, 1, 2].map(|order| if order < orders { self.curve(|k| value(k, order)) } else { Curve::default() })
     }

@@ -6,7 +6,7 @@
 use hardpoint::Solution;
 use hardpoint::model::{BodyId, VariableId};
 
-/// A design that moves is drawn by so many output times at least, or by all of them.
+/// A design that moves is drawn by that many output times at least, or by all of them.
 const ENOUGH_ROWS: usize = 100;
 /// Place and turn.
 const NUMBERS: usize = 6;
@@ -14,9 +14,9 @@ const NUMBERS: usize = 6;
 /// Places and turns of all bodies by all variables, to first order, at evenly chosen output times.
 #[derive(Clone, Debug)]
 pub(crate) struct Shifts {
-    /// They may take so many bytes.
+    /// They may take that many bytes.
     most: usize,
-    /// Of so many output times, each is kept.
+    /// Of that many output times, each is kept.
     stride: usize,
     bodies: usize,
     /// `places[b * bodies + i]`: where the numbers of body i by variable b begin in a row, if b moves it.
@@ -27,7 +27,7 @@ pub(crate) struct Shifts {
 }
 
 impl Shifts {
-    /// None as yet; they may take so many bytes.
+    /// None as yet; they may take that many bytes.
     pub fn new(most: usize) -> Self {
         Self { most, stride: 1, bodies: 0, places: Vec::new(), width: 0, rows: Vec::new() }
     }
@@ -73,7 +73,7 @@ impl Shifts {
         self.rows.retain(|(time, _)| time.is_multiple_of(stride));
     }
 
-    /// Of so many output times, each is kept; `None` where they are too few, of all that were solved, to draw a motion.
+    /// Of that many output times, each is kept; `None` where they are too few, of all that were solved, to draw a motion.
     pub fn stride(&self, solved: usize) -> Option<usize> {
         (self.bodies > 0 && self.rows.len() >= solved.min(ENOUGH_ROWS)).then_some(self.stride)
     }

@@ -33,7 +33,7 @@ pub struct Summary {
     pub effort: EffortFact,
     /// How far it stayed from singular positions, if anything was solved for.
     pub margin: Option<MarginFact>,
-    /// How the mechanism was closed first, if it was open as drawn.
+    /// How the mechanism was closed first, if it was open in the design configuration.
     pub assembly: Option<AssemblyFact>,
     /// Why it ended early, if it did.
     pub stop: Option<StopFact>,
@@ -70,20 +70,20 @@ pub enum RunStatus {
 /// Output times, s.
 #[derive(Clone, Debug, Serialize)]
 pub struct Steps {
-    /// How many were solved.
+    /// Number of were solved.
     pub solved: usize,
-    /// How many were asked for.
+    /// Number of were requested.
     pub asked: usize,
     /// The first one.
     pub start: f64,
-    /// The last one asked for.
+    /// The last one requested.
     pub end: f64,
     /// The last one solved.
     pub last_solved: Option<f64>,
-    /// Of so many, one was kept for the page, for the margin's series and for what is compared: 1 where all were. The files of
+    /// Of that many, one was kept for the page, for the margin's series and for what is compared: 1 where all were. The files of
     /// results hold all of them.
     pub kept_every: usize,
-    /// Of so many, metrics are taken from each one.
+    /// Of that many, metrics are taken from each one.
     pub metrics_every: usize,
 }
 
@@ -162,11 +162,11 @@ impl StopFact {
 /// A driver's value.
 #[derive(Clone, Debug, Serialize)]
 pub struct DriverValue {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its value.
+    /// Value.
     pub value: f64,
-    /// Its unit.
+    /// Unit.
     pub unit: &'static str,
 }
 
@@ -190,9 +190,9 @@ pub struct Ranked {
     pub per: String,
     /// The sensitivity of largest magnitude, with its sign.
     pub value: f64,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
-    /// Its time, s.
+    /// Time, s.
     pub time: f64,
 }
 

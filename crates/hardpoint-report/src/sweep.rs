@@ -18,7 +18,7 @@ use crate::optimize::{BeforeAfter, Evaluations, case_name};
 use crate::page::{Fact, Payload, SweepAxis, SweepIndex, SweepPlot, Table};
 use crate::tolerance::{FailureFact, bar, header, percent, titled};
 
-/// So many designs are drawn at most, and ranked.
+/// Maximum number of designs are drawn, and ranked.
 pub const DRAWN: usize = 5000;
 
 /// A sweep, in the model's units. As JSON it is `summary.json` of `hardpoint sweep`.
@@ -36,13 +36,13 @@ pub struct SweepFacts {
     pub status: &'static str,
     /// The same in words, and what to do.
     pub message: String,
-    /// The first metric: as drawn, and the least that was found.
+    /// The first metric: in the design configuration, and the least that was found.
     pub objective: BeforeAfter,
     /// What it cost.
     pub evaluations: Evaluations,
     /// Designs that were solved.
     pub designs: usize,
-    /// Designs that were asked for.
+    /// Designs that were requested.
     pub asked: usize,
     /// How they were chosen.
     pub method: &'static str,
@@ -65,17 +65,17 @@ pub struct SweepFacts {
 /// A variable that was swept.
 #[derive(Clone, Debug, Serialize)]
 pub struct SweptVariable {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// The least value; of a parameter its own, of all others a change.
     pub from: f64,
     /// The greatest.
     pub to: f64,
-    /// In a factorial, so many values.
+    /// In a factorial, that many values.
     pub levels: Option<usize>,
-    /// As drawn.
+    /// In the design configuration.
     pub start: f64,
     /// In the design with the least value of the first metric.
     pub end: Option<f64>,
@@ -84,15 +84,15 @@ pub struct SweptVariable {
 /// A metric in one motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct SweptFact {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// In which case; `null` where there are none.
     pub case: Option<String>,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
-    /// As drawn.
+    /// In the design configuration.
     pub drawn: Option<f64>,
-    /// So many designs have it.
+    /// Number of designs have it.
     pub known: usize,
     /// How it is distributed over these.
     pub distribution: Option<DistributionFact>,
@@ -118,11 +118,11 @@ pub struct DistributionFact {
 /// A design with its value of a metric.
 #[derive(Clone, Debug, Serialize)]
 pub struct ExtremeDesign {
-    /// Its number.
+    /// Number.
     pub design: usize,
     /// The metric.
     pub value: f64,
-    /// Its variables, in the order of [`SweepFacts::variables`].
+    /// Variables, in the order of [`SweepFacts::variables`].
     pub variables: Vec<f64>,
 }
 
@@ -135,11 +135,11 @@ pub struct InfluenceFact {
     pub rank_correlation: Option<f64>,
     /// First-order index of Sobol: the part of the variance that is gone where the variable is known. With `method = "indices"`.
     pub first: Option<f64>,
-    /// Its standard error.
+    /// Standard error.
     pub first_error: Option<f64>,
     /// Total index: the part that is left where all others are known.
     pub total: Option<f64>,
-    /// Its standard error.
+    /// Standard error.
     pub total_error: Option<f64>,
     /// Pairs of designs behind both.
     pub pairs: Option<usize>,
@@ -314,7 +314,7 @@ impl Swept<'_> {
             match known.into_iter().find(|(code, m, _)| *code == failure.code && *m == failure.motion) {
                 Some((_, _, fact)) => {
                     fact.count += 1;
-                    // A block is told motion by motion.
+                    // A block is reported motion by motion.
                     fact.first = fact.first.min(failure.number);
                 }
                 None => {
@@ -572,7 +572,7 @@ impl SweepFacts {
                 them are below."
                 .into(),
             header: header(&[
-                "metric", "as drawn", "least", "in design", "5 %", "median", "95 %", "greatest", "in design ", "mean", "sigma",
+                "metric", "nominal", "least", "in design", "5 %", "median", "95 %", "greatest", "in design ", "mean", "sigma",
                 "known",
             ]),
             rows: self.metrics.iter().map(metric).collect(),
@@ -591,8 +591,8 @@ impl SweepFacts {
         let best = self.metrics.first().map_or("-".into(), |m| format!("least {}", titled(&m.name, &m.case)));
         let variables = Table {
             title: "Variables".into(),
-            note: "Of a parameter its value, of all others the change of the design as drawn.".into(),
-            header: vec!["variable".into(), "range".into(), "levels".into(), "as drawn".into(), best],
+            note: "Of a parameter its value, of all others the change of the nominal design.".into(),
+            header: vec!["variable".into(), "range".into(), "levels".into(), "nominal".into(), best],
             rows: self.variables.iter().map(row).collect(),
         };
         tables.push(variables.without_empty_columns());
@@ -616,7 +616,7 @@ impl SweepFacts {
         tables
     }
 
-    /// How metrics go with variables: Sobol's indices where they were asked for, else rank correlations.
+    /// How metrics go with variables: Sobol's indices where they were requested, else rank correlations.
     fn influence_tables(&self) -> Vec<Table> {
         let indices = self.method == SweepMethod::Indices.name();
         let known = self.metrics.iter().filter(|m| m.distribution.as_ref().is_some_and(|d| d.sigma > 0.0));
@@ -678,7 +678,7 @@ impl SweepFacts {
         seconds(self.seconds)
     }
 
-    /// The page of a motion of the design as drawn becomes that of the sweep: what is told here comes first among its checks.
+    /// The page of a motion of the nominal design becomes that of the sweep: what is reported here comes first among its checks.
     pub fn page(
         &self,
         swept: &Swept<'_>,

@@ -17,15 +17,15 @@ use crate::figures::{count, number, rounded, seconds, some_of, unit, with_unit};
 use crate::optimize::{BeforeAfter, Evaluations, case_name};
 use crate::page::{Curve, Design, DesignCurves, DesignKind, Fact, Payload, Table};
 
-/// A band is drawn so many standard deviations to either side of the mean: 99.73 % of a normal distribution.
+/// A band is drawn that many standard deviations to either side of the mean: 99.73 % of a normal distribution.
 const BAND: f64 = 3.0;
-/// Contributions below this part are not told one by one.
+/// Contributions below this part are not reported one by one.
 const SLIGHT: f64 = 1e-3;
-/// What is drawn differs from what derivatives say where so many standard errors are between them.
+/// What is drawn differs from what derivatives say where that many standard errors are between them.
 const ERRORS: f64 = 3.0;
-/// A whole bar in a table has so many marks.
+/// A whole bar in a table has that many marks.
 const BAR: f64 = 40.0;
-/// A histogram has so many bars.
+/// A histogram has that many bars.
 const BARS: usize = 24;
 
 /// A study of tolerances, in the model's units. As JSON it is `summary.json` of `hardpoint tolerance`.
@@ -57,7 +57,7 @@ pub struct ToleranceFacts {
     pub left_out: Vec<String>,
     /// Per metric and case.
     pub metrics: Vec<SpreadFact>,
-    /// Metrics that have no value as drawn.
+    /// Metrics that have no value in the design configuration.
     pub unknown: Vec<String>,
     /// Per limit and case.
     pub limits: Vec<YieldFact>,
@@ -76,11 +76,11 @@ pub struct ToleranceFacts {
 /// A variable that may be off.
 #[derive(Clone, Debug, Serialize)]
 pub struct ToleratedFact {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The tolerance that it belongs to: its own name, or that of a point.
     pub tolerance: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// `uniform`, `normal` or `truncated`.
     pub distribution: &'static str,
@@ -88,7 +88,7 @@ pub struct ToleratedFact {
     pub start: f64,
     /// By how much it may be off with the tolerances that were found; the same where none were sought; `null` where no limit has a say.
     pub end: Option<f64>,
-    /// Its standard deviation.
+    /// Standard deviation.
     pub sigma: f64,
     /// What its tolerance costs.
     pub cost: Option<f64>,
@@ -97,13 +97,13 @@ pub struct ToleratedFact {
 /// A metric in one motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct SpreadFact {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// In which case; `null` where there are none.
     pub case: Option<String>,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
-    /// As drawn.
+    /// In the design configuration.
     pub nominal: f64,
     /// The mean to second order.
     pub mean: Option<f64>,
@@ -146,7 +146,7 @@ pub struct ExtremeFact {
 /// What a variable contributes.
 #[derive(Clone, Debug, Serialize)]
 pub struct Contribution {
-    /// Its name.
+    /// Name.
     pub variable: String,
     /// The part of the variance; negative where it takes away from what a correlated one brings.
     pub share: f64,
@@ -157,15 +157,15 @@ pub struct Contribution {
 /// A metric of the designs drawn.
 #[derive(Clone, Debug, Serialize)]
 pub struct SampledFact {
-    /// How many have it.
+    /// Number of have it.
     pub known: usize,
     /// Mean.
     pub mean: f64,
-    /// Its standard error.
+    /// Standard error.
     pub mean_error: f64,
     /// Standard deviation.
     pub sigma: f64,
-    /// Its standard error.
+    /// Standard error.
     pub sigma_error: f64,
     /// Skewness, 0 where normal.
     pub skewness: f64,
@@ -180,13 +180,13 @@ pub struct SampledFact {
 /// A limit in one motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct YieldFact {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The metric.
     pub metric: String,
     /// In which case.
     pub case: Option<String>,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// It must not be less.
     pub min: Option<f64>,
@@ -196,7 +196,7 @@ pub struct YieldFact {
     pub by_moments: f64,
     /// The part of the designs drawn that keep it.
     pub sampled: Option<f64>,
-    /// Its standard error.
+    /// Standard error.
     pub error: Option<f64>,
     /// What it is worth in an allocation: the cost that would be saved if it gave way by one unit.
     pub worth: Option<f64>,
@@ -209,9 +209,9 @@ pub struct FailureFact {
     pub case: Option<String>,
     /// What happened to the first of them.
     pub why: String,
-    /// Its number.
+    /// Number.
     pub first: usize,
-    /// How many there are.
+    /// Number of there are.
     pub count: usize,
 }
 
@@ -220,7 +220,7 @@ pub struct FailureFact {
 pub struct AllocationFact {
     /// `rss` or `worst_case`.
     pub rule: &'static str,
-    /// How many standard deviations have to fit.
+    /// Number of standard deviations have to fit.
     pub sigmas: Option<f64>,
     /// `found`, or why there are none.
     pub status: String,
@@ -230,7 +230,7 @@ pub struct AllocationFact {
     pub kkt: Option<f64>,
     /// The part of designs drawn from these tolerances that keeps all limits.
     pub sampled: Option<f64>,
-    /// Its standard error.
+    /// Standard error.
     pub error: Option<f64>,
 }
 
@@ -409,7 +409,7 @@ impl Studied<'_> {
         Ok(())
     }
 
-    /// The page of a motion becomes that of the study: its bands beside the curves, and what is told here first among its checks.
+    /// The page of a motion becomes that of the study: its bands beside the curves, and what is reported here first among its checks.
     pub fn page(
         &self,
         facts: &ToleranceFacts,
@@ -621,7 +621,7 @@ impl ToleranceFacts {
             rows.push(("left out", format!("{names}: the mechanism cannot follow")));
         }
         if !self.unknown.is_empty() {
-            rows.push(("no value", format!("{}: not reached as drawn", some_of(&self.unknown, ", "))));
+            rows.push(("no value", format!("{}: not reached in the design configuration", some_of(&self.unknown, ", "))));
         }
         if let Some(a) = &self.allocation {
             let kept = a.sampled.zip(a.error).map_or(String::new(), |(p, e)| {
@@ -670,7 +670,7 @@ impl ToleranceFacts {
                 of squares. Worst case: with every deviation at its worst."
                 .into(),
             header: header(&[
-                "metric", "as drawn", "mean", "sigma", "from", "RSS", "2nd order", "RSS is off by", "bends by", "least", "greatest",
+                "metric", "nominal", "mean", "sigma", "from", "RSS", "2nd order", "RSS is off by", "bends by", "least", "greatest",
             ]),
             rows: self.metrics.iter().map(metric).collect(),
         }];
@@ -825,7 +825,7 @@ pub(crate) fn titled(name: &str, case: &Option<String>) -> String {
     case.as_ref().map_or(name.to_owned(), |case| format!("{name} ({case})"))
 }
 
-/// The standard error of a part of so many designs.
+/// The standard error of a part of that many designs.
 fn standard_error(part: f64, of: usize) -> f64 {
     Yield { kept: (part * of as f64).round() as usize, of }.error()
 }
@@ -961,7 +961,7 @@ fn allocation(studied: &Studied<'_>, found: &Allocation) -> AllocationFact {
         Some(AllocationError::NoCosts) => "none of the variables that can be followed has a cost".into(),
         Some(AllocationError::NoLimits) => "there is no limit to keep".into(),
         Some(AllocationError::AsDrawn(k)) => {
-            format!("limit `{}` is not kept by the design as drawn: change the design first", name(k))
+            format!("limit `{}` is not kept by the nominal design: change the design first", name(k))
         }
         Some(AllocationError::Fixed(k)) => {
             format!("tolerances without a cost use up all room of limit `{}`: give them one", name(k))

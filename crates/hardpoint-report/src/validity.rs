@@ -16,12 +16,12 @@ use crate::summary::Summary;
 pub struct ValidityFact {
     /// The variable.
     pub variable: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// How far it may go either way before the second-order part of some measure is 5 % of the first-order part, over the
     /// whole motion; `null` where all measures are exactly linear, or none depends on the variable.
     pub linear_up_to: Option<f64>,
-    /// Whether all measures that depend on it are exactly linear in it: their second-order parts are round-off.
+    /// True if all measures that depend on it are exactly linear in it: their second-order parts are round-off.
     pub exactly_linear: bool,
     /// The measure that limits it.
     pub limited_by: Option<String>,
@@ -36,7 +36,7 @@ pub struct MeasureValidity {
     pub measure: String,
     /// How far the variable may go, in its unit; `null` where the measure is exactly linear in it.
     pub linear_up_to: Option<f64>,
-    /// Whether the measure is exactly linear in the variable: its second-order part is round-off.
+    /// True if the measure is exactly linear in the variable: its second-order part is round-off.
     pub exactly_linear: bool,
 }
 

@@ -20,9 +20,9 @@ pub struct Verdict {
     pub file: String,
     /// The units.
     pub units: Units,
-    /// Whether every variable that has sensitivities passed.
+    /// True if every variable that has sensitivities passed.
     pub passed: bool,
-    /// Whether it was ended before all variables were checked.
+    /// True if it was ended before all variables were checked.
     pub interrupted: bool,
     /// Which designs were compared.
     pub differences: Differences,
@@ -55,7 +55,7 @@ pub struct Worst {
     pub variable: String,
     /// The quantity.
     pub quantity: String,
-    /// Its largest relative deviation at the step where it agrees best.
+    /// Largest relative deviation at the step where it agrees best.
     pub error: f64,
 }
 
@@ -64,7 +64,7 @@ pub struct Worst {
 pub struct CheckFact {
     /// The variable.
     pub variable: String,
-    /// Its unit; `1` for a plain number.
+    /// Unit; `1` for a plain number.
     pub unit: String,
     /// What came of it.
     pub outcome: Outcome,
@@ -225,7 +225,7 @@ impl Verdict {
 const FIRST_ORDER: &str = "the mechanism cannot follow a finite step exactly, because its redundant constraints part at \
     second order; the difference falls in proportion to the step, as it must";
 
-/// Whether over a decade of steps or more, down to the best one, error and step keep their ratio.
+/// True if over a decade of steps or more, down to the best one, error and step keep their ratio.
 fn falls_in_proportion(sweep: &[StepError]) -> bool {
     const DECADE: f64 = 10.0;
     let mut first = 0;

@@ -1,4 +1,4 @@
-//! `whatif.json`, `whatif.csv` and `whatif.html`: a changed design as it is foreseen and as it is, and which variable moves
+//! `whatif.json`, `whatif.csv` and `whatif.html`: a changed design as it is predicted and as it is, and which variable moves
 //! which measure most.
 
 use std::io::Write;
@@ -34,11 +34,11 @@ pub struct WhatIfFacts {
     pub change: Vec<ChangeFact>,
     /// The nearest admissible change, where this one is none: what would keep the joints closed.
     pub nearest: Vec<ChangeFact>,
-    /// Whether and how the mechanism follows, in a sentence.
+    /// True if and how the mechanism follows, in a sentence.
     pub follows: String,
     /// How far the mechanism stays from singular positions, today and changed.
     pub margins: [Option<MarginFact>; 2],
-    /// Per measure, how it changes and how well that was foreseen.
+    /// Per measure, how it changes and how well that was predicted.
     pub measures: Vec<MeasureFact>,
     /// What the change makes of the metrics.
     pub metrics: Vec<MetricChange>,
@@ -53,11 +53,11 @@ pub struct WhatIfFacts {
 /// A variable that is changed.
 #[derive(Clone, Debug, Serialize)]
 pub struct ChangeFact {
-    /// Its name.
+    /// Name.
     pub variable: String,
     /// By how much.
     pub by: f64,
-    /// Its unit; `1` for a plain number.
+    /// Unit; `1` for a plain number.
     pub unit: String,
 }
 
@@ -83,9 +83,9 @@ impl ChangeFact {
 /// A measure's curves.
 #[derive(Clone, Debug, Serialize)]
 pub struct MeasureFact {
-    /// Its name.
+    /// Name.
     pub measure: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// Largest exact change over the motion, with its sign.
     pub change: Option<f64>,
@@ -94,16 +94,16 @@ pub struct MeasureFact {
     /// Largest error of the first-order prediction, and of the second-order one; `null` where that is not known, as of a
     /// velocity.
     pub errors: Option<[Option<f64>; 2]>,
-    /// How many times this change could be made before the second-order part is 5 % of the first-order one; `null` where
+    /// Number of times this change could be made before the second-order part is 5 % of the first-order one; `null` where
     /// the measure is exactly linear along the change, or does not change to first order.
     pub linear_up_to: Option<f64>,
-    /// Whether the measure is exactly linear along the change: its second-order part is round-off.
+    /// True if the measure is exactly linear along the change: its second-order part is round-off.
     pub exactly_linear: bool,
     /// Over the output times: today's value.
     pub today: Vec<f64>,
-    /// As foreseen to first order, and to second order; empty where nothing is foreseen.
+    /// As predicted to first order, and to second order; empty where nothing is predicted.
     pub first: Vec<f64>,
-    /// As foreseen to second order.
+    /// As predicted to second order.
     pub second: Vec<f64>,
     /// Re-solved.
     pub exact: Vec<f64>,
@@ -120,7 +120,7 @@ pub struct InfluenceFact {
     pub largest: f64,
     /// Time of that, s.
     pub time: f64,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// The variable's unit.
     pub per: String,
@@ -213,7 +213,7 @@ impl WhatIfFacts {
         ChangeFact::line(&self.change)
     }
 
-    /// How the measures change, and how well that was foreseen; of those asked for, or of all.
+    /// How the measures change, and how well that was predicted; of those requested, or of all.
     pub fn table(&self, wanted: &dyn Fn(&str) -> bool) -> Table {
         let range = |x: &[f64]| {
             let low = x.iter().copied().fold(f64::INFINITY, f64::min);
@@ -240,7 +240,7 @@ impl WhatIfFacts {
         Table {
             title: format!("What if {}", self.change_line()),
             note: "Predictions come from today's derivatives, without solving again; the exact curves are re-solved. \
-                   \"Linear up to\": so many times this change, the second-order part is 5 % of the first-order one."
+                   \"Linear up to\": that many times this change, the second-order part is 5 % of the first-order one."
                 .into(),
             header: [
                 "measure",
@@ -259,7 +259,7 @@ impl WhatIfFacts {
         }
     }
 
-    /// The variables that move a measure most, the strongest first; so many of each unit, and none that does not move it.
+    /// The variables that move a measure most, the strongest first; that many of each unit, and none that does not move it.
     pub fn ranking(&self, measure: &str, shown: usize) -> Table {
         let mut units: Vec<&str> = Vec::new();
         let of_measure = || self.influence.iter().filter(|i| i.measure == measure && i.largest != 0.0);
@@ -324,7 +324,7 @@ impl WhatIfFacts {
         Ok(())
     }
 
-    /// The page of today's design becomes that of the changed one: what is told here comes first among its checks, and it opens
+    /// The page of today's design becomes that of the changed one: what is reported here comes first among its checks, and it opens
     /// on the first of the `asked` measures, drawn over another one.
     pub fn page(
         &self,
@@ -377,7 +377,7 @@ impl WhatIfFacts {
 }
 
 impl MeasureFact {
-    /// Its curves, as far as they are known.
+    /// Curves, as far as they are known.
     fn curves(&self) -> impl Iterator<Item = (&'static str, &[f64])> {
         let all = [&self.today, &self.first, &self.second, &self.exact].map(Vec::as_slice);
         CURVES.into_iter().zip(all).filter(|(_, curve)| !curve.is_empty())
@@ -386,14 +386,14 @@ impl MeasureFact {
 
 const CURVES: [&str; 4] = ["today", "first order", "second order", "exact"];
 
-/// So many variables of each unit does the page's ranking of a measure show.
+/// Number of variables of each unit does the page's ranking of a measure show.
 const MOST_RANKED: usize = 10;
 
-/// Whether and how the mechanism follows a change.
+/// True if and how the mechanism follows a change.
 pub(crate) fn follows(model: &Model, what_if: &WhatIf) -> String {
     if !what_if.cannot_follow.is_empty() {
         let which = what_if.cannot_follow.iter().map(|v| model.variables[v.0].name.as_str());
-        return format!("the mechanism cannot follow {}: nothing is foreseen", names(which));
+        return format!("the mechanism cannot follow {}: nothing is predicted", names(which));
     }
     if what_if.opens.is_empty() {
         return "admissible: every joint stays closed, nothing is re-assembled".into();
@@ -402,7 +402,7 @@ pub(crate) fn follows(model: &Model, what_if: &WhatIf) -> String {
     format!("re-assembled: {} opens in the design configuration and is closed again by moving", names(joints))
 }
 
-/// Every measure (or every point, where there are no measures) by every variable, the strongest first within each. What goes by
+/// Every measure (or every point, where there are no measures) by every variable, the strongest first within each. What depends on
 /// two names is ranked once, and what moves a measure by round-off only does not move it.
 fn influence(model: &Model, units: Units, today: &Solution) -> Vec<InfluenceFact> {
     let measured = &today.measured;

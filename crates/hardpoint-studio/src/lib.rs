@@ -5,7 +5,7 @@
 //! open, and goes in an engine of its own while the first stays free.
 //!
 //! An answer is a block of bytes: the length of its JSON as four bytes, the JSON, zeros up to a multiple of four, then the numbers of its
-//! curves, `f32`, all little-endian. A curve stands in the JSON as the place of its first number and how many it has.
+//! curves, `f32`, all little-endian. A curve is in the JSON as the place of its first number and how many it has.
 
 mod offer;
 mod open;
@@ -27,7 +27,7 @@ pub use protocol::{
 
 use open::Open;
 
-/// Is told how far a study is, and may end it.
+/// Is reported how far a study is, and may end it.
 pub type ProgressListener<'t> = dyn FnMut(&ProgressReply) -> ControlFlow<()> + Send + 't;
 
 /// Answers what a page asks.

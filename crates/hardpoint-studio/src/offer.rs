@@ -15,7 +15,7 @@ use crate::protocol::{
     ToleranceOffer,
 };
 
-/// A search has so many starts and iterations where the text does not say.
+/// A search has that many starts and iterations where the text does not say.
 const STARTS: usize = 1;
 const ITERATIONS: usize = 100;
 
@@ -93,7 +93,7 @@ fn sentence(model: &Model, units: Units, limit: &Limit) -> String {
     }
 }
 
-/// What is asked, on top of what the text says; the model has the bounds that are asked for.
+/// What is asked, on top of what the text says; the model has the bounds that are requested.
 pub(crate) fn asked(
     file: &mut ModelFile,
     request: &OptimizeRequest,

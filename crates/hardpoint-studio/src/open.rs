@@ -19,7 +19,7 @@ use crate::protocol::{
 };
 use crate::{Refusal, first_case, read, whole};
 
-/// Where a design cannot be reached, so many times the way to it is halved: the last step is a thousandth of it.
+/// Where a design cannot be reached, that many times the way to it is halved: the last step is a thousandth of it.
 const HALVINGS: usize = 10;
 
 /// A model that is open.
@@ -30,7 +30,7 @@ pub(crate) struct Open {
     /// The file in the case that is shown, with the same variables.
     file: ModelFile,
     analysis: Analysis<'static>,
-    /// The design as it stands in the text.
+    /// The design as it is in the text.
     today: Course,
     /// As the page shows it, without variables.
     bare: ModelFile,
@@ -184,7 +184,7 @@ impl Open {
         Ok(values)
     }
 
-    /// A design's motion, and why it ends before that of the design as it stands does.
+    /// A design's motion, and why it ends before that of the design as it is does.
     fn solved(&mut self, values: &[f64]) -> (Solution, Option<DiagnosticMessage>) {
         let memory = std::mem::take(&mut self.memory);
         let run = Run::new().at(values).without_sensitivities().reusing(memory);

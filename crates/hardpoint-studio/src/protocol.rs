@@ -12,7 +12,7 @@ use ts_rs::TS;
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "ask", rename_all = "snake_case")]
 pub enum Request {
-    /// Whether a text is a model. Answered by [`CheckReply`]; nothing that is open changes.
+    /// True if a text is a model. Answered by [`CheckReply`]; nothing that is open changes.
     Check {
         /// The text.
         #[cfg_attr(test, ts(type = "ModelText"))]
@@ -89,7 +89,7 @@ pub struct OptimizeRequest {
     pub goals: Vec<GoalChoice>,
     /// From how many designs it starts.
     pub starts: usize,
-    /// After so many iterations a search ends.
+    /// After that many iterations a search ends.
     pub iterations: usize,
 }
 
@@ -97,7 +97,7 @@ pub struct OptimizeRequest {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct VariableChoice {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Lowest and highest change, or value of a parameter.
     pub bounds: [f64; 2],
@@ -107,7 +107,7 @@ pub struct VariableChoice {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct GoalChoice {
-    /// Its name.
+    /// Name.
     pub metric: String,
     /// How much its unit counts.
     pub weight: f64,
@@ -127,7 +127,7 @@ pub struct OptimizeOffer {
     pub limits: Vec<String>,
     /// From how many designs it starts.
     pub starts: usize,
-    /// After so many iterations a search ends.
+    /// After that many iterations a search ends.
     pub iterations: usize,
 }
 
@@ -135,13 +135,13 @@ pub struct OptimizeOffer {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct SearchVariable {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// Lowest and highest change, or value of a parameter; none where the text has no bounds.
     pub bounds: Option<[f64; 2]>,
-    /// Whether the search of the text changes it.
+    /// True if the search of the text changes it.
     pub chosen: bool,
 }
 
@@ -149,9 +149,9 @@ pub struct SearchVariable {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct SearchGoal {
-    /// Its name.
+    /// Name.
     pub metric: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// The value of the design of the text, in the first case that it is taken in, where it is known.
     pub value: Option<f64>,
@@ -159,9 +159,9 @@ pub struct SearchGoal {
     pub weight: f64,
     /// Where it is to be; as small as possible where there is none.
     pub target: Option<f64>,
-    /// Whether its target is a curve, which the text has: then it has none of its own.
+    /// True if its target is a curve, which the text has: then it has none of its own.
     pub curve: bool,
-    /// Whether it is a goal of the text.
+    /// True if it is a goal of the text.
     pub chosen: bool,
 }
 
@@ -173,7 +173,7 @@ pub struct ToleranceOffer {
     pub tolerances: Vec<ToleranceChoice>,
     /// What is looked at.
     pub metrics: Vec<String>,
-    /// So many designs are drawn.
+    /// Number of designs are drawn.
     pub samples: usize,
     /// What they are drawn from.
     #[cfg_attr(test, ts(type = "number"))]
@@ -184,11 +184,11 @@ pub struct ToleranceOffer {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ToleranceChoice {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// By so much either way.
     pub tolerance: f64,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// How it scatters.
     pub distribution: String,
@@ -198,7 +198,7 @@ pub struct ToleranceChoice {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ToleranceRequest {
-    /// So many designs are drawn and solved exactly.
+    /// Number of designs are drawn and solved exactly.
     pub samples: usize,
     /// What they are drawn from: the same number gives the same designs.
     pub seed: u32,
@@ -221,7 +221,7 @@ pub struct DiagnosticMessage {
     /// `error`, `warning` or `note`.
     #[cfg_attr(test, ts(type = "'error' | 'warning' | 'note'"))]
     pub severity: String,
-    /// Its stable code.
+    /// Stable code.
     pub code: String,
     /// The headline, enough alone.
     pub message: String,
@@ -229,7 +229,7 @@ pub struct DiagnosticMessage {
     pub line: Option<usize>,
     /// Column of the line in characters, from 1.
     pub column: Option<usize>,
-    /// How many characters are meant.
+    /// Number of characters are meant.
     pub length: Option<usize>,
     /// What to write at that place.
     pub label: Option<String>,
@@ -243,7 +243,7 @@ impl DiagnosticMessage {
     /// A diagnostic of this text.
     pub(crate) fn of(text: &str, d: &Diagnostic) -> Self {
         let length = d.span.as_ref().and_then(|span| text.get(span.clone())).map(|part| part.chars().count());
-        // What stands in an included file has no place in the text that the page shows.
+        // What is in an included file has no place in the text that the page shows.
         let is_here = d.span.is_none() || length.is_some();
         let message = match (is_here, d.line) {
             (false, Some(line)) => format!("{}, line {line}: {}", d.file, d.message),
@@ -304,7 +304,7 @@ pub struct OpenReply {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct MovableHardpoint {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Where it is in the drawing, in the model's unit.
     pub place: [f64; 3],
@@ -328,12 +328,12 @@ pub struct Coordinate {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct DesignReply {
-    /// The part of the way to the design that was asked for, 0 to 1: 1 where it is that one.
+    /// The part of the way to the design that was requested, 0 to 1: 1 where it is that one.
     pub part: f64,
     /// The design; `None` where nothing of its motion could be solved.
     #[cfg_attr(test, ts(type = "Design | null"))]
     pub design: Option<Design>,
-    /// Why it is not the one asked for, or why its motion ends early.
+    /// Why it is not the one requested, or why its motion ends early.
     pub why: Option<DiagnosticMessage>,
 }
 
@@ -378,7 +378,7 @@ pub struct ProgressReply {
     pub total: Option<usize>,
     /// What has happened, in a line.
     pub line: String,
-    /// The design that the study stands at.
+    /// The design that the study is at.
     pub change: Option<Vec<VariableSetting>>,
 }
 

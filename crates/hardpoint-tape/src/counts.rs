@@ -50,7 +50,7 @@ impl Kinds {
 }
 
 impl Program {
-    /// How many instructions it has of each kind.
+    /// Number of instructions it has of each kind.
     pub fn kinds(&self) -> Kinds {
         use Instruction::*;
         let mut kinds = Kinds::default();

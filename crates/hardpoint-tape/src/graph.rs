@@ -17,7 +17,7 @@ use crate::program::{Call, Instruction, Operand, Program};
 /// How a recording is turned into a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Whether products are fused with the sums that take them, which rounds once instead of twice. Where they are not, every
+    /// True if products are fused with the sums that take them, which rounds once instead of twice. Where they are not, every
     /// operation rounds, also that of [`Number::times_plus`](crate::Number::times_plus): the program gives the bits of plain `f64`.
     pub fuse: bool,
 }
@@ -111,7 +111,7 @@ const NONE: u32 = u32::MAX;
 /// The nodes that a recording comes to, operands before what is computed from them.
 struct Graph {
     nodes: Vec<Node>,
-    /// Open addressing: where in `nodes` a node with this hash stands; a power of two of places, at most half of them taken.
+    /// Open addressing: where in `nodes` a node with this hash is; a power of two of places, at most half of them taken.
     table: Vec<u32>,
     outputs: Vec<Signed>,
     /// How often live nodes and outputs read each node; 0 is dead.
@@ -340,7 +340,7 @@ impl Graph {
         matches!(self.nodes[node as usize].kind, Kind::Constant | Kind::Input | Kind::Uniform)
     }
 
-    /// Whether it is computed by an instruction of its own.
+    /// True if it is computed by an instruction of its own.
     fn is_instruction(&self, node: u32) -> bool {
         self.uses[node as usize] > 0 && !self.absorbed[node as usize] && !self.is_leaf(node)
     }
@@ -491,7 +491,7 @@ impl Graph {
         order
     }
 
-    /// How many values are live at most in this order.
+    /// Maximum number of values are live in this order.
     fn live_in(&self, order: &[u32]) -> usize {
         let mut last = vec![0u32; self.nodes.len()];
         for (k, node) in order.iter().enumerate() {
@@ -536,7 +536,7 @@ impl Graph {
     }
 }
 
-/// Whether division by it is multiplication by its inverse, exactly.
+/// True if division by it is multiplication by its inverse, exactly.
 fn is_power_of_two(y: f64) -> bool {
     y.is_normal() && (1.0 / y).is_normal() && y.to_bits() << 12 == 0
 }
@@ -549,13 +549,13 @@ struct Writer<'a> {
     program: Program,
     /// The instruction that computes a node; of a constant its place in the program, [`NONE`] before it is used.
     place: Vec<u32>,
-    /// Whether that is the node's negative.
+    /// True if that is the node's negative.
     flipped: Vec<bool>,
     /// The instruction, or the constant, that is the negative of what `place` is.
     opposite: Vec<u32>,
-    /// Whether a node is an output as it is, and as its negative.
+    /// True if a node is an output as it is, and as its negative.
     given: Vec<[bool; 2]>,
-    /// Whether a node is wanted as its negative, by a reader to whom the sign is not free.
+    /// True if a node is wanted as its negative, by a reader to whom the sign is not free.
     wanted: Vec<Wanted>,
     negations: usize,
 }
@@ -654,7 +654,7 @@ impl<'a> Writer<'a> {
         (operand, self.minus(x))
     }
 
-    /// Whether what is computed for a number is its negative.
+    /// True if what is computed for a number is its negative.
     fn minus(&self, x: Signed) -> bool {
         x.negative() != self.flipped[x.node() as usize]
     }

@@ -7,10 +7,10 @@ use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, dispatch, f64x8};
 
 use crate::program::{Call, Instruction, LANES, Lanes, Operand, Program};
 
-/// How many numbers go through an instruction at a time.
+/// Number of numbers go through an instruction at a time.
 pub const WIDE: usize = ABREAST * LANES;
 
-/// How many groups of lanes go side by side.
+/// Number of groups of lanes go side by side.
 const ABREAST: usize = 4;
 
 /// A program made ready to be run, with its working memory.
@@ -113,7 +113,7 @@ impl Interpreter {
         }
     }
 
-    /// How many slots its values share.
+    /// Number of slots its values share.
     pub fn slots(&self) -> usize {
         self.slots.len() / ABREAST
     }

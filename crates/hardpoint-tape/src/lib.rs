@@ -35,7 +35,7 @@
 //!
 //! # What it does not do
 //!
-//! It does not record decisions: a program has no branches. What was decided while recording must be asked for again after every run,
+//! It does not record decisions: a program has no branches. What was decided while recording must be requested again after every run,
 //! by outputs that are compared with what they may be. It does not re-arrange sums, or replace a division by a multiplication, unless
 //! that gives the same bits.
 

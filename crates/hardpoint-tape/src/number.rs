@@ -93,7 +93,7 @@ pub fn record<O: IntoIterator<Item = Number>>(f: impl FnOnce() -> O) -> Recordin
 }
 
 impl Session {
-    /// Where `number` stands in this session.
+    /// Where `number` is in this session.
     #[inline(always)]
     fn place(&self, number: Number) -> u32 {
         if number.session != self.id {

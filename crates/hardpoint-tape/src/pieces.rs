@@ -22,14 +22,14 @@ pub struct Pieces {
     pub shapes: Vec<Shape>,
     /// The pieces, in the order in which they are run.
     pub pieces: Vec<Piece>,
-    /// How many numbers are kept while they run.
+    /// Number of numbers are kept while they run.
     pub kept: usize,
 }
 
 /// The program of several pieces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
-    /// Its outputs are those that are kept, and then those in the second and in the third area.
+    /// Outputs are those that are kept, and then those in the second and in the third area.
     pub program: Program,
     /// Where the outputs that are kept end, and those in the second area.
     pub ends: [usize; AREAS - 1],
@@ -44,7 +44,7 @@ pub struct Piece {
     pub inputs: Vec<Operand>,
     /// Which uniforms of the whole program are its first ones.
     pub given: Vec<u32>,
-    /// Its other uniforms.
+    /// Other uniforms.
     pub uniforms: Vec<f64>,
     /// Which of the numbers that are kept are its own.
     pub kept: Range<usize>,
@@ -82,7 +82,7 @@ impl Program {
 }
 
 impl Pieces {
-    /// How many instructions its shapes have.
+    /// Number of instructions its shapes have.
     pub fn instructions(&self) -> usize {
         self.shapes.iter().map(|shape| shape.program.instructions.len()).sum()
     }
@@ -154,7 +154,7 @@ const _: () = assert!(size_of::<Line>() == LANES * size_of::<f64>());
 
 /// What belongs to which piece.
 struct Cut {
-    /// Whether a later piece reads it.
+    /// True if a later piece reads it.
     is_read: Vec<bool>,
     pieces: Vec<Members>,
     ends: [usize; AREAS - 1],

@@ -6,7 +6,7 @@ use fearless_simd::{Level, SimdBase, SimdFloat, dispatch, f64x8};
 
 use crate::number::larger;
 
-/// How many scalars sit side by side.
+/// Number of scalars sit side by side.
 pub const LANES: usize = 8;
 
 /// The scalars of one number, lane by lane.
@@ -38,7 +38,7 @@ macro_rules! calls {
             /// All of them.
             pub const ALL: &[Self] = &[$(Self::$Call),*];
 
-            /// Its name in mathematics.
+            /// Name in mathematics.
             pub fn name(self) -> &'static str {
                 match self { $(Self::$Call => $name),* }
             }
@@ -48,7 +48,7 @@ macro_rules! calls {
                 match self { $(Self::$Call => { let ($a, $b) = (a, b); $value })* }
             }
 
-            /// Whether it is a function of two numbers.
+            /// True if it is a function of two numbers.
             pub fn is_of_two(self) -> bool {
                 match self { $(Self::$Call => $operands == 2),* }
             }
@@ -119,9 +119,9 @@ pub enum Instruction {
 /// Instruction `k` computes [`Operand::Value`]`(k)` and reads values below `k` only.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Program {
-    /// How many inputs a run is given for each group of [`LANES`].
+    /// Number of inputs a run is given for each group of [`LANES`].
     pub inputs: usize,
-    /// How many uniforms a run is given.
+    /// Number of uniforms a run is given.
     pub uniforms: usize,
     /// The numbers of the program itself.
     pub constants: Vec<f64>,
@@ -171,7 +171,7 @@ impl Instruction {
         }
     }
 
-    /// Its result for scalar operands; `fused` says whether products are fused with sums ([`fuses`]).
+    /// Result for scalar operands; `fused` says whether products are fused with sums ([`fuses`]).
     pub fn of(self, mut x: impl FnMut(Operand) -> f64, fused: bool) -> f64 {
         use Instruction::*;
         let product_plus = |a: f64, b: f64, c: f64| if fused { a.mul_add(b, c) } else { a * b + c };
@@ -226,7 +226,7 @@ impl Program {
         }
     }
 
-    /// How many values are live at most at a time: computed, and still to be read. What is only given back is written at once, and is
+    /// Maximum number of values are live at a time: computed, and still to be read. What is only given back is written at once, and is
     /// not counted.
     pub fn live(&self) -> usize {
         let mut last = vec![0; self.instructions.len()];
@@ -257,7 +257,7 @@ impl Program {
     }
 }
 
-/// Whether lanes of this CPU fuse a product with a sum, rounding once. Where they cannot, both are rounded.
+/// True if lanes of this CPU fuse a product with a sum, rounding once. Where they cannot, both are rounded.
 pub fn fuses() -> bool {
     // (1 + h)^2 - (1 + 2 h) is h^2, or 0 where the square is rounded first.
     const H: f64 = 1.0 / (1u64 << 30) as f64;

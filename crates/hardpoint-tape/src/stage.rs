@@ -34,7 +34,7 @@ impl Program {
         /// Where a value of the whole is found in the rest.
         #[derive(Clone, Copy)]
         enum Place {
-            /// Value of the first part, by its number there; not asked for so far.
+            /// Value of the first part, by its number there; not requested so far.
             First(u32),
             Rest(Operand),
         }
@@ -54,7 +54,7 @@ impl Program {
                 },
                 leaf => rest.leaf(leaf),
             };
-        // A value that the rest has asked for is still one of the first part.
+        // A value that the rest has requested is still one of the first part.
         let mut value_in_first = vec![None; self.instructions.len()];
         for (k, instruction) in self.instructions.iter().enumerate() {
             let is_early = instruction.operands().all(|operand| match operand {

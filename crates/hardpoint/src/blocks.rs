@@ -26,7 +26,7 @@ pub(crate) struct ResultBlock<'b> {
     pub derivatives: &'b [[f64; 8]],
 }
 
-/// So many numbers per output time.
+/// Number of numbers per output time.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blocks {
     width: usize,
@@ -49,12 +49,12 @@ impl Default for BlockLayout {
 }
 
 impl Blocks {
-    /// Those of one of the designs that stand side by side, so many numbers per output time.
+    /// Those of one of the designs that stand side by side, that many numbers per output time.
     pub fn of_design(lines: Arc<Vec<AlignedLanes>>, width: usize, lane: usize) -> Self {
         Self { width, place: BlockLayout::Designs { lines, lane } }
     }
 
-    /// Room for so many numbers at each of so many output times, in the memory that there is; what stands in it means nothing, but zeros
+    /// Room for that many numbers at each of that many output times, in the memory that there is; what is in it means nothing, but zeros
     /// where nothing was written since it had another width.
     pub fn shape(&mut self, width: usize, steps: usize) {
         if self.width != width {
@@ -139,7 +139,7 @@ impl Blocks {
         self.set(k, 0, from.row(j).all());
     }
 
-    /// Of so many output times, every second is dropped.
+    /// Of that many output times, every second is dropped.
     pub fn thin(&mut self, steps: usize) {
         for k in 0..steps.div_ceil(2) {
             for column in 0..self.width {

@@ -7,7 +7,7 @@
 //! # Example
 //!
 //! Does the foot of an inclined slide move faster if its pivot goes up? A crank of 3 and a rod of 5 push a slider
-//! along x; at the design configuration the crank stands upright, so the slider is at x = 4.
+//! along x; at the design configuration the crank is upright, so the slider is at x = 4.
 //!
 //! ```
 //! use hardpoint::{Analysis, draft::Draft, law::Law, model::Model};

@@ -1,7 +1,7 @@
 //! The engine for a page: three functions around one block of memory that goes in and one that comes out.
 //!
-//! The page asks for room ([`room`]), writes its request there, calls [`answer`], and reads so many bytes at [`answered`]. While a study is
-//! under way it is told how far it is by its own function `tell(place, length)`: JSON. Should the engine ever panic, it says so by
+//! The page asks for room ([`room`]), writes its request there, calls [`answer`], and reads that many bytes at [`answered`]. While a study is
+//! under way it is reported how far it is by its own function `tell(place, length)`: JSON. Should the engine ever panic, it says so by
 //! `panicked(place, length)`, and ends.
 
 #![allow(
@@ -22,13 +22,13 @@ thread_local! {
 
 #[link(wasm_import_module = "page")]
 unsafe extern "C" {
-    /// So many bytes at a place say how far a study is.
+    /// Number of bytes at a place say how far a study is.
     safe fn tell(place: *const u8, length: usize);
-    /// So many bytes at a place say why the engine ends here.
+    /// Number of bytes at a place say why the engine ends here.
     safe fn panicked(place: *const u8, length: usize);
 }
 
-/// Room for a request of so many bytes.
+/// Room for a request of that many bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn room(length: usize) -> *mut u8 {
     REQUEST.with_borrow_mut(|request| {

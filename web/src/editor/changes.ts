@@ -1,4 +1,4 @@
-/** Puts a text in place of what stands from one place to another. */
+/** Puts a text in place of what is from one place to another. */
 export interface Change {
   from: number
   to: number
@@ -6,7 +6,7 @@ export interface Change {
 }
 
 /**
- * What makes one text of another, both in lines: as little as stands between what both begin and end with, line by line where both have
+ * What makes one text of another, both in lines: as little as is between what both begin and end with, line by line where both have
  * the same number of lines in between. A line break counts one.
  */
 export function changes(before: readonly string[], after: readonly string[]): Change[] {

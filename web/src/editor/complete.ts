@@ -94,7 +94,7 @@ function unique(suggestions: Suggestion[]): Suggestion[] {
   return [...new Map(suggestions.map((one) => [one.label, one])).values()]
 }
 
-/** What a schema stands for: itself, what it refers to, and each of several. */
+/** What a schema represents: itself, what it refers to, and each of several. */
 function forms(node: Schema, root: Schema, seen = new Set<Schema>()): Schema[] {
   if (seen.has(node)) return []
   seen.add(node)

@@ -17,7 +17,7 @@ import { theme } from './theme'
 const PAUSE = 250
 /** Milliseconds within which typing on is one step of undo. */
 const STEP = 500
-/** A check that fails is asked for so often: what checks may have been ended for something else. */
+/** A check that fails is requested so often: what checks may have been ended for something else. */
 const TRIES = 3
 /** Messages that are listed; the status counts all. */
 const LISTED = 100
@@ -34,14 +34,14 @@ export interface Options {
 /** The model's text, checked while it is typed. */
 export interface Editor {
   readonly element: HTMLElement
-  /** As it stands, valid or not. */
+  /** As it is, valid or not. */
   readonly text: string
   /**
    * Puts another text in its place, valid and shown by the page already, by the smallest change: the cursor, what is seen and the steps of
    * undo stay. It is one step, or part of the one before where that came from outside too (`sameStep`), as in a drag.
    */
   setText(text: string, sameStep?: boolean): void
-  /** Adds what solving the text told to what checking it told; until it changes. */
+  /** Adds what solving the text reported to what checking it reported; until it changes. */
   tell(messages: Diagnostic[]): void
   /** Puts the cursor at a line and column, both from 1, the column in characters, and shows it. */
   reveal(line: number, column: number): void
@@ -50,7 +50,7 @@ export interface Editor {
   destroy(): void
 }
 
-/** Where a change comes from that was not typed, and whether it goes on with the one before. */
+/** Where a change comes from that was not typed, and whether it continues with the one before. */
 const outside = Annotation.define<{ sameStep: boolean }>()
 
 /** Makes the pane of the model's text; put its element into the page before it is given the focus. */
@@ -58,7 +58,7 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
   let lineBreak = lineBreakOf(text)
   /** The text that the page shows: the last valid one. */
   let shown = ''
-  /** Of the present text: what the check told, and what solving it did. */
+  /** Of the present text: what the check reported, and what solving it did. */
   let checked: Diagnostic[] = []
   let solved: Diagnostic[] = []
   let waiting: ReturnType<typeof setTimeout> | undefined
@@ -78,7 +78,7 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
     el('button', { type: 'button', title: 'Find and replace (Ctrl+F)', 'data-testid': 'model-find', onclick: () => openSearchPanel(view) }, 'Find'),
     status)
 
-  /** Typing within a while joins the step before where it is beside it; what comes from outside joins where it is told to. */
+  /** Typing within a while joins the step before where it is beside it; what comes from outside joins where it is reported to. */
   let before: { outside: boolean; time: number } = { outside: false, time: -Infinity }
   const joins = (transaction: Transaction, beside: boolean): boolean => {
     const foreign = transaction.annotation(outside)
@@ -217,7 +217,7 @@ function failure(error: unknown): Diagnostic {
   return { severity: 'error', code: '', message, line: null, column: null, length: null, label: null, notes: [], help: null }
 }
 
-/** Longer texts are read through for a completion only when it is asked for, characters. */
+/** Longer texts are read through for a completion only when it is requested, characters. */
 const LONG = 200_000
 
 function complete({ state, pos, explicit }: CompletionContext, schema?: Schema): CompletionResult | null {
@@ -228,7 +228,7 @@ function complete({ state, pos, explicit }: CompletionContext, schema?: Schema):
   return { from: found.from, options, validFor: /^[\w-]*$/ }
 }
 
-/** What is said of a word stands below the list of words, or above it, so that it hides none of them. */
+/** What is said of a word is below the list of words, or above it, so that it hides none of them. */
 function beside(_: EditorView, list: Rect, __: Rect, info: Rect, space: Rect): { style: string } {
   const fits = list.bottom + info.bottom - info.top <= space.bottom
   return { style: `left: 0; ${fits ? 'top' : 'bottom'}: calc(100% + 2px)` }

@@ -3,13 +3,13 @@ import type { Text } from '@codemirror/state'
 import { el, prose } from '../dom'
 import type { Diagnostic } from '../engine/engine'
 
-/** Where something stands in a text, in the editor's count. */
+/** Where something is in a text, in the editor's count. */
 export interface Span {
   from: number
   to: number
 }
 
-/** So many characters from a place on, in the editor's count of UTF-16 units; within the text. */
+/** Number of characters from a place on, in the editor's count of UTF-16 units; within the text. */
 function ahead(text: string, characters: number): number {
   let at = 0
   for (let k = 0; k < characters && at < text.length; k++) at += text.codePointAt(at)! > 0xffff ? 2 : 1

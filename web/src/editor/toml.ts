@@ -1,13 +1,13 @@
 /** What a piece of TOML is; nothing for spaces and punctuation without a meaning of its own. */
 export type Kind = 'comment' | 'heading' | 'key' | 'string' | 'number' | 'atom' | 'bracket' | undefined
 
-/** Where a reader of TOML stands at the start of a line, or within it. */
+/** Where a reader of TOML is at the start of a line, or within it. */
 export interface Reading {
   /** The quotes that a text over several lines waits for. */
   quotes: string
   /** The brackets that are open in a value, outermost first. */
   open: string
-  /** Whether a key comes next, or a table's heading where no bracket is open. */
+  /** True if a key comes next, or a table's heading where no bracket is open. */
   key: boolean
 }
 
@@ -83,12 +83,12 @@ export function text(value: string): string {
   return JSON.stringify(value)
 }
 
-/** What stands somewhere in a text: a table's heading, or a key with its value. */
+/** What is somewhere in a text: a table's heading, or a key with its value. */
 export interface Entry {
   /** From the root: `[metrics.bump]` and `at = 5` in it are `metrics bump` and `metrics bump at`. */
   path: string[]
   heading: boolean
-  /** Of a key, how many brackets it stands in. */
+  /** Of a key, how many brackets it is in. */
   depth: number
   from: number
   /** The end of the heading, or of the key. */
@@ -110,13 +110,13 @@ export interface Standing {
   key?: string[]
   /** The text in quotes, the key, or the word that has been begun. */
   begun: string
-  /** Whether that is in quotes that are not closed. */
+  /** True if that is in quotes that are not closed. */
   quoted: boolean
-  /** Whether it is part of a heading. */
+  /** True if it is part of a heading. */
   heading: boolean
 }
 
-/** Where a writer stands at the end of a text; nowhere in a comment, or in a text of several lines. */
+/** Where a writer is at the end of a text; nowhere in a comment, or in a text of several lines. */
 export function standing(source: string): Standing | undefined {
   const { table, around, key, reading, last, kind } = read(source)
   if (kind === 'comment' || reading.quotes !== '') return undefined

@@ -7,7 +7,7 @@ export interface Axis {
   ticks: { value: number; text: string }[]
 }
 
-/** More than so many powers of ten, and every other one has a number. */
+/** More than that many powers of ten, and every other one has a number. */
 const MOST_POWERS = 6
 
 /** An axis from `low` at `from` to `high` at `to` with about `count` round numbers. */

@@ -16,7 +16,7 @@ interface Picture {
   labels?: Placed[]
 }
 
-/** Longer edges than this part of the picture's diagonal are cut, so that what is nearer can be told by the middle of a piece. */
+/** Longer edges than this part of the picture's diagonal are cut, so that what is nearer can be reported by the middle of a piece. */
 const PIECE = 0.03
 /** A fold of faces sharper than this is an edge, as a cosine. */
 const FOLD = Math.cos((40 * Math.PI) / 180)
@@ -27,7 +27,7 @@ const LIGHT = new Vector3(-0.35, 0.7, 0.75).normalize()
 const DARKEST = 0.62
 /** Faces nearer to the light than this cosine have their full colour: those that face the reader, too. */
 const BRIGHT = 0.6
-/** So many shades are told apart. */
+/** Number of shades are distinguished. */
 const SHADES = 12
 /** Width of outlines, px. */
 const OUTLINE = 0.9

@@ -25,7 +25,7 @@ export class Scale {
   }
 }
 
-/** Whether text on a share's colour is to be light, where colours grow darker away from nothing. */
+/** True if text on a share's colour is to be light, where colours grow darker away from nothing. */
 export function strong(share: number): boolean {
   return Math.abs(share) > 0.6
 }

@@ -45,7 +45,7 @@ class HeatMap {
   #cells: Cells
   #scale?: Scale
   #size = { width: 0, height: 0 }
-  /** Both as the browser told: to ask for them would make it lay out the page in the middle of a frame. */
+  /** Both as the browser reported: to ask for them would make it lay out the page in the middle of a frame. */
   #scroll = { left: 0, top: 0 }
   #column: number = COLUMN.least
   /** Under the pointer, or where the arrow keys went. */
@@ -112,7 +112,7 @@ class HeatMap {
     this.#layOut()
   }
 
-  /** Rows and columns anew; sizes are those that the observer told. */
+  /** Rows and columns anew; sizes are those that the observer reported. */
   #layOut(): void {
     const { report, choice } = this.state
     const offered = this.#offered.find(([name]) => name === this.#group.value)?.[1] ?? []
@@ -129,7 +129,7 @@ class HeatMap {
     this.#draw()
   }
 
-  /** Draws in the next frame, once however often it is asked for. */
+  /** Draws in the next frame, once however often it is requested. */
   #draw(): void {
     if (this.#frame === 0) this.#frame = requestAnimationFrame(() => this.#paint())
   }

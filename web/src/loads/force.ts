@@ -61,7 +61,7 @@ export function planeAcross(normal: Vector3): Plane {
     const k = direction.toArray().findIndex((x) => Math.abs(Math.abs(x) - 1) < NONE)
     return k < 0 ? '' : `${direction.getComponent(k) < 0 ? '−' : ''}${NAMES[k]}`
   }
-  return { across: [u, v], names: [name(u) || `${NAMES[first]}, across`, name(v) || 'square to it'] }
+  return { across: [u, v], names: [name(u) || `${NAMES[first]}, across`, name(v) || 'perpendicular to it'] }
 }
 
 /** A force as a body sees it, in a plane of its frame: two numbers; not a number where it is not known. */

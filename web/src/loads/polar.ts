@@ -12,7 +12,7 @@ import { forceAt, largestAt, largestForce, pathOf, planeAcross, seenFrom, type P
 /** The picture is so wide and high, and its largest circle leaves so much room, px. */
 const SIZE = 340
 const ROOM = 26
-/** About so many circles. */
+/** About that many circles. */
 const RINGS = 3
 /** A place of the path is pointed at from so far, px. */
 const REACH = 30

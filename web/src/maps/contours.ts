@@ -17,7 +17,7 @@ export interface Area {
   outlines: Line[]
 }
 
-/** About so many levels between the least value and the greatest. */
+/** About that many levels between the least value and the greatest. */
 const LEVELS = 8
 
 /** Round numbers between the least value and the greatest; none where all are the same. */

@@ -11,7 +11,7 @@ const MARGIN = { left: 62, right: 96, top: 10, bottom: 46 }
 /** The map is so high for its width, and no higher, px. */
 const SHAPE = 0.62
 const HIGHEST = 440
-/** About one number of an axis on so many pixels. */
+/** About one number of an axis on that many pixels. */
 const TICK = 70
 /** More positions than this are not marked one by one. */
 const MOST_MARKED = 600

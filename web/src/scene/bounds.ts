@@ -1,6 +1,6 @@
 import { type BufferGeometry, InstancedMesh, Matrix4, type Mesh, type Object3D, Vector3 } from 'three'
 
-/** So many directions miss less than 2 % of a ball's radius. */
+/** Number of directions miss less than 2 % of a ball's radius. */
 const DIRECTIONS = 200
 /** The turn by which neighbours on a spiral keep farthest from one another. */
 const GOLDEN = Math.PI * (3 - Math.sqrt(5))
@@ -29,7 +29,7 @@ export function outermost(points: Vector3[]): Vector3[] {
   return [...found]
 }
 
-/** Points that bound what is seen of an object, in the frame that it stands in; the object itself as if it were seen. */
+/** Points that bound what is seen of an object, in the frame that it is in; the object itself as if it were seen. */
 export function bounds(object: Object3D, within = new Matrix4()): Vector3[] {
   object.updateMatrix()
   const here = within.clone().multiply(object.matrix)

@@ -35,7 +35,7 @@ export function looksOf(mechanism: Mechanism): Look[] {
     const from = (ahead: number, aside: number, above: number) =>
       forward.clone().multiplyScalar(ahead).addScaledVector(left, aside).addScaledVector(up, above)
     const wheels = report.wheels.map(({ centre }) => mechanism.worldAt(centre.body, new Vector3(...centre.at), 0).dot(left))
-    // With one wheel from inboard, so that it stands behind what carries it.
+    // With one wheel from inboard, so that it is behind what carries it.
     const outboard = wheels.length === 1 ? Math.sign(wheels[0]) || 1 : 1
     const corner = wheels.length > 1 ? from(0.95, -0.62, 0.5) : from(0.85, -0.8 * outboard, 0.42)
     return [
@@ -65,7 +65,7 @@ export function cameraFor({ plane, up, size }: Mechanism): Camera {
   return camera
 }
 
-/** Puts the camera where all points fill the picture but for so many pixels at its top; the point in their middle, to be turned about. */
+/** Puts the camera where all points fill the picture but for that many pixels at its top; the point in their middle, to be turned about. */
 export function fit(camera: Camera, points: Vector3[], size: number, { direction }: Look, width: number, height: number, top = TOP): Vector3 {
   camera.position.copy(direction)
   camera.lookAt(0, 0, 0)

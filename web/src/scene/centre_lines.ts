@@ -42,7 +42,7 @@ function planeThrough(points: Vector3[]): Basis {
   return normal.length() > 1e-6 * along.lengthSq() ? new Basis(a, normal, along) : new Basis(a, across(along), along)
 }
 
-/** Whether a body of the former design is anywhere else, or of another form, at any of the moments. */
+/** True if a body of the former design is anywhere else, or of another form, at any of the moments. */
 export function differs(present: Mechanism, former: Mechanism, body: number, least: number): boolean {
   const [now, was] = [present, former].map((mechanism) => mechanism.shapePoints(body))
   if (now.length !== was.length) return true

@@ -26,7 +26,7 @@ export interface Drawn {
   follow?: (frame: Frame) => void
   /** Drawn after everything else and without outlines: arrows, traces, ghosts. */
   overlay?: boolean
-  /** Its size, where it is a detail that is left out when it is seen smaller than a few pixels. */
+  /** Size, where it is a detail that is left out when it is seen smaller than a few pixels. */
   detail?: number
 }
 
@@ -37,14 +37,14 @@ export interface Frame {
   at(body: number, point: Vector3): Vector3
   /** A direction of a body in the world. */
   along(body: number, direction: Vector3): Vector3
-  /** Whether the motion was solved at this moment. */
+  /** True if the motion was solved at this moment. */
   visible(body: number): boolean
 }
 
 /** How a kind of thing is drawn; what is chosen matters to marks only. */
 export type Draw = (mechanism: Mechanism, kit: Kit, choice: Choice) => Drawn[]
 
-/** Whether two are the same thing, drawn of several objects. */
+/** True if two are the same thing, drawn of several objects. */
 export function samePart(a: Part | undefined, b: Part | undefined): boolean {
   return a !== undefined && b !== undefined && a.kind === b.kind && a.index === b.index
 }

@@ -7,7 +7,7 @@ export type Flat = [x: number, y: number]
 export class Basis {
   readonly y: Vector3
 
-  /** `x` need not be square to `normal`; it is made so. */
+  /** `x` need not be perpendicular to `normal`; it is made so. */
   constructor(
     readonly origin: Vector3,
     readonly normal: Vector3,
@@ -32,7 +32,7 @@ export class Basis {
   }
 }
 
-/** A unit vector square to `axis`. */
+/** A unit vector perpendicular to `axis`. */
 export function across(axis: Vector3): Vector3 {
   const unit = axis.clone().normalize()
   return square(Math.abs(unit.z) < 0.9 ? new Vector3(0, 0, 1) : new Vector3(1, 0, 0), unit)

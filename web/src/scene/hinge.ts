@@ -6,11 +6,11 @@ import type { Mechanism } from './mechanism'
 const ASIDE = { units: 14, part: 0.5 }
 /** Joints with glyphs that a bearing in the same place would hide. */
 const SHY = ['universal', 'constant_velocity']
-/** Cosines of the angles within which hinges are parallel and beyond which they are square to a link. */
+/** Cosines of the angles within which hinges are parallel and beyond which they are perpendicular to a link. */
 const PARALLEL = 0.999
 const SQUARE = 0.05
 
-/** A link that folds on another such link, as Sarrus' plates do: the axis of its two parallel hinges, both square to it, in its frame. */
+/** A link that folds on another such link, as Sarrus' plates do: the axis of its two parallel hinges, both perpendicular to it, in its frame. */
 export function foldAxis(mechanism: Mechanism, body: number): Vector3 | undefined {
   const axis = parallelHinges(mechanism, body)
   const mates = axis ? mechanism.jointsOf(body).map(({ joint }) => (joint.body_i === body ? joint.body_j : joint.body_i)) : []
@@ -37,7 +37,7 @@ export function shaftAxis(mechanism: Mechanism, body: number): Vector3 | undefin
   return mechanism.same(place, new Vector3(...bearing.joint.at_i)) ? undefined : bearing.axis.clone().normalize()
 }
 
-/** Whether one is ground's: then the other body, its place and axis in its frame; otherwise those of body i. */
+/** True if one is ground's: then the other body, its place and axis in its frame; otherwise those of body i. */
 export function carried(mechanism: Mechanism, { body_i, body_j, at_i, at_j, axis, axis_j }: JointMark) {
   const moving = body_i > 0 || body_j === 0
   const own = moving ? axis : axis_j

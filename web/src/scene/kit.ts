@@ -166,7 +166,7 @@ export class Kit {
     return caster
   }
 
-  /** A box with its sides along x, y (made square to x) and their normal. */
+  /** A box with its sides along x, y (made perpendicular to x) and their normal. */
   brick(at: Vector3, x: Vector3, y: Vector3, sides: [number, number, number], colour: string, finish: Finish = { edges: 30 }): Mesh {
     const unit = x.clone().normalize()
     const up = square(y, unit)
@@ -219,7 +219,7 @@ export class Kit {
     )
   }
 
-  /** A hatched plate of ground, its face square to `down`, one side along `axis` where that is given. */
+  /** A hatched plate of ground, its face perpendicular to `down`, one side along `axis` where that is given. */
   footPlate(at: Vector3, down: Vector3, axis: Vector3 | undefined, size: number): Mesh {
     const up = down.clone().normalize().negate()
     return this.hatched(at, square(axis ?? across(up), up).cross(up), up, [size, 0.14 * size, 0.8 * size])
@@ -346,7 +346,7 @@ export function stretch<T extends Object3D>(object: T, from: Vector3, to: Vector
   return place(object, from.clone().addScaledVector(along, 0.5), along)
 }
 
-/** Puts an object made along y at a place so that y is along `axis` and z along the part of `towards` that is square to it. */
+/** Puts an object made along y at a place so that y is along `axis` and z along the part of `towards` that is perpendicular to it. */
 export function orient<T extends Object3D>(object: T, at: Vector3, axis: Vector3, towards: Vector3): T {
   const y = axis.clone().normalize()
   const z = square(towards, y)

@@ -5,7 +5,7 @@ export interface Spot {
   text: string
 }
 
-/** Where a text stands: its middle, and the spot it belongs to. */
+/** Where a text is: its middle, and the spot it belongs to. */
 export interface Placed {
   spot: Spot
   x: number
@@ -54,7 +54,7 @@ function candidates(spot: Spot, width: number, outwards: number): Placed[] {
     Array.from({ length: DIRECTIONS }, (_, k) => {
       const angle = outwards + (k % 2 ? 1 : -1) * Math.ceil(k / 2) * TURN
       const [right, down] = [Math.cos(angle), Math.sin(angle)]
-      // Sideways the text begins where upwards its middle stands.
+      // Sideways the text begins where upwards its middle is.
       const x = spot.x + right * (distance + (width / 2) * Math.abs(right))
       return { spot, x, y: spot.y + down * distance, width, height: LINE }
     }),

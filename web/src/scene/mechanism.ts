@@ -97,7 +97,7 @@ export class Mechanism {
     this.#slides = report.joints.map((joint) => slideOf(this, joint))
   }
 
-  /** Takes the unit that suits a picture of so many pixels per length; true where what is drawn has to be made anew. */
+  /** Takes the unit that suits a picture of that many pixels per length; true where what is drawn has to be made anew. */
   sizeTo(pixelsPerLength: number): boolean {
     const seen = this.#natural * pixelsPerLength
     if (!(seen > 0 && Number.isFinite(seen))) return false

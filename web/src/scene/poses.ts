@@ -28,7 +28,7 @@ function read(poses: Curve, k: number): Pose {
 
 const SHIFT = 6
 
-/** The pose of a body whose design is changed, foreseen to first order. */
+/** The pose of a body whose design is changed, predicted to first order. */
 export function shifted(pose: Pose, shifts: Curve | undefined, step: number, change: number): Pose {
   if (!shifts) return pose
   const last = shifts.length / SHIFT - 1

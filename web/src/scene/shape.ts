@@ -55,7 +55,7 @@ export function foreseen(report: Report, changes: number[], size: number): Repor
       axis_j: axis_j ? turn(body_j, at_j, axis_j) : axis_j,
     }
   })
-  // What forces become is not foreseen.
+  // What forces become is not predicted.
   const loads = redrawn.loads.map((load) => ({ ...load, force: new Float32Array() }))
   return { ...redrawn, joints, loads }
 }

@@ -48,7 +48,7 @@ export function atLeast(low: number, high: number, least: number): [number, numb
   return [low - grow, high + grow]
 }
 
-/** The part of `direction` that is square to an axis, of length 1; none where there is nothing left. */
+/** The part of `direction` that is perpendicular to an axis, of length 1; none where there is nothing left. */
 export function offAxis(direction: Vector3, axis: Vector3, least: number): Vector3 | undefined {
   const rest = direction.clone().addScaledVector(axis, -direction.dot(axis))
   return rest.length() > least ? rest.normalize() : undefined

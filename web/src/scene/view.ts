@@ -29,7 +29,7 @@ const MARK_NUMBERS = 1 << 15
 
 export function hasWebGL(): boolean {
   const context = document.createElement('canvas').getContext('webgl2')
-  // Browsers keep only so many contexts.
+  // Browsers keep only that many contexts.
   context?.getExtension('WEBGL_lose_context')?.loseContext()
   return context !== null
 }
@@ -62,12 +62,12 @@ export class View {
   /** The design that is drawn, by what makes it. */
   #drawn: string
   #look: Look
-  /** Whether the reader turned or moved the view since it was fitted. */
+  /** True if the reader turned or moved the view since it was fitted. */
   #turned = false
   #stale = false
   #moved = true
   #pending = false
-  /** Of the element, px, as its observer told: to ask the element would make the browser lay out the page in the middle of a frame. */
+  /** Of the element, px, as its observer reported: to ask the element would make the browser lay out the page in the middle of a frame. */
   #extent = { width: 0, height: 0 }
   /** What is drawn no more. It goes once the next picture is drawn, so that this one finds its shaders compiled. */
   #gone: Assembly[] = []
@@ -236,7 +236,7 @@ export class View {
     this.#draw()
   }
 
-  /** The picture as a PNG file, so many pixels for each of the page's. */
+  /** The picture as a PNG file, that many pixels for each of the page's. */
   async picture(scale: number): Promise<Blob> {
     const usual = this.#renderer.getPixelRatio()
     this.#size(scale)

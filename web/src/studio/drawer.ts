@@ -5,7 +5,7 @@ import { el } from '../dom'
 interface Pane {
   name: string
   title: string
-  /** Its content, made when it is first wanted. */
+  /** Content, made when it is first wanted. */
   open: () => Promise<HTMLElement>
 }
 

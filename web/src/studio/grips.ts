@@ -45,7 +45,7 @@ export class Grips {
   #snap = 0
   #mirror?: { axis: number; partner: Map<string, MovableHardpoint>; on: boolean }
   #fields: HTMLInputElement[] = []
-  /** Whether a field is being written in. */
+  /** True if a field is being written in. */
   #typing = false
   #size: number
   #pending?: PointerEvent
@@ -68,7 +68,7 @@ export class Grips {
     this.#show()
   }
 
-  /** Whether a hand holds one. */
+  /** True if a hand holds one. */
   get holding(): boolean {
     return this.#hold !== undefined
   }

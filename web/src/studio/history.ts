@@ -51,7 +51,7 @@ export class History {
     return this.#steps[this.#at + 1]?.label
   }
 
-  /** Whether the present design is another than the first. */
+  /** True if the present design is another than the first. */
   get changed(): boolean {
     return !same(this.present, this.first)
   }

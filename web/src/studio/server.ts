@@ -1,4 +1,4 @@
-/** What the page is told of the server that it comes from; nothing in a file. */
+/** What the page is informed of the server that it comes from; nothing in a file. */
 interface About {
   token: string
   /** The model file that the page shows. */
@@ -73,15 +73,15 @@ export interface Study {
 /** `gone`: nobody answers. `stranger`: somebody else does, with another token. */
 export type State = 'there' | 'gone' | 'stranger'
 
-/** What may happen without being asked for. */
+/** What may happen without being requested. */
 interface Events {
-  /** Whether the server answers. */
+  /** True if the server answers. */
   state: State
   /** The file has another text, or (without a revision) is there no more. */
   changed: { revision: string | null }
   /** A study goes on; only what is new. */
   study: Partial<Study> & { id: number; line?: string }
-  /** Something was missed: what is known of studies has to be asked for. */
+  /** Something was missed: what is known of studies has to be requested. */
   missed: undefined
 }
 
@@ -158,7 +158,7 @@ export class Server {
     this.revision = revision
   }
 
-  /** Whether a text on disk is the one that the present text was made from. */
+  /** True if a text on disk is the one that the present text was made from. */
   isBase({ revision }: { revision: string | null }): boolean {
     return revision === this.revision
   }
@@ -217,7 +217,7 @@ export class Server {
     for (const listener of this.listeners[name]) listener(event)
   }
 
-  /** Hears what the server tells, and seeks it again when it is gone. */
+  /** Hears what the server indicates, and seeks it again when it is gone. */
   private async listen(): Promise<never> {
     const query = new URLSearchParams({ client: this.client, ...(this.file === null ? {} : { file: this.file }) })
     for (let pause = FIRST_PAUSE; ; pause = Math.min(2 * pause, LONGEST_PAUSE)) {

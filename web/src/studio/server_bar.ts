@@ -13,7 +13,7 @@ export interface Text {
 /** What the server can run, as buttons name it. */
 const STUDIES: Record<What, string> = { optimize: 'Optimise', tolerance: 'Study tolerances', sweep: 'Sweep' }
 
-/** What a server adds to the page's bar: save, other models, studies; and notices on what it tells. */
+/** What a server adds to the page's bar: save, other models, studies; and notices on what it indicates. */
 export function serverBar(server: Server, text: Text): HTMLElement {
   const notices = el('div', { class: 'notices', 'data-testid': 'notices' })
   const save = el('button', { type: 'button', 'data-testid': 'save', title: 'Save the model in place (Ctrl+S)', disabled: true, onclick: () => desk.save() }, 'Save')
@@ -180,7 +180,7 @@ class Desk {
     const follow = async (news: Partial<Study> & { line?: string }) => {
       if (news.line !== undefined) study.lines.push(news.line)
       study = { ...study, ...news }
-      // The end is told without what is long.
+      // The end is reported without what is long.
       if (study.state !== 'running') study = (await server.study(study.id).catch(() => undefined)) ?? study
       show()
     }
@@ -229,11 +229,11 @@ interface Note {
   links?: [name: string, to: string][]
   /** It can be put away. */
   closing?: boolean
-  /** It goes by itself. */
+  /** It depends on itself. */
   passing?: boolean
 }
 
-/** How long a notice stays that goes by itself. */
+/** How long a notice stays that depends on itself. */
 const PASSING = 4000
 
 /** What the server has to say, one notice for each matter. */

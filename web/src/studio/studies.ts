@@ -47,7 +47,7 @@ export function tolerancePane(host: StudyHost): StudyPane {
 
 interface Form<Request> {
   elements: HTMLElement[]
-  /** What is asked for; in words, why that cannot be. */
+  /** The request; in words, why that cannot be. */
   request: () => Request | string
 }
 

@@ -53,7 +53,7 @@ export class Studio {
   #text: string
   /** A text that is being solved. */
   #next?: string
-  /** Counts what was asked for, so that an answer to what is no longer wanted is passed over. */
+  /** Counts what was requested, so that an answer to what is no longer wanted is passed over. */
   #version = 0
 
   constructor(
@@ -159,7 +159,7 @@ export class Studio {
       state.choose({})
       if (state.changed) this.#solve()
     } catch (error) {
-      this.#say(`Changes are foreseen, not solved: ${words(error)}`)
+      this.#say(`Changes are predicted, not solved: ${words(error)}`)
       this.root.dataset.engine = 'failed'
     }
   }
@@ -403,7 +403,7 @@ function keepMeshes(before: Report, after: Report): void {
   for (const body of after.bodies) body.mesh ??= before.bodies.find(({ name }) => name === body.name)?.mesh ?? null
 }
 
-/** Whether two reports have the same quantities and variables: the page of a what-if has variables that its text has not. */
+/** True if two reports have the same quantities and variables: the page of a what-if has variables that its text has not. */
 function alike(a: Report, b: Report): boolean {
   const same = (a: readonly { name: string }[], b: readonly { name: string }[]) => a.length === b.length && a.every(({ name }, k) => name === b[k].name)
   return same(a.quantities, b.quantities) && same(a.variables, b.variables)

@@ -36,7 +36,7 @@ export class Workers implements Studies {
     }
   }
 
-  /** An engine that is at work hears nothing: to cancel ends it, and what it told last is the best so far. */
+  /** An engine that is at work hears nothing: to cancel ends it, and what it reported last is the best so far. */
   #run(request: Request): Running<StudyResult> {
     const solver = new Solver(this.module)
     const listeners: ((told: ProgressReply) => void)[] = []

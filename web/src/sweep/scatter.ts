@@ -9,7 +9,7 @@ const MARGIN = { left: 70, right: 16, top: 10, bottom: 46 }
 /** The picture is so high for its width, and no higher, px. */
 const SHAPE = 0.62
 const HIGHEST = 440
-/** About one number of an axis on so many pixels. */
+/** About one number of an axis on that many pixels. */
 const TICK = 70
 /** A design is pointed at from so far, px. */
 const REACH = 24
@@ -63,7 +63,7 @@ class Scatter {
     }).observe(this.#frame)
   }
 
-  /** The variable that the first metric goes by most, as far as indices tell; else the first. */
+  /** The variable that the first metric depends on most, as far as indices tell; else the first. */
   #strongest(): number {
     const first = this.sweep.axes.findIndex(({ metric }) => metric)
     const of = this.sweep.indices.filter(({ metric }) => metric === first)

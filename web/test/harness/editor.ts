@@ -10,16 +10,16 @@ import strut from '../../../models/macpherson.toml?raw'
 declare global {
   interface Window {
     pane: Editor
-    /** The valid texts, as the page was told of them. */
+    /** The valid texts, as the page was informed of them. */
     valid: string[]
     /** How often a text was checked. */
     asked: number
-    /** So many checks to come fail. */
+    /** Number of checks to come fail. */
     failing: number
   }
 }
 
-/** Stands for the reader of the page: bodies that are not declared, and a key without a value. */
+/** Represents the reader of the page: bodies that are not declared, and a key without a value. */
 async function check(text: string): Promise<Diagnostic[]> {
   window.asked++
   if (window.failing-- > 0) throw new Error('the engine has ended')

@@ -7,7 +7,7 @@ use hardpoint_file::{at_keys, hardpoint_in, with_keys};
 
 use crate::session::Session;
 
-/// A wheel's centre this much lower or higher than the template's, as factors, stands on the ground at z = 0. Beyond, the table
+/// A wheel's centre this much lower or higher than the template's, as factors, is on the ground at z = 0. Beyond, the table
 /// counts its heights from elsewhere.
 const RADII: [f64; 2] = [0.5, 2.0];
 /// Heights that agree to this part were meant to be equal.

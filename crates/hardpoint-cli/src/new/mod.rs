@@ -23,12 +23,12 @@ struct Template {
     name: &'static str,
     what: &'static str,
     text: &'static str,
-    /// Whether its axes are those of a vehicle.
+    /// True if its axes are those of a vehicle.
     is_vehicle: bool,
 }
 
 impl Template {
-    /// Whether all that it has lies in the plane of x and y.
+    /// True if all that it has lies in the plane of x and y.
     fn is_planar(&self) -> bool {
         self.text.contains("\nplanar = \"xy\"")
     }
@@ -88,7 +88,7 @@ fn begun(session: &Session, options: &New) -> Result<Outcome, Outcome> {
     if options.hardpoints.is_some() {
         model = fit::fitted(session, template.text, model);
     }
-    // With the user's places it is read as it will be, so that what is wrong with them is told.
+    // With the user's places it is read as it will be, so that what is wrong with them is reported.
     let problems = hardpoint_file::parse(&model, &path.display().to_string()).err();
     write(session, &path, &model)?;
     if let Some(problems) = problems {
@@ -217,7 +217,7 @@ fn places(
             let what = format!("`{shown}` has the hardpoint `{name}` twice");
             return Err(refused(
                 &what,
-                &format!("the second one stands on line {}", row.line),
+                &format!("the second one is on line {}", row.line),
                 "remove one of them",
             ));
         }

@@ -19,7 +19,7 @@ pub struct Hardpoints {
 /// A hardpoint of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Its line, from 1.
+    /// Line, from 1.
     pub line: usize,
     pub name: String,
     pub place: [f64; 3],

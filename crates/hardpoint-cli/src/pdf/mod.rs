@@ -13,9 +13,9 @@ use crate::workbook::Contents;
 use paper::{BLACK, BLUE, GREY, MARGIN, PAGE, Paper, RED, SMALL, STRONG, TEXT, TITLE};
 use plot::Plot;
 
-/// So many curves are drawn.
+/// Number of curves are drawn.
 const MOST_CURVES: usize = 200;
-/// So many variables are ranked at each measure.
+/// Number of variables are ranked at each measure.
 const MOST_RANKED: usize = 12;
 /// Where the columns of tables begin.
 const FACTS: [f32; 2] = [0.0, 90.0];
@@ -26,7 +26,7 @@ const RANKED: [f32; 4] = [0.0, 170.0, 290.0, 410.0];
 const BAR: f32 = 110.0;
 
 impl Contents<'_> {
-    /// Writes the document, and tells what is not in it.
+    /// Writes the document, and indicates what is not in it.
     ///
     /// # Errors
     /// Where `out` cannot be written.

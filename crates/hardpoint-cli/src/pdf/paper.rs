@@ -118,7 +118,7 @@ pub struct Paper {
     pages: Vec<Content>,
     /// How far down the last page is written.
     pub y: f32,
-    /// Whether all letters could be said.
+    /// True if all letters could be said.
     is_whole: bool,
 }
 

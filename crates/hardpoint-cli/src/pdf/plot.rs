@@ -8,9 +8,9 @@ use super::paper::{BLACK, BLUE, Face, GREY, PALE, Paper, SMALL, STRONG};
 pub const SIZE: (f32, f32) = (240.0, 146.0);
 /// Room left of, below, right of and above the curve.
 const AROUND: [f32; 4] = [46.0, 26.0, 8.0, 16.0];
-/// So many values at least have a mark on an axis, where these are round.
+/// Number of values at least have a mark on an axis, where these are round.
 const MARKS: f64 = 4.0;
-/// Of a curve with more points only so many stretches are drawn, each with its lowest and its highest point: no eye tells more on paper.
+/// Of a curve with more points only that many stretches are drawn, each with its lowest and its highest point: no eye indicates more on paper.
 const STRETCHES: usize = 600;
 /// Room over and under a curve, as a part of its height.
 const ROOM: f64 = 0.05;

@@ -5,7 +5,7 @@ use hyper::{Method, Uri};
 
 /// The name of the header that carries the token.
 pub const HEADER: &str = "x-hardpoint-token";
-/// Whoever writes a token by hand writes one of at least so many letters.
+/// Whoever writes a token by hand writes one of at least that many letters.
 pub const SHORTEST_TOKEN: usize = 16;
 
 /// Where a server listens, and what its requests must carry.
@@ -54,7 +54,7 @@ impl Address {
         format!("hardpoint-{}", self.port)
     }
 
-    /// Whether a request may pass, or why not.
+    /// True if a request may pass, or why not.
     ///
     /// # Errors
     /// Why not, in a sentence for whoever sent it.

@@ -32,7 +32,7 @@ pub struct Text {
     pub revision: Revision,
 }
 
-/// What tells one text from another: a checksum of its bytes.
+/// What indicates one text from another: a checksum of its bytes.
 pub type Revision = String;
 
 /// What a list of models says of one.
@@ -92,7 +92,7 @@ impl Models {
         }
     }
 
-    /// Whether a model in this folder may be called so.
+    /// True if a model in this folder may be called so.
     pub fn is_name(&self, name: &str) -> bool {
         self.place(name).is_ok()
     }
@@ -172,7 +172,7 @@ impl Models {
         })
     }
 
-    /// Whether what is in a file now was put there by this page.
+    /// True if what is in a file now was put there by this page.
     pub fn was_saved_by(&self, name: &str, revision: &str, by: &str) -> bool {
         self.saved().get(name).is_some_and(|(saved, page)| saved == revision && page == by)
     }
@@ -214,7 +214,7 @@ impl Models {
     }
 }
 
-/// Whether somebody who writes this means a mechanism: there are many other TOML files.
+/// True if somebody who writes this means a mechanism: there are many other TOML files.
 fn looks_like_a_model(text: &str) -> bool {
     const TABLES: [&str; 3] = ["hardpoints", "bodies", "joints"];
     let heads = |line: &str| TABLES.iter().any(|t| line.trim_start_matches('[').starts_with(t));

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `address.rs` | who may ask |
 //! | `server.rs` | connections, limits, how answers go out |
-//! | `routes.rs` | what can be asked for |
+//! | `routes.rs` | what can be requested |
 //! | `folder.rs` | the model files of the folder, read and saved |
 //! | `page.rs` | pages of models, the gallery |
 //! | `watch.rs` | what a page hears of without asking |
@@ -33,7 +33,7 @@ pub use address::given_token;
 
 /// What a server serves.
 struct Studio {
-    /// What tells it from the one that was here before.
+    /// What indicates it from the one that was here before.
     id: String,
     address: address::Address,
     models: folder::Models,
@@ -126,7 +126,7 @@ fn of_gallery() -> PathBuf {
     if !has_models(here) && has_models(beside) { beside.into() } else { here.into() }
 }
 
-/// Whether a browser could be seen.
+/// True if a browser could be seen.
 fn can_be_seen() -> bool {
     let given = |name| std::env::var_os(name).is_some_and(|v| !v.is_empty());
     !cfg!(any(target_os = "linux", target_os = "freebsd"))

@@ -19,7 +19,7 @@ use super::Studio;
 use super::routes::{blocking, no_file};
 use super::server::Answer;
 
-/// What a page is told of its server.
+/// What a page is informed of its server.
 #[derive(Serialize)]
 struct About<'a> {
     token: &'a str,
@@ -32,7 +32,7 @@ struct About<'a> {
     cases: Vec<&'a str>,
 }
 
-/// Pages are made one after the other, each for all who asked for it before it was begun.
+/// Pages are made one after the other, each for all who requested it before it was begun.
 #[derive(Default)]
 pub struct Pages {
     clock: AtomicU64,

@@ -1,4 +1,4 @@
-//! What can be asked for, and the answers.
+//! What can be requested, and the answers.
 
 use std::borrow::Cow;
 use std::collections::HashMap;

@@ -29,7 +29,7 @@ use super::Studio;
 use super::address::Shown;
 use super::routes;
 
-/// So many connections at once; more of them wait until others end.
+/// Number of connections at once; more of them wait until others end.
 const CONNECTIONS: usize = 256;
 /// The head of a request comes within this time, and the next one of a connection, too.
 const HEAD: Duration = Duration::from_secs(20);
@@ -39,7 +39,7 @@ const BODY: Duration = Duration::from_secs(60);
 const PAUSE: Duration = Duration::from_secs(2);
 /// Whoever takes nothing of an answer for so long is gone.
 const STALLED: Duration = Duration::from_secs(60);
-/// The head of a request has at most so many bytes and headers.
+/// The head of a request has at most that many bytes and headers.
 const HEAD_BYTES: usize = 16 << 10;
 const HEADERS: usize = 64;
 /// Around a text of the largest size: what JSON makes of it.

@@ -1,4 +1,4 @@
-//! Studies that take long, each in a thread of its own: asked for, watched, cancelled, kept until others have been done.
+//! Studies that take long, each in a thread of its own: requested, watched, cancelled, kept until others have been done.
 
 use std::collections::VecDeque;
 use std::num::NonZero;
@@ -26,11 +26,11 @@ use crate::{args, optimize, sweep, tolerance};
 
 /// Each of them takes all cores; another waits for its turn at the user's hand, not at ours.
 const AT_ONCE: usize = 2;
-/// So many that have ended are kept with their pages.
+/// That many that have ended are kept with their pages.
 const KEPT: usize = 8;
 /// Pages hear of progress no more often than this.
 const PACE: Duration = Duration::from_millis(100);
-/// A page that is behind by so many events misses some, and asks for the state.
+/// A page that is behind by that many events misses some, and asks for the state.
 const EVENTS: usize = 256;
 
 /// What a page asks for.
@@ -46,7 +46,7 @@ pub struct Asked {
     /// One case of it only.
     #[serde(default)]
     pub case: Option<String>,
-    /// What is asked for besides what the text says.
+    /// The request besides what the text says.
     #[serde(default)]
     pub options: Options,
 }

@@ -15,9 +15,9 @@ use super::server::Answer;
 
 /// How often a file is read: what systems say of its last change is not to be relied on everywhere, and models are small.
 const POLL: Duration = Duration::from_millis(500);
-/// After so many looks the page hears that the server is there.
+/// After that many looks the page hears that the server is there.
 const ALIVE: u32 = 4;
-/// A page that takes nothing is behind by so many events before the connection waits for it.
+/// A page that takes nothing is behind by that many events before the connection waits for it.
 const WAITING: usize = 16;
 
 /// The events for a page that shows this file.

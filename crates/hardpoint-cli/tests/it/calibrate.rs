@@ -40,7 +40,7 @@ fn the_strut_that_was_measured_is_found_although_one_reading_is_a_slip() {
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0), "{text}{}", String::from_utf8_lossy(&output.stderr));
     for words in [
-        "all 6 variables are told",
+        "all 6 variables are reported",
         "81 readings in 27 postures",
         "What to measure next",
         "saved: as_built.toml",
@@ -64,7 +64,7 @@ fn the_strut_that_was_measured_is_found_although_one_reading_is_a_slip() {
     assert_eq!((&page["sweep"]["what"], &page["designs"][0]["name"]), (&"posture".into(), &"found".into()));
     assert!(bench.text("as_built.toml").contains("# What may be off."));
 
-    // What is saved explains the readings as drawn.
+    // What is saved explains the readings in the design configuration.
     let again = ["calibrate", "as_built.toml", "strut_measured.csv", "--loss", "huber", "--json"];
     let again: serde_json::Value = serde_json::from_slice(&bench.run(&again).stdout).unwrap();
     let [before, after] = [0, 1].map(|k| again["objective"][k].as_f64().unwrap());

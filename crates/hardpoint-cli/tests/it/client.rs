@@ -56,7 +56,7 @@ impl Server {
         stream
     }
 
-    /// The head of a request with the token, to be gone on with.
+    /// The head of a request with the token, to be resumed.
     pub fn head(&self, method: &str, path: &str) -> String {
         let Self { port, token, .. } = self;
         format!(
@@ -74,7 +74,7 @@ impl Server {
         reply
     }
 
-    /// A whole request as it stands.
+    /// A whole request as it is.
     pub fn send(&self, request: &str) -> Reply {
         reply(&self.raw(request.as_bytes()))
     }

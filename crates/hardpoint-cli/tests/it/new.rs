@@ -14,7 +14,7 @@ fn templates() -> Vec<String> {
     text.lines().filter_map(|l| Some(l.split_whitespace().next()?.to_owned())).collect()
 }
 
-/// What is told, without the folder that it was in.
+/// What is reported, without the folder that it was in.
 fn said(bench: &Bench, arguments: &[&str]) -> (Option<i32>, String) {
     let output = bench.run(arguments);
     (output.status.code(), String::from_utf8(output.stderr).unwrap())
@@ -41,7 +41,7 @@ fn every_template_is_a_model_with_everything_that_checks_and_runs_at_once() {
         assert_eq!(output.status.code(), Some(0), "{template}");
         let told = String::from_utf8(output.stderr).unwrap();
         assert!(!told.contains("warning"), "{template}: {told}");
-        // Pins in a plane say the same about what is square to it; nothing else does.
+        // Pins in a plane say the same about what is perpendicular to it; nothing else does.
         let redundant = Analysis::new(model).unwrap().topology().redundant().count();
         assert!(redundant == 0 || text.contains("\nplanar = "), "{template}");
         let output = bench.run(&["run", "mine.toml", "-o", "results"]);
@@ -106,7 +106,7 @@ fn a_table_places_the_hardpoints_in_its_units_and_axes() {
     let told = said(&bench, &["new", "flat", "-t", "four-bar", "--hardpoints", "flat.csv"]);
     assert_eq!(told, (Some(0), String::new()));
     assert_eq!(bench.text("flat.toml"), bench.text("bar.toml").replace("\"bar\"", "\"flat\""));
-    // A plane that is parallel to that of the template is told.
+    // A plane that is parallel to that of the template is reported.
     bench.put("above.csv", "A,0,0,7\nB,35,61,7\nC,250,190,7\nD,300,0,7\nP,130,200,7\n");
     let (code, told) =
         said(&bench, &["new", "above", "-t", "four-bar", "--hardpoints", "above.csv", "--units", "mm"]);

@@ -15,7 +15,7 @@ fn document(bench: &Bench, name: &str) -> String {
     bytes.into_iter().map(char::from).collect()
 }
 
-/// All that stands on the pages, text by text.
+/// All that is on the pages, text by text.
 fn said(document: &str) -> Vec<String> {
     let texts = document.lines().filter_map(|line| line.trim().strip_suffix(" Tj"));
     let text = |shown: &str| {
@@ -79,7 +79,7 @@ fn the_pages_say_what_was_run_and_draw_every_measure_as_it_is() {
         let name = measure["name"].as_str().unwrap();
         has(name);
         let column = headers.iter().position(|h| h == name || h.starts_with(&format!("{name} ["))).unwrap();
-        // The unit stands beside the axis.
+        // The unit is next to the axis.
         has(headers[column].strip_prefix(name).unwrap().trim());
         let number = |column: usize| rows.iter().map(move |row| row[column].parse::<f64>().unwrap());
         for (drawn, solved) in [

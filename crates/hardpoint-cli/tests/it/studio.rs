@@ -25,7 +25,7 @@ fn payload(bench: &Bench, html: &str) -> serde_json::Value {
     page
 }
 
-/// What a page is told of its server.
+/// What a page is informed of its server.
 fn about(html: &str) -> serde_json::Value {
     let (_, rest) = html.split_once("id=\"server\">").unwrap();
     serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
@@ -286,11 +286,11 @@ fn bodies_are_as_large_as_models_may_be_and_methods_are_those_that_there_are() {
     let bench = slider();
     let server = Server::start(&bench, &["slider.toml"]);
     let head = server.head("PUT", "/api/model?file=slider.toml") + "if-match: x\r\n";
-    // Told beforehand: nothing of it needs to come.
+    // Reported beforehand: nothing of it needs to come.
     let told = server.send(&format!("{head}content-length: 1000000000000\r\n\r\n"));
     assert_eq!(told.status, 413, "{}", told.head);
     assert!(told.json()["error"].as_str().unwrap().contains("64 MiB"));
-    // Told by nobody.
+    // Reported by nobody.
     let mut stream = server.connect();
     stream.write_all(format!("{head}transfer-encoding: chunked\r\n\r\n").as_bytes()).unwrap();
     let chunk = [format!("{:x}\r\n", 1 << 20).into_bytes(), vec![b'#'; 1 << 20], b"\r\n".to_vec()].concat();
@@ -487,7 +487,7 @@ fn a_search_tells_how_it_goes_and_gives_a_report_and_the_text_of_what_it_found()
 
     let wrong = serde_json::json!({ "what": "optimize", "file": "strut.toml", "text": "name = 1" });
     assert_eq!(server.ask("POST", "/api/study", "", &wrong.to_string()).status, 422);
-    // What cannot be searched is told when the study ends.
+    // What cannot be searched is reported when the study ends.
     let slider =
         serde_json::json!({ "what": "optimize", "file": "slider.toml", "text": bench.text("slider.toml") });
     let id = server.ask("POST", "/api/study", "", &slider.to_string()).json()["id"].clone();

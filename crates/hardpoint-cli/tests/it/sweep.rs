@@ -87,7 +87,7 @@ fn a_sweep_that_is_killed_and_gone_on_with_equals_one_that_was_not() {
         done(&bench, &[&common[..], &["-o", &whole, "--threads", "2"]].concat());
         let broken = format!("broken_{format}");
         let arguments = [&["sweep", STRUT], &common[..], &["-o", &broken, "--threads", "1"]].concat();
-        // Killed three times, wherever it is, and gone on with on as many threads as it likes.
+        // Killed three times, wherever it is, and resumed on as many threads as it likes.
         let journal = bench.path(&broken).join("sweep.partial");
         let length = || std::fs::metadata(&journal).map_or(0, |m| m.len());
         let mut before = 0;

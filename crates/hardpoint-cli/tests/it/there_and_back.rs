@@ -46,7 +46,7 @@ fn joints(file: &ModelFile) -> Vec<(String, &'static str, [String; 2], Vec3, Vec
     list
 }
 
-/// Whether two models have the same joints between the same bodies at the same places.
+/// True if two models have the same joints between the same bodies at the same places.
 fn same(a: &ModelFile, b: &ModelFile) {
     /// Sums of places along a tree differ by so much of a metre.
     const ROUNDED: f64 = 1e-12;

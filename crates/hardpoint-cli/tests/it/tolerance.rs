@@ -39,7 +39,7 @@ fn the_tolerances_of_the_strut_are_told_and_written() {
     let summary = bench.json("out/summary.json");
     assert_eq!((&summary["study"], &summary["status"]), (&"tolerance".into(), &"complete".into()));
     assert_eq!(summary["samples"], 2000);
-    // The tolerance of a point stands at each of its coordinates.
+    // The tolerance of a point is at each of its coordinates.
     let variables = summary["variables"].as_array().unwrap();
     assert_eq!((variables.len(), &variables[0]["name"]), (10, &"ball_joint_x".into()));
     assert_eq!((&variables[0]["tolerance"], &variables[0]["start"]), (&"ball_joint".into(), &0.3.into()));

@@ -181,7 +181,7 @@ fn a_change_that_cannot_be_followed_is_offered_with_what_makes_it_admissible() {
     let offer = String::from_utf8(bench.run(&set).stdout).unwrap();
     assert!(offer.contains("`--admissible` makes this change instead"), "{offer}");
 
-    // Accepted, the whole motion is solved and everything is foreseen.
+    // Accepted, the whole motion is solved and everything is predicted.
     let taken = bench.run(&[&set[..], &["--admissible", "--json"]].concat());
     assert_eq!(taken.status.code(), Some(0), "{}", String::from_utf8_lossy(&taken.stderr));
     let document: Value = serde_json::from_slice(&taken.stdout).unwrap();

@@ -13,7 +13,7 @@ use crate::Counts;
 /// No register.
 const NOWHERE: u8 = u8::MAX;
 
-/// A number with a home in memory makes room as if it were read so many instructions later: it need not be stored.
+/// A number with a home in memory makes room as if it were read that many instructions later: it need not be stored.
 const CLEAN: u32 = 50;
 
 /// What a register holds.
@@ -43,7 +43,7 @@ pub struct Allocator<'l> {
     free_slots: Vec<Memory>,
     /// Slots that this instruction reads for the last time: free for the next.
     last_read: Vec<Memory>,
-    /// How many outputs of values are stored.
+    /// Number of outputs of values are stored.
     stored: usize,
 }
 

@@ -40,7 +40,7 @@ pub fn operands(program: &Program) {
     }
 }
 
-/// How many outputs each part has.
+/// Number of outputs each part has.
 pub fn parts(program: &Program, ends: [usize; PARTS - 1]) -> [usize; PARTS] {
     let count = program.outputs.len();
     let [first, second] = ends;

@@ -25,7 +25,7 @@ pub struct Memory {
     pub base: Gpr,
     /// In bytes.
     pub offset: i32,
-    /// One scalar that stands for all lanes: AVX-512 only.
+    /// One scalar that represents all lanes: AVX-512 only.
     pub broadcast: bool,
 }
 
@@ -46,7 +46,7 @@ pub struct Opcode {
     wide: bool,
     /// The byte that follows.
     immediate: Option<u8>,
-    /// Its operand in memory is one scalar.
+    /// Operand in memory is one scalar.
     scalar: bool,
 }
 
@@ -123,7 +123,7 @@ pub enum When {
 pub struct Assembler {
     width: Width,
     pub bytes: Vec<u8>,
-    /// How many instructions there are.
+    /// Number of instructions there are.
     pub count: usize,
 }
 
@@ -166,7 +166,7 @@ impl Assembler {
             }
             Source::Memory(m) => (0, m.base as u8 >> 3, m.broadcast),
         };
-        // Extensions of register numbers are stored inverted; 1 in the second byte stands for the prefix 66,
+        // Extensions of register numbers are stored inverted; 1 in the second byte represents the prefix 66,
         // 10 in the last for 512 bits.
         let p0 = (!(d >> 3) & 1) << 7 | (!x & 1) << 6 | (!b & 1) << 5 | (!(d >> 4) & 1) << 4 | op.map;
         let p1 = 1 << 7 | (!a & 15) << 3 | 1 << 2 | 1;
@@ -309,7 +309,7 @@ impl Assembler {
         self.aim(at, self.bytes.len());
     }
 
-    /// Jumps are told how far the aim is from their end, `at`.
+    /// Jumps are reported how far the aim is from their end, `at`.
     fn aim(&mut self, at: usize, aim: usize) {
         let by = i32::try_from(aim as i64 - at as i64).expect("code is below 2 GB");
         self.bytes[at - 4..at].copy_from_slice(&by.to_le_bytes());

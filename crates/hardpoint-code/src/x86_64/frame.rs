@@ -1,4 +1,4 @@
-//! Where numbers are in memory, and what stands around the instructions: entry, loop over groups, calls.
+//! Where numbers are in memory, and what is around the instructions: entry, loop over groups, calls.
 //!
 //! The code is a function by the System V convention,
 //!
@@ -53,7 +53,7 @@ impl Frame {
         self.width
     }
 
-    /// How many vector registers there are.
+    /// Number of vector registers there are.
     pub fn registers(&self) -> usize {
         match self.width {
             Width::Avx2 => 16,
@@ -136,7 +136,7 @@ impl Frame {
         Memory { base, offset: offset - self.ahead(base), broadcast }
     }
 
-    /// How far a register points into what it stands for: 128 short offsets.
+    /// How far a register points into what it represents: 128 short offsets.
     fn ahead(&self, base: Gpr) -> i32 {
         match (self.width, base) {
             (Width::Avx512, Gpr::Rsi | Gpr::R8) => 128 * 8,

@@ -32,7 +32,7 @@ pub struct Step {
     operands: [Name; 3],
     next: [u32; 3],
     count: u8,
-    /// Whether an output follows from it.
+    /// True if an output follows from it.
     pub needed: bool,
 }
 
@@ -69,7 +69,7 @@ impl Names {
         Self { inputs, uniforms, constants, sign, magnitude: sign + 1 }
     }
 
-    /// How many names there are.
+    /// Number of names there are.
     pub fn len(&self) -> usize {
         self.magnitude as usize + 1
     }
@@ -129,7 +129,7 @@ impl Lowered {
         Self { names, steps, first, outputs, by_value }
     }
 
-    /// The outputs of values from `from` on that are this value; values are asked for in their order.
+    /// The outputs of values from `from` on that are this value; values are requested in their order.
     pub fn outputs_of(&self, value: Name, from: &mut usize) -> &[(Name, u32)] {
         let rest = &self.by_value[*from..];
         let count = rest.iter().take_while(|(n, _)| *n == value).count();

@@ -50,7 +50,7 @@ pub fn widest() -> Result<Width, Unsupported> {
     Width::ALL.into_iter().rev().find(|w| has(*w)).ok_or(Unsupported::Cpu)
 }
 
-/// Whether CPU and system have it.
+/// True if CPU and system have it.
 pub fn has(width: Width) -> bool {
     match width {
         Width::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
@@ -125,7 +125,7 @@ impl Machine {
         }
     }
 
-    /// How many groups parts of these lengths are; nothing if the program has no outputs.
+    /// Number of groups parts of these lengths are; nothing if the program has no outputs.
     fn groups(&self, lengths: [usize; PARTS]) -> Option<usize> {
         let mut groups = None;
         for (length, outputs) in lengths.into_iter().zip(self.outputs) {
@@ -140,7 +140,7 @@ impl Machine {
     }
 }
 
-/// The constants, so many times each, and after them the masks for signs, as `lower::Names` counts them.
+/// The constants, that many times each, and after them the masks for signs, as `lower::Names` counts them.
 fn spread(constants: &[f64], times: usize) -> Vec<Line> {
     let masks = [f64::from_bits(1 << 63), f64::from_bits(!(1 << 63))];
     let all: Vec<f64> = constants.iter().chain(&masks).flat_map(|c| std::iter::repeat_n(*c, times)).collect();
@@ -151,7 +151,7 @@ fn spread(constants: &[f64], times: usize) -> Vec<Line> {
     lines
 }
 
-/// The bytes of the code, for so many outputs in each part.
+/// The bytes of the code, for that many outputs in each part.
 fn emit(program: &Program, outputs: [usize; PARTS], width: Width) -> (Vec<u8>, Frame, Counts) {
     let lowered = Lowered::new(program);
     let frame = Frame::new(program, outputs, lowered.names, width);

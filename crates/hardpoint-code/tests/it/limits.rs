@@ -288,7 +288,7 @@ fn nothing_beside_the_outputs_is_written_wherever_they_begin() {
     }
 }
 
-/// How many bytes can be executed that are of no file, which Linux says.
+/// Number of bytes can be executed that are of no file, which Linux says.
 #[cfg(target_os = "linux")]
 fn executable_bytes() -> usize {
     let maps = std::fs::read_to_string("/proc/self/maps").expect("Linux has it");

@@ -6,7 +6,7 @@ use hardpoint_tape::{Instruction, Interpreter, LANES, Lanes, Operand, Program};
 use crate::plain;
 use crate::random::{self, CALLS, Random, Shape};
 
-/// Inputs and uniforms for so many groups.
+/// Inputs and uniforms for that many groups.
 fn data(random: &mut Random, program: &Program, groups: usize, wild: bool) -> (Vec<Lanes>, Vec<f64>) {
     let mut number = || if wild { random.wild() } else { random.tame() };
     let inputs = (0..groups * program.inputs).map(|_| [(); LANES].map(|()| number())).collect();
@@ -58,7 +58,7 @@ fn holds(program: &Program, groups: usize, inputs: &[Lanes], uniforms: &[f64]) -
     (expected.as_flattened().iter().filter(|x| x.is_finite()).count(), counts)
 }
 
-/// Whether there is anything to test.
+/// True if there is anything to test.
 fn is_here() -> bool {
     Width::ALL.into_iter().any(Width::is_here)
 }

@@ -78,9 +78,9 @@ pub struct Shape {
     pub outputs: usize,
     /// How far back most values are that an instruction reads.
     pub near: usize,
-    /// One in so many instructions is a call; none if zero.
+    /// One in that many instructions is a call; none if zero.
     pub calls: usize,
-    /// Whether constants may be anything.
+    /// True if constants may be anything.
     pub wild: bool,
 }
 
@@ -131,7 +131,7 @@ pub fn program(random: &mut Random, shape: Shape) -> Program {
     program
 }
 
-/// Where parts of so many outputs end; often some are empty.
+/// Where parts of that many outputs end; often some are empty.
 pub fn ends(random: &mut Random, outputs: usize) -> [usize; 2] {
     let [a, b] = [(); 2].map(|()| random.below(outputs + 1));
     match random.below(6) {
@@ -184,7 +184,7 @@ fn any(random: &mut Random, program: &Program, near: usize) -> Operand {
     }
 }
 
-/// The number that an operand stands for.
+/// The number that an operand represents.
 pub fn at(operand: Operand, values: &[f64], inputs: &[f64], uniforms: &[f64], constants: &[f64]) -> f64 {
     match operand {
         Operand::Value(k) => values[k as usize],

@@ -76,7 +76,7 @@ fn led(kinds: &Kinds) -> String {
     text
 }
 
-/// The kinds of a table that a `type` tells apart: what they are, then the keys of each.
+/// The kinds of a table that a `type` distinguishes: what they are, then the keys of each.
 fn typed(kinds: &Kinds) -> String {
     let mut text = "| `type` | what it is |\n|---|---|\n".to_owned();
     let tables = (kinds.tables)();

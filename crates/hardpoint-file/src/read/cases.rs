@@ -25,15 +25,15 @@ pub(crate) const CASE: Table = table! {
     or("\"held\"") "rest": REST, "\"as_above\"";
     /// Loads with or without inertia, as `loads` of the file. Default: that of the file.
     may "loads": LOADS, "\"static\"";
-    /// Its output times, as `[time]` has them. Default: those of `[time]`.
+    /// Output times, as `[time]` has them. Default: those of `[time]`.
     may "time": Shape::Kinds(&TIME), "{ end = 1.0, steps = 100 }";
-    /// In place of all these, two drivers by name and where each of them stands: every position of the one with every position of the
-    /// other. All others are held as drawn.
+    /// In place of all these, two drivers by name and where each of them is: every position of the one with every position of the
+    /// other. All others are fixed in the design configuration.
     may "grid": Shape::Entries("a driver", &Shape::Kinds(&SWEEP)), "{ bump = { from = -80, to = 80, steps = 8 }, steering = { from = -15, to = 15, steps = 6 } }";
 };
 pub(crate) const SWEEP: Kinds = Kinds {
     name: "Sweep",
-    doc: "Where a driver stands in the rows or columns of a grid, in its unit, counted from the drawing.",
+    doc: "Where a driver is in the rows or columns of a grid, in its unit, counted from the drawing.",
     typed: false,
     tables: || vec![&RANGE, &PLACES],
 };
@@ -44,7 +44,7 @@ const RANGE: Table = table! {
     must "from": NUMBER, "-80";
     /// The highest position.
     must "to": NUMBER, "80";
-    /// How many intervals: there is one position more.
+    /// Number of intervals: there is one position more.
     must "steps": Shape::Count(MOST_POSITIONS), "8";
 };
 const PLACES: Table = table! {
@@ -56,7 +56,7 @@ const PLACES: Table = table! {
 /// More positions of one driver than this are surely a slip.
 const MOST_POSITIONS: u32 = 10_000;
 const REST: Shape = Shape::Words(&[
-    ("held", "They are held as drawn: their law is 0."),
+    ("held", "They are fixed in the design configuration: their law is 0."),
     ("as_above", "They follow the laws that they have in `[drivers]`."),
 ]);
 const RESTS: [OtherDrivers; 2] = [OtherDrivers::Held, OtherDrivers::AsAbove];
@@ -78,7 +78,7 @@ impl Reader<'_> {
             let mut place = EntryPlace::of(&fields);
             if fields.get("grid").is_some() {
                 for key in ["laws", "rest", "loads", "time"] {
-                    let why = "a `grid` says where two drivers stand; all others are held as drawn, and there is no time in it";
+                    let why = "a `grid` says where two drivers stand; all others are fixed in the design configuration, and there is no time in it";
                     self.out_of_place(&fields, key, why);
                 }
                 let sweeps = self.given(&fields, "grid", |r, f| r.sweeps(&fields, f, &mut place, &driven));
@@ -170,7 +170,7 @@ impl Reader<'_> {
         complete.then_some(sweeps)
     }
 
-    /// Where a driver stands, in its unit.
+    /// Where a driver is, in its unit.
     fn positions(&mut self, what: &str, subject: &Subject, value: &Value<'_>) -> Option<Vec<f64>> {
         let table = self.table(value, subject, "a table with `from`, `to` and `steps`")?;
         let fields = self.fields(what, value.span(), table, SWEEP.keys());

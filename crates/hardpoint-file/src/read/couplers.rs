@@ -72,7 +72,7 @@ const GEARS: &[Key] = keys! {
     must "joints": TWO_JOINTS, "[\"J1\", \"J2\"]";
     /// Numbers of teeth, or any two numbers in their ratio.
     must "teeth": TWO_NUMBERS, "[20, 40]";
-    /// Whether one of them is an internal gear, so that both turn the same way.
+    /// True if one of them is an internal gear, so that both turn the same way.
     or("false") "internal": Shape::Flag, "true";
 };
 const RACK: &[Key] = keys! {
@@ -88,7 +88,7 @@ const BELT: &[Key] = keys! {
     must "joints": TWO_JOINTS, "[\"J1\", \"J2\"]";
     /// Radii of the pulleys, in the length unit.
     must "radii": Shape::exactly(2, &LENGTH), "[20, 40]";
-    /// Whether the belt crosses between them.
+    /// True if the belt crosses between them.
     or("false") "crossed": Shape::Flag, "true";
 };
 const TWO_JOINTS: Shape = Shape::exactly(2, &JOINT);

@@ -28,7 +28,7 @@ pub(crate) struct DataError {
     pub message: String,
     pub notes: Vec<String>,
     pub help: Option<String>,
-    /// Whether it is the choice of columns that does not fit.
+    /// True if it is the choice of columns that does not fit.
     pub of_columns: bool,
 }
 
@@ -306,7 +306,7 @@ fn parse(text: &str, name: &str, columns: &[Column; 2], of: &Curve) -> Result<Ve
     Ok(points)
 }
 
-/// What stands between the columns: a tab or a semicolon, if the first line has one, or a comma.
+/// What is between the columns: a tab or a semicolon, if the first line has one, or a comma.
 pub(super) fn delimiter(text: &str) -> u8 {
     let mut lines = text.lines().filter(|l| !l.trim().is_empty() && !l.starts_with('#'));
     let first = lines.next().unwrap_or_default();

@@ -42,7 +42,7 @@ static KINDS: &[(Table, Read)] = &[
             must "move": HARDPOINTS, "\"A\"";
             /// The direction; `"xyz"` makes three variables, NAME_x, NAME_y and NAME_z.
             must "along": Shape::Any("Along", "", &[AXES, Shape::Any("AllAxes", "", &[Shape::Words(&[("xyz", "")])]), THREE]), "\"z\"";
-            /// The global axis square to a mirror through the origin, behind which `mirrored` hardpoints move: `"y"` between left and
+            /// The global axis perpendicular to a mirror through the origin, behind which `mirrored` hardpoints move: `"y"` between left and
             /// right.
             may "mirror": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
             /// A hardpoint's name, or a list of names, that move as the mirror image of `move`.
@@ -142,7 +142,7 @@ static KINDS: &[(Table, Read)] = &[
 ];
 
 const RANGE: &[Key] = keys! {
-    /// Whether rods and legs keep their lengths while it moves their ends, so that the mechanism is assembled anew; else they are
+    /// True if rods and legs keep their lengths while it moves their ends, so that the mechanism is assembled anew; else they are
     /// made anew to fit the design configuration.
     or("false") "fixed_length": Shape::Flag, "true";
     /// The lowest and the highest value that it may have, in the variable's unit; it is 0 in the file.
@@ -235,7 +235,7 @@ static FIELDS: &[(Table, ReadField)] = &[
             "Bend":
             /// The hardpoint where it is held, and the one where it is pushed.
             must "bend": Shape::exactly(2, &HARDPOINT), "[\"A\", \"B\"]";
-            /// In which direction, of any length; only what is square to the beam counts.
+            /// In which direction, of any length; only what is perpendicular to the beam counts.
             must "towards": DIRECTION, "\"z\"";
         },
         |r, fields, _| {
@@ -269,7 +269,7 @@ static FIELDS: &[(Table, ReadField)] = &[
 const THROUGH: Table = table! {
     /// How a hardpoint moves.
     "ThroughPoint":
-    /// Its name.
+    /// Name.
     must "at": HARDPOINT, "\"A\"";
     /// How far, per unit of the variable; it stays where this is left out.
     may "move": Shape::exactly(3, &Shape::Plain(Quantity::Number)), "[0, 0, 1]";
@@ -364,7 +364,7 @@ impl Reader<'_> {
         Some(along.into_iter().map(|(name, v)| (name, changes(v))).collect())
     }
 
-    /// One name or several; where each stands goes to `places`.
+    /// One name or several; where each is goes to `places`.
     fn several(
         &mut self,
         fields: &Fields<'_>,

@@ -23,7 +23,7 @@ pub(crate) const GRAVITY: Table = table! {
     "Gravity":
     /// Which way is down.
     must "along": DIRECTION, "\"-z\"";
-    /// Its acceleration, in m/s^2 whatever the unit of length.
+    /// Acceleration, in m/s^2 whatever the unit of length.
     or("9.80665") "acceleration": NUMBER, "9.81";
 };
 pub(crate) const MASS: Kinds = Kinds {
@@ -91,7 +91,7 @@ pub(crate) fn weightless(file: &ModelFile) -> Option<Diagnostic> {
     )
 }
 
-/// So many bodies without mass are named.
+/// Number of bodies without mass are named.
 const MOST_NAMES: usize = 8;
 
 impl Reader<'_> {

@@ -36,7 +36,7 @@ pub(super) const INCLUDE_TABLE: Table = table! {
 };
 /// More files than this are surely a slip.
 const MOST_FILES: usize = 100;
-/// Each inclusion counts as so many bytes at least of what all files of a model may have together, so that files that include others over
+/// Each inclusion counts as that many bytes at least of what all files of a model may have together, so that files that include others over
 /// and over end somewhere.
 const LEAST_BYTES: u64 = 64 << 10;
 const WANTED: Wanted<'static> = Wanted {
@@ -48,14 +48,14 @@ const WANTED: Wanted<'static> = Wanted {
     too_large: "leave out of it what is not needed",
 };
 
-/// A file of a model, beside the one that was asked for.
+/// A file of a model, beside the one that was requested.
 pub(crate) struct Part {
     /// As the first file would name it.
     pub name: String,
     pub text: String,
 }
 
-/// What hinders the reading of a file, and where it is asked for: in which file (0 is the first), and there.
+/// What hinders the reading of a file, and where it is requested: in which file (0 is the first), and there.
 pub(crate) struct Hindrance {
     pub file: usize,
     pub at: Range<usize>,
@@ -72,7 +72,7 @@ pub(crate) fn parts(folder: Folder<'_>, text: &str) -> (Vec<Part>, Vec<Hindrance
             Some(k) => (parts[k].name.as_str(), parts[k].text.as_str()),
         };
         let mut found = Vec::new();
-        // What is no TOML is told when it is read.
+        // What is no TOML is reported when it is read.
         if text.contains("include") {
             let document = DeTable::parse_recoverable(text).0;
             for (asked, at) in files_of(document.get_ref()) {
@@ -154,13 +154,13 @@ pub(crate) struct Files<'a> {
     /// Their tables, each with the name that it has; the first has none.
     pub tables: Vec<(String, DeTable<'a>)>,
     pub numbers: &'a Opposites,
-    /// How many bytes each has.
+    /// Number of bytes each has.
     pub sizes: Vec<u64>,
 }
 
 impl Reader<'_> {
     /// All of a model in one table: what the file includes, what it says itself, and what its mirror makes of both. Where that cannot be
-    /// made, it is told.
+    /// made, it is reported.
     pub fn whole<'a>(&mut self, mut files: Files<'a>) -> Both<'a> {
         let first = &mut files.tables[0].1;
         if !["include", "mirror", "planar"].iter().any(|key| first.contains_key(*key)) {
@@ -183,7 +183,7 @@ impl Reader<'_> {
                 both.twins.extend(part.twins);
             }
         }
-        // What stands in this file counts more; it comes behind what it includes.
+        // What is in this file counts more; it comes behind what it includes.
         let included = std::mem::take(&mut both.table);
         both.table = own;
         under(&mut both.table, included);
@@ -246,7 +246,7 @@ impl Reader<'_> {
             }
         };
         let name = beside(from, &asked);
-        // A file that could not be read has been told of.
+        // A file that could not be read has been reported of.
         let k = files.tables.iter().skip(1).position(|file| file.0 == name)? + 1;
         if above.contains(&k) {
             let message = format!("the file `{}` includes itself", shown(&name));
@@ -485,7 +485,7 @@ pub(super) fn fill<'a>(hand: &mut DeTable<'a>, made: Value<'a>) -> bool {
     true
 }
 
-/// Whether what is written by hand says all of an entry: its `type`, or what leads one of its kinds.
+/// True if what is written by hand says all of an entry: its `type`, or what leads one of its kinds.
 fn stands_alone(shape: Shape, hand: &DeTable<'_>) -> bool {
     let leads = match shape {
         Shape::Kinds(kinds) if !kinds.typed => (kinds.tables)().iter().map(|t| t.keys[0].key).collect(),

@@ -172,9 +172,9 @@ pub(super) const PIECE: Table = table! {
     "Piece":
     /// How long it lasts, in s. The last piece may leave it out, and then has no end.
     may "duration": NUMBER, "1";
-    /// Its law; `t` counts from the start of the piece.
+    /// Law; `t` counts from the start of the piece.
     must "law": LAW, "\"10*t\"";
-    /// Whether its values count from where the piece before ended.
+    /// True if its values count from where the piece before ended.
     or("true") "continued": Shape::Flag, "true";
 };
 pub(super) const COLUMN: Shape = Shape::Any(

@@ -54,7 +54,7 @@ struct Triangles {
     places: HashMap<[u64; 3], u32>,
     vertices: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
-    /// How many there are in the file, kept or not.
+    /// Number of there are in the file, kept or not.
     count: usize,
 }
 
@@ -126,7 +126,7 @@ fn triangles_of(folder: Folder<'_>, name: &str) -> Result<Triangles, DataError> 
     Ok(triangles)
 }
 
-/// The triangles in the bytes of a mesh file, whose kind the ending of its name tells: three corners each, as they are written.
+/// The triangles in the bytes of a mesh file, whose kind the ending of its name indicates: three corners each, as they are written.
 ///
 /// # Errors
 /// Why there are none.
@@ -224,7 +224,7 @@ impl Reader<'_> {
         let said = match mass.get(key) {
             Some(f) => self.mesh(mass, f)?,
             None => {
-                // What is wrong with the body is told where it stands.
+                // What is wrong with the body is reported where it is.
                 let f = mass.get("body")?;
                 let body = f.value.get_ref().as_str()?;
                 match self.meshes.get(body).cloned() {

@@ -25,7 +25,7 @@ use side::Side;
 pub(crate) const MIRROR: Table = table! {
     /// What the file says of one side is said of the other side as well.
     "Mirror":
-    /// The global axis square to the mirror, a plane through the origin: `"y"` between left and right.
+    /// The global axis perpendicular to the mirror, a plane through the origin: `"y"` between left and right.
     or("\"y\"") "across": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
     /// Words in names, and the words that stand for them on the other side. A word ends where the name does, or at `_`, `-` or a blank.
     or("{ \"left\": \"right\" }") "names": Shape::Entries("a word", &Shape::Text), "{ left = \"right\" }";
@@ -152,7 +152,7 @@ fn image(name: &str, words: &[(String, String)]) -> Option<String> {
 }
 
 /// What the mirror of a model calls the images of names, for those who say more of the one side before there is another. Mistakes are
-/// told when the mirror is made.
+/// reported when the mirror is made.
 pub(super) fn images(model: &DeTable<'_>) -> impl Fn(&str) -> Option<String> + use<> {
     let said = model.get("mirror").and_then(|v| v.get_ref().as_table());
     let text = |value: &Value<'_>| value.get_ref().as_str().map(str::to_owned);
@@ -224,7 +224,7 @@ fn turn_sign<'a>(value: &mut Value<'a>, numbers: &'a Opposites) {
 }
 
 impl Reader<'_> {
-    /// The table of the model with what its `mirror` makes of it; none where there is no mirror, or where that cannot be read, which is told.
+    /// The table of the model with what its `mirror` makes of it; none where there is no mirror, or where that cannot be read, which is reported.
     pub fn both_sides<'a>(&mut self, model: &DeTable<'a>, numbers: &'a Opposites) -> Option<Both<'a>> {
         let value = model.get("mirror")?;
         let Some(said) = value.get_ref().as_table() else {
@@ -325,7 +325,7 @@ impl Reader<'_> {
             let Some(other) = other.filter(|to| *to != &**from.get_ref()) else {
                 let message = format!("`{}` of `names` is not one word for another", shown(from.get_ref()));
                 self.report("HP0116", at, message).help = Some(
-                    "write words of letters and digits without what stands between them, like `l = \"r\"` for `arm_l`".into(),
+                    "write words of letters and digits without what is between them, like `l = \"r\"` for `arm_l`".into(),
                 );
                 continue;
             };

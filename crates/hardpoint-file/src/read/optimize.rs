@@ -28,7 +28,7 @@ pub(crate) const OPTIMIZE: Table = table! {
     may "margin": NUMBER, "0.02";
     /// From how many designs the search starts: that of the file, and others spread within the bounds.
     or("1") "starts": Shape::Count(MOST_STARTS), "8";
-    /// After so many iterations a search ends.
+    /// After that many iterations a search ends.
     or("100") "iterations": Shape::Count(MOST_ITERATIONS), "100";
 };
 pub(super) const GOAL: Table = table! {
@@ -75,7 +75,7 @@ static LIMITS: &[(Table, Read)] = &[
     ),
     (
         limit! {
-            /// The place of a hardpoint, as drawn: a box, each side in the length unit.
+            /// The place of a hardpoint, in the design configuration: a box, each side in the length unit.
             "LimitOfHardpoint":
             /// The hardpoint's name.
             must "hardpoint": HARDPOINT, "\"A\"";
@@ -90,7 +90,7 @@ static LIMITS: &[(Table, Read)] = &[
     ),
     (
         limit! {
-            /// The distance of two hardpoints as drawn, in the length unit.
+            /// The distance of two hardpoints in the design configuration, in the length unit.
             "LimitOfDistance":
             /// The hardpoints' names.
             must "between": Shape::exactly(2, &HARDPOINT), "[\"A\", \"B\"]";
@@ -103,7 +103,7 @@ static LIMITS: &[(Table, Read)] = &[
     ),
     (
         limit! {
-            /// The length of a rod or leg as drawn, in the length unit.
+            /// The length of a rod or leg in the design configuration, in the length unit.
             "LimitOfLength":
             /// The joint's name.
             must "length": JOINT, "\"rod\"";

@@ -21,7 +21,7 @@ pub(crate) const PARAMETER: Shape = Shape::Any(
 pub(super) const PARAMETER_TABLE: Table = table! {
     /// A named number.
     "ParameterTable":
-    /// Its value; an expression makes it follow others.
+    /// Value; an expression makes it follow others.
     must "value": NUMBER, "60";
     /// What it measures, and so its unit.
     or("\"number\"") "unit": UNIT, "\"length\"";
@@ -31,7 +31,7 @@ pub(super) const PARAMETER_TABLE: Table = table! {
     may "typical": NUMBER, "2";
     /// By how much it may be off when it is made, either way.
     may "tolerance": NUMBER, "0.1";
-    /// Whether it is a design variable.
+    /// True if it is a design variable.
     or("true") "design": Shape::Flag, "false";
 };
 const UNIT: Shape = Shape::Words(&[

@@ -1,6 +1,6 @@
 //! Mechanisms in a plane: points of two coordinates, pins without an axis, bodies that are said by their points.
 //!
-//! All of it is made of the text's values before they are read; what is made stands where the text is that says it.
+//! All of it is made of the text's values before they are read; what is made is where the text is that says it.
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};

@@ -53,7 +53,7 @@ const STEPS: Table = table! {
     or("0.0") "start": NUMBER, "0";
     /// The last output time.
     must "end": NUMBER, "1.0";
-    /// How many intervals: there is one output time more.
+    /// Number of intervals: there is one output time more.
     must "steps": Shape::Count(MOST_TIMES), "100";
 };
 const TIMES: Table = table! {
@@ -410,7 +410,7 @@ impl Reader<'_> {
             }
             FieldKind::Mesh => {
                 let solid = self.solid(fields, key);
-                // It has been told why there is none.
+                // It has been reported why there is none.
                 *unread |= solid.is_none();
                 solid.map(FieldDraft::Solid)
             }

@@ -22,16 +22,16 @@ const MOST_LEVELS: u32 = 1_000_000;
 pub(crate) const SWEEP: Table = table! {
     /// Which designs are swept over, and what is kept of them.
     "SweepStudy":
-    /// How far design variables go, by their names, in their units: of a parameter its values, of all others changes of the design as drawn,
-    /// like `bounds`. All others stay as drawn. Default: all variables with `bounds`, within these.
+    /// How far design variables go, by their names, in their units: of a parameter its values, of all others changes of the nominal design,
+    /// like `bounds`. All others stay in the design configuration. Default: all variables with `bounds`, within these.
     may "variables": Shape::Entries("a design variable", &ENTRY), "{ lca_front_z = [-5, 5], radius = { from = 90, to = 110, levels = 5 } }";
     /// How designs are chosen.
     or("\"sobol\"") "method": METHOD, "\"factorial\"";
-    /// So many designs; with `method = "indices"` so many pairs of designs.
+    /// Number of designs; with `method = "indices"` that many pairs of designs.
     or("1000") "samples": Shape::Count(MOST_SAMPLES), "100000";
     /// What they are drawn from: the same number gives the same designs.
     or("1") "seed": Shape::Count(u32::MAX), "7";
-    /// With `method = "factorial"`: so many values of every variable that says nothing else.
+    /// With `method = "factorial"`: that many values of every variable that says nothing else.
     or("3") "levels": Shape::Count(MOST_LEVELS), "5";
     /// The designs, in place of all of these: a CSV file in the model's folder whose first line names design variables.
     may "designs": Shape::Text, "\"designs.csv\"";
@@ -61,7 +61,7 @@ pub(super) const RANGE: Table = table! {
     may "from": NUMBER, "-5";
     /// Where it ends. Default: its upper bound.
     may "to": NUMBER, "5";
-    /// With `method = "factorial"`: so many values, both ends among them. Default: as `[sweep]` says.
+    /// With `method = "factorial"`: that many values, both ends among them. Default: as `[sweep]` says.
     may "levels": Shape::Count(MOST_LEVELS), "5";
 };
 /// Lists of designs.

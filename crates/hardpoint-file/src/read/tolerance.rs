@@ -26,7 +26,7 @@ pub(crate) const TOLERANCE: Table = table! {
     may "variables": Shape::Entries("a design variable", &ENTRY), "{ B = 0.1, C_x = { tolerance = 0.2, distribution = \"uniform\" } }";
     /// How deviations scatter, where a variable says nothing else.
     or("\"normal\"") "distribution": DISTRIBUTION, "\"uniform\"";
-    /// A tolerance is so many standard deviations of the normal distribution.
+    /// A tolerance is that many standard deviations of the normal distribution.
     or("3.0") "sigmas": NUMBER, "2";
     /// Which normal variables go together.
     may "correlations": Shape::Entries("a correlation", &Shape::Table(&CORRELATION)), "{ jig = { between = [\"left_z\", \"right_z\"], coefficient = 0.9 } }";
@@ -36,13 +36,13 @@ pub(crate) const TOLERANCE: Table = table! {
     may "curves": Shape::list(&OUTPUT), "[\"toe\"]";
     /// What must hold of metrics.
     may "limits": Shape::Entries("a metric", &Shape::Table(&LIMIT)), "{ toe = { metric = \"toe_range\", max = 0.5 } }";
-    /// So many designs are drawn and solved exactly.
+    /// Number of designs are drawn and solved exactly.
     or("10000") "samples": Shape::Count(MOST_SAMPLES), "100000";
     /// What they are drawn from: the same number gives the same designs.
     or("1") "seed": Shape::Count(u32::MAX), "7";
     /// The loosest tolerances are sought that keep the limits, of variables that have a `cost`.
     may "allocate": Shape::Words(&ALLOCATE), "\"rss\"";
-    /// With `allocate = "rss"`: so many standard deviations have to fit between a metric as drawn and its limit.
+    /// With `allocate = "rss"`: that many standard deviations have to fit between a metric in the design configuration and its limit.
     or("3.0") "keep_sigmas": NUMBER, "4.5";
 };
 const DISTRIBUTION: Shape = Shape::Words(&[
@@ -66,7 +66,7 @@ pub(super) const ENTRY_TABLE: Table = table! {
     may "tolerance": NUMBER, "0.1";
     /// How it scatters. Default: as `[tolerance]` says.
     may "distribution": DISTRIBUTION, "\"uniform\"";
-    /// The tolerance is so many standard deviations. Default: as `[tolerance]` says.
+    /// The tolerance is that many standard deviations. Default: as `[tolerance]` says.
     may "sigmas": NUMBER, "2";
     /// What it costs to hold, relative to others: `cost` over the tolerance. Without it `allocate` leaves the tolerance as it is.
     may "cost": NUMBER, "5";

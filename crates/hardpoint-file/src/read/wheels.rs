@@ -22,10 +22,10 @@ pub(crate) const WHEEL: Table = table! {
     "Wheel":
     /// The body that it turns on: the knuckle.
     must "body": BODY, "\"knuckle\"";
-    /// Its centre in the design configuration: a hardpoint's name (and it follows the hardpoint when the design moves that), or
+    /// Centre in the design configuration: a hardpoint's name (and it follows the hardpoint when the design moves that), or
     /// coordinates.
     must "centre": PLACE, "\"wheel_centre\"";
-    /// Its spin axis in the design configuration, pointing outboard. Or give `toe` and `camber`.
+    /// Spin axis in the design configuration, pointing outboard. Or give `toe` and `camber`.
     may "spin_axis": LINE, "[0, 1, 0]";
     /// Toe in the design configuration, instead of a spin axis; positive for toe-in, in the angle unit.
     may "toe": ANGLE, "0.1";

@@ -169,7 +169,7 @@ fn nothing_depends_on_the_order_of_postures_and_readings() {
 
 #[test]
 fn what_cannot_be_told_apart_is_named_and_stays() {
-    // In one posture nothing but one sum of the three is told; of a rod between two points that both move along it, their difference.
+    // In one posture nothing but one sum of the three is reported; of a rod between two points that both move along it, their difference.
     let model = crank();
     let measured = readings(&model, &[1e-3, 0.0, 0.0], &[vec![0.3]], &[0], 1e-5, &mut || 0.0);
     let found = fitted(&model, &measured);
@@ -189,7 +189,7 @@ fn what_cannot_be_told_apart_is_named_and_stays() {
         let size = untold.direction.iter().map(|x| x.abs()).fold(0.0, f64::max);
         assert!(slope.abs() < 1e-6 * size, "{slope}");
     }
-    // And a reading that tells them comes first among those proposed.
+    // And a reading that indicates them comes first among those proposed.
     assert!(found.next[0].tells.is_some(), "{:?}", found.next);
 }
 
@@ -224,7 +224,7 @@ fn a_reading_that_is_proposed_does_what_it_says() {
     let measured = readings(&model, &hidden, &postures, &[0], 1e-5, &mut || 0.0);
     let found = fitted(&model, &measured);
     let next = &found.next[0];
-    let improves = next.improves.expect("all three are told");
+    let improves = next.improves.expect("all three are reported");
     let mut more = measured.clone();
     more.postures.push(next.drivers.clone());
     let value =
@@ -284,7 +284,7 @@ fn a_posture_out_of_reach_is_left_out_and_told() {
     assert!(fitted_by(&model, &measured, &[], Loss::Squares).is_err());
 }
 
-/// Over so many seeds.
+/// Over that many seeds.
 const SEEDS: u64 = 100;
 
 /// A hidden design, drawn anew for every seed: fits over all seeds, as errors in standard deviations and as chi squares of the error.

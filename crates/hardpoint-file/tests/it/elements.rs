@@ -284,7 +284,7 @@ rub = { type = "spring_force", force = "rub" }
         assert!(rub.abs() <= 0.1 * thrust.abs() * (1.0 + SAME), "{rub} {thrust}");
     }
     assert!(values(&solution, "rub").iter().any(|x| x.abs() > 0.1));
-    // Bodies without mass are told, as a note.
+    // Bodies without mass are reported, as a note.
     let [note] = &file.remarks[..] else { panic!("{:?}", file.remarks) };
     assert_eq!((note.code, note.severity), ("HP0253", Severity::Note));
     assert!(note.message.contains("`crank`, `rod`"), "{}", note.message);

@@ -350,7 +350,7 @@ fn gear_train_keeps_its_ratios(m: &Solved) {
 fn bennett_input_and_output_half_angles_have_a_constant_product(m: &Solved) {
     let [a, b, c, d] = ["A", "B", "C", "D"].map(|h| m.hardpoint(h));
     let axis = |before: Vec3, at: Vec3, after: Vec3| (before - at).cross(after - at).unit().unwrap();
-    // The file's axes are square to the sides that meet there.
+    // The file's axes are perpendicular to the sides that meet there.
     let (axis_a, axis_b) = (axis(d, a, b), axis(a, b, c));
     m.close("axis A", axis_a.cross(Vec3::new(4.0, -3.0, 5.0).unit().unwrap()).norm(), 0.0, EXACT);
     m.close("axis B", axis_b.cross(Vec3::new(0.0, -2.0, 3.0).unit().unwrap()).norm(), 0.0, EXACT);
@@ -479,7 +479,7 @@ fn double_wishbone_4x4_has_the_published_static_values(m: &Solved) {
         m.close("travel", of(k, "wheel_travel"), 0.08 * (TAU * t).sin(), EXACT);
         m.close("recession", of(k, "wheel_recession"), -centre.x, EXACT);
         let e = (centre - spindle).unit().unwrap();
-        // The wheel's plane is square to e; its lowest point is straight below the centre in that plane.
+        // The wheel's plane is perpendicular to e; its lowest point is straight below the centre in that plane.
         let down = e.cross(e.cross(Vec3::AXES[2])).unit().unwrap();
         let contact = centre + down * 0.2794;
         for (axis, name) in ["contact_x", "contact_y", "contact_z"].into_iter().enumerate() {
@@ -500,7 +500,7 @@ fn double_wishbone_4x4_has_the_published_static_values(m: &Solved) {
         m.close("hub trail", of(k, "hub_trail"), hub.dot(forward), EXACT);
         m.close("caster", of(k, "caster").tan(), -axis.x / axis.z, EXACT);
         m.close("kingpin", of(k, "kingpin_inclination").tan(), -axis.y / axis.z, EXACT);
-        // From the contact point square to the kingpin, both seen along the wheel's lateral direction.
+        // From the contact point perpendicular to the kingpin, both seen along the wheel's lateral direction.
         let seen = |v: Vec3| [v.dot(forward), v.z];
         let ([a, b], [p, q]) = (seen(axis), seen(contact - lower));
         m.close("mechanical trail", of(k, "mechanical_trail"), (a * q - b * p) / a.hypot(b), EXACT);

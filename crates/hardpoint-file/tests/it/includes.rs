@@ -1,4 +1,4 @@
-//! Files in files: what is taken, under which names, and what is told of mistakes in them.
+//! Files in files: what is taken, under which names, and what is informed of mistakes in them.
 
 use std::path::Path;
 
@@ -158,7 +158,7 @@ fn a_number_of_another_file_is_not_saved_in_this_one() {
     assert_eq!(saved, AXLE.replace("[110, 210, 0]", "[110, 210, 1]"));
     let refused = design(&[("left_arm", 0.001), ("right_arm", 0.001)]).unwrap_err();
     assert!(
-        refused.to_string().contains("`left_arm` stands in the included file `corner.toml`"),
+        refused.to_string().contains("`left_arm` is in the included file `corner.toml`"),
         "{refused}"
     );
 }

@@ -399,7 +399,7 @@ pub fn heavy_gallery() -> Vec<(String, ModelFile)> {
     paths.iter().map(|path| (name(path), make_heavy(path))).collect()
 }
 
-/// Mass, moments and products of inertia about the global axes as drawn, of body k.
+/// Mass, moments and products of inertia about the global axes in the design configuration, of body k.
 fn made_up(k: usize, size: f64) -> [f64; 7] {
     let mass = 1.0 + 0.3 * (3.0 * k as f64).sin();
     let i = mass * size * size;

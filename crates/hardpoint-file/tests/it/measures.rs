@@ -205,7 +205,7 @@ fn assert_same(name: &str, a: &Solution, b: &Solution, limit: f64) {
     }
 }
 
-/// The same on every path; gives how many outputs at how many times the formulas were asked for one by one where code ran, and how
+/// The same on every path; gives how many outputs at how many times the formulas were requested one by one where code ran, and how
 /// many there are.
 fn on_every_path(name: &str, model: &Model, limit: f64) -> [usize; 2] {
     let solve = |execution| Analysis::new(model).unwrap().executed(execution).run();
@@ -226,7 +226,7 @@ fn every_kind_is_the_same_by_a_program() {
         let last = *file.model.times.last().unwrap();
         file.model.times = (0..=211).map(|k| last * f64::from(k) / 211.0).collect();
         let [by_formula, all] = on_every_path(model.0, &file.model, 1e-9);
-        // What goes by a driver that moves alone is left to the formulas.
+        // What depends on a driver that moves alone is left to the formulas.
         let slopes = file.model.measures.iter().filter(|m| m.name.starts_with("bump")).count();
         println!("{}: {by_formula} of {all}, {slopes}", model.0);
         assert!(by_formula * file.model.measures.len() <= all * file.model.measures.len() / 2, "{}", model.0);
@@ -242,7 +242,7 @@ const CRANK: &str = r#"
     points.A = { body = "crank", at = "A" }
 "#;
 
-/// Formulas over angles go by their whole turns, and where there is no number, there is none on any path.
+/// Formulas over angles depend on their whole turns, and where there is no number, there is none on any path.
 #[test]
 fn turns_and_poles_are_the_same_by_a_program() {
     let text = CRANK.to_owned()
@@ -279,14 +279,14 @@ fn turns_and_poles_are_the_same_by_a_program() {
         let angle = value("angle", k)[0];
         assert!((value("square", k)[0] - angle * angle - angle.cos()).abs() < 1e-9, "{k}");
         assert!((value("faster", k)[0] - value("square", k)[1]).abs() < 1e-9, "{k}");
-        // All turns are about z: a body against another one turns the other way, and Euler's first and last angle are not told apart.
+        // All turns are about z: a body against another one turns the other way, and Euler's first and last angle are not distinguished.
         assert!(
             (value("yaw", k)[0] - angle).abs() < 1e-9 && (value("cardan", k)[0] + angle).abs() < 1e-9,
             "{k}"
         );
         assert!(value("pitch", k)[0].abs() < 1e-12 && value("euler", k)[0].is_nan(), "{k}");
     }
-    // min, the poles and an angle that there is not go by formulas; all else does not.
+    // min, the poles and an angle that there is not depend on formulas; all else does not.
     let outputs = solution.measured.outputs.len();
     let least = all / outputs;
     assert!((2 * least..3 * least).contains(&by_formula), "{by_formula} of {all}");

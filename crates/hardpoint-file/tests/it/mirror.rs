@@ -274,7 +274,7 @@ fn broken_mirrors() {
         ("mirror_with_misspelt_key", with("mirror = {}", "mirror = { acros = \"y\" }")),
         ("mirror_except_what_is_not_there", with("mirror = {}", "mirror = { except = [\"left_ngle\"] }")),
         ("mirror_opposite_to_no_driver", with("mirror = {}", "mirror = { opposite = [\"left_yow\"] }")),
-        // What is wrong on the left is told of the left, once.
+        // What is wrong on the left is informed of the left, once.
         ("mirrored_joint_with_misspelt_key", with("lead = 25", "leed = 25")),
         ("mirrored_joint_of_no_body", with("\"left_nut\"], at", "\"left_nat\"], at")),
         (

@@ -10,7 +10,7 @@ use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{parse, read};
 
-/// Numbers of steps in which a run is asked for.
+/// Numbers of steps in which a run is requested.
 const COUNTS: [usize; 12] = [1, 2, 3, 5, 7, 10, 20, 50, 100, 200, 1_200, 5_000];
 /// Times at which runs of different spacing stop agree to this part of the run.
 const SAME_TIME: f64 = 1e-6;
@@ -336,7 +336,7 @@ fn rsur(text: &str) -> String {
     .replace("pin = { type = \"coordinate\", joint = \"c\" }", "")
 }
 
-/// Its coupler as a rod.
+/// Coupler as a rod.
 fn with_a_rod(text: &str) -> String {
     text.replace("coupler = {}", "")
         .replace(
@@ -529,7 +529,7 @@ fn a_lock_is_judged_in_the_size_of_its_loop() {
     }
 }
 
-/// Numbers of steps in which turns and metrics are asked for.
+/// Numbers of steps in which turns and metrics are requested.
 const FEW_COUNTS: [usize; 8] = [1, 2, 3, 5, 8, 49, 499, 5_000];
 /// Laws that hurry, rest, jump, pulse or turn round between output times, whatever these are; deg.
 const LAWS: [&str; 11] = [
@@ -596,7 +596,7 @@ fn turns_are_those_of_the_path_in_any_number_of_steps() {
             .into_iter()
             .flat_map(|n| [Formulation::Relative, Formulation::Absolute].map(|formulation| (n, formulation)))
         {
-            // Loads are solved step by step: so many only where the law is least even.
+            // Loads are solved step by step: that many only where the law is least even.
             if n > 499 && (formulation == Formulation::Absolute || law != LAWS[2]) {
                 continue;
             }

@@ -115,7 +115,7 @@ points.B = { body = "rod", at = "B" }
     }
     let solution = Analysis::new(&model).unwrap().run();
     let m = model.measures.iter().position(|m| m.name == "lean").unwrap();
-    // From B down to C: sin(lean) = -20 / |BC| as drawn.
+    // From B down to C: sin(lean) = -20 / |BC| in the design configuration.
     let expected = -(20_f64 / 150.0).atan();
     assert!((solution.measured.value(0, m)[0] - expected).abs() < SAME);
 }
@@ -231,7 +231,7 @@ fn written(template: &str, plane: usize, is_short: bool) -> String {
     text
 }
 
-/// Holds the shorthand in every plane to what it stands for: states of all bodies, and all measures.
+/// Holds the shorthand in every plane to what it represents: states of all bodies, and all measures.
 fn hold_to_spatial(what: &str, template: &str) {
     for (plane, (word, ..)) in PLANES.iter().enumerate() {
         let [short, spatial] = [true, false].map(|is_short| {

@@ -244,7 +244,7 @@ fn deep_nesting_is_refused() {
     survives(&format!("drivers.d.law = \"{}\"", "t+".repeat(100_000)));
 }
 
-/// How often memory is asked for while a text is read and its diagnostics are shown, and how much of it.
+/// How often memory is requested while a text is read and its diagnostics are shown, and how much of it.
 fn work(text: &str) -> [u64; 2] {
     let used = allocation_counter::measure(|| survives(text));
     [used.count_total, used.bytes_total]

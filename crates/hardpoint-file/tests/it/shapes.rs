@@ -69,7 +69,7 @@ fn joints_go_where_the_field_takes_them() {
     close(place("left_upper_ball", "wider", 0.1), [-28.28, 538.13 + 29.813, 80.0]);
     close(place("left_upper_ball", "larger", 0.1), [-28.28 - 4.074, 538.13 - 2.405, 94.0]);
     close(place("left_lower_ball", "larger", 0.1), [12.46, 562.18, -60.0]);
-    // The tip goes aside by the variable, square to the beam.
+    // The tip goes aside by the variable, perpendicular to the beam.
     let (low, high) = (place("left_lower_ball", "bent", 0.001), place("left_upper_ball", "bent", 0.001));
     close(low, [12.46, 562.18, -60.0]);
     let was = Vec3::new(-0.02828, 0.53813, 0.08);

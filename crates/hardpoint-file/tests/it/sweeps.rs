@@ -47,7 +47,7 @@ fn swept_from(model: &Model, asked: &SweepSettings, from: usize, threads: usize)
     found
 }
 
-/// The slider's place in mm as drawn, for crank, rod and offset in mm.
+/// The slider's place in mm in the design configuration, for crank, rod and offset in mm.
 fn place([radius, rod, offset]: [f64; 3]) -> f64 {
     let (sin, cos) = 40.0_f64.to_radians().sin_cos();
     radius * cos + (rod * rod - (radius * sin - offset).powi(2)).sqrt()
@@ -143,7 +143,7 @@ fn indices_of_a_mechanism_are_those_of_its_closed_form() {
     let values: Vec<f64> =
         swept_from(&model, &asked, 0, 2).into_iter().flat_map(|b| b.metrics[0].clone()).collect();
     let found = sobol_indices(&values, 3);
-    // Midpoints of so many slices of every range: the error of a variance falls with their square, here to 1e-3 of it.
+    // Midpoints of that many slices of every range: the error of a variance falls with their square, here to 1e-3 of it.
     const SLICES: usize = 40;
     let ranges = [[60.0, 140.0], [250.0, 350.0], [0.0, 40.0]];
     let at =
@@ -213,7 +213,7 @@ fn broken_lists_of_designs() {
         std::fs::write(folder.path().join("designs.csv"), list).unwrap();
         hardpoint_file::read(&path)
     };
-    let model = read("B_x [mm]; lean\n# as drawn\n0; 0\n1.5; -2\n").unwrap_or_else(|e| panic!("{e}")).model;
+    let model = read("B_x [mm]; lean\n# in the design configuration\n0; 0\n1.5; -2\n").unwrap_or_else(|e| panic!("{e}")).model;
     let sweeping = model.sweeping.unwrap();
     assert_eq!((sweeping.method, sweeping.listed.len()), (SweepMethod::Listed, 2));
     assert_eq!(sweeping.listed[1], [0.0015, -2.0_f64.to_radians()]);

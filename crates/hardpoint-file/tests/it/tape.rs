@@ -160,7 +160,7 @@ fn measures_and_margins_by_programs_are_those_of_the_kernel() {
         }
     }
     assert!(by_programs > 30 && of_one_motion > 5, "{by_programs} {of_one_motion}");
-    // Those that go by a driver that moves alone, and few others.
+    // Those that depend on a driver that moves alone, and few others.
     println!("{by_formulas:?}");
     assert!(8 * by_formulas[0] < by_formulas[1], "{by_formulas:?}");
 }

@@ -195,7 +195,7 @@ fn squares_and_moments_match_re_solved_designs() {
     }
 }
 
-/// So many standard errors may be between what derivatives say and what is drawn: of all numbers of these tests none is beyond, since
+/// That many standard errors may be between what derivatives say and what is drawn: of all numbers of these tests none is beyond, since
 /// the seeds are fixed.
 const ERRORS: f64 = 4.0;
 /// Of angles, rad.
@@ -226,7 +226,7 @@ fn squares_and_designs_drawn_agree_on_the_strut() {
     for (curve, drawn) in found.curves.iter().zip(&drawn.curves) {
         for k in 0..curve.bands.len() {
             let [mean, sigma] = curve.moments(k);
-            // Where the wheel stands as drawn nothing moves it: what is left is round-off.
+            // Where the wheel is in the design configuration nothing moves it: what is left is round-off.
             let error = sigma / 4000_f64.sqrt() + ROUND_OFF;
             assert!((drawn.mean[k] - mean).abs() < ERRORS * error);
             assert!((drawn.sigma[k] - sigma).abs() < ERRORS * error);
@@ -234,7 +234,7 @@ fn squares_and_designs_drawn_agree_on_the_strut() {
     }
 }
 
-/// Driven by its slider, which stands 0.5 mm short of where the crank and the rod are in line.
+/// Driven by its slider, which is 0.5 mm short of where the crank and the rod are in line.
 fn near_dead_point(tolerance: f64) -> ModelFile {
     let text = CRANK
         .replace("hardpoints = { O = [0, 0, 0], A = [\"radius*cos(40*pi/180)\", \"radius*sin(40*pi/180)\", 0], B = [300, \"offset\", 0] }",
@@ -524,7 +524,7 @@ fn what_is_asked_is_read_in_si() {
     near(asked.limits[0].most.unwrap(), 1.85_f64.to_radians(), 1e-12);
     assert_eq!((asked.samples, asked.seed, asked.curves.len()), (10_000, 1, 2));
     assert!(model.motions().iter().all(|m| m.tolerancing.is_none()));
-    // Without a table, the variables' own tolerances are asked for.
+    // Without a table, the variables' own tolerances are requested.
     let own = ToleranceSettings::of_variables(model).unwrap();
     assert_eq!((own.tolerances.len(), own.metrics.len()), (model.variables.len(), model.metrics.len()));
 }

@@ -113,7 +113,7 @@ fn suspensions() -> [(&'static str, String); 5] {
     ]
 }
 
-/// All but what goes by a driver that moves the wheel up and down: the rack, the only driver there is, hardly does.
+/// All but what depends on a driver that moves the wheel up and down: the rack, the only driver there is, hardly does.
 fn of_a_rack(text: &str) -> String {
     let needs_no_driver =
         |m: &&WheelMeasure| matches!(m.needs(), WheelRequirement::Nothing | WheelRequirement::Kingpin);
@@ -340,7 +340,7 @@ fn toe_and_camber_are_those_that_the_file_states_on_either_side() {
             assert!((value(k, "toe").to_degrees() - 0.7).abs() < 1e-12);
             assert!((value(k, "camber").to_degrees() + 2.5).abs() < 1e-12);
             assert!(value(k, "steer_angle").abs() < 1e-15);
-            // Its top leans inboard, so it stands further out.
+            // Its top leans inboard, so it is further out.
             let (sin, cos) = 2.5_f64.to_radians().sin_cos();
             let out = 0.3 * sin * 0.7_f64.to_radians().cos();
             assert!((value(k, "half_track") - (0.7 + out)).abs() < 1e-12);
@@ -507,7 +507,7 @@ fn a_live_axle_has_the_measures_of_rear_wheels() {
     }
 }
 
-/// A front view in which all is plane: arms and knuckle turn about axes along x, the wheel stands at x = 0.
+/// A front view in which all is plane: arms and knuckle turn about axes along x, the wheel is at x = 0.
 const FRONT_VIEW: &str = r#"
 name = "front view"
 units = { length = "mm", angle = "deg" }
@@ -594,7 +594,7 @@ fn textbook_constructions_are_exact_where_all_is_plane() {
         // The camber changes by one over the swing arm's length, seen from the wheel centre's height.
         let rises = value(k, "half_track") - (-value(k, "camber")).sin() * 0.31 - meet[0];
         close("bump_camber", -1.0 / rises);
-        // l' of the spring: the foot goes square to the arm.
+        // l' of the spring: the foot goes perpendicular to the arm.
         let foot = place(k, "lca", [0.5, 0.18]);
         let (along, arm) = ([foot[0] - 0.45, foot[1] - 0.7], [foot[0] - 0.3, foot[1] - 0.2]);
         let length = along[0].hypot(along[1]);
@@ -603,7 +603,7 @@ fn textbook_constructions_are_exact_where_all_is_plane() {
         let turn = (l[0] - 0.3).hypot(l[1] - 0.2) / (l[0] - meet[0]).hypot(l[1] - meet[1]);
         let centre = contact[0] + value(k, "camber").sin() * 0.31;
         let expected = (grows / (turn * (centre - meet[0]))).abs();
-        // The spring stands on the arm: in bump it gets shorter.
+        // The spring is on the arm: in bump it gets shorter.
         let found = value(k, "motion_ratio");
         assert!((found - expected).abs() < PLANE, "{found} {expected}");
     }
@@ -626,7 +626,7 @@ fn a_knuckle_on_a_kingpin_steers_about_it() {
         .replace("body = \"left_knuckle\"\ncentre", "steer = \"rack\"\nbody = \"left_knuckle\"\ncentre");
     let names = VIRTUAL.map(|(name, _)| format!("\"{name}\"")).join(", ");
     let of_rack = of_rack.replacen("measures = [", &format!("measures = [{names}, "), 1);
-    // With the lower arm held, the other one stands as well.
+    // With the lower arm held, the other one is as well.
     let held = steered(&text("double_wishbone_4x4")).replace(
         "point = \"wheel_centre\"\nalong = \"z\"\nlaw = \"80*sin(2*pi*t)\"",
         "joint = \"lca_pivot\"\nlaw = \"8*sin(2*pi*t)\"",

@@ -115,7 +115,7 @@ impl Reader<'_> {
         let own = self.m.bodies[body].pose;
         let centre = match (marker(self, "CM"), s.name.as_str(), own) {
             (Some(cm), ..) => cm.pose,
-            // A point mass is where it stands.
+            // A point mass is where it is.
             (None, "POINT_MASS", Some(own)) => own,
             _ => {
                 self.notes.refused(

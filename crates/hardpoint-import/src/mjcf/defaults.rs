@@ -11,7 +11,7 @@ use crate::turn::{from_z_and_x, none, sequence};
 use crate::xml;
 use crate::xml::exactly;
 
-/// Number of attributes in all classes of defaults at most.
+/// Maximum number of attributes in all classes of defaults.
 const MOST_DEFAULTS: usize = 100_000;
 
 impl<'d> Reader<'d, '_> {
@@ -214,7 +214,7 @@ impl<'d> Reader<'d, '_> {
         Pose { rot: self.orientation(element, class), r: r.into() }
     }
 
-    /// Whether the classes that an element names are there.
+    /// True if the classes that an element names are there.
     pub(super) fn classes_of(&mut self, (text, node): Element<'d>) {
         for key in ["class", "childclass"] {
             let Some(class) = node.attribute(key).filter(|c| !self.classes.contains_key(*c)) else {

@@ -179,7 +179,7 @@ impl<'d> Reader<'d, '_> {
                 self.notes.approximated("joint", &free.name, free.at, why);
                 continue;
             }
-            let why = "nothing holds its six freedoms in the source: it is fixed as drawn";
+            let why = "nothing holds its six freedoms in the source: it is fixed in the design configuration";
             self.notes.approximated("joint", &free.name, free.at, why);
             let note = Called { kind: "joint", name: &free.name, at: free.at }.note(self.notes);
             self.m.joint(Joint::new(&free.name, note, "fixed", [i, j], free.place));
@@ -189,7 +189,7 @@ impl<'d> Reader<'d, '_> {
     /// The two frames that a weld with a pose of its own brings together: where it puts the second body, and that body.
     fn relative_pose(&mut self, element: Element<'d>) -> Option<(Pose, Pose)> {
         let [x, y, z, q @ ..] = self.numbers::<7>(element, "relpose", None)?;
-        // Without an orientation it stands for the pose as drawn.
+        // Without an orientation it represents the pose in the design configuration.
         let rot = Quat::from_array(q)?.rotation();
         let (_, first) = self.end(element, "body1")?;
         let (_, second) = self.end(element, "body2")?;
@@ -336,7 +336,7 @@ impl<'d> Reader<'d, '_> {
             return;
         }
         let called = Called { kind, name, at };
-        // A length below zero stands for that of the drawing.
+        // A length below zero represents that of the drawing.
         let free = lengths.first().copied().filter(|l| *l > 0.0 && stiffness > 0.0);
         self.m.force(Force {
             name: name.to_owned(),

@@ -279,14 +279,14 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 self.notes.approximated("joint", &name, at, why);
                 continue;
             }
-            let why = "nothing holds its six freedoms in the source: it is fixed as drawn";
+            let why = "nothing holds its six freedoms in the source: it is fixed in the design configuration";
             self.notes.approximated("joint", &name, at, why);
             let note = Called { kind: "joint", name: &name, at }.note(self.notes);
             self.m.joint(crate::mechanism::Joint::new(&name, note, "fixed", bodies, place));
         }
     }
 
-    /// The link that an attribute names, where it stands.
+    /// The link that an attribute names, where it is.
     fn standing(&mut self, node: Node<'a, 'i>, key: &str) -> Option<(usize, Pose)> {
         let link = node.attribute(key).unwrap_or_default().trim();
         let found = self.poses.get(link).copied();

@@ -1,10 +1,10 @@
-//! What is wrong with a source is told in its own words, with the place.
+//! What is wrong with a source is reported in its own words, with the place.
 
 use std::fmt::Write;
 
 use crate::folder;
 
-/// A source with one thing changed: what is changed in words, what stands there, and what instead.
+/// A source with one thing changed: what is changed in words, what is there, and what instead.
 type Broken = (&'static str, &'static str, &'static str);
 
 fn told(format: &str, file: &str, changes: &[Broken]) -> String {

@@ -144,7 +144,7 @@ fn points_that_lie_apart_are_brought_together() {
 
 #[test]
 fn constants_of_relations_count() {
-    // Of one joint, which then stands there; against ground.
+    // Of one joint, which then is there; against ground.
     let (_, file) = read("m.xml", &linkage("", r#"<joint joint1="D" polycoef="0.3 0 0 0 0"/>"#));
     for p in poses(&file, &["crank", "rocker"]) {
         let upright = at([0.0; 3]);
@@ -272,7 +272,7 @@ fn loops_of_other_conventions_are_closed_or_named() {
     let above: Vec<&str> = report.lines().take(3).collect();
     assert!(above[1].contains("`--close coupler=rocker`"), "{report}");
     assert!(
-        above[2].contains("all of its 3 motions are held as drawn") && above[2].contains("tree"),
+        above[2].contains("all of its 3 motions are fixed in the design configuration") && above[2].contains("tree"),
         "{report}"
     );
     for closing in [
@@ -282,7 +282,7 @@ fn loops_of_other_conventions_are_closed_or_named() {
     ] {
         let (imported, file) = read_with("r.urdf", &text, &[closing]);
         meets(&file);
-        assert!(!imported.report.to_string().contains("held as drawn"), "{}", imported.report);
+        assert!(!imported.report.to_string().contains("fixed in the design configuration"), "{}", imported.report);
     }
     // Frames that are there for the loop: at one place, or by their names.
     let leaf = |name: &str, on: &str, at: &str| {

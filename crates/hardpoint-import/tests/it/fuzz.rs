@@ -5,7 +5,7 @@ use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 use crate::{bytes, sources};
 
-/// So many changed files for each file; the generator starts from the same number every time.
+/// That many changed files for each file; the generator starts from the same number every time.
 const CHANGED: u32 = 40;
 
 /// One change of a file's bytes.

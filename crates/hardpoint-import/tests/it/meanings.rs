@@ -66,7 +66,7 @@ fn ondsel_joints_hold_what_its_solver_holds() {
             ("Cross", origin("Cross").x, -20.0 * c - (70.0_f64.powi(2) - (20.0 * s).powi(2)).sqrt()),
             // z of the plate against the nut is pitch * angle / 2 pi, so the nut goes the other way.
             ("Nut", origin("Nut").y, 60.0 - 6.0 * angle / std::f64::consts::TAU),
-            // The rack goes by radius * angle.
+            // The rack depends on radius * angle.
             ("Rack", origin("Rack").x, 15.0 * angle),
         ];
         // A path of all six coordinates: along the axes of marker I, then about its z and about the x that has turned so far.
@@ -135,7 +135,7 @@ fn what_is_listed_in_an_assembly_and_in_its_group_is_one_joint() {
 fn parts_that_are_drawn_open_stand_where_their_stored_motion_begins() {
     let path = folder().join("asmt/four_bar.asmt");
     let text = std::fs::read_to_string(&path).unwrap();
-    // The first part's place as drawn, a millimetre off.
+    // The first part's place in the design configuration, a millimetre off.
     let head = text.find("\n\t\tPart\n").unwrap();
     let at = head + text[head..].find("Position3D\n\t\t\t\t").unwrap() + "Position3D\n\t\t\t\t".len();
     let end = at + text[at..].find('\n').unwrap();

@@ -41,7 +41,7 @@ pub struct Facts {
     pub units: Units,
     /// `relative` or `absolute` coordinates.
     pub formulation: &'static str,
-    /// How many there are of everything.
+    /// Number of there are of everything.
     pub counts: Counts,
     /// Bodies without ground.
     pub bodies: Vec<BodyFact>,
@@ -67,7 +67,7 @@ pub struct Facts {
     pub notes: Vec<String>,
 }
 
-/// How many there are.
+/// Number of there are.
 #[derive(Clone, Debug, Serialize)]
 pub struct Counts {
     /// Bodies without ground.
@@ -97,7 +97,7 @@ pub struct Counts {
 /// A body.
 #[derive(Clone, Debug, Serialize)]
 pub struct BodyFact {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The joint of the tree that places it; none if it moves freely or in absolute coordinates.
     pub placed_by: Option<String>,
@@ -110,12 +110,12 @@ pub struct BodyFact {
 /// A joint.
 #[derive(Clone, Debug, Serialize)]
 pub struct JointFact {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its type, as written.
+    /// Type, as written.
     #[serde(rename = "type")]
     pub kind: &'static str,
-    /// Whether it is treated as a universal joint, to hold an idle spin.
+    /// True if it is treated as a universal joint, to hold an idle spin.
     pub holds_spin: bool,
     /// Bodies i and j.
     pub bodies: [String; 2],
@@ -123,14 +123,14 @@ pub struct JointFact {
     pub role: &'static str,
     /// Why.
     pub why: String,
-    /// How many constraint equations it stands for.
+    /// Number of constraint equations it represents.
     pub constraints: usize,
 }
 
 /// A coupler.
 #[derive(Clone, Debug, Serialize)]
 pub struct CouplerFact {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// What must hold, its coordinates counted from the design configuration, in these units.
     pub relation: String,
@@ -143,7 +143,7 @@ pub struct CouplerFact {
 pub struct TermFact {
     /// The joint.
     pub joint: String,
-    /// Its coordinate.
+    /// Coordinate.
     pub coordinate: &'static str,
     /// The factor, where the coordinate is in `unit`.
     pub coefficient: f64,
@@ -154,7 +154,7 @@ pub struct TermFact {
 /// A driver.
 #[derive(Clone, Debug, Serialize)]
 pub struct DriverFact {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// What it prescribes.
     pub drives: String,
@@ -171,9 +171,9 @@ pub struct DriverFact {
 /// Unknowns that are solved together.
 #[derive(Clone, Debug, Serialize)]
 pub struct BlockFact {
-    /// Its place in the order of solution, from 1.
+    /// Place in the order of solution, from 1.
     pub number: usize,
-    /// How many unknown coordinates it solves for.
+    /// Number of unknown coordinates it solves for.
     pub unknowns: usize,
     /// The joints whose coordinates they are.
     pub joints: Vec<String>,
@@ -188,7 +188,7 @@ pub struct BlockFact {
 /// A constraint that the others imply.
 #[derive(Clone, Debug, Serialize)]
 pub struct RedundantFact {
-    /// Its joint.
+    /// Joint.
     pub joint: String,
     /// The driver, if it prescribes a coordinate.
     pub driver: Option<String>,
@@ -198,7 +198,7 @@ pub struct RedundantFact {
     pub constraint: String,
 }
 
-/// Whether the mechanism can follow a design variable over the motion.
+/// True if the mechanism can follow a design variable over the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Answer {
@@ -215,9 +215,9 @@ pub enum Answer {
 /// A design variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct VariableFact {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its unit; `1` for a plain number.
+    /// Unit; `1` for a plain number.
     pub unit: String,
     /// What changes with it.
     pub change: String,
@@ -236,7 +236,7 @@ pub struct VariableFact {
 pub struct DefectFact {
     /// The joint.
     pub joint: String,
-    /// Its constraint that fails most.
+    /// Constraint that fails most.
     pub constraint: String,
     /// The defect per unit of the variable.
     pub defect: f64,
@@ -247,11 +247,11 @@ pub struct DefectFact {
 /// A measure.
 #[derive(Clone, Debug, Serialize)]
 pub struct MeasureFact {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// What it measures.
     pub what: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
 }
 
@@ -289,7 +289,7 @@ impl Facts {
         }
     }
 
-    /// How many variables have this answer.
+    /// Number of variables have this answer.
     pub fn answers(&self, answer: Answer) -> usize {
         self.variables.iter().filter(|v| v.answer == answer).count()
     }
@@ -453,7 +453,7 @@ fn drivers(model: &Model, units: Units) -> Vec<DriverFact> {
     model.drivers.iter().map(fact).collect()
 }
 
-/// What an unnamed joint stands for.
+/// What an unnamed joint represents.
 fn driven_text(model: &Model, joint: &Joint, points: &Points<'_>) -> String {
     let body = |e: usize| model.bodies[joint.bodies[e].0].name.as_str();
     let place = |e: usize| {

@@ -14,7 +14,7 @@ use super::joint_name;
 /// Redundant constraints among the same joints, couplers and drivers.
 #[derive(Clone, Debug, Serialize)]
 pub struct RedundancyFact {
-    /// How many constraints are redundant among them.
+    /// Number of constraints are redundant among them.
     pub count: usize,
     /// The joints.
     pub joints: Vec<String>,
@@ -116,7 +116,7 @@ struct Freed {
 }
 
 impl Freed {
-    /// A joint that removes so many redundant constraints as another type, and leaves the mechanism driven as it is: tried,
+    /// A joint that removes that many redundant constraints as another type, and leaves the mechanism driven as it is: tried,
     /// together with those found before. Joints that close a loop come first.
     fn instead(&mut self, topology: &Topology, joints: &[usize], redundant: usize) -> Option<Instead> {
         let is_cut = |j: &usize| matches!(topology.roles[*j], JointRole::Cut(_));
@@ -149,7 +149,7 @@ impl Freed {
         })
     }
 
-    /// Whether a driver, coupler or measure needs a coordinate of the joint, which another type may not have.
+    /// True if a driver, coupler or measure needs a coordinate of the joint, which another type may not have.
     fn is_named_by_others(&self, joint: JointId) -> bool {
         let model = &self.model;
         let measured = |k: &MeasureKind| matches!(k, MeasureKind::Coordinate { joint: j, .. } if *j == joint);

@@ -1,4 +1,4 @@
-//! A changed design beside today's: as it is when solved again, and as today's derivatives foresee it.
+//! A changed design beside today's: as it is when solved again, and as today's derivatives predict it.
 //!
 //! What differs from today by round-off only is today's number, so that the page draws it in the same place.
 
@@ -34,12 +34,12 @@ pub struct Changed<'a> {
     pub today: &'a Solution,
     /// The changed design.
     pub exact: &'a Solution,
-    /// The study that foresees the changed design from today's derivatives, where that is of interest.
+    /// The study that predicts the changed design from today's derivatives, where that is of interest.
     pub foreseen: Option<&'a WhatIf>,
 }
 
 impl<'a> Changed<'a> {
-    /// The design of a what-if, solved and foreseen.
+    /// The design of a what-if, solved and predicted.
     pub fn of(model: &Model, what_if: &'a WhatIf) -> Self {
         Self {
             name: "changed".into(),
@@ -51,7 +51,7 @@ impl<'a> Changed<'a> {
         }
     }
 
-    /// At most so many designs it is on the page: solved, and foreseen to first and to second order.
+    /// At most that many designs it is on the page: solved, and predicted to first and to second order.
     pub(super) fn designs(&self) -> usize {
         if self.foreseen.is_some() { 3 } else { 1 }
     }
@@ -79,7 +79,7 @@ impl<'a> Changed<'a> {
 }
 
 impl Compose<'_> {
-    /// The changed design, then how it is foreseen. Today's solution is kept at every `stride`-th output time; `bodies`
+    /// The changed design, then how it is predicted. Today's solution is kept at every `stride`-th output time; `bodies`
     /// and `values` are today's.
     pub(super) fn designs(
         &self,
@@ -117,12 +117,12 @@ fn same_or_other(round_off: f64, today: f64, other: f64) -> f64 {
 struct Beside<'a> {
     today: &'a Compose<'a>,
     changed: &'a Changed<'a>,
-    /// Of so many output times that were solved, today's solution keeps one.
+    /// Of that many output times that were solved, today's solution keeps one.
     stride: usize,
 }
 
 impl Beside<'_> {
-    /// A curve over the output times that are shown; `value` is asked for those that both designs were solved for.
+    /// A curve over the output times that are shown; `value` is requested those that both designs were solved for.
     fn curve(&self, value: impl Fn(usize) -> f64) -> Curve {
         let solved = self.changed.solved();
         self.whole_steps().map(|k| if k < solved { value(k) } else { f64::NAN }).collect()
@@ -133,7 +133,7 @@ impl Beside<'_> {
         self.today.steps.iter().map(|k| k * self.stride)
     }
 
-    /// Of value, rate and acceleration so many; the others are empty.
+    /// Of value, rate and acceleration that many; the others are empty.
     fn curves(&self, orders: usize, value: impl Fn(usize, usize) -> f64) -> DesignCurves {
         let curve = |order| if order < orders { self.curve(|k| value(k, order)) } else { Curve::default() };
         DesignCurves { value: curve(0), rate: curve(1), accel: curve(2) }
@@ -238,7 +238,7 @@ impl Beside<'_> {
         }
     }
 
-    /// As today's sensitivities foresee it.
+    /// As today's sensitivities predict it.
     fn first_order(&self, what_if: &WhatIf, values: &[Value]) -> Design {
         let units = self.today.units;
         let today = &what_if.today;
@@ -279,15 +279,15 @@ impl Beside<'_> {
             let rise: Option<f64> = rise.map(|(by, d)| d.map(|d| by * d)).sum();
             Some(of.value? + rise.filter(|_| !of.sensitivities.is_empty())?)
         };
-        let note = "Foreseen from today's sensitivities, without solving again.".to_owned();
+        let note = "Predicted from today's sensitivities, without solving again.".to_owned();
         Design {
             quantities: self.quantities(output, origin),
             values: values.iter().map(foreseen).collect(),
-            ..self.design("foreseen to first order", DesignKind::FirstOrder, note)
+            ..self.design("predicted to first order", DesignKind::FirstOrder, note)
         }
     }
 
-    /// As today's first and second derivatives foresee it: of positions alone.
+    /// As today's first and second derivatives predict it: of positions alone.
     fn second_order(&self, what_if: &WhatIf, values: &[Value]) -> Design {
         let units = self.today.units;
         let output = |m: usize| {
@@ -304,11 +304,11 @@ impl Beside<'_> {
         let static_value = |k: usize, m: usize| {
             what_if.today.measured.outputs[m].known.by_position.then(|| what_if.foreseen(k, m)[1])
         };
-        let note = "Foreseen from today's first and second derivatives, without solving again.".to_owned();
+        let note = "Predicted from today's first and second derivatives, without solving again.".to_owned();
         Design {
             quantities: self.quantities(output, |_, _| None),
             values: self.values(values, |_| None, static_value),
-            ..self.design("foreseen to second order", DesignKind::SecondOrder, note)
+            ..self.design("predicted to second order", DesignKind::SecondOrder, note)
         }
     }
 
@@ -334,7 +334,7 @@ impl Beside<'_> {
         variables.map(|(v, by)| self.today.units.from_si(v.quantity, *by)).collect()
     }
 
-    /// Where the bodies of the changed design are. A body that stands as today has today's numbers.
+    /// Where the bodies of the changed design are. A body that is as today has today's numbers.
     fn poses(&self) -> Vec<Curve> {
         let [far, turned] = [Dimension::LENGTH, Dimension::ANGLE].map(|of| self.today.round_off.value(of, 0));
         let pose = |k: usize, b: usize| {
@@ -360,7 +360,7 @@ impl Beside<'_> {
 
     /// The hardpoints of the changed design in its bodies' frames, in the order of today's.
     fn skeletons(&self, bodies: &[BodyTrack]) -> Vec<Vec<[f64; 3]>> {
-        // A page that shows no variables is asked for designs all the same.
+        // A page that shows no variables is requested designs all the same.
         let model = self.today.analysis.model();
         let same = self.today.units.from_si(Kind::Length, SAME * model.size());
         let mut moved: Vec<Vec<[Vec3; 2]>> = vec![Vec::new(); model.bodies.len()];

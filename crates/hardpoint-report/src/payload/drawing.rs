@@ -22,7 +22,7 @@ use crate::page::{
 
 use super::Compose;
 
-/// Points of a curve, so many that the chords between them look smooth.
+/// Points of a curve, that many that the chords between them look smooth.
 const CURVE_POINTS: usize = 240;
 /// Hardpoints of a body are the same place where they are this part of the mechanism's size apart.
 const SAME_PLACE: f64 = 1e-9;
@@ -38,7 +38,7 @@ struct SkeletonPoint {
     role: PointRole,
 }
 
-/// Whether a joint is drawn: a driven distance is drawn like a leg; a driven point or orientation has nothing to draw.
+/// True if a joint is drawn: a driven distance is drawn like a leg; a driven point or orientation has nothing to draw.
 pub(super) fn is_drawn(joint: &Joint) -> bool {
     !joint.unnamed || joint.kind.places == 2
 }
@@ -370,7 +370,7 @@ impl Compose<'_> {
             v: speed(*v),
             turn: [0.0; 3],
         });
-        // A hinge's marker stands at one end of its axis; show what moves at the other end too.
+        // A hinge's marker is at one end of its axis; show what moves at the other end too.
         let far_ends = self.model.variables[variable.0].changes.iter().filter_map(|change| match change {
             Change::Move(change) => Some((change.hardpoint, change.velocity)),
             _ => None,

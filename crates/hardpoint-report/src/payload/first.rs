@@ -9,11 +9,11 @@ use super::{Compose, Span};
 /// How much a quantity deserves to be looked at first: the greatest does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Rank {
-    /// Whether the design bends its curve: what only follows a driver, or is shifted as a whole, says little about the design.
+    /// True if the design bends its curve: what only follows a driver, or is shifted as a whole, says little about the design.
     follows_design: bool,
-    /// Whether a metric sums it up: then its author asks for it.
+    /// True if a metric sums it up: then its author asks for it.
     in_metric: bool,
-    /// Whether it is a measure, rather than a point's coordinate.
+    /// True if it is a measure, rather than a point's coordinate.
     is_measure: bool,
 }
 

@@ -14,7 +14,7 @@ use super::drawing::is_drawn;
 /// A component of a force below this part of the largest force is round-off.
 const ROUND_OFF: f64 = 1e-11;
 
-/// How many forces the page has of a model.
+/// Number of forces the page has of a model.
 pub(super) fn count(model: &Model) -> usize {
     if model.has_loads() { joints(model).len() + model.pushed().len() } else { 0 }
 }

@@ -1,4 +1,4 @@
-//! What the page is told of every model of the gallery: how it is drawn, its values, and what it opens on.
+//! What the page is informed of every model of the gallery: how it is drawn, its values, and what it opens on.
 
 use std::path::{Path, PathBuf};
 

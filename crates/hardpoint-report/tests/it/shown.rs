@@ -315,7 +315,7 @@ fn a_mechanism_next_to_a_singular_position_is_warned_of() {
     assert!(told.contains("the loop consists of `B1`, `C1` and `D1`"), "{told}");
 }
 
-/// A four-bar whose coupler is a rod of a given length; as drawn it would be 335.4 mm.
+/// A four-bar whose coupler is a rod of a given length; in the design configuration it would be 335.4 mm.
 fn with_a_rod_of(length: f64) -> Draft {
     let mut rod = joint("rod", "distance", ["crank", "rocker"], &[[0.0, 0.1, 0.0], [0.3, 0.25, 0.0]], None);
     rod.length = Some(length);
@@ -349,7 +349,7 @@ fn an_assembly_is_shown_with_gaps_and_moves() {
     let (_, summary) = solved(&file);
     let assembly = summary.assembly.as_ref().unwrap();
     insta::assert_snapshot!(text(&assembly.tables(), &["Assembled", "Moved by the assembly"]));
-    // Nothing is said of what fits as drawn.
+    // Nothing is said of what fits in the design configuration.
     let (_, fits) = solved(&self::file(&with_a_rod_of(0.1125_f64.sqrt())));
     assert!(fits.assembly.is_none());
 }

@@ -63,7 +63,7 @@ fn a_large_models_page_weighs_ten_megabytes_at_most() {
     assert_eq!((file.model.bodies.len() - 1, file.model.variables.len()), (81, 240));
     let (payload, report) = page(&file, false);
     let weight = report.len();
-    // It was packed to be weighed; that is what stands in the page.
+    // It was packed to be weighed; that is what is in the page.
     assert!(report == html(&payload).unwrap());
     assert!(weight <= 10_000_000, "{weight}");
     assert!(payload.times.values().len() >= 100);

@@ -59,7 +59,7 @@ fn design(page: &Payload, kind: DesignKind) -> &Design {
     page.designs.iter().find(|d| d.kind == kind).unwrap()
 }
 
-/// The output times that the page shows: every so many of those that were solved.
+/// The output times that the page shows: every that many of those that were solved.
 fn shown_steps(page: &Payload, today: &Solution) -> impl Iterator<Item = usize> + use<> {
     let times = &today.motion.times;
     let shown = |stride: &usize| {
@@ -262,7 +262,7 @@ at = 90
     hardpoint_file::parse(&text, "four_bar.toml").unwrap_or_else(|e| panic!("{}", e.render(false)))
 }
 
-/// Which values of a curve are there, of so many numbers per step.
+/// Which values of a curve are there, of that many numbers per step.
 fn known(curve: &Curve, parts: usize) -> Vec<bool> {
     curve.values().chunks(parts).map(|step| step.iter().all(|x| x.is_finite())).collect()
 }
@@ -313,7 +313,7 @@ fn of_a_changed_design_that_cannot_be_assembled_the_page_has_nothing_but_the_rea
     let file = gallery("double_wishbone.toml");
     let Changed { found, facts, page, .. } = changed(&file, &[("tie_rod_outer_y_fixed_length", 1000.0)]);
     assert!(found.exact.motion.is_empty() && found.is_empty());
-    let [exact] = &page.designs[..] else { panic!("nothing is foreseen of what is not there") };
+    let [exact] = &page.designs[..] else { panic!("nothing is predicted of what is not there") };
     let nothing = |curve: &Curve, parts: usize| !known(curve, parts).contains(&true);
     assert!(exact.poses.iter().all(|poses| nothing(poses, 7)));
     assert!(exact.quantities.iter().flatten().all(|q| nothing(&q.value, 1) && nothing(&q.rate, 1)));

@@ -15,14 +15,14 @@ fn bits(numbers: &[f64]) -> Vec<Option<u64>> {
     numbers.iter().map(|x| (!x.is_nan()).then_some(x.to_bits())).collect()
 }
 
-/// Whether the first part gives every number once.
+/// True if the first part gives every number once.
 fn gives_once(first: &Program) -> bool {
     let mut outputs = first.outputs.clone();
     outputs.sort_unstable();
     outputs.windows(2).all(|pair| pair[0] != pair[1])
 }
 
-/// Whether some instruction reads nothing but these leaves.
+/// True if some instruction reads nothing but these leaves.
 fn reads_only(program: &Program, early: impl Fn(Operand) -> bool) -> bool {
     program.instructions.iter().any(|i| i.operands().all(&early))
 }

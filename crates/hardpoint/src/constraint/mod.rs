@@ -1,6 +1,6 @@
 //! The paper's elementary constraints, one file each, as residuals and wrenches.
 //!
-//! Each constraint row stands between marker i and marker j. Its wrench `l` says how any motion W of
+//! Each constraint row is between marker i and marker j. Its wrench `l` says how any motion W of
 //! the two markers violates it, `d(phi) = l . (W_j - W_i)` (`docs/theory.md` (5)); Jacobian, velocity,
 //! acceleration and every sensitivity are made of `l` and its two time derivatives.
 //!
@@ -27,17 +27,17 @@ use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 pub enum Row {
     /// One component, along a world axis, of the spherical constraint `d = 0` (paper Eq. 4.7).
     Point(usize),
-    /// The same along an axis of the body on which the loop stands, where that moves.
+    /// The same along an axis of the body on which the loop is, where that moves.
     PointOnBase(usize),
-    /// `a_i . b_j = 0`: axis a of marker i square to axis b of marker j (paper Eq. 4.1).
+    /// `a_i . b_j = 0`: axis a of marker i perpendicular to axis b of marker j (paper Eq. 4.1).
     Dot1(usize, usize),
     /// `a_i . d = f`: displacement of marker j along axis a of marker i (paper Eq. 4.4).
     Dot2(usize),
     /// `|d| = L + f` (paper Eq. 4.10, unsquared so that its residual is a length).
     Distance,
-    /// Angle of marker j about z_i equals f, where x_j is square to z_i (z_i parallel to z_j, or a universal joint).
+    /// Angle of marker j about z_i equals f, where x_j is perpendicular to z_i (z_i parallel to z_j, or a universal joint).
     Angle,
-    /// Angle of marker j about its own x axis equals f, where x_j is square to z_i (a universal joint).
+    /// Angle of marker j about its own x axis equals f, where x_j is perpendicular to z_i (a universal joint).
     AngleOnJ,
     /// Angle of x_j about z_i, seen along z_i, equals f; the axes may point anywhere.
     Heading,
@@ -108,7 +108,7 @@ impl<T: Real> MarkerPair<T> {
 
 /// A joint coordinate between two markers: its value, for couplers and for what a joint keeps of its design.
 impl Row {
-    /// Whether it holds what it measures at its value in the design configuration, rather than at zero.
+    /// True if it holds what it measures at its value in the design configuration, rather than at zero.
     pub fn keeps_design_value(self) -> bool {
         matches!(self, Self::Distance | Self::Course | Self::Cosine | Self::Offset | Self::Contact)
     }
@@ -212,12 +212,12 @@ impl Row {
         [1, 2].map(|n| Wrench { m: m.map(|x| x.0[n]), f: f.map(|x| x.0[n]) })
     }
 
-    /// Whether it asks for the markers' axes, rather than for their points only.
+    /// True if it asks for the markers' axes, rather than for their points only.
     pub(crate) fn has_axes(self) -> bool {
         !matches!(self, Self::Point(_) | Self::PointOnBase(_) | Self::Distance)
     }
 
-    /// The row for a loop that stands on a body in motion: it knows nothing of where its base goes.
+    /// The row for a loop that is on a body in motion: it knows nothing of where its base goes.
     pub(crate) fn on_base(self) -> Self {
         match self {
             Self::Point(k) => Self::PointOnBase(k),
@@ -225,7 +225,7 @@ impl Row {
         }
     }
 
-    /// Whether its residual is a length (else it is an angle or a cosine).
+    /// True if its residual is a length (else it is an angle or a cosine).
     pub fn is_length(self) -> bool {
         matches!(
             self,
@@ -244,8 +244,8 @@ impl Row {
         match self {
             Self::Point(k) => format!("points coincide along global {}", AXIS[k]),
             Self::PointOnBase(k) => format!("points coincide along {} of the loop's base", AXIS[k]),
-            Self::Dot1(a, b) => format!("Dot-1: {}_i square to {}_j", AXIS[a], AXIS[b]),
-            Self::Dot2(a) => format!("Dot-2: d square to {}_i", AXIS[a]),
+            Self::Dot1(a, b) => format!("Dot-1: {}_i perpendicular to {}_j", AXIS[a], AXIS[b]),
+            Self::Dot2(a) => format!("Dot-2: d perpendicular to {}_i", AXIS[a]),
             Self::Distance => "distance".into(),
             Self::Angle => "angle about z_i".into(),
             Self::AngleOnJ => "angle about x_j".into(),
@@ -378,7 +378,7 @@ mod tests {
                     (wi.w, wj.w) = (ends.i.rot.cols[2] * 0.3, ends.i.rot.cols[2] * -0.9);
                 }
                 if row == Row::AngleOnJ {
-                    // Likewise, those that keep x_j square to z_i.
+                    // Likewise, those that keep x_j perpendicular to z_i.
                     wi.w = wj.w + ends.j.rot.cols[0] * 0.4 + ends.i.rot.cols[2] * 0.2;
                 }
                 let target = match row {

@@ -28,12 +28,12 @@ pub struct Geometry<T = f64> {
     pub size: f64,
 }
 
-/// What measures go by, fixed in the bodies.
+/// What measures depend on, fixed in the bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct BodyFixed<T> {
     /// Per point of the model, its position in its body's frame, m.
     pub points: Vec<Vec3<T>>,
-    /// Per measure, the directions that it goes by: unit vectors in their bodies' frames.
+    /// Per measure, the directions that it depends on: unit vectors in their bodies' frames.
     pub directions: Vec<[Option<Vec3<T>>; 2]>,
     /// Per measure of a joint's coordinate, marker i in body i and marker j in body j.
     pub markers: Vec<Option<[Pose<T>; 2]>>,

@@ -75,7 +75,7 @@ impl<'m> DesignMap<'m> {
         &self.held
     }
 
-    /// Whether a variable changes the law of a driver.
+    /// True if a variable changes the law of a driver.
     pub fn laws_change(&self) -> bool {
         self.model().variables.iter().flat_map(|v| &v.changes).any(|c| c.law().is_some())
             || self.model().formulas.iter().any(|f| matches!(f.of, Target::Law(..)))
@@ -101,7 +101,7 @@ impl<'m> DesignMap<'m> {
         (0..self.model().hardpoints.len()).map(|h| design.place(HardpointId(h), &design.values)).collect()
     }
 
-    /// What the measures of these designs go by.
+    /// What the measures of these designs depend on.
     pub fn fixed<T: Real>(&self, values: &[T]) -> BodyFixed<T> {
         let (model, design) = (self.model(), PlacedDesign::new(self, values.to_vec()));
         let markers = |m: &Measure| match m.kind {
@@ -127,7 +127,7 @@ impl<'m> DesignMap<'m> {
     pub fn field_along<T: Real>(&self, along: &[(VariableId, f64)], values: &[T]) -> DesignVelocity<T> {
         let mut duals: Vec<Dual<T>> = values.iter().map(|v| Dual::constant(*v)).collect();
         for &(variable, rate) in along {
-            // b_k + eps rate_k: what stands at eps of any result is its derivative along the direction
+            // b_k + eps rate_k: what is at eps of any result is its derivative along the direction
             duals[variable.0].d = T::constant(rate);
         }
         let design = PlacedDesign::new(self, duals);
@@ -474,7 +474,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         self.frame(point.body).inverse().point(self.place(point.at, &self.values))
     }
 
-    /// The directions that a measure goes by, in their bodies' frames.
+    /// The directions that a measure depends on, in their bodies' frames.
     fn directions(&self, measure: &Measure) -> [Option<Vec3<T>>; 2] {
         let in_body = |(body, axis)| self.in_body(body, axis);
         self.design_map.model().directions(measure).map(|d| d.map(in_body))

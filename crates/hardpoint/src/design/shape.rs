@@ -11,7 +11,7 @@ pub(crate) enum ShapeField {
     Translate(Vec3),
     /// About a line through a point: per rad.
     Rotate { axis: Vec3, through: Vec3 },
-    /// Away from a point, or from the plane through it square to a direction: per unit, 1 being twice the size.
+    /// Away from a point, or from the plane through it perpendicular to a direction: per unit, 1 being twice the size.
     Scale { from: Vec3, along: Option<Vec3> },
     /// A beam from one point to another that is held at the first and pushed sideways at the second: m per m there.
     Bend { from: Vec3, to: Vec3, towards: Vec3 },
@@ -37,7 +37,7 @@ impl ShapeField {
                 let along = e.dot(s - *from);
                 // With x = e . (s - from) / L:  V = n y(x) + w x (s - from - e x L),  w = e x n y'(x) / L
                 let (deflection, slope) = cantilever(along / length);
-                // Sections stay plane and square to the bent axis.
+                // Sections stay plane and perpendicular to the bent axis.
                 let turn = e.cross(*towards) * (slope / length);
                 [*towards * deflection + turn.cross(s - *from - e * along), turn]
             }

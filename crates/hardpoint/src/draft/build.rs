@@ -23,7 +23,7 @@ impl Draft {
         self
     }
 
-    /// Adds a body. A name alone stands for one with the default frame.
+    /// Adds a body. A name alone represents one with the default frame.
     pub fn body(mut self, body: impl Into<BodyDraft>) -> Self {
         self.bodies.push(body.into());
         self
@@ -84,7 +84,7 @@ impl Draft {
         self.joint(JointDraft::new(name, "distance", bodies).at(from).at(to))
     }
 
-    /// Adds a driver. A joint's name stands for its only coordinate, `["joint", "coordinate"]` for one of several. The law is in m or rad
+    /// Adds a driver. A joint's name represents its only coordinate, `["joint", "coordinate"]` for one of several. The law is in m or rad
     /// over s, from 0 in the design configuration.
     pub fn driver(mut self, name: impl Into<String>, drives: impl Into<DrivenDraft>, law: Law) -> Self {
         self.drivers.push(DriverDraft::new(name, drives, law));
@@ -118,7 +118,7 @@ impl Draft {
         self
     }
 
-    /// Adds a measure. A joint's name stands for its only coordinate, `["joint", "coordinate"]` for one of several.
+    /// Adds a measure. A joint's name represents its only coordinate, `["joint", "coordinate"]` for one of several.
     pub fn measure(mut self, name: impl Into<String>, kind: impl Into<MeasureKindDraft>) -> Self {
         self.measures.push(MeasureDraft::new(name, kind));
         self
@@ -145,7 +145,7 @@ impl JointDraft {
         Self { name: name.into(), kind: kind.into(), bodies: bodies.map(Into::into), ..Self::default() }
     }
 
-    /// Its place, or the next one of two.
+    /// Place, or the next one of two.
     pub fn at(mut self, place: impl Into<LocationDraft>) -> Self {
         self.at.push(place.into());
         self
@@ -198,7 +198,7 @@ impl BodyDraft {
 }
 
 impl DriverDraft {
-    /// A driver. A joint's name stands for its only coordinate, `["joint", "coordinate"]` for one of several.
+    /// A driver. A joint's name represents its only coordinate, `["joint", "coordinate"]` for one of several.
     pub fn new(name: impl Into<String>, drives: impl Into<DrivenDraft>, law: Law) -> Self {
         Self { name: name.into(), drives: drives.into(), from_zero: false, law }
     }
@@ -212,7 +212,7 @@ impl PointDraft {
 }
 
 impl MeasureDraft {
-    /// A measure. A joint's name stands for its only coordinate, `["joint", "coordinate"]` for one of several.
+    /// A measure. A joint's name represents its only coordinate, `["joint", "coordinate"]` for one of several.
     pub fn new(name: impl Into<String>, kind: impl Into<MeasureKindDraft>) -> Self {
         Self { name: name.into(), kind: kind.into() }
     }

@@ -111,7 +111,7 @@ pub enum ShapeDraft {
         from: String,
         /// Pushed here.
         to: String,
-        /// In this direction, of any length; only what is square to the beam counts.
+        /// In this direction, of any length; only what is perpendicular to the beam counts.
         towards: Vec3,
     },
     /// As these hardpoints move, per unit, and smoothly between them.

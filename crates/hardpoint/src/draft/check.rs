@@ -30,15 +30,15 @@ use crate::model::{
 };
 use crate::space::{Mat3, Pose, Vec3};
 
-/// How far `axis2` may be from square to `axis`, as a cosine: typed unit vectors are good to this.
+/// How far `axis2` may be from perpendicular to `axis`, as a cosine: typed unit vectors are good to this.
 const SQUARE_TOLERANCE: f64 = 1e-6;
 /// Points closer than this part of the mechanism's size are the same point.
 const SAME_POINT: f64 = 1e-9;
 /// A fault lists at most this many valid names.
 const LISTED_NAMES: usize = 24;
-/// The first so many faults guess which name was meant ...
+/// The first that many faults guess which name was meant ...
 const GUESSES: usize = 50;
-/// ... as long as that takes no more than so many comparisons of names in all.
+/// ... as long as that takes no more than that many comparisons of names in all.
 const COMPARISONS: usize = 250_000;
 
 impl Model {
@@ -132,7 +132,7 @@ struct Checker<'a> {
     numbers: HashMap<&'static str, HashMap<&'a str, usize>>,
     /// Which driver prescribes a coordinate of a joint. Only looked up, never walked.
     driver_of: HashMap<(JointId, usize), DriverId>,
-    /// What the drivers whose laws count from zero have as drawn.
+    /// What the drivers whose laws count from zero have in the design configuration.
     zeros: HashMap<DriverId, driven::AsDrawn>,
     /// Comparisons of names that guesses may still take.
     comparisons: usize,
@@ -175,7 +175,7 @@ fn extent_of_joints(draft: &Draft, hardpoints: &[Hardpoint], spoilt: &BTreeSet<S
     if extent.size_or_zero() > 0.0 { extent } else { Extent::of(known.iter().map(|h| h.position)) }
 }
 
-/// Whether the place of a hardpoint is known, given what faulty formulas should give.
+/// True if the place of a hardpoint is known, given what faulty formulas should give.
 fn is_known(h: HardpointId, spoilt: &BTreeSet<Source>) -> bool {
     spoilt.is_empty() || (0..3).all(|axis| !spoilt.contains(&Source::Coordinate(h, axis)))
 }
@@ -362,12 +362,12 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Whether a field of an entry could not be read.
+    /// True if a field of an entry could not be read.
     fn unread(&self, here: Here, field: &str) -> bool {
         self.draft.unread.has(here.section, here.index, field)
     }
 
-    /// Whether the table of all these could not be read.
+    /// True if the table of all these could not be read.
     fn lost(&self, what: &str) -> bool {
         let table = TABLES.iter().find(|t| t.0 == what);
         table.is_some_and(|(_, table)| self.draft.unread.has(Section::Model, 0, table))
@@ -682,7 +682,7 @@ fn numbered<'a>(names: impl Iterator<Item = &'a str>) -> HashMap<&'a str, usize>
     numbers
 }
 
-/// The frame with z along `z` and x along `x`, two unit vectors square to each other.
+/// The frame with z along `z` and x along `x`, two unit vectors perpendicular to each other.
 fn frame_along(z: Vec3, x: Vec3) -> Mat3 {
     Mat3 { cols: [x, z.cross(x), z] }
 }

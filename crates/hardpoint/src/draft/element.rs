@@ -16,11 +16,11 @@ use super::measure::Field;
 /// A number as written: by itself, or by an expression over parameters, which it then follows.
 #[derive(Clone, Debug)]
 pub struct NumberDraft {
-    /// Its value, SI; of no account where an expression gives it.
+    /// Value, SI; of no account where an expression gives it.
     pub value: f64,
     /// What gives it.
     pub expression: Option<Expression>,
-    /// How many of the text's units make one SI unit.
+    /// Number of the text's units make one SI unit.
     pub per_unit: f64,
 }
 
@@ -33,7 +33,7 @@ impl From<f64> for NumberDraft {
 /// A mass or force as written.
 #[derive(Clone, Debug)]
 pub struct ElementDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// What it is.
     pub kind: ElementKindDraft,
@@ -49,11 +49,11 @@ impl ElementDraft {
 /// A type of element as model files name it.
 #[derive(Debug)]
 pub struct ElementType {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
     /// What it is, in a sentence.
     pub summary: &'static str,
-    /// The table of model files that it stands in: `masses` or `forces`.
+    /// The table of model files that it is in: `masses` or `forces`.
     pub table: &'static str,
     /// What is to be said of it.
     pub fields: &'static [MeasureField],
@@ -112,7 +112,7 @@ macro_rules! in_drafts {
                 }
             }
 
-            /// Whether it has mass.
+            /// True if it has mass.
             pub fn has_mass(&self) -> bool {
                 match self {
                     $(Self::$variant { .. } => stringify!($table) == "masses",)*

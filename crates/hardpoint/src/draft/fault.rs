@@ -136,7 +136,7 @@ impl fmt::Display for Section {
     }
 }
 
-/// The items with separators between; of a long list so many, and how many more there are.
+/// The items with separators between; of a long list that many, and how many more there are.
 pub fn some_of(items: &[impl AsRef<str>], separator: &str, most: usize) -> String {
     let shown: Vec<&str> = items.iter().take(most).map(AsRef::as_ref).collect();
     match items.len().saturating_sub(most) {

@@ -15,7 +15,7 @@ use super::check::MeasureCheck;
 /// A type of measure as model files name it, but for those of wheels and axles, which are [`WheelMeasure`] and [`AxleMeasure`].
 #[derive(Debug)]
 pub struct MeasureType {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
     /// What it measures, in a sentence.
     pub summary: &'static str,
@@ -26,11 +26,11 @@ pub struct MeasureType {
 /// A field of a measure.
 #[derive(Debug)]
 pub struct MeasureField {
-    /// Its name in model files.
+    /// Name in model files.
     pub key: &'static str,
     /// What it is.
     pub kind: FieldKind,
-    /// Whether it must be given.
+    /// True if it must be given.
     pub required: bool,
     /// What it means.
     pub summary: &'static str,

@@ -100,27 +100,27 @@ impl UnreadEntries {
         self.0.entry((section, index)).or_default().push(field);
     }
 
-    /// Whether a field of an entry could not be read.
+    /// True if a field of an entry could not be read.
     pub fn has(&self, section: Section, index: usize, field: &str) -> bool {
         self.0.get(&(section, index)).is_some_and(|fields| fields.iter().any(|f| *f == field || f.is_empty()))
     }
 
-    /// Whether any field of an entry could not be read.
+    /// True if any field of an entry could not be read.
     pub fn any(&self, section: Section, index: usize) -> bool {
         self.0.contains_key(&(section, index))
     }
 
-    /// Whether any field of any entry of a list could not be read.
+    /// True if any field of any entry of a list could not be read.
     pub(crate) fn any_of(&self, section: Section) -> bool {
         self.0.range((section, 0)..=(section, usize::MAX)).next().is_some()
     }
 
-    /// Whether that field could not be read of any entry of a list.
+    /// True if that field could not be read of any entry of a list.
     pub(crate) fn anywhere(&self, section: Section, field: &str) -> bool {
         self.0.iter().any(|((s, _), fields)| *s == section && fields.contains(&field))
     }
 
-    /// Whether there is nothing.
+    /// True if there is nothing.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -129,9 +129,9 @@ impl UnreadEntries {
 /// A named number.
 #[derive(Clone, Debug)]
 pub struct ParameterDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its value, m, rad or a plain number; of no account where a formula gives it.
+    /// Value, m, rad or a plain number; of no account where a formula gives it.
     pub value: f64,
     /// What it measures.
     pub quantity: Quantity,
@@ -164,7 +164,7 @@ pub enum FormulaOf {
 /// A named point.
 #[derive(Clone, Debug)]
 pub struct HardpointDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Global position, m.
     pub position: Vec3,
@@ -193,9 +193,9 @@ pub enum DirectionDraft {
 /// A body.
 #[derive(Clone, Debug)]
 pub struct BodyDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its reference frame.
+    /// Reference frame.
     pub frame: FrameDraft,
 }
 
@@ -214,13 +214,13 @@ pub enum FrameDraft {
 /// A joint.
 #[derive(Clone, Debug, Default)]
 pub struct JointDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The name of its type.
     pub kind: String,
     /// Names of bodies i and j.
     pub bodies: [String; 2],
-    /// Its place, or its two places for a rod or leg. May be empty where the axis passes through
+    /// Place, or its two places for a rod or leg. May be empty where the axis passes through
     /// hardpoints: then it is the first of them. A joint with one place may be given two that lie apart, on body i and
     /// on body j, for the mechanism to be assembled there.
     pub at: Vec<LocationDraft>,
@@ -237,23 +237,23 @@ pub struct JointDraft {
     pub lead: Option<f64>,
     /// The curve on body i that a point of body j follows.
     pub curve: Option<CurveDraft>,
-    /// Whether it should be cut rather than carry the tree.
+    /// True if it should be cut rather than carry the tree.
     pub cut: bool,
 }
 
-/// A smooth curve through points in the design configuration, in the plane square to its joint's axis.
+/// A smooth curve through points in the design configuration, in the plane perpendicular to its joint's axis.
 #[derive(Clone, Debug, Default)]
 pub struct CurveDraft {
     /// The points, in order; the curve of a cam is closed and does not repeat the first one.
     pub points: Vec<LocationDraft>,
-    /// Whether it returns to its first point.
+    /// True if it returns to its first point.
     pub closed: bool,
 }
 
 /// A coupler.
 #[derive(Clone, Debug)]
 pub struct CouplerDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// What couples what.
     pub kind: CouplerKindDraft,
@@ -289,11 +289,11 @@ pub struct TermDraft {
 /// A driver.
 #[derive(Clone, Debug)]
 pub struct DriverDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// What it prescribes.
     pub drives: DrivenDraft,
-    /// Whether its laws count from zero, as those of measures do; else they count from the design configuration.
+    /// True if its laws count from zero, as those of measures do; else they count from the design configuration.
     pub from_zero: bool,
     /// What it prescribes over time, m or rad.
     pub law: Law,
@@ -380,13 +380,13 @@ impl DrivenDraft {
 /// A design variable.
 #[derive(Clone, Debug, Default)]
 pub struct VariableDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// What changes with it.
     pub changes: Vec<ChangeDraft>,
-    /// Whether rods keep their lengths.
+    /// True if rods keep their lengths.
     pub fixed_length: bool,
-    /// Between which values it may lie, m, rad or a plain number; it is 0 in the model as drawn.
+    /// Between which values it may lie, m, rad or a plain number; it is 0 in the model in the design configuration.
     pub bounds: Option<[f64; 2]>,
     /// How large a change of it is usual, for comparing variables.
     pub typical: Option<f64>,
@@ -397,7 +397,7 @@ pub struct VariableDraft {
 /// A point to follow.
 #[derive(Clone, Debug)]
 pub struct PointDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The name of the body that carries it.
     pub body: String,
@@ -422,13 +422,13 @@ pub enum PointRef {
 /// A road wheel; see [`Wheel`](crate::model::Wheel).
 #[derive(Clone, Debug)]
 pub struct WheelDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The name of the body that it turns on.
     pub body: String,
-    /// Its centre in the design configuration.
+    /// Centre in the design configuration.
     pub centre: LocationDraft,
-    /// How it stands in the design configuration.
+    /// How it is in the design configuration.
     pub spin: WheelSpinDraft,
     /// From the centre to the ground in the wheel's plane, m.
     pub radius: f64,
@@ -457,7 +457,7 @@ pub struct WheelDraft {
 /// Two wheels side by side; see [`Axle`](crate::model::Axle).
 #[derive(Clone, Debug)]
 pub struct AxleDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The name of the left wheel.
     pub left: String,
@@ -465,7 +465,7 @@ pub struct AxleDraft {
     pub right: String,
 }
 
-/// How a wheel stands in the design configuration.
+/// How a wheel is in the design configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WheelSpinDraft {
     /// With this spin axis, pointing outboard.
@@ -482,17 +482,17 @@ pub enum WheelSpinDraft {
 /// A measure.
 #[derive(Clone, Debug)]
 pub struct MeasureDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// What it measures.
     pub kind: MeasureKindDraft,
 }
 
-/// A metric; see [`Metric`](crate::model::Metric). Its numbers are in units of which so many make a metre or a radian, since what they
+/// A metric; see [`Metric`](crate::model::Metric). Its numbers are in units of which that many make a metre or a radian, since what they
 /// measure follows from the measures.
 #[derive(Clone, Debug)]
 pub struct MetricDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The name of the measure, or of a point's component.
     pub of: String,
@@ -504,9 +504,9 @@ pub struct MetricDraft {
     pub window: Option<[f64; 2]>,
     /// The name of the case whose motion it sums up; each where it is left out.
     pub case: Option<String>,
-    /// How many units of length make a metre.
+    /// Number of units of length make a metre.
     pub per_metre: f64,
-    /// How many units of angle make a radian.
+    /// Number of units of angle make a radian.
     pub per_radian: f64,
 }
 
@@ -527,13 +527,13 @@ pub enum RayDraft {
 /// One of several motions; see [`Case`](crate::model::Case).
 #[derive(Clone, Debug, Default)]
 pub struct CaseDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The names of drivers, and the laws that they follow in it, in m or rad.
     pub laws: Vec<(String, Law)>,
     /// What all others do.
     pub rest: OtherDrivers,
-    /// Its output times, s; those of the draft where they are left out.
+    /// Output times, s; those of the draft where they are left out.
     pub times: Option<Vec<f64>>,
     /// Loads with or without inertia; those of the draft where there is none.
     pub load_mode: Option<LoadMode>,
@@ -542,16 +542,16 @@ pub struct CaseDraft {
 /// A case that sweeps two drivers over a grid; see [`Grid`](crate::model::Grid).
 #[derive(Clone, Debug, Default)]
 pub struct GridDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// The names of two drivers, and where each of them stands, counted from the drawing, in m or rad.
+    /// The names of two drivers, and where each of them is, counted from the drawing, in m or rad.
     pub sweeps: Vec<(String, Vec<f64>)>,
 }
 
 /// What the drivers do that a case does not name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OtherDrivers {
-    /// They are held as drawn.
+    /// They are fixed in the design configuration.
     #[default]
     Held,
     /// They follow their own laws.
@@ -571,7 +571,7 @@ pub struct OptimizationSettingsDraft {
     pub margin: Option<f64>,
     /// From how many designs the search starts.
     pub starts: usize,
-    /// After so many iterations a search ends.
+    /// After that many iterations a search ends.
     pub iterations: usize,
 }
 
@@ -582,11 +582,11 @@ impl Default for OptimizationSettingsDraft {
     }
 }
 
-/// A goal; see [`Goal`](crate::model::Goal). Its numbers are in units of which so many make a metre or a radian, since what they
+/// A goal; see [`Goal`](crate::model::Goal). Its numbers are in units of which that many make a metre or a radian, since what they
 /// measure follows from the metric.
 #[derive(Clone, Debug)]
 pub struct GoalDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The name of the metric.
     pub metric: String,
@@ -594,16 +594,16 @@ pub struct GoalDraft {
     pub weight: f64,
     /// What it is to be.
     pub target: Option<f64>,
-    /// How many units of length make a metre.
+    /// Number of units of length make a metre.
     pub per_metre: f64,
-    /// How many units of angle make a radian.
+    /// Number of units of angle make a radian.
     pub per_radian: f64,
 }
 
-/// A limit; see [`Limit`](crate::model::Limit). Its numbers are in units of which so many make a metre or a radian.
+/// A limit; see [`Limit`](crate::model::Limit). Its numbers are in units of which that many make a metre or a radian.
 #[derive(Clone, Debug)]
 pub struct LimitDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// What it is put on.
     pub of: LimitTargetDraft,
@@ -611,9 +611,9 @@ pub struct LimitDraft {
     pub least: Option<f64>,
     /// It must not be more than this.
     pub most: Option<f64>,
-    /// How many units of length make a metre.
+    /// Number of units of length make a metre.
     pub per_metre: f64,
-    /// How many units of angle make a radian.
+    /// Number of units of angle make a radian.
     pub per_radian: f64,
 }
 
@@ -628,7 +628,7 @@ pub enum LimitTargetDraft {
     Coordinate(String, usize),
     /// The distance of two hardpoints.
     Distance([String; 2]),
-    /// The length of a rod or leg, between its places as drawn or as it is given.
+    /// The length of a rod or leg, between its places in the design configuration or as it is given.
     Length(String),
 }
 
@@ -648,7 +648,7 @@ pub struct ToleranceSettingsDraft {
     pub curves: Option<Vec<String>>,
     /// How deviations scatter where a variable says nothing else.
     pub scatter: ScatterDraft,
-    /// So many designs are drawn.
+    /// Number of designs are drawn.
     pub samples: usize,
     /// From this number.
     pub seed: u64,
@@ -675,13 +675,13 @@ impl Default for ToleranceSettingsDraft {
 /// How deviations scatter, as far as that is said; see [`Scatter`](crate::model::Scatter).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ScatterDraft {
-    /// Its place in [`Scatter::NAMES`](crate::model::Scatter::NAMES).
+    /// Place in [`Scatter::NAMES`](crate::model::Scatter::NAMES).
     pub kind: Option<usize>,
-    /// How many standard deviations the tolerance is.
+    /// Number of standard deviations the tolerance is.
     pub sigmas: Option<f64>,
 }
 
-/// A tolerance; see [`Tolerance`](crate::model::Tolerance). Its reach is in units of which so many make a metre or a radian.
+/// A tolerance; see [`Tolerance`](crate::model::Tolerance). Its reach is in units of which that many make a metre or a radian.
 #[derive(Clone, Debug)]
 pub struct ToleranceDraft {
     /// The name of a design variable, or the part before `_x`, `_y`, `_z` of several.
@@ -692,16 +692,16 @@ pub struct ToleranceDraft {
     pub scatter: ScatterDraft,
     /// What it costs to hold it.
     pub cost: Option<f64>,
-    /// How many units of length make a metre.
+    /// Number of units of length make a metre.
     pub per_metre: f64,
-    /// How many units of angle make a radian.
+    /// Number of units of angle make a radian.
     pub per_radian: f64,
 }
 
 /// A correlation; see [`Correlation`](crate::model::Correlation).
 #[derive(Clone, Debug)]
 pub struct CorrelationDraft {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The names of two design variables.
     pub between: [String; 2],
@@ -718,9 +718,9 @@ pub struct SweepSettingsDraft {
     pub ranges: Option<Vec<SweepRangeDraft>>,
     /// The designs of a list, in place of all that.
     pub designs: Option<DesignListDraft>,
-    /// In a factorial, so many values of a variable that says nothing else.
+    /// In a factorial, that many values of a variable that says nothing else.
     pub levels: usize,
-    /// So many designs.
+    /// Number of designs.
     pub samples: usize,
     /// From this number.
     pub seed: u64,
@@ -745,7 +745,7 @@ impl Default for SweepSettingsDraft {
     }
 }
 
-/// A range of a variable; see [`SweepRange`](crate::model::SweepRange). Its ends are in units of which so many make a metre or a radian;
+/// A range of a variable; see [`SweepRange`](crate::model::SweepRange). Its ends are in units of which that many make a metre or a radian;
 /// those of a parameter are its values.
 #[derive(Clone, Debug)]
 pub struct SweepRangeDraft {
@@ -755,11 +755,11 @@ pub struct SweepRangeDraft {
     pub low: Option<f64>,
     /// Where it ends; at the upper bound where it is left out.
     pub high: Option<f64>,
-    /// In a factorial, so many values.
+    /// In a factorial, that many values.
     pub levels: Option<usize>,
-    /// How many units of length make a metre.
+    /// Number of units of length make a metre.
     pub per_metre: f64,
-    /// How many units of angle make a radian.
+    /// Number of units of angle make a radian.
     pub per_radian: f64,
 }
 
@@ -772,8 +772,8 @@ pub struct DesignListDraft {
     pub names: Vec<String>,
     /// Per design, its values.
     pub rows: Vec<Vec<f64>>,
-    /// How many units of length make a metre.
+    /// Number of units of length make a metre.
     pub per_metre: f64,
-    /// How many units of angle make a radian.
+    /// Number of units of angle make a radian.
     pub per_radian: f64,
 }

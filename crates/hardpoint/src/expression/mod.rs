@@ -69,13 +69,13 @@ impl Expression {
         Self { text: value.to_string(), names: Vec::new(), program, per_metre: 1.0 }
     }
 
-    /// The same text, whose lengths are in a unit of which so many make a metre.
+    /// The same text, whose lengths are in a unit of which that many make a metre.
     #[must_use]
     pub fn with_unit(self, per_metre: f64) -> Self {
         Self { per_metre, ..self }
     }
 
-    /// How many of its unit of length make a metre.
+    /// Number of its unit of length make a metre.
     pub fn per_metre(&self) -> f64 {
         self.per_metre
     }
@@ -125,7 +125,7 @@ impl Expression {
         }
     }
 
-    /// Whether expressions can use what has this name: letters, digits and `_`, no digit first, and none of the names that
+    /// True if expressions can use what has this name: letters, digits and `_`, no digit first, and none of the names that
     /// they know already.
     pub fn can_name(name: &str) -> bool {
         parse::is_free_name(name)

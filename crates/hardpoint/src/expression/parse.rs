@@ -223,7 +223,7 @@ impl<'a> Descent<'a> {
         descent
     }
 
-    /// Whether the name of a parameter, new among the parameters or not, can be told from all others.
+    /// True if the name of a parameter, new among the parameters or not, can be distinguished from all others.
     fn check_parameter(&self, name: &str, is_new: bool) -> Result<(), ExpressionError> {
         let is_known = is_taken(name);
         let (message, help) = if is_known {
@@ -495,7 +495,7 @@ impl<'a> Descent<'a> {
             .unwrap_or((Token::End, end));
     }
 
-    /// The error that an operand was wanted where the current token stands.
+    /// The error that an operand was wanted where the current token is.
     fn missing_value(&self) -> ExpressionError {
         match self.token {
             Token::Symbol("*" | "/" | "^" | "**" | "<" | "<=" | ">" | ">=" | ")" | ",") | Token::End => {}
@@ -580,12 +580,12 @@ impl<'a> Descent<'a> {
     }
 }
 
-/// Whether expressions give the name a meaning of their own.
+/// True if expressions give the name a meaning of their own.
 fn is_taken(name: &str) -> bool {
     ["t", "pi"].contains(&name) || functions().any(|(known, ..)| known == name)
 }
 
-/// Whether expressions can use what has this name.
+/// True if expressions can use what has this name.
 pub(crate) fn is_free_name(name: &str) -> bool {
     !is_taken(name) && (self::name, eof).parse_next(&mut LocatingSlice::new(name)).is_ok()
 }

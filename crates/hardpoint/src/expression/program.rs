@@ -65,7 +65,7 @@ impl Operation {
         }
     }
 
-    /// Which of its sides an operation with sides takes for these operands. Sides that join smoothly may be told apart.
+    /// Which of its sides an operation with sides takes for these operands. Sides that join smoothly may be distinguished.
     fn side(self, operands: &[Jet]) -> Option<u8> {
         let sign = |order: Option<Ordering>| order.map_or(9, |order| order as u8);
         let zero = Jet::constant(0.0);
@@ -94,7 +94,7 @@ pub(crate) struct Program {
     /// For every operand that waits, whether it depends on the time.
     waiting: Vec<bool>,
     most_waiting: usize,
-    /// Whether its parameters are the same at all times, so that what depends on them only has no time derivatives.
+    /// True if its parameters are the same at all times, so that what depends on them only has no time derivatives.
     is_of_time: bool,
 }
 
@@ -116,7 +116,7 @@ impl Program {
         self.operations.len()
     }
 
-    /// Whether one more operand would exceed [`MAX_WAITING`].
+    /// True if one more operand would exceed [`MAX_WAITING`].
     pub(crate) fn is_full(&self) -> bool {
         self.waiting.len() == MAX_WAITING
     }
@@ -237,7 +237,7 @@ impl Program {
         run(&self.operations, time, parameter, watch, &mut [time; MAX_WAITING])
     }
 
-    /// Whether any operation has sides that it could switch between.
+    /// True if any operation has sides that it could switch between.
     pub(crate) fn has_sides(&self) -> bool {
         self.operations.iter().any(|operation| {
             use Operation::{One, Select, Step, Two};

@@ -47,7 +47,7 @@ impl Range {
         Self { low: low.min(high), high: high.max(low) }
     }
 
-    /// Whether both of its ends are finite.
+    /// True if both of its ends are finite.
     pub fn is_bounded(self) -> bool {
         self.low.is_finite() && self.high.is_finite()
     }

@@ -117,7 +117,7 @@ fn undefined<T: Real>(like: T) -> T {
     T::constant(f64::NAN) * like
 }
 
-/// Whether `x` is at least as far on a side as `o` is; or, of two that do not compare, the one without a value.
+/// True if `x` is at least as far on a side as `o` is; or, of two that do not compare, the one without a value.
 #[inline(always)]
 fn is_it<T: Real>(x: T, o: T, side: Ordering) -> bool {
     match x.order(o) {
@@ -167,7 +167,7 @@ pub(crate) enum Relation {
 }
 
 impl Relation {
-    /// Whether `a` compares with `b` in this way; `None` if either is not a number.
+    /// True if `a` compares with `b` in this way; `None` if either is not a number.
     pub(crate) fn holds(self, a: f64, b: f64) -> Option<bool> {
         let order = a.partial_cmp(&b)?;
         Some(match self {
@@ -178,7 +178,7 @@ impl Relation {
         })
     }
 
-    /// Whether it holds for all numbers of two ranges, or for none; `None` if that depends.
+    /// True if it holds for all numbers of two ranges, or for none; `None` if that depends.
     pub(crate) fn holds_between(self, a: Range, b: Range) -> Option<bool> {
         let corners = [(a.low, b.low), (a.low, b.high), (a.high, b.low), (a.high, b.high)];
         let first = self.holds(a.low, b.high)?;

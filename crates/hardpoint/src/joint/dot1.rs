@@ -1,4 +1,4 @@
-//! Dot-1: an axis of body i square to an axis of body j.
+//! Dot-1: an axis of body i perpendicular to an axis of body j.
 
 use crate::constraint::Row;
 
@@ -8,7 +8,7 @@ use super::{Freedom, JointType, Need, VectorKind};
 pub static DOT1: JointType = JointType {
     name: "dot1",
     aliases: &["perpendicular", "perpendicular_axes"],
-    summary: "perpendicular axes: `axis` on body i stays square to `axis2` on body j",
+    summary: "perpendicular axes: `axis` on body i stays perpendicular to `axis2` on body j",
     places: 0,
     axis: Need::Required,
     axis2: Need::Required,

@@ -1,4 +1,4 @@
-//! Dot-2: the line between two points stays square to an axis.
+//! Dot-2: the line between two points stays perpendicular to an axis.
 
 use crate::constraint::Row;
 
@@ -8,7 +8,7 @@ use super::{JointType, Need, VectorKind};
 pub static DOT2: JointType = JointType {
     name: "dot2",
     aliases: &[],
-    summary: "the line from the point on body i to the point on body j stays square to `axis` on body i",
+    summary: "the line from the point on body i to the point on body j stays perpendicular to `axis` on body i",
     places: 2,
     axis: Need::Required,
     axis2: Need::Unused,

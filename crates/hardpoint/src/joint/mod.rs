@@ -71,7 +71,7 @@ joints! {
 /// What a joint type is: its geometry, its freedoms as a tree joint, its constraints as a cut joint.
 ///
 /// Both markers have their z axis along the joint's `axis` and their x axis along `axis2` (or any
-/// direction square to `axis`, the same for both), and coincide in orientation at the design
+/// direction perpendicular to `axis`, the same for both), and coincide in orientation at the design
 /// configuration; only where `axis2` is [`Need::OnBodyJ`] is it the z axis of marker j.
 #[derive(Debug)]
 pub struct JointType {
@@ -81,11 +81,11 @@ pub struct JointType {
     pub aliases: &'static [&'static str],
     /// One line for documentation and editors.
     pub summary: &'static str,
-    /// How many hardpoints place it: 1 shared by both bodies, 2, one on each, or 0 where only directions matter.
+    /// Number of hardpoints place it: 1 shared by both bodies, 2, one on each, or 0 where only directions matter.
     pub places: usize,
-    /// Whether it needs an axis.
+    /// True if it needs an axis.
     pub axis: Need,
-    /// Whether it needs a second axis, square to the first.
+    /// True if it needs a second axis, perpendicular to the first.
     pub axis2: Need,
     /// Rules by which a mirror makes the images of `axis` and of `axis2`.
     pub vector_kinds: [VectorKind; 2],
@@ -101,10 +101,10 @@ pub struct JointType {
     pub coordinates: &'static [CoordinateType],
 }
 
-/// Whether a piece of geometry belongs to a joint type.
+/// True if a piece of geometry belongs to a joint type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
-    /// Must be given; a second axis square to the first.
+    /// Must be given; a second axis perpendicular to the first.
     Required,
     /// May be given.
     Optional,
@@ -156,7 +156,7 @@ pub enum Freedom {
 }
 
 impl Freedom {
-    /// How many coordinates it has.
+    /// Number of coordinates it has.
     pub const fn coordinates(self) -> usize {
         match self {
             Self::Turn(_) | Self::Slide(_) => 1,
@@ -271,32 +271,32 @@ impl JointType {
         }
     }
 
-    /// Whether it is a ball and nothing else.
+    /// True if it is a ball and nothing else.
     pub fn is_ball(&self) -> bool {
         self.freedoms == Some(&[Freedom::Ball]) && self.tree_rows.is_empty()
     }
 
-    /// Whether its two bodies turn as one, and slide along one line at most.
+    /// True if its two bodies turn as one, and slide along one line at most.
     pub fn turns_as_one(&self) -> bool {
         matches!(self.freedoms, Some([] | [Freedom::Slide(_)]))
     }
 
-    /// Whether the distance of its two points is kept, or may be driven.
+    /// True if the distance of its two points is kept, or may be driven.
     pub fn is_rod(&self) -> bool {
         self.coordinates.iter().any(|c| c.row == Row::Distance)
     }
 
-    /// Whether its point j follows a curve on body i.
+    /// True if its point j follows a curve on body i.
     pub fn follows_curve(&self) -> bool {
         self.rows.contains(&Row::Contact)
     }
 
-    /// Whether a `lead` couples its displacement to its angle.
+    /// True if a `lead` couples its displacement to its angle.
     pub fn has_lead(&self) -> bool {
         std::ptr::eq(self, &SCREW)
     }
 
-    /// How many coordinates the joint has in the tree; `None` if it is always cut.
+    /// Number of coordinates the joint has in the tree; `None` if it is always cut.
     pub fn freedom_count(&self) -> Option<usize> {
         self.freedoms.map(|f| f.iter().map(|f| f.coordinates()).sum())
     }
@@ -341,7 +341,7 @@ mod tests {
         for t in ALL {
             assert!(std::ptr::eq(named(t.name).unwrap(), *t));
             for alias in t.aliases {
-                assert!(std::ptr::eq(named(alias).unwrap(), *t), "{alias} stands for two types");
+                assert!(std::ptr::eq(named(alias).unwrap(), *t), "{alias} represents two types");
             }
         }
         assert!(named("hinge").is_none());

@@ -9,7 +9,7 @@ use super::{JointType, Need, VectorKind};
 pub static POINT_ON_CURVE: JointType = JointType {
     name: "point_on_curve",
     aliases: &["cam", "slot"],
-    summary: "a point of body j keeps its distance from a `curve` of body i, in the plane square to `axis`",
+    summary: "a point of body j keeps its distance from a `curve` of body i, in the plane perpendicular to `axis`",
     places: 2,
     axis: Need::Required,
     axis2: Need::Unused,

@@ -13,7 +13,7 @@ use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 
 /// A harmonic law: offset + amplitude sin(2π frequency t + phase).
 ///
-/// Its parameters, in this order: `amplitude`, `frequency`, `phase`, `offset`.
+/// Parameters, in this order: `amplitude`, `frequency`, `phase`, `offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Harmonic {
     /// The amplitude, in the driver's unit.

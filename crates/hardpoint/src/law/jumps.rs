@@ -32,7 +32,7 @@ impl Break {
         Self { time, before: time, after: time }
     }
 
-    /// Whether the law has both its sides, if it begins at `start` and ends at `end`.
+    /// True if the law has both its sides, if it begins at `start` and ends at `end`.
     pub(super) fn is_between(self, start: f64, end: f64) -> bool {
         let room = SAME_TIME * self.time.abs().max(1.0);
         self.time > start + room && self.time < end - room
@@ -52,7 +52,7 @@ const CUTS: u32 = 4096;
 /// Sides that change more often than this between two cuts change by rounding.
 const MOST_CHANGES: usize = 4;
 
-/// Breaks nearer to each other than this, relative to the times asked for, are one.
+/// Breaks nearer to each other than this, relative to the times requested, are one.
 const SAME_TIME: f64 = 1e-12;
 
 /// A jump counts if it is more than this, relative to the largest that the same derivative is...

@@ -115,14 +115,14 @@ macro_rules! parameters {
 }
 pub(super) use parameters;
 
-/// Whether a time is before an instant: at the instant itself if it runs backwards. What is no number is neither before nor after.
+/// True if a time is before an instant: at the instant itself if it runs backwards. What is no number is neither before nor after.
 #[inline(always)]
 pub(super) fn is_before<T: Real, const N: usize>(time: &Jet<T, N>, instant: f64) -> bool {
     let t = time.value().value();
     t < instant || t == instant && time.d().value() < 0.0
 }
 
-/// Whether it is after the instant: at the instant itself unless it runs backwards.
+/// True if it is after the instant: at the instant itself unless it runs backwards.
 #[inline(always)]
 pub(super) fn is_after<T: Real, const N: usize>(time: &Jet<T, N>, instant: f64) -> bool {
     let t = time.value().value();

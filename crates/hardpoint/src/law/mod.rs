@@ -83,11 +83,11 @@ pub type TimeJet<T = f64> = Jet<T, 4>;
 pub struct Law {
     kind: AnyLaw,
     factor: f64,
-    /// What is prescribed has this value as drawn, in the driver's own unit, and the text counts from zero.
+    /// What is prescribed has this value in the design configuration, in the driver's own unit, and the text counts from zero.
     as_drawn: Option<f64>,
 }
 
-/// The parameter that a law has when it [counts from zero](Law::from_zero): what is prescribed, as drawn.
+/// The parameter that a law has when it [counts from zero](Law::from_zero): what is prescribed, in the design configuration.
 const AS_DRAWN: &str = "as_drawn";
 
 impl Law {
@@ -182,7 +182,7 @@ impl Law {
         self
     }
 
-    /// The parameter that says what is prescribed as drawn, and its value, where the law counts from zero.
+    /// The parameter that says what is prescribed in the design configuration, and its value, where the law counts from zero.
     pub fn as_drawn(&self) -> Option<(usize, f64)> {
         self.as_drawn.map(|value| (self.kind.parameter_count(), value))
     }

@@ -5,9 +5,9 @@ use crate::number::Real;
 /// A number in a law that may be varied, as a design variable is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// Its name, such as `amplitude`, `f[3]` or `piece[0].speed`.
+    /// Name, such as `amplitude`, `f[3]` or `piece[0].speed`.
     pub name: String,
-    /// Its value in the unit that [`kind`](Self::kind) says.
+    /// Value in the unit that [`kind`](Self::kind) says.
     pub value: f64,
     /// What it measures, and therefore its unit.
     pub kind: ParameterKind,
@@ -31,7 +31,7 @@ pub enum ParameterKind {
 }
 
 impl ParameterKind {
-    /// Whether the parameter is measured in the driver's unit, so that a change of that unit changes its value.
+    /// True if the parameter is measured in the driver's unit, so that a change of that unit changes its value.
     pub fn is_in_driver_unit(self) -> bool {
         matches!(self, Self::Value | Self::ValueRate(_))
     }

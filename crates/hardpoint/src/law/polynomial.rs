@@ -81,7 +81,7 @@ impl LawKind for Polynomial {
     }
 }
 
-/// c0 + c1 x + c2 x² + ..., so many terms, by Horner's rule.
+/// c0 + c1 x + c2 x² + ..., that many terms, by Horner's rule.
 #[inline(always)]
 pub(super) fn sum_of_powers<T: Real, const N: usize>(
     of: Jet<T, N>,

@@ -17,9 +17,9 @@ use super::table::ROUNDING_OF_TIME;
 pub struct Piece {
     /// How long it lasts, in s; for ever if `None`, which only the last piece may be.
     pub duration: Option<f64>,
-    /// Its law, whose time starts at 0 when the piece does.
+    /// Law, whose time starts at 0 when the piece does.
     pub law: Law,
-    /// Whether its values count from where the piece before ended, so that the value does not jump. Without meaning in the
+    /// True if its values count from where the piece before ended, so that the value does not jump. Without meaning in the
     /// first piece, whose values are always its law's own.
     pub continued: bool,
 }

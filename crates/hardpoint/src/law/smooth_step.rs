@@ -21,7 +21,7 @@ use super::polynomial::sum_of_powers;
 /// | 5 | 10u³ - 15u⁴ + 6u⁵ | the acceleration is continuous, the jerk jumps |
 /// | 7 | 35u⁴ - 84u⁵ + 70u⁶ - 20u⁷ | the jerk is continuous too |
 ///
-/// Its parameters, in this order: `from`, `to`, `start`, `end`. Where a changed `start` is no longer before `end` the law
+/// Parameters, in this order: `from`, `to`, `start`, `end`. Where a changed `start` is no longer before `end` the law
 /// has no finite value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmoothStep {
@@ -38,7 +38,7 @@ pub struct SmoothStep {
 }
 
 impl SmoothStep {
-    /// The degree to take where none is asked for: the lowest whose acceleration does not jump.
+    /// The degree to take where none is requested: the lowest whose acceleration does not jump.
     pub const USUAL_DEGREE: u32 = 5;
 
     pub(super) fn check(&self) -> Result<(), LawError> {

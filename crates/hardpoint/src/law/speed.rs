@@ -12,7 +12,7 @@ use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 
 /// A law of constant speed: offset + speed t.
 ///
-/// Its parameters, in this order: `speed`, `offset`.
+/// Parameters, in this order: `speed`, `offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConstantSpeed {
     /// The speed, in the driver's unit per s.

@@ -123,12 +123,12 @@ impl Spline {
         self.times.len() - usize::from(self.is_periodic)
     }
 
-    /// How many coefficients a segment has that may differ from zero.
+    /// Number of coefficients a segment has that may differ from zero.
     fn order(&self) -> usize {
         if self.degree == SplineDegree::Cubic { 4 } else { 6 }
     }
 
-    /// Whether the time `t`, in the first period, is one of the table's.
+    /// True if the time `t`, in the first period, is one of the table's.
     fn reaches(&self, t: f64) -> bool {
         let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
         let slack = ROUNDING_OF_TIME * first.abs().max(last.abs());

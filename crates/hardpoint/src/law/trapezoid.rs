@@ -14,7 +14,7 @@ use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 /// A law that holds `from` up to `start` and `to` from `end` on; between them its speed is a trapezoid: it rises evenly for `ramp`
 /// seconds, is constant, and falls evenly for `ramp` seconds. The acceleration jumps at the four corners.
 ///
-/// Its parameters, in this order: `from`, `to`, `start`, `end`, `ramp`. Where changed ones leave no room for both ramps the law has no
+/// Parameters, in this order: `from`, `to`, `start`, `end`, `ramp`. Where changed ones leave no room for both ramps the law has no
 /// finite value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trapezoid {
@@ -47,7 +47,7 @@ impl Trapezoid {
         Ok(())
     }
 
-    /// Whether both ramps have room.
+    /// True if both ramps have room.
     fn has_room(&self) -> bool {
         self.ramp > 0.0 && 2.0 * self.ramp <= (self.end - self.start) * (1.0 + ROUNDING)
     }

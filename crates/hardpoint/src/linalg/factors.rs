@@ -54,7 +54,7 @@ impl<T: Real> Factors<T> {
         }
     }
 
-    /// How many multiplications a sparse factorisation takes in the present order; 0 of dense factors, which are small.
+    /// Number of multiplications a sparse factorisation takes in the present order; 0 of dense factors, which are small.
     pub fn multiplications(&self) -> usize {
         match self {
             Self::Dense(_) => 0,

@@ -63,7 +63,7 @@ pub(crate) fn folded_rows(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     for (column, &place) in q.columns.iter().zip(&q.order) {
         rows.iter_mut().zip(column).for_each(|(row, entry)| row[place] = *entry);
     }
-    // Below the diagonal stands nothing that means something.
+    // Below the diagonal is nothing that means something.
     for (k, &place) in q.order.iter().enumerate() {
         rows[k + 1..].iter_mut().for_each(|row| row[place] = 0.0);
     }

@@ -13,12 +13,12 @@ pub(crate) struct Elimination<T> {
     n: usize,
     /// Row-major n x n: the matrix.
     rows: Vec<T>,
-    /// Its factors, rows in the order of the pivots, diagonal inverted.
+    /// Factors, rows in the order of the pivots, diagonal inverted.
     ///
     /// `P A = L U`, l_ii = 1: below the diagonal l_rk, above it u_kc, on it 1 / u_kk.
     a: Vec<T>,
     order: Vec<usize>,
-    /// Whether that order is an even permutation.
+    /// True if that order is an even permutation.
     even: bool,
     /// The factors may be as large as this before another order is looked for.
     most_growth: f64,
@@ -30,11 +30,11 @@ pub(crate) struct Elimination<T> {
 pub(crate) struct Factored<T> {
     /// Smallest pivot over the largest; 0 where singular or not finite.
     pub pivot_ratio: f64,
-    /// Whether the determinant is positive.
+    /// True if the determinant is positive.
     pub positive: bool,
     /// The size of the determinant; of a sparse matrix its logarithm.
     pub determinant: T,
-    /// What that goes by.
+    /// What that depends on.
     pub watched: Watched<T>,
 }
 

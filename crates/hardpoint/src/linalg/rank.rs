@@ -1,4 +1,4 @@
-//! How many rows of a matrix are independent, and which: for the set-up, where redundancy is normal.
+//! Number of rows of a matrix are independent, and which: for the set-up, where redundancy is normal.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -7,7 +7,7 @@ use std::collections::BinaryHeap;
 /// with a thousand columns, where threshold pivots in sparse rows take milliseconds.
 const LARGEST_COMPLETE: usize = 100;
 /// Sparse pivots are first taken from entries above this part of the largest entry, then above this part of
-/// that, and so on: nearly complete pivoting, so that a small pivot never stands for an independent row while
+/// that, and so on: nearly complete pivoting, so that a small pivot never represents an independent row while
 /// a large one is left.
 const STAGE: f64 = 1e-2;
 /// A sparse pivot is at least this part of the largest entry in its row, which bounds the growth of round-off.
@@ -110,7 +110,7 @@ struct Sparse {
     rows_of: Vec<Vec<usize>>,
     /// By column: how many rows that are not eliminated have an entry there.
     counts: Vec<usize>,
-    /// Whether a row was a pivot's.
+    /// True if a row was a pivot's.
     done: Vec<bool>,
     /// Rows to try, those with the fewest entries first; some numbers may be out of date.
     queue: BinaryHeap<Reverse<(usize, usize)>>,

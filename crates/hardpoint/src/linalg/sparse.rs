@@ -12,9 +12,9 @@ use super::matrix::{Factored, MOST_GROWTH, Watched};
 const IN_COLUMN: f64 = 0.5;
 /// ... and this part of the largest entry that its row has left: so a small pivot does not stand while a large one waits.
 const IN_ROW: f64 = 0.1;
-/// A pivot is looked for in so many of the shortest rows and columns; more find hardly less fill, and take longer.
+/// A pivot is looked for in that many of the shortest rows and columns; more find hardly less fill, and take longer.
 const LOOKED_AT: usize = 4;
-/// So many pivots are multiplied before the logarithm is taken: each may change by a factor of 2^30 since the order was chosen.
+/// Number of pivots are multiplied before the logarithm is taken: each may change by a factor of 2^30 since the order was chosen.
 const MULTIPLIED: usize = 32;
 /// No row, or no column.
 const NONE: u32 = u32::MAX;
@@ -34,7 +34,7 @@ const NONE: u32 = u32::MAX;
 pub(crate) struct SparseLu<T> {
     /// By row: the columns that it has entries in, in the order in which they are filled.
     columns: Lists,
-    /// Its entries, in the same order, and their places in the order of the pivots.
+    /// Entries, in the same order, and their places in the order of the pivots.
     values: Vec<T>,
     places: Vec<u32>,
     order: Order,
@@ -52,7 +52,7 @@ struct Order {
     /// The pivots' rows and columns; none where the matrix was singular.
     rows: Vec<u32>,
     columns: Vec<u32>,
-    /// Whether both together are an even permutation.
+    /// True if both together are an even permutation.
     even: bool,
     /// By pivot: the k of its l_ik, and the j of its u_ij, in ascending order.
     lower: Lists,
@@ -154,7 +154,7 @@ impl<T: Real> SparseLu<T> {
         Factored { pivot_ratio: 0.0, positive: true, determinant, watched: Watched::zero() }
     }
 
-    /// How many multiplications a factorisation takes in the present order.
+    /// Number of multiplications a factorisation takes in the present order.
     pub fn multiplications(&self) -> usize {
         let Order { lower, upper, .. } = &self.order;
         lower.items.iter().map(|&k| upper.range(k as usize).len()).sum()
@@ -321,7 +321,7 @@ fn inverse(permutation: &[u32]) -> Vec<u32> {
     inverse
 }
 
-/// Whether a permutation is odd: each cycle of even length turns that over.
+/// True if a permutation is odd: each cycle of even length turns that over.
 fn is_odd(permutation: &[u32]) -> bool {
     let mut seen = vec![false; permutation.len()];
     let mut odd = false;

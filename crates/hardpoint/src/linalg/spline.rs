@@ -46,7 +46,7 @@ enum Datum {
 #[derive(Debug)]
 pub(crate) struct Basis {
     times: Vec<f64>,
-    /// How many derivatives belong to a knot: 1 for cubics, 2 for quintics.
+    /// Number of derivatives belong to a knot: 1 for cubics, 2 for quintics.
     rates: usize,
     ends: EndKind,
     /// The Cholesky factor L: of every row, the columns from its first that is not zero to the diagonal.

@@ -16,14 +16,14 @@ use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 pub(crate) struct Moving<T> {
     /// Where it is.
     pub pose: Pose<T>,
-    /// Its twist V.
+    /// Twist V.
     pub v: Twist<T>,
     /// And A = dV/dt.
     pub a: Twist<T>,
 }
 
 impl<T: Real> Moving<T> {
-    /// One that stands.
+    /// One that is.
     pub fn still() -> Self {
         Self { pose: Pose::IDENTITY.spread(), v: Twist::zero(), a: Twist::zero() }
     }
@@ -130,7 +130,7 @@ impl<T: Real> Acting<'_, T> {
         frame.point(self.geometry.points[point.0])
     }
 
-    /// The global axes as drawn, as they have turned with a body.
+    /// The global axes in the design configuration, as they have turned with a body.
     pub fn turned(&self, body: usize) -> Mat3<T> {
         self.bodies[body].pose.rot * self.model.bodies[body].frame.rot.transpose().spread()
     }
@@ -418,7 +418,7 @@ impl<T: Real> Acting<'_, T> {
         [grip * s, viscous * rate]
     }
 
-    /// What presses where an element rubs, of a wrench that its joint puts on its second body: the force across the axis, or both ends of a
+    /// What presses where an element has friction, of a wrench that its joint puts on its second body: the force across the axis, or both ends of a
     /// bearing that has a length; the whole force of a ball. As many of them count.
     pub fn presses(&self, e: ElementId, wrench: Wrench<T>) -> ([Vec3<T>; 2], usize) {
         let kind = &self.model.elements[e.0].kind;

@@ -195,7 +195,7 @@ impl<T: Real> Equilibrium<T> {
         }
     }
 
-    /// The same with all that reactions go by; friction stands, as yet.
+    /// The same with all that reactions depend on; friction is, as yet.
     pub fn change(&mut self, model: &Model, by: Differentiated<'_, T>) {
         let Differentiated { topology, state, field, flow, .. } = by;
         self.go_along(field, flow);
@@ -317,7 +317,7 @@ pub(super) fn excess<T: Real>(kind: &MeasureKind, acting: &Acting<'_, T>, stress
     stresses.iter().fold(none, |most, stress| most.larger(of(stress)))
 }
 
-/// Whether they leave it alone.
+/// True if they leave it alone.
 pub(super) fn is_known(kind: &MeasureKind, acting: &Acting<'_, f64>, stresses: &[Stress<f64>]) -> bool {
     // Written so that NaN is not known.
     excess(kind, acting, stresses) <= 0.0
@@ -347,7 +347,7 @@ impl<T: Real> Carried<T> {
     }
 }
 
-/// Unit twists and wrenches of a position, and how they change; nothing where no change is asked for.
+/// Unit twists and wrenches of a position, and how they change; nothing where no change is requested.
 struct Derived<'s, T> {
     x: &'s [Twist<T>],
     x_changed: &'s [Twist<T>],

@@ -1,4 +1,4 @@
-//! How the mechanism gives way to a force: small deflections about the kinematic position, (47) of `docs/theory.md`.
+//! How the mechanism deflects to a force: small deflections about the kinematic position, (47) of `docs/theory.md`.
 //!
 //! Every direction in which an elastic joint opens is a way to go like a change of the design: a twist of its marker. What bodies do along
 //! it solves (11) with the factors at hand, and how that changes with the design is the second derivative along both (15). Stiffnesses
@@ -21,7 +21,7 @@ use super::acting::{Acting, Moving};
 /// A number with its derivative along a way (the outer one) and by a variable (the inner one).
 type Number = Dual<Dual>;
 
-/// A way to give way.
+/// A way to deflect.
 #[derive(Clone, Debug)]
 enum Way {
     /// An elastic joint opens, against this stiffness.
@@ -30,13 +30,13 @@ enum Way {
     Released(DriverId),
 }
 
-/// What goes by a variable, or by none.
+/// What depends on a variable, or by none.
 struct Changed {
     fixed: BodyFixed<Number>,
     geometry: Geometry<Number>,
 }
 
-/// Evaluates compliances where a stepper stands, in one design.
+/// Evaluates compliances where a stepper is, in one design.
 pub(crate) struct Compliances<'a> {
     model: &'a Model,
     asked: Vec<usize>,
@@ -227,7 +227,7 @@ impl<'a> Compliances<'a> {
 }
 
 impl Compliances<'_> {
-    /// Where a wheel stands, as the point of its body that is there now goes along a way: it is that which the road pushes, while the contact
+    /// Where a wheel is, as the point of its body that is there now goes along a way: it is that which the road pushes, while the contact
     /// point wanders on the wheel.
     fn contact(&self, poses: &[Pose<Number>], geometry: &Geometry<Number>, wheel: WheelId) -> Vec3<Number> {
         let body = self.model.wheels[wheel.0].body.0;

@@ -14,7 +14,7 @@ use super::carry::{Carried, Stress};
 use super::measures::Instant;
 use super::solver::LoadSolver;
 
-/// Newton from no friction takes 3 to 7 steps where there is a solution; joints that have none after so many jam.
+/// Newton from no friction takes 3 to 7 steps where there is a solution; joints that have none after that many jam.
 const MOST_STEPS: usize = 40;
 /// Moments and forces are solved to this part of the largest term.
 const SOLVED: f64 = 1e-13;
@@ -28,7 +28,7 @@ pub(super) struct Friction {
     rubs: Vec<Rub>,
     /// `1 + diag(c) dN/dM` where it was solved.
     matrix: Elimination<f64>,
-    /// Per joint that rubs: the moment or force, and its derivative by a variable.
+    /// Per joint that has friction: the moment or force, and its derivative by a variable.
     moments: Vec<f64>,
     changes: Vec<f64>,
 }
@@ -36,13 +36,13 @@ pub(super) struct Friction {
 struct Rub {
     element: ElementId,
     joint: JointId,
-    /// Its grip c, what is viscous, and what presses without friction.
+    /// Grip c, what is viscous, and what presses without friction.
     grip: f64,
     viscous: f64,
     presses: ([Vec3; 2], usize),
-    /// Per joint that rubs: what presses here per unit moment there.
+    /// Per joint that has friction: what presses here per unit moment there.
     per_moment: Vec<[Vec3; 2]>,
-    /// Whether redundant constraints share what presses.
+    /// True if redundant constraints share what presses.
     is_shared: bool,
     /// True if the friction has another solution besides the one that was found.
     is_ambiguous: bool,
@@ -81,7 +81,7 @@ impl Friction {
         self.rubs.is_empty()
     }
 
-    /// Takes what joints carry without friction; `responses` say what all of them carry of a unit moment in each that rubs.
+    /// Takes what joints carry without friction; `responses` say what all of them carry of a unit moment in each that has friction.
     pub fn set(&mut self, acting: &Acting<'_, f64>, carried: &Carried<f64>, responses: &[Vec<Wrench>]) {
         for rub in &mut self.rubs {
             [rub.grip, rub.viscous] = acting.grip(rub.element);

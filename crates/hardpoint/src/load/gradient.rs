@@ -25,7 +25,7 @@ use super::measures::Instant;
 use super::solver::LoadSolver;
 use super::virtual_motion::{VirtualMotion, Weights, set, unit_twist};
 
-/// Gradients of loads where a stepper stands; nothing but a few weights is allocated per step.
+/// Gradients of loads where a stepper is; nothing but a few weights is allocated per step.
 pub(crate) struct LoadGradients {
     /// Y, and what turns.
     virtual_motion: VirtualMotion<f64>,
@@ -77,7 +77,7 @@ impl LoadGradients {
         }
     }
 
-    /// Derivatives by all variables of measure m, which `solver` has found where a state stands with its rates.
+    /// Derivatives by all variables of measure m, which `solver` has found where a state is with its rates.
     pub fn trace(
         &mut self,
         solver: &LoadSolver<'_>,
@@ -96,7 +96,7 @@ impl LoadGradients {
         let mut weights = self.weights(solver, kind);
         self.virtual_motion.go(&solver.bodies.places, topology, state, &weights);
         if !solver.friction.is_empty() {
-            // y_M, and with it what the equations of friction count for: then the load is one that friction stands for.
+            // y_M, and with it what the equations of friction count for: then the load is one that friction represents.
             let by_moments = solver.friction.elements().map(|e| self.by_friction(solver, kind, &weights, e));
             let by_moments: Vec<f64> = by_moments.collect();
             self.rubs = solver.friction.multipliers(by_moments);
@@ -206,7 +206,7 @@ impl LoadGradients {
         sum
     }
 
-    /// The derivative by the moment of a hinge that rubs, all else standing.
+    /// The derivative by the moment of a hinge that has friction, all else standing.
     fn by_friction(
         &mut self,
         solver: &LoadSolver<'_>,
@@ -230,7 +230,7 @@ impl LoadGradients {
     }
 }
 
-/// Whether a variable changes numbers, points, or markers that loads go by.
+/// True if a variable changes numbers, points, or markers that loads depend on.
 fn touches(model: &Model, changed: &Geometry<Dual>) -> bool {
     let goes = |v: Vec3<Dual>| [v.x, v.y, v.z].iter().any(|x| x.d != 0.0);
     let of_elements = model.elements.iter().filter_map(|e| e.kind.coordinate(model)).map(|(joint, _)| joint);

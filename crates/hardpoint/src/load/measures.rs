@@ -101,7 +101,7 @@ impl<T: Real> Instant<'_, T> {
 }
 
 impl Instant<'_, f64> {
-    /// Whether there is nothing of what presses where an element rubs.
+    /// True if there is nothing of what presses where an element has friction.
     pub fn presses_nothing(&self, e: ElementId, joint: JointId, most: f64) -> bool {
         let (presses, count) = self.acting.presses(e, self.carried.joints[joint.0]);
         presses.iter().take(count).all(|force| force.norm() <= KNOWN * most)

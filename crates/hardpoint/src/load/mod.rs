@@ -11,10 +11,10 @@
 //! | [`solver`] | | loads step after step |
 //! | [`program`] | | the same as part of a step's program |
 //! | [`inertia`] | M | what masses need, as one matrix of each body, and how that changes |
-//! | [`compliance`] | C = Y K^-1 Y^T | how elastic joints give way |
+//! | [`compliance`] | C = Y K^-1 Y^T | how elastic joints deflect |
 //! | [`gradient`] | dy/db | one load by all variables |
 //! | [`virtual_motion`] | Y | what a load moves, and what of it turns with the design |
-//! | [`friction`] | M = -c N(T) | what rubs, from the forces that it changes itself |
+//! | [`friction`] | M = -c N(T) | what has friction, from the forces that it changes itself |
 //! | [`measures`] | | the measures of loads, over any number |
 
 mod acting;

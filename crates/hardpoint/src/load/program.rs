@@ -1,7 +1,7 @@
 //! Loads as part of a step's program: what joints and drivers carry is recorded where the position is, with its factors.
 //!
 //! Not recorded are joints that rub, with forces that are iterated, springs by tables, bushings that resist turning, and elements on angles that are counted along the path:
-//! these go by the kernel. Which reactions are known is a result like others: in some positions redundant constraints share what they do not in others.
+//! these depend on the kernel. Which reactions are known is a result like others: in some positions redundant constraints share what they do not in others.
 
 use hardpoint_tape::Number;
 
@@ -44,7 +44,7 @@ pub(crate) fn hindrance(model: &Model, topology: &Topology) -> Option<&'static s
 
 /// Loads while they are recorded.
 ///
-/// Their derivatives go by what each load moves (`virtual_motion.rs`): how it goes with W, W. and W.. of every body is worked out once, and
+/// Their derivatives depend on what each load moves (`virtual_motion.rs`): how it goes with W, W. and W.. of every body is worked out once, and
 /// a variable, whose W are there, takes a few products for each. That is less than what joints carry of each variable's F' as long as
 /// there are fewer loads than some dozen.
 pub(crate) struct RecordedLoads<'a> {

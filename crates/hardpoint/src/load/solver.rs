@@ -20,7 +20,7 @@ use super::inertia::Changed;
 use super::measures::Instant;
 use super::turns::Turns;
 
-/// Evaluates loads where a stepper stands, in one design.
+/// Evaluates loads where a stepper is, in one design.
 pub(crate) struct LoadSolver<'a> {
     pub(super) model: &'a Model,
     /// The measures of loads.
@@ -32,7 +32,7 @@ pub(crate) struct LoadSolver<'a> {
     turns: Vec<Turns>,
     pub(super) friction: Friction,
     pub(super) bodies: Equilibrium<f64>,
-    /// Whether reactions are to be judged: with redundant constraints not all are known.
+    /// True if reactions are to be judged: with redundant constraints not all are known.
     judges: bool,
     /// Per redundant row: what joints carry where that row pulls by itself.
     stresses: Vec<Stress<f64>>,
@@ -70,7 +70,7 @@ impl<'a> LoadSolver<'a> {
         }
     }
 
-    /// The same for those who want all reactions, asked for or not.
+    /// The same for those who want all reactions, requested or not.
     pub fn judging(self) -> Self {
         Self { judges: true, ..self }
     }
@@ -85,7 +85,7 @@ impl<'a> LoadSolver<'a> {
         &self.bodies.now.near
     }
 
-    /// Loads where a stepper stands at time t, with velocity and acceleration.
+    /// Loads where a stepper is at time t, with velocity and acceleration.
     pub fn step(&mut self, one: &mut Stepper<'_>, t: f64) {
         let (topology, state) = (&one.topology, &mut one.state);
         let model = self.model;
@@ -244,7 +244,7 @@ pub(super) fn asked(model: &Model) -> Vec<usize> {
     (0..model.measures.len()).filter(|m| model.measures[*m].kind.is_load()).collect()
 }
 
-/// Whether what joints put on bodies is asked for: with redundant constraints not all of that is known.
+/// True if what joints put on bodies is requested: with redundant constraints not all of that is known.
 pub(super) fn asks_for_reactions(model: &Model) -> bool {
     model.measures.iter().any(|m| matches!(m.kind, MeasureKind::Reaction { .. }))
 }

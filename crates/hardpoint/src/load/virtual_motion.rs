@@ -94,7 +94,7 @@ impl<T: Real> VirtualMotion<T> {
         &self.flow.twists[0]
     }
 
-    /// Markers i of the joints go by their weights, drivers by theirs, and all else follows: (11).
+    /// Markers i of the joints depend on their weights, drivers by theirs, and all else follows: (11).
     pub fn go(&mut self, places: &Places, topology: &Topology, state: &mut State<T>, weights: &Weights<T>) {
         let Self { flow, .. } = self;
         flow.moves[0].fill(Twist::zero());

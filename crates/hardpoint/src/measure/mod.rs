@@ -3,7 +3,7 @@
 //! A measure is written once, over any [`Real`]; its rate, acceleration and the design derivatives of all three follow by
 //! the product and chain rules where it runs on [`Rates`].
 //!
-//! Formulas, symbols and signs are those of `docs/measures.md`; a number stands for value, rate and acceleration, and for the
+//! Formulas, symbols and signs are those of `docs/measures.md`; a number represents value, rate and acceleration, and for the
 //! derivative by a design variable of all three (`docs/theory.md`, section 9).
 
 mod bodies;
@@ -75,7 +75,7 @@ impl Output {
 pub struct MeasureResults {
     /// The columns: all measures, then x, y, z of all named points.
     pub outputs: Vec<Output>,
-    /// How many design variables there are.
+    /// Number of design variables there are.
     pub variables: usize,
     /// Output times.
     steps: usize,
@@ -132,12 +132,12 @@ impl MeasureResults {
         }
     }
 
-    /// How many output times there are.
+    /// Number of output times there are.
     pub fn len(&self) -> usize {
         if self.outputs.is_empty() { 0 } else { self.steps }
     }
 
-    /// Whether there is nothing.
+    /// True if there is nothing.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -148,7 +148,7 @@ impl MeasureResults {
         self.by_formula
     }
 
-    /// Room for these outputs at so many times, in the memory that there is; `layout` says where the derivatives stand, and how many
+    /// Room for these outputs at that many times, in the memory that there is; `layout` says where the derivatives stand, and how many
     /// numbers they are.
     fn shape(
         &mut self,
@@ -245,7 +245,7 @@ impl MeasureResults {
     }
 }
 
-/// Derivatives of so many outputs by so many variables, all of them.
+/// Derivatives of that many outputs by that many variables, all of them.
 fn dense(outputs: usize, variables: usize) -> (Vec<Option<usize>>, usize) {
     let all = outputs * variables;
     ((0..all).map(|n| Some(3 * n)).collect(), 3 * all)
@@ -316,7 +316,7 @@ pub(crate) fn evaluate(
     });
 }
 
-/// Room for all outputs of a motion of so many steps, as a program lays them out, if there is one.
+/// Room for all outputs of a motion of that many steps, as a program lays them out, if there is one.
 fn make_room(
     model: &Model,
     sensitivities: &Sensitivities,
@@ -343,11 +343,11 @@ struct FormulaEvaluator<'a> {
     /// The bodies that measures name, and where they are.
     bodies: Vec<usize>,
     poses: Vec<Pose<Rates>>,
-    /// Per output: what tells its turns, if it is an angle that has any.
+    /// Per output: what indicates its turns, if it is an angle that has any.
     turns: Vec<Option<Turns>>,
-    /// Whether any measure is a formula over angles that are counted through turns.
+    /// True if any measure is a formula over angles that are counted through turns.
     counts: bool,
-    /// Blocks of output times, and outputs there, that the formulas themselves are asked for.
+    /// Blocks of output times, and outputs there, that the formulas themselves are requested.
     left: Vec<(usize, usize)>,
     /// By time and measure, where any counts: the whole turns.
     counted: Vec<f64>,
@@ -441,7 +441,7 @@ impl<'a> FormulaEvaluator<'a> {
 
 /// What outputs may ask for besides the motion.
 pub(crate) struct Context<'a> {
-    /// Of the measures that go by a driver.
+    /// Of the measures that depend on a driver.
     pub slopes: &'a StepValues,
     /// By time and measure: the whole turns of its angle, rad; empty where no formula asks for them.
     pub whole_turns: &'a [f64],
@@ -511,7 +511,7 @@ pub(crate) fn finite(x: f64) -> f64 {
     if x.is_finite() { x } else { f64::NAN }
 }
 
-/// What tells how many whole turns a joint's angle has made.
+/// What indicates how many whole turns a joint's angle has made.
 enum Turns {
     /// The driver's law.
     Driver(DriverId),
@@ -537,7 +537,7 @@ struct CountedPlace {
     of: usize,
 }
 
-/// The outputs that are counted angles, and what tells their turns.
+/// The outputs that are counted angles, and what indicates their turns.
 fn turns(model: &Model, topology: &Topology, outputs: &[Output]) -> Vec<Option<Turns>> {
     let mut link_of = vec![None; model.joints.len()];
     for link in &topology.links {
@@ -587,7 +587,7 @@ fn placed_turns(
     turns
 }
 
-/// Whether an output is a formula over others, or the rate of one: what goes by angles with all their turns.
+/// True if an output is a formula over others, or the rate of one: what depends on angles with all their turns.
 fn is_formula(model: &Model, output: usize) -> bool {
     match model.measures.get(output).map(|m| &m.kind) {
         Some(MeasureKind::Combination { .. }) => true,
@@ -596,7 +596,7 @@ fn is_formula(model: &Model, output: usize) -> bool {
     }
 }
 
-/// Whether an output is an angle that is counted through turns.
+/// True if an output is an angle that is counted through turns.
 fn is_counted(model: &Model, output: &Output) -> bool {
     let OutputSource::Measure(m) = output.source else { return false };
     match model.measures[m].kind {
@@ -647,7 +647,7 @@ pub(crate) struct Instant<'a, T> {
     fixed: &'a BodyFixed<T>,
     /// Per body: where it is. Only those that measures name count.
     poses: &'a [Pose<T>],
-    /// Per measure: its value, where it goes by a driver; empty where these are not known.
+    /// Per measure: its value, where it depends on a driver; empty where these are not known.
     slopes: &'a [T],
     /// Per measure: the whole turns, rad, that its angle has made; empty where they are not counted.
     whole_turns: &'a [T],
@@ -760,7 +760,7 @@ impl<'a, T: Real> Instant<'a, T> {
                 now.measure(*what, || self.wheel_as_drawn(k, 0, *wheel))
             }
             MeasureKind::Axle { axle, what } => self.axle(k, self.model.axles[axle.0].wheels, *what),
-            // What goes by the step, above.
+            // What depends on the step, above.
             MeasureKind::Slope { .. }
             | MeasureKind::DriverForce { .. }
             | MeasureKind::DriverPower { .. }

@@ -48,9 +48,9 @@ type RecordedRates = Rates<Number>;
 /// What a program is for.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct ProgramKey {
-    /// Whether the design is an input; else it is the nominal one.
+    /// True if the design is an input; else it is the nominal one.
     any_design: bool,
-    /// Derivatives by so many variables.
+    /// Derivatives by that many variables.
     variables: usize,
     /// Which variable moves which body, of those that outputs are measured on.
     moved: Vec<(usize, usize)>,
@@ -75,19 +75,19 @@ pub(crate) struct MeasureProgram {
     program: Staged,
     bodies: Vec<usize>,
     moved: Vec<(usize, usize)>,
-    /// Measures whose whole turns are asked for.
+    /// Measures whose whole turns are requested.
     turning: Vec<usize>,
     /// Where the values of the design begin among the inputs.
     design_at: usize,
     outputs: usize,
     /// By variable and output: where its derivatives begin; none where they are all zero.
     places: Vec<Option<usize>>,
-    /// How many numbers they are.
+    /// Number of numbers they are.
     derivatives: usize,
 }
 
 impl MeasureProgram {
-    /// What is asked for, if it can be recorded.
+    /// The request, if it can be recorded.
     pub fn record(design_map: &DesignMap<'_>, asked: &ProgramKey, execution: Execution) -> Option<Self> {
         let model = design_map.model();
         let (outputs, bodies) = (super::outputs(model), moving_bodies(model));
@@ -278,7 +278,7 @@ struct Recorder<'a> {
 }
 
 impl Recorder<'_> {
-    /// An output that depends on these bodies and goes by what these variables move within them; none that is no arithmetic.
+    /// An output that depends on these bodies and depends on what these variables move within them; none that is no arithmetic.
     fn output(&self, output: &Output, [bodies, variables]: &[Vec<usize>; 2]) -> Option<RecordedOutput> {
         if goes_by_step(self.model, output.source) {
             return None;
@@ -308,7 +308,7 @@ impl Recorder<'_> {
                     at(&self.geometry.still, &poses).d.0
                 };
                 if output.known.by_position {
-                    // Leibniz' rule, along a way that stands still in the world.
+                    // Leibniz' rule, along a way that is at rest in the world.
                     let [g, rate, acceleration] = along(0);
                     // Rows: what multiplies a, a., a..; columns: of y, y., y..
                     [[g, rate, acceleration], [zero, g, rate * 2.0], [zero, zero, g]]
@@ -351,7 +351,7 @@ impl Recorder<'_> {
     }
 }
 
-/// Whether an output goes, itself or by what it is made of, by more of a step than where its bodies are.
+/// True if an output goes, itself or by what it is made of, by more of a step than where its bodies are.
 fn goes_by_step(model: &Model, output: OutputSource) -> bool {
     let OutputSource::Measure(m) = output else { return false };
     model.goes_by_step(m)
@@ -426,7 +426,7 @@ impl<'p> MeasureRun<'p> {
         Self { program, room: ProgramMemory::default(), inputs, guards }
     }
 
-    /// Evaluates all outputs at the eight output times that k is one of. The whole turns of measures that are asked for are those that
+    /// Evaluates all outputs at the eight output times that k is one of. The whole turns of measures that are requested are those that
     /// were [given](Self::turns).
     pub fn at(
         &mut self,
@@ -449,7 +449,7 @@ impl<'p> MeasureRun<'p> {
         self.room.run(&program.step, bytemuck::cast_slice(&self.inputs), &[], results);
     }
 
-    /// Whether an output counts, in that many lanes.
+    /// True if an output counts, in that many lanes.
     pub fn fits(&self, output: usize, lanes: usize) -> bool {
         // Written so that NaN does not.
         self.guards[output].0[..lanes].iter().all(|x| *x <= 0.0)
@@ -469,7 +469,7 @@ impl<'p> MeasureRun<'p> {
         differ
     }
 
-    /// The whole turns, rad, of these measures, that formulas go by.
+    /// The whole turns, rad, of these measures, that formulas depend on.
     pub fn turns(&mut self) -> impl Iterator<Item = (usize, &mut [f64; LANES])> {
         let first = self.program.design_at - 1 - self.program.turning.len();
         let lines = lanes_of(&mut self.inputs)[first..].iter_mut();

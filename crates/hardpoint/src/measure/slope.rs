@@ -16,13 +16,13 @@ use crate::topology::Topology;
 use super::wheel::{TravellingWheel, axle_roll_centre};
 use super::{Instant, StepValues, bodies_asked_for};
 
-/// Evaluates the measures that go by a driver, where a stepper stands.
+/// Evaluates the measures that depend on a driver, where a stepper is.
 pub(crate) struct Slopes<'a> {
     model: &'a Model,
     drivers: Vec<DriverId>,
     variables: usize,
     seconds: Seconds,
-    /// Per variable, what measures go by; the last is that of no change.
+    /// Per variable, what measures depend on; the last is that of no change.
     fixed: Vec<BodyFixed<Dual<Dual>>>,
     asked_for: Vec<usize>,
     /// Per driver.
@@ -102,7 +102,7 @@ impl<'a> Slopes<'a> {
     }
 }
 
-/// The drivers that a measure goes by, if it does: those of both wheels of an axle may differ.
+/// The drivers that a measure depends on, if it does: those of both wheels of an axle may differ.
 fn driver_of(model: &Model, k: usize) -> Option<[DriverId; 2]> {
     let of_wheel = |wheel: WheelId, need: WheelRequirement| model.wheels[wheel.0].driver(need);
     if !model.goes_by_driver(k) {
@@ -127,7 +127,7 @@ struct DriverAlone<'m, T> {
 }
 
 impl<T: Real> DriverAlone<'_, T> {
-    /// The value of a measure that goes by a driver; NaN of all others.
+    /// The value of a measure that depends on a driver; NaN of all others.
     fn measure(&self, model: &Model, k: usize) -> T {
         let unknown = T::constant(f64::NAN);
         let Some(drivers) = driver_of(model, k) else { return unknown };

@@ -15,7 +15,7 @@ pub(crate) struct StepValues {
     measures: Vec<usize>,
     /// Per measure of the model: which of these it is.
     places: Vec<Option<usize>>,
-    /// Derivatives by so many.
+    /// Derivatives by that many.
     variables: usize,
     /// Output times that were begun.
     steps: usize,
@@ -24,7 +24,7 @@ pub(crate) struct StepValues {
 }
 
 impl StepValues {
-    /// Those of a model, with derivatives by so many variables.
+    /// Those of a model, with derivatives by that many variables.
     pub fn new(model: &Model, variables: usize) -> Self {
         let count = model.measures.len();
         let measures: Vec<usize> = (0..count).filter(|m| model.goes_by_step(*m)).collect();
@@ -59,14 +59,14 @@ impl StepValues {
         }
     }
 
-    /// Its derivative by a variable.
+    /// Derivative by a variable.
     pub fn set_d(&mut self, variable: usize, measure: usize, x: f64) {
         if let Some(n) = self.places[measure] {
             self.numbers.set(self.steps - 1, (1 + variable) * self.measures.len() + n, [x]);
         }
     }
 
-    /// So many more output times at once, which stand in these lanes of what was found: of all measures values, then derivatives variable
+    /// That many more output times at once, which stand in these lanes of what was found: of all measures values, then derivatives variable
     /// by variable. A measure is not known where its `excess` is above zero.
     pub fn take(&mut self, lanes: Range<usize>, excess: &[AlignedLanes], found: &[AlignedLanes]) {
         let to = self.numbers.block_mut(self.steps);

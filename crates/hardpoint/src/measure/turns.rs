@@ -1,4 +1,4 @@
-//! Angles whose whole turns only the path tells.
+//! Angles whose whole turns only the path indicates.
 
 use crate::constraint::MarkerPair;
 use crate::design::{BodyFixed, DesignMap, Geometry};

@@ -224,7 +224,7 @@ pub(super) struct TravellingWheel<T> {
 }
 
 impl<T: Real> TravellingWheel<T> {
-    /// The value of a measure that goes by this driver.
+    /// The value of a measure that depends on this driver.
     pub fn measure(&self, what: WheelMeasure, vehicle: &Vehicle) -> T {
         let wheel = &self.wheel;
         // W_z', C and C': the contact point wanders on the wheel, so C' is not the velocity of a point of the carrier.
@@ -245,7 +245,7 @@ impl<T: Real> TravellingWheel<T> {
             WheelMeasure::BumpCamber => camber(wheel.spin_axis).d / rise,
             WheelMeasure::BumpRecession => -wheel.centre.x.d / rise,
             WheelMeasure::BumpScrub => side * path.y / rise,
-            // The line from C square to its path (C_y', C_z') meets y = 0 at C_y C_y' / C_z' above C; geometric with v in place of C'.
+            // The line from C perpendicular to its path (C_y', C_z') meets y = 0 at C_y C_y' / C_z' above C; geometric with v in place of C'.
             WheelMeasure::RollCentreHeight => c.y * path.y / path.z,
             WheelMeasure::RollCentreHeightGeometric => c.y * v.y / v.z,
             // v + w x (P - C) = 0 in y and z at P_x = C_x:  v_y - w_x (P_z - C_z) = 0,  v_z + w_x (P_y - C_y) = 0
@@ -349,11 +349,11 @@ fn support<T: Real>(what: WheelMeasure, vehicle: &Vehicle) -> T {
 }
 
 /// Global y of an axle's roll centre, and its height above the ground midway: where the lines meet that pass in front view
-/// through the contact points, square to their paths.
+/// through the contact points, perpendicular to their paths.
 pub(super) fn axle_roll_centre<T: Real>(wheels: [TravellingWheel<T>; 2]) -> (T, T) {
     let [(p, a), (q, b)] = wheels.map(|side| {
         let contact = side.wheel.contact();
-        // Square to the path (C_y', C_z'): (-C_z', C_y')
+        // Perpendicular to the path (C_y', C_z'): (-C_z', C_y')
         let along = [-contact.z.d, contact.y.d];
         ([contact.y.v, contact.z.v], along)
     });

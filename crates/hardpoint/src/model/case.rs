@@ -7,7 +7,7 @@ use super::{CaseId, Change, DriverId, Formula, LimitTarget, Model, Target};
 /// A motion of the mechanism under laws and at times of its own: a car in bump with the rack held, or steered at one ride height.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Per driver, the law that it follows in this case; where there is none, that of the driver itself.
     pub laws: Vec<Option<Law>>,
@@ -30,17 +30,17 @@ pub enum LoadMode {
     Static,
 }
 
-/// A case of two drivers, each of which stands wherever the other does: toe over wheel travel and steer. All other drivers are held as
+/// A case of two drivers, each of which is wherever the other does: toe over wheel travel and steer. All other drivers are held as
 /// drawn.
 ///
 /// It is no motion but positions, and none of the [motions](Model::motions) of the mechanism.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The two drivers.
     pub drivers: [DriverId; 2],
-    /// Where each of them stands, m or rad, increasing; counted as its laws are.
+    /// Where each of them is, m or rad, increasing; counted as its laws are.
     pub values: [Vec<f64>; 2],
 }
 
@@ -84,7 +84,7 @@ impl Model {
         model
     }
 
-    /// Where a driver stands as drawn, m or rad: zero, or the whole value of what it prescribes where its laws count from zero.
+    /// Where a driver is in the design configuration, m or rad: zero, or the whole value of what it prescribes where its laws count from zero.
     pub fn as_drawn(&self, driver: DriverId) -> f64 {
         self.drivers[driver.0].law.as_drawn().map_or(0.0, |(_, value)| value)
     }

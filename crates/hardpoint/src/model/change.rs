@@ -15,7 +15,7 @@ pub enum End {
 }
 
 impl End {
-    /// Whether marker 0 (i) or 1 (j) is meant.
+    /// True if marker 0 (i) or 1 (j) is meant.
     pub fn covers(self, end: usize) -> bool {
         match self {
             Self::I => end == 0,

@@ -6,11 +6,11 @@ use super::JointId;
 /// `sum of coefficient x coordinate = constant`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coupler {
-    /// Its name; that of the joint for a screw.
+    /// Name; that of the joint for a screw.
     pub name: String,
     /// What makes the relation; none where it is given by its coefficients.
     pub transmission: Option<Transmission>,
-    /// Its terms; no coefficient is zero. A change of the design leaves them alone.
+    /// Terms; no coefficient is zero. A change of the design leaves them alone.
     pub terms: Vec<CouplerTerm>,
     /// Value of the sum, in the unit of its terms. Where it is not zero, the mechanism is assembled to it.
     pub constant: f64,
@@ -34,9 +34,9 @@ pub enum Transmission {
     Gears {
         /// Teeth, or any two numbers in their ratio.
         teeth: [f64; 2],
-        /// Whether one of them is an internal gear, so that both turn the same way.
+        /// True if one of them is an internal gear, so that both turn the same way.
         internal: bool,
-        /// Whether they are bevel gears.
+        /// True if they are bevel gears.
         bevel: bool,
     },
     /// A rack, then its pinion: `displacement = radius x angle`.
@@ -48,7 +48,7 @@ pub enum Transmission {
     Belt {
         /// Radii of the pulleys, m.
         radii: [f64; 2],
-        /// Whether the belt crosses between them.
+        /// True if the belt crosses between them.
         crossed: bool,
     },
     /// A thread: `displacement = lead / 2 pi x angle`.

@@ -9,7 +9,7 @@ const MAX_STEPS: usize = 50;
 const CONVERGED: f64 = 1e-15;
 /// ... and the last step, where round-off keeps steps above that, may be this part: its square is round-off.
 const WANDERS: f64 = 1e-9;
-/// How many places between two points of the curve are tried for the start of the search.
+/// Number of places between two points of the curve are tried for the start of the search.
 const TRIED: usize = 8;
 
 /// Tangents that are compared between two points of the curve, whose splines bend between them once or twice at most; and of a long way.
@@ -129,7 +129,7 @@ impl Curve {
         std::array::from_fn(|k| [x[k], y[k]])
     }
 
-    /// Whether its end is its beginning.
+    /// True if its end is its beginning.
     pub fn is_closed(&self) -> bool {
         self.closed
     }

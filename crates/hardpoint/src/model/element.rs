@@ -8,7 +8,7 @@ use crate::space::Vec3;
 /// Something that has mass, or that pushes bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Element {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// What it is.
     pub kind: ElementKind,
@@ -27,11 +27,11 @@ pub struct NumberId(pub usize);
 pub struct ElementNumber {
     /// The element's name.
     pub owner: String,
-    /// Its key in model files.
+    /// Key in model files.
     pub key: &'static str,
-    /// Its value in the nominal design, SI.
+    /// Value in the nominal design, SI.
     pub value: f64,
-    /// How many of the text's units make one SI unit of it.
+    /// Number of the text's units make one SI unit of it.
     pub(crate) per_unit: f64,
 }
 
@@ -41,7 +41,7 @@ pub enum Axes {
     /// The global ones.
     #[default]
     Global,
-    /// Those of its body, which are the global ones as drawn and turn with it.
+    /// Those of its body, which are the global ones in the design configuration and turn with it.
     Body,
     /// Those of its joint's marker.
     Joint,
@@ -51,7 +51,7 @@ impl Axes {
     /// As model files write them, and what they are.
     pub const WORDS: &[(&str, &str)] = &[
         ("global", "The global axes."),
-        ("body", "The global axes as drawn, turning with the body."),
+        ("body", "The global axes in the design configuration, turning with the body."),
         ("joint", "Those of the joint on that body: z along its axis."),
     ];
 
@@ -121,11 +121,11 @@ macro_rules! elements {
         $declare! {
         /// A rigid mass: a point mass, unless its inertia is given.
         Rigid "rigid" masses {
-            /// Its centre: a point of the body that it belongs to.
+            /// Centre: a point of the body that it belongs to.
             centre: PointRef => PointId,
-            /// Its mass.
+            /// Mass.
             mass: NumberDraft => Mass,
-            /// Moment of inertia about its centre, or about the point `about`: about the global x axis as drawn.
+            /// Moment of inertia about its centre, or about the point `about`: about the global x axis in the design configuration.
             ixx: Option<NumberDraft> => Option<Inertia>,
             /// The same about y.
             iyy: Option<NumberDraft> => Option<Inertia>,
@@ -147,35 +147,35 @@ macro_rules! elements {
             from: PointRef => PointId,
             /// To this one, of the same body.
             to: PointRef => PointId,
-            /// Its outer diameter.
+            /// Outer diameter.
             diameter: NumberDraft => Length,
             /// The diameter of its bore. Default: it is solid.
             bore: Option<NumberDraft> => Option<Length>,
-            /// Its density, kg/m^3; steel has 7850.
+            /// Density, kg/m^3; steel has 7850.
             density: NumberDraft => Density,
         }
 
-        /// A block, its edges along the global axes as drawn.
+        /// A block, its edges along the global axes in the design configuration.
         Block "block" masses {
-            /// Its centre: a point of the body that it belongs to.
+            /// Centre: a point of the body that it belongs to.
             centre: PointRef => PointId,
-            /// Its edge along x.
+            /// Edge along x.
             x: NumberDraft => Length,
-            /// Its edge along y.
+            /// Edge along y.
             y: NumberDraft => Length,
-            /// Its edge along z.
+            /// Edge along z.
             z: NumberDraft => Length,
-            /// Its density, kg/m^3; steel has 7850.
+            /// Density, kg/m^3; steel has 7850.
             density: NumberDraft => Density,
         }
 
-        /// A body of even density with the shape of a closed mesh. It stays as drawn: changes of the design do not bend it.
+        /// A body of even density with the shape of a closed mesh. Its shape is constant: changes of the design do not bend it.
         Mesh "mesh" masses {
             /// The body that it belongs to.
             body: String => BodyId,
-            /// Its surface. Default: the `mesh` of its body.
+            /// Surface. Default: the `mesh` of its body.
             mesh: Solid => Solid,
-            /// Its density, kg/m^3; steel has 7850.
+            /// Density, kg/m^3; steel has 7850.
             density: NumberDraft => Density,
         }
 
@@ -185,11 +185,11 @@ macro_rules! elements {
             from: PointRef => PointId,
             /// The other one.
             to: PointRef => PointId,
-            /// Its stiffness. May be left out where a table gives its force.
+            /// Stiffness. May be left out where a table gives its force.
             stiffness: Option<NumberDraft> => Option<Stiffness>,
             /// The further force per cube of its deflection: progressive, if it is above zero.
             cubic: Option<NumberDraft> => Option<CubicStiffness>,
-            /// Its force by a table: points `[way, force]` of how far it is shorter than its free length, and how hard it pushes there; or the
+            /// Force by a table: points `[way, force]` of how far it is shorter than its free length, and how hard it pushes there; or the
             /// name of a CSV file that holds them.
             compression: Option<Vec<[f64; 2]>> => Option<SpringTable>,
             /// The same of how far it is longer, and how hard it pulls.
@@ -199,9 +199,9 @@ macro_rules! elements {
             /// The length that its deflection counts from, at which a spring without a table has no force. Default: that of the drawing, or
             /// what `preload` makes it.
             free_length: Option<NumberDraft> => Option<Length>,
-            /// The force with which it pulls its ends together as drawn; a spring that pushes them apart has one below zero.
+            /// The force with which it pulls its ends together in the design configuration; a spring that pushes them apart has one below zero.
             preload: Option<NumberDraft> => Option<Force>,
-            /// Its damping.
+            /// Damping.
             damping: Option<NumberDraft> => Option<Damping>,
         }
 
@@ -211,11 +211,11 @@ macro_rules! elements {
             joint: String => JointId,
             /// Which of its coordinates; may be left out where it has only one.
             coordinate: Option<String> => usize,
-            /// Its stiffness.
+            /// Stiffness.
             stiffness: NumberDraft => Stiffness,
             /// The coordinate at which it pushes nothing; it counts from the drawing. Default: 0.
             free: Option<NumberDraft> => Option<Length>,
-            /// Its damping.
+            /// Damping.
             damping: Option<NumberDraft> => Option<Damping>,
         }
 
@@ -225,11 +225,11 @@ macro_rules! elements {
             joint: String => JointId,
             /// Which of its angles; may be left out where it has only one.
             coordinate: Option<String> => usize,
-            /// Its stiffness.
+            /// Stiffness.
             stiffness: NumberDraft => TorsionalStiffness,
             /// The angle at which it turns nothing; it counts from the drawing. Default: 0.
             free: Option<NumberDraft> => Option<Angle>,
-            /// Its damping, or a viscous friction of the joint.
+            /// Damping, or a viscous friction of the joint.
             damping: Option<NumberDraft> => Option<TorsionalDamping>,
         }
 
@@ -259,8 +259,8 @@ macro_rules! elements {
             /// The length of its guide, about the joint's place on its second body: then the moment across the axis presses its ends as
             /// well. Default: the force alone counts.
             length: Option<NumberDraft> => Option<Length>,
-            /// A direction across it in which nothing presses, as drawn: forces along it and moments about others do not count. Default, in a
-            /// planar model: square to the plane; else all count.
+            /// A direction across it in which nothing presses, in the design configuration: forces along it and moments about others do not count. Default, in a
+            /// planar model: perpendicular to the plane; else all count.
             normal: Option<Vec3> => Option<Vec3>,
             /// A further force against the motion in proportion to its speed.
             viscous: Option<NumberDraft> => Option<Damping>,
@@ -272,11 +272,11 @@ macro_rules! elements {
         PointForce "force" forces {
             /// The point.
             at: PointRef => PointId,
-            /// Its size; below zero it pushes the other way.
+            /// Size; below zero it pushes the other way.
             force: NumberDraft => Force,
             /// Where it pushes, of any length.
             along: Vec3 => Vec3,
-            /// Whether that direction turns with the body.
+            /// True if that direction turns with the body.
             axes: Option<Axes> => Option<Axes>,
             /// What it is multiplied by over time.
             law: Option<Law> => Option<Law>,
@@ -300,23 +300,23 @@ macro_rules! elements {
         BodyMoment "moment" forces {
             /// The body's name.
             body: String => BodyId,
-            /// Its size; below zero it turns the other way.
+            /// Size; below zero it turns the other way.
             moment: NumberDraft => Moment,
             /// About which direction, of any length.
             about: Vec3 => Vec3,
-            /// Whether that direction turns with the body.
+            /// True if that direction turns with the body.
             axes: Option<Axes> => Option<Axes>,
             /// What it is multiplied by over time.
             law: Option<Law> => Option<Law>,
         }
 
-        /// A bushing: springs and dampers between two bodies at a place, along the global axes as drawn, which turn with the first.
+        /// A bushing: springs and dampers between two bodies at a place, along the global axes in the design configuration, which turn with the first.
         Bushing "bushing" forces {
-            /// Its place on the first body.
+            /// Place on the first body.
             from: PointRef => PointId,
             /// The same place on the second one.
             to: PointRef => PointId,
-            /// Its stiffness along x.
+            /// Stiffness along x.
             x: NumberDraft => Stiffness,
             /// Along y.
             y: NumberDraft => Stiffness,
@@ -328,16 +328,16 @@ macro_rules! elements {
             about_y: Option<NumberDraft> => Option<TorsionalStiffness>,
             /// About z.
             about_z: Option<NumberDraft> => Option<TorsionalStiffness>,
-            /// Its damping, the same along all axes.
+            /// Damping, the same along all axes.
             damping: Option<NumberDraft> => Option<Damping>,
         }
 
         /// A joint that gives along its own axes, z along its axis. It changes neither motion nor forces: measures of `compliance` say what it
-        /// gives way to.
+        /// deflects to.
         ElasticJoint "elastic_joint" forces {
             /// The joint.
             joint: String => JointId,
-            /// Its stiffness along x. Default: it is rigid, and so for all that are left out.
+            /// Stiffness along x. Default: it is rigid, and so for all that are left out.
             x: Option<NumberDraft> => Option<Stiffness>,
             /// Along y.
             y: Option<NumberDraft> => Option<Stiffness>,
@@ -372,17 +372,17 @@ macro_rules! in_models {
 elements!(in_models);
 
 impl ElementKind {
-    /// Whether it has mass; all others are forces.
+    /// True if it has mass; all others are forces.
     pub fn has_mass(&self) -> bool {
         matches!(self, Self::Rigid { .. } | Self::Bar { .. } | Self::Block { .. } | Self::Mesh { .. })
     }
 
-    /// Whether it rubs: by a force that the reactions say, which it changes.
+    /// True if it has friction: by a force that the reactions say, which it changes.
     pub fn rubs(&self) -> bool {
         matches!(self, Self::Friction { .. } | Self::SlideFriction { .. })
     }
 
-    /// Whether its formulas are arithmetic on where bodies are, which can be recorded. A table is looked up: which of its pieces counts is
+    /// True if its formulas are arithmetic on where bodies are, which can be recorded. A table is looked up: which of its pieces counts is
     /// another one as the spring moves. The turn of a bushing is a series as long as it is small.
     pub fn is_arithmetic(&self) -> bool {
         match self {
@@ -394,7 +394,7 @@ impl ElementKind {
         }
     }
 
-    /// Its table, if it is a spring that has one: of tension over deflection.
+    /// Table, if it is a spring that has one: of tension over deflection.
     pub(crate) fn table(&self) -> Option<&SpringTable> {
         match self {
             Self::Spring { compression, extension, .. } => extension.as_ref().or(compression.as_ref()),
@@ -468,7 +468,7 @@ impl ElementKind {
 }
 
 impl ElementKind {
-    /// How hard it pushes as drawn, N, as far as it says: a given force, a preload.
+    /// How hard it pushes in the design configuration, N, as far as it says: a given force, a preload.
     pub(crate) fn push(&self, model: &Model) -> f64 {
         let of = |n: NumberId| model.numbers[n.0].value.abs();
         match self {
@@ -489,7 +489,7 @@ impl ElementKind {
 }
 
 impl Model {
-    /// Where forces act on points: of each spring, bushing and given force its points, of what a wheel stands on its centre.
+    /// Where forces act on points: of each spring, bushing and given force its points, of what a wheel is on its centre.
     pub fn pushed(&self) -> Vec<(ElementId, PointId)> {
         let points = |kind: &ElementKind| match kind {
             ElementKind::Spring { from, to, .. } | ElementKind::Bushing { from, to, .. } => vec![*from, *to],
@@ -504,12 +504,12 @@ impl Model {
         self.elements.iter().enumerate().flat_map(of).collect()
     }
 
-    /// The laws that forces go by, in the order of the elements that have one.
+    /// The laws that forces depend on, in the order of the elements that have one.
     pub(crate) fn laws_of_forces(&self) -> impl Iterator<Item = &Law> {
         self.elements.iter().filter_map(|e| e.kind.law())
     }
 
-    /// The mass of all bodies as drawn, kg.
+    /// The mass of all bodies in the design configuration, kg.
     pub fn mass(&self) -> f64 {
         let of = |n: NumberId| self.numbers[n.0].value;
         let mass = |kind: &ElementKind| match kind {
@@ -527,7 +527,7 @@ impl Model {
         self.elements.iter().map(|e| mass(&e.kind)).sum()
     }
 
-    /// Whether anything of it has mass, or pushes: without, there are no loads.
+    /// True if anything of it has mass, or pushes: without, there are no loads.
     pub fn has_loads(&self) -> bool {
         !self.elements.is_empty()
     }

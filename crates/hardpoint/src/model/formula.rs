@@ -9,9 +9,9 @@ use crate::space::Real;
 /// A parameter of the model: a number with a name, for formulas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedNumber {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its value in the nominal design, m, rad or a plain number.
+    /// Value in the nominal design, m, rad or a plain number.
     pub value: f64,
     /// What it measures.
     pub quantity: Quantity,
@@ -52,7 +52,7 @@ pub struct Formula {
     pub(crate) expression: Expression,
     /// What the expression's names mean, and how many of the text's units make one SI unit of it.
     pub(crate) inputs: Vec<(Source, f64)>,
-    /// How many of the text's units make one SI unit of the result.
+    /// Number of the text's units make one SI unit of the result.
     pub(crate) per_unit: f64,
 }
 
@@ -67,7 +67,7 @@ impl Formula {
         self.inputs.iter().map(|i| i.0)
     }
 
-    /// Its result in SI for these sources in SI, over any scalar.
+    /// Result in SI for these sources in SI, over any scalar.
     pub(crate) fn at<T: Real>(&self, source: impl Fn(Source) -> T) -> T {
         let number = |k: usize| {
             let (from, per_unit) = self.inputs[k];

@@ -11,7 +11,7 @@ use crate::space::{Angles, Real, Vec3};
 /// A number that follows from the motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// What is measured.
     pub kind: MeasureKind,
@@ -265,7 +265,7 @@ macro_rules! measures {
         at: Option<PointRef> => Option<PointId>,
         /// Or the wheel that the road pushes, at its contact point.
         wheel: Option<String> => Option<WheelId>,
-        /// Its direction, of any length.
+        /// Direction, of any length.
         along: Vec3 => Vec3,
         /// A driver that is released: it holds nothing, springs do. Default: all drivers hold.
         released: Option<String> => Option<DriverId>,
@@ -434,12 +434,12 @@ impl OnBodies for Combination {}
 /// All of an output that follows from positions is known.
 const POSITIONS: KnownOrders = KnownOrders { orders: 3, by_position: true };
 
-/// Of what moves, so many of value, rate and acceleration.
+/// Of what moves, that many of value, rate and acceleration.
 fn moving(orders: usize) -> KnownOrders {
     KnownOrders { orders, by_position: false }
 }
 
-/// What measures go by, in words.
+/// What measures depend on, in words.
 #[derive(Clone, Copy)]
 struct MeasureWords<'a> {
     model: &'a Model,
@@ -596,7 +596,7 @@ impl MeasureKind {
         }
     }
 
-    /// Whether it is a load: what drives the mechanism, or what its parts carry.
+    /// True if it is a load: what drives the mechanism, or what its parts carry.
     pub fn is_load(&self) -> bool {
         matches!(
             self,
@@ -663,7 +663,7 @@ impl ReactionPart {
         }
     }
 
-    /// Whether it is a moment, rather than a force.
+    /// True if it is a moment, rather than a force.
     pub fn is_moment(self) -> bool {
         matches!(self, Self::Moment | Self::MomentAbout(_) | Self::Torque | Self::Bending)
     }
@@ -717,7 +717,7 @@ impl OrientationAngle {
         Self::WORDS[3 * self.angles as usize + self.place].0
     }
 
-    /// Whether it is counted through whole turns; the middle one of three never makes one.
+    /// True if it is counted through whole turns; the middle one of three never makes one.
     pub(crate) fn is_counted(self) -> bool {
         self.place != 1
     }
@@ -743,7 +743,7 @@ pub struct Combination {
     pub(crate) expression: Expression,
     /// What its names mean, and how many of the text's units make one SI unit of each.
     pub(crate) inputs: Vec<(OutputSource, f64)>,
-    /// How many of the text's units make one SI unit of the result.
+    /// Number of the text's units make one SI unit of the result.
     pub(crate) per_unit: f64,
     pub(crate) dimension: Dimension,
 }
@@ -759,7 +759,7 @@ impl Combination {
         self.inputs.iter().map(|i| i.0)
     }
 
-    /// Its value in SI for these outputs in SI.
+    /// Value in SI for these outputs in SI.
     pub(crate) fn at<T: Real>(&self, output: impl Fn(OutputSource) -> T) -> T {
         let number = |k: usize| {
             let (from, per_unit) = self.inputs[k];
@@ -838,9 +838,9 @@ impl From<Quantity> for Dimension {
 /// How much can be known of an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KnownOrders {
-    /// How many of value, rate and acceleration.
+    /// Number of value, rate and acceleration.
     pub orders: usize,
-    /// Whether it follows from positions alone: then it has second design derivatives, and slopes.
+    /// True if it follows from positions alone: then it has second design derivatives, and slopes.
     pub by_position: bool,
 }
 
@@ -853,7 +853,7 @@ impl Model {
         }
     }
 
-    /// Whether a measure says what happens while one driver alone moves, rather than in the course of time.
+    /// True if a measure says what happens while one driver alone moves, rather than in the course of time.
     pub fn goes_by_driver(&self, measure: usize) -> bool {
         match self.measures[measure].kind {
             MeasureKind::Slope { .. } => true,
@@ -863,7 +863,7 @@ impl Model {
         }
     }
 
-    /// Whether a measure needs more of a step than where its bodies are: what happens while one driver alone moves, or loads.
+    /// True if a measure needs more of a step than where its bodies are: what happens while one driver alone moves, or loads.
     pub fn goes_by_step(&self, measure: usize) -> bool {
         let kind = &self.measures[measure].kind;
         self.goes_by_driver(measure) || kind.is_load() || matches!(kind, MeasureKind::Compliance { .. })
@@ -877,7 +877,7 @@ impl Model {
         }
     }
 
-    /// Whether an output has a number where nothing moves: what follows from positions alone, or from what happens while one driver alone
+    /// True if an output has a number where nothing moves: what follows from positions alone, or from what happens while one driver alone
     /// moves. Velocities, accelerations and what follows from them are those of a motion.
     pub fn is_known_at_rest(&self, output: OutputSource) -> bool {
         let by_driver = matches!(output, OutputSource::Measure(k) if self.goes_by_driver(k));
@@ -893,7 +893,7 @@ impl Model {
         if e.y < 0.0 { Side::Right } else { Side::Left }
     }
 
-    /// The directions fixed in bodies that a measure goes by.
+    /// The directions fixed in bodies that a measure depends on.
     pub(crate) fn directions(&self, measure: &Measure) -> [Option<(BodyId, Direction)>; 2] {
         let of_wheel = |wheel: WheelId| {
             let wheel = &self.wheels[wheel.0];

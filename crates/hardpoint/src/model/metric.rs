@@ -7,7 +7,7 @@ use super::{CaseId, Dimension, Model, OutputSource};
 /// One number that sums an output up over the motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Metric {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Of which output.
     pub of: OutputSource,

@@ -96,7 +96,7 @@ pub const GROUND: BodyId = BodyId(0);
 /// A checked mechanism: every reference is an id, every axis a direction, every name unique.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Named numbers for formulas, in the order of the file.
     pub parameters: Vec<NamedNumber>,
@@ -140,7 +140,7 @@ pub struct Model {
     pub times: Vec<f64>,
     /// Behaviour at change points.
     pub at_change_points: ChangePointPolicy,
-    /// Its motions, in the order of the file; where there are none, that of the drivers' own laws at `times` is the only one.
+    /// Motions, in the order of the file; where there are none, that of the drivers' own laws at `times` is the only one.
     pub cases: Vec<Case>,
     /// Cases that sweep two drivers over a grid, in the order of the file.
     pub grids: Vec<Grid>,
@@ -155,20 +155,20 @@ pub struct Model {
 /// A named point of the design configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hardpoint {
-    /// Its name, or that of the joint or point that gave its coordinates.
+    /// Name, or that of the joint or point that gave its coordinates.
     pub name: String,
     /// Global position in the design configuration, m.
     pub position: Vec3,
-    /// Whether coordinates were written where a hardpoint's name could stand.
+    /// True if coordinates were written where a hardpoint's name could stand.
     pub unnamed: bool,
 }
 
 /// A rigid body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its reference frame x'-y'-z' in the design configuration; a design change leaves it there.
+    /// Reference frame x'-y'-z' in the design configuration; a design change leaves it there.
     pub frame: Pose,
 }
 
@@ -184,9 +184,9 @@ pub enum Direction {
 /// A joint between two bodies.
 #[derive(Clone, Debug)]
 pub struct Joint {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its type.
+    /// Type.
     pub kind: &'static JointType,
     /// The bodies i and j; coordinates are those of j relative to i.
     pub bodies: [BodyId; 2],
@@ -203,16 +203,16 @@ pub struct Joint {
     pub length: Option<f64>,
     /// The curve that a point follows, in the frame of marker i.
     pub curve: Option<Curve>,
-    /// Whether the user asks for it to be cut.
+    /// True if the user asks for it to be cut.
     pub cut: bool,
-    /// Whether it only carries a driver on something that is no joint's coordinate; it has the driver's name.
+    /// True if it only carries a driver on something that is no joint's coordinate; it has the driver's name.
     pub unnamed: bool,
 }
 
 /// A prescribed motion of one joint coordinate, measured from the design configuration.
 #[derive(Clone, Debug)]
 pub struct Driver {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The joint that it drives.
     pub joint: JointId,
@@ -225,13 +225,13 @@ pub struct Driver {
 /// One scalar b (the paper's tau) that the design depends on; nominal value 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignVariable {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// What b measures: m, rad, or a plain number.
     pub quantity: Quantity,
     /// What changes with it.
     pub changes: Vec<Change>,
-    /// Whether rods keep their lengths while it moves their ends.
+    /// True if rods keep their lengths while it moves their ends.
     pub fixed_length: bool,
     /// Between which values b may lie, in the unit of b; 0 lies between them.
     pub bounds: Option<[f64; 2]>,
@@ -256,13 +256,13 @@ pub struct IdleRotation {
 /// A point fixed in a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyPoint {
-    /// Its name, or that of the driver, wheel or measure that it serves.
+    /// Name, or that of the driver, wheel or measure that it serves.
     pub name: String,
     /// The body that carries it.
     pub body: BodyId,
     /// Where it is in the design configuration; a named hardpoint takes it along when it moves.
     pub at: HardpointId,
-    /// Whether it was only written inside one of those.
+    /// True if it was only written inside one of those.
     pub unnamed: bool,
 }
 
@@ -445,13 +445,13 @@ impl Extent {
         self.high = Vec3::new(high.x.max(p.x), high.y.max(p.y), high.z.max(p.z));
     }
 
-    /// Its diagonal; 1 where that is no length to compare with.
+    /// Diagonal; 1 where that is no length to compare with.
     pub fn size(&self) -> f64 {
         let size = self.size_or_zero();
         if size > 0.0 { size } else { 1.0 }
     }
 
-    /// Its diagonal; 0 where there is no point, or none that is finite.
+    /// Diagonal; 0 where there is no point, or none that is finite.
     pub fn size_or_zero(&self) -> f64 {
         let size = (self.high - self.low).norm();
         if size.is_finite() && self.low.x <= self.high.x { size } else { 0.0 }

@@ -13,16 +13,16 @@ pub struct OptimizationSettings {
     pub limits: Vec<Limit>,
     /// No motion may come nearer to a singular position than this [`Margin`](crate::motion::Margin).
     pub margin: Option<f64>,
-    /// From how many designs the search starts: the one as drawn, and others spread within the bounds.
+    /// From how many designs the search starts: the one in the design configuration, and others spread within the bounds.
     pub starts: usize,
-    /// After so many iterations a search ends.
+    /// After that many iterations a search ends.
     pub iterations: usize,
 }
 
 /// A metric that is made small, or brought to a target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Goal {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The metric, by its place in [`Model::metrics`](super::Model::metrics). One that names no case counts in each of them.
     pub metric: usize,
@@ -36,7 +36,7 @@ pub struct Goal {
 /// Something that must stay between two values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// What.
     pub of: LimitTarget,

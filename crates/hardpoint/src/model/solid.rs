@@ -8,20 +8,20 @@ use crate::space::Vec3;
 /// What a body of even density comes to, per unit of density.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solid {
-    /// Its volume, m^3.
+    /// Volume, m^3.
     pub volume: f64,
-    /// Its centre, m.
+    /// Centre, m.
     pub centre: Vec3,
     /// The integrals of x x, y y, z z, x y, y z and z x about its centre, m^5.
     pub second: [f64; 6],
-    /// Whether centre and axes are those of the body's frame, rather than global in the design configuration.
+    /// True if centre and axes are those of the body's frame, rather than global in the design configuration.
     pub in_body: bool,
 }
 
 /// Why a surface bounds no solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OpenSurface {
-    /// So many edges have triangles on one side only, or such that go round the other way; and the ends of one of them.
+    /// Number of edges have triangles on one side only, or such that go round the other way; and the ends of one of them.
     Edges(usize, [Vec3; 2]),
     /// It encloses nothing.
     Flat,
@@ -89,7 +89,7 @@ impl Solid {
         }
     }
 
-    /// The same seen in a mirror square to this axis, 0 to 2.
+    /// The same seen in a mirror perpendicular to this axis, 0 to 2.
     #[must_use]
     pub fn mirrored(self, axis: usize) -> Self {
         let mut second = self.second;

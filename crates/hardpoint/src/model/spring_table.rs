@@ -4,7 +4,7 @@ use crate::linalg::{Segment, monotone};
 use crate::number::Real;
 
 /// A force over a deflection, as a curve through points: monotone where these are, with a continuous slope; beyond the last point
-/// on either side it goes on with the slope there.
+/// on either side it continues with the slope there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpringTable {
     /// Deflection, m, and force, N; both grow in tension.
@@ -36,7 +36,7 @@ impl SpringTable {
         points.iter().rev().map(|p| p.map(|x| 0.0 - x)).collect()
     }
 
-    /// Its points: deflection, m, and force, N, both in tension.
+    /// Points: deflection, m, and force, N, both in tension.
     pub fn points(&self) -> &[[f64; 2]] {
         &self.points
     }

@@ -7,11 +7,11 @@ use super::{Change, Model, VariableId};
 pub struct SweepSettings {
     /// How designs are chosen within the ranges.
     pub method: SweepMethod,
-    /// The variables that change, and how far. All others stay as drawn. Of a list, the variables that it has.
+    /// The variables that change, and how far. All others stay in the design configuration. Of a list, the variables that it has.
     pub ranges: Vec<SweepRange>,
     /// The designs of a list: per design, the values of the variables of `ranges`, as changes.
     pub listed: Vec<Vec<f64>>,
-    /// So many designs are chosen; for indices so many pairs of them. Grids and lists know their number.
+    /// Number of designs are chosen; for indices that many pairs of them. Grids and lists know their number.
     pub samples: usize,
     /// What they are drawn from: the same number gives the same designs.
     pub seed: u64,
@@ -46,7 +46,7 @@ pub struct SweepRange {
     pub low: f64,
     /// To this one.
     pub high: f64,
-    /// In a factorial, so many values, both ends among them.
+    /// In a factorial, that many values, both ends among them.
     pub levels: usize,
 }
 
@@ -64,11 +64,11 @@ impl SweepMethod {
 }
 
 impl SweepSettings {
-    /// So many designs are chosen where nothing else is said.
+    /// Number of designs are chosen where nothing else is said.
     pub const SAMPLES: usize = 1000;
     /// What they are drawn from where nothing else is said.
     pub const SEED: u64 = 1;
-    /// A factorial has so many values of a variable where nothing else is said.
+    /// A factorial has that many values of a variable where nothing else is said.
     pub const LEVELS: usize = 3;
     /// More designs than these are surely a slip.
     pub const MOST: usize = 1_000_000_000;
@@ -101,7 +101,7 @@ impl SweepSettings {
         variables.iter().enumerate().map(of).collect()
     }
 
-    /// How many designs that are; `None` where there are more than [`MOST`](Self::MOST).
+    /// Number of designs that are; `None` where there are more than [`MOST`](Self::MOST).
     pub fn count(&self) -> Option<usize> {
         let count = match self.method {
             SweepMethod::Factorial => self.ranges.iter().try_fold(1_usize, |n, r| n.checked_mul(r.levels)),
@@ -114,7 +114,7 @@ impl SweepSettings {
 }
 
 impl Model {
-    /// What the value of a variable is called as drawn, in its unit: a parameter's own value, and 0 for all that is only told by how much it
+    /// What the value of a variable is called in the design configuration, in its unit: a parameter's own value, and 0 for all that is only reported by how much it
     /// changes. Its bounds and ranges are written so.
     pub fn drawn_value(&self, variable: VariableId) -> f64 {
         let variable = &self.variables[variable.0];

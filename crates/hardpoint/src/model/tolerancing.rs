@@ -15,7 +15,7 @@ pub struct ToleranceSettings {
     pub curves: Vec<usize>,
     /// What must hold of metrics.
     pub limits: Vec<Limit>,
-    /// So many designs are drawn and solved exactly; none where it is 0.
+    /// Number of designs are drawn and solved exactly; none where it is 0.
     pub samples: usize,
     /// What they are drawn from: the same number gives the same designs.
     pub seed: u64,
@@ -26,7 +26,7 @@ pub struct ToleranceSettings {
 /// By how much some design variables may be off together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Its name: that of the variable, or of the design entry whose coordinates they are.
+    /// Name: that of the variable, or of the design entry whose coordinates they are.
     pub name: String,
     /// One variable, or the coordinates of one point, whose deviation as a whole stays within the reach: in a disc or a sphere.
     pub variables: Vec<VariableId>,
@@ -43,14 +43,14 @@ pub struct Tolerance {
 pub enum Scatter {
     /// Evenly within the reach, and never beyond: all that is known of a part that passed its inspection.
     Uniform,
-    /// By a normal distribution whose reach is so many standard deviations (of each coordinate); some go beyond it.
+    /// By a normal distribution whose reach is that many standard deviations (of each coordinate); some go beyond it.
     Normal {
         /// How many.
         sigmas: f64,
     },
     /// By the same, without what goes beyond: an inspected process.
     Truncated {
-        /// How many standard deviations of the distribution before it was cut off.
+        /// Number of standard deviations of the distribution before it was cut off.
         sigmas: f64,
     },
 }
@@ -72,7 +72,7 @@ impl Scatter {
 /// How two normally scattered variables go together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Correlation {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The two.
     pub between: [VariableId; 2],
@@ -90,7 +90,7 @@ pub struct AllocationSettings {
 /// What of the deviations has to stay within the limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AllocationRule {
-    /// So many standard deviations, added by their squares.
+    /// That many standard deviations, added by their squares.
     Rss {
         /// How many.
         sigmas: f64,
@@ -105,11 +105,11 @@ impl AllocationRule {
 }
 
 impl ToleranceSettings {
-    /// So many designs are drawn where nothing else is said: the standard deviation is then known to 1 %.
+    /// Number of designs are drawn where nothing else is said: the standard deviation is then known to 1 %.
     pub const SAMPLES: usize = 10_000;
     /// What they are drawn from where nothing else is said.
     pub const SEED: u64 = 1;
-    /// A tolerance is so many standard deviations where nothing else is said: 0.27 % of the parts are beyond it.
+    /// A tolerance is that many standard deviations where nothing else is said: 0.27 % of the parts are beyond it.
     pub const SIGMAS: f64 = 3.0;
 
     /// What is asked where only the variables say something: normal scatter of all that have a tolerance, every metric, every measure.

@@ -5,13 +5,13 @@ use super::{BodyId, Dimension, Direction, DriverId, PointId, WheelId};
 /// A road wheel. Vehicle axes are those of ISO 8855: x forward, y left, z up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wheel {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The body that it turns on: the knuckle.
     pub body: BodyId,
-    /// Its centre, a point of that body.
+    /// Centre, a point of that body.
     pub centre: PointId,
-    /// Its spin axis in the design configuration, pointing outboard.
+    /// Spin axis in the design configuration, pointing outboard.
     pub spin_axis: Direction,
     /// From the centre to the ground in the wheel's plane, m.
     pub radius: f64,
@@ -61,12 +61,12 @@ impl Wheel {
 pub enum ArmPlane {
     /// Of an arm: through its two pivots and its ball joint.
     Through([PointId; 3]),
-    /// Of a strut: through its top mount, the first point, square to the way to the second one.
+    /// Of a strut: through its top mount, the first point, perpendicular to the way to the second one.
     Square([PointId; 2]),
 }
 
 impl ArmPlane {
-    /// The points that it goes by.
+    /// The points that it depends on.
     pub fn points(&self) -> &[PointId] {
         match self {
             Self::Through(points) => points,
@@ -78,7 +78,7 @@ impl ArmPlane {
 /// Two wheels side by side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axle {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The left wheel and the right one.
     pub wheels: [WheelId; 2],
@@ -169,7 +169,7 @@ impl WheelRequirement {
         }
     }
 
-    /// Whether the measure says what happens while one driver alone moves.
+    /// True if the measure says what happens while one driver alone moves.
     pub fn goes_by_driver(self) -> bool {
         !matches!(self, Self::Nothing | Self::Kingpin | Self::Planes)
     }
@@ -268,7 +268,7 @@ wheel_measures! {
     SpindleOffset "spindle_offset" LENGTH WheelRequirement::Kingpin;
     /// How far behind the kingpin the contact point is, on the ground.
     CasterTrail "caster_trail" LENGTH WheelRequirement::Kingpin;
-    /// The same square to the kingpin, in the wheel's side view.
+    /// The same perpendicular to the kingpin, in the wheel's side view.
     MechanicalTrail "mechanical_trail" LENGTH WheelRequirement::Kingpin;
     /// How far in front of the kingpin the wheel centre is, at its height.
     HubTrail "hub_trail" LENGTH WheelRequirement::Kingpin;
@@ -338,7 +338,7 @@ wheel_measures! {
     VirtualSpindleOffset "virtual_spindle_offset" LENGTH WheelRequirement::Steer;
     /// How far behind the virtual steering axis the contact point is, on the ground.
     VirtualCasterTrail "virtual_caster_trail" LENGTH WheelRequirement::Steer;
-    /// The same square to the virtual steering axis, in the wheel's side view.
+    /// The same perpendicular to the virtual steering axis, in the wheel's side view.
     VirtualMechanicalTrail "virtual_mechanical_trail" LENGTH WheelRequirement::Steer;
     /// How far in front of the virtual steering axis the wheel centre is, at its height.
     VirtualHubTrail "virtual_hub_trail" LENGTH WheelRequirement::Steer;
@@ -372,7 +372,7 @@ wheel_measures! {
 }
 
 impl WheelMeasure {
-    /// Whether it needs the wheel's kingpin.
+    /// True if it needs the wheel's kingpin.
     pub fn needs_kingpin(self) -> bool {
         self.needs() == WheelRequirement::Kingpin
     }
@@ -393,7 +393,7 @@ impl WheelMeasure {
 }
 
 impl AxleMeasure {
-    /// Whether it needs the wheelbase of the vehicle.
+    /// True if it needs the wheelbase of the vehicle.
     pub fn needs_wheelbase(self) -> bool {
         matches!(self, Self::AckermannError | Self::Ackermann | Self::TurningRadius)
     }

@@ -1,6 +1,6 @@
 //! Eight output times at once: a single design's steps side by side, by a straight-line program.
 //!
-//! Where the motion is smooth, the positions of the next eight output times are foreseen so well that they can be corrected
+//! Where the motion is smooth, the positions of the next eight output times are predicted so well that they can be corrected
 //! together. Every check of a single step is made at each of them, and more strictly; where one fails, nothing has happened,
 //! and the steps are walked one by one.
 
@@ -24,14 +24,14 @@ use super::walk::PART_OF_WAY;
 
 /// The first correction (rad, or sizes) must be within this: a forecast by all positions that fails by more is none.
 const FORESEEN: f64 = 1e-3;
-/// After a failure so many steps are walked one by one, at the least and at the most.
+/// After a failure that many steps are walked one by one, at the least and at the most.
 const PAUSE: [usize; 2] = [LANES, 64];
-/// Laws are looked at over so many times the way of all lanes at once.
+/// Laws are looked at over that many times the way of all lanes at once.
 const CELL: f64 = 8.0;
 /// Fewer steps than this are not worth it.
 const FEWEST: usize = 3;
 
-/// Gives the program with so many corrections, if there is one.
+/// Gives the program with that many corrections, if there is one.
 pub(crate) type ProgramOf<'p> = Box<dyn Fn(usize) -> Option<Arc<StepProgram>> + 'p>;
 
 /// Takes up to eight steps of a stepper at once.
@@ -84,13 +84,13 @@ impl<'p> TimeBatch<'p> {
         self.tape.as_ref().expect("a tape has solved the steps")
     }
 
-    /// Its results, where there was no room for them elsewhere.
+    /// Results, where there was no room for them elsewhere.
     pub fn own_results(&self) -> Option<ResultBlock<'_>> {
         let [states, derivatives] = self.own.each_ref().map(|own| bytemuck::cast_slice(own));
         self.is_own.then_some(ResultBlock { states, derivatives })
     }
 
-    /// Output time k comes next: moves on from where the stepper stands to as many of the next output times as can be solved at once;
+    /// Output time k comes next: moves on from where the stepper is to as many of the next output times as can be solved at once;
     /// returns how many, 0 where they are to be walked. Output times 8n to 8n + 7 lie side by side, so that these end with such a
     /// group; those of it that are before k are solved once more, for nothing. Results go to the room that there is, or are kept here.
     #[inline]
@@ -230,7 +230,7 @@ impl Laws {
 
 /// By how much a forecast will miss eight steps beyond three positions that are four steps apart, rad or sizes: the remainder of
 /// Hermite's interpolation, `x^9 / 9!` times the ninth derivative, of a motion that goes like a sine. It goes as often as the fastest
-/// driver turns, or as that comes and goes by its law. Up to `last` there are `count` steps.
+/// driver turns, or as that comes and depends on its law. Up to `last` there are `count` steps.
 fn missed(one: &Stepper<'_>, last: f64, count: f64) -> f64 {
     let frequency = |d: usize| {
         let speed = one.parts.fastest(d, one.time, last);
@@ -256,7 +256,7 @@ fn fastest_driver(tape: &Tape, one: &Stepper<'_>) -> f64 {
     fastest
 }
 
-/// Whether no law does anything between the output times that these would not show; and, where no step tells yet, no singular
+/// True if no law does anything between the output times that these would not show; and, where no step indicates yet, no singular
 /// position is known to be near. Notes how far the drivers go from one output time to the next.
 #[inline(always)]
 fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, [first, last]: [usize; 2]) -> bool {
@@ -287,7 +287,7 @@ fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, [first, last
     one.ahead == Lookahead::Even || one.around.part_of_way(&one.travel) <= PART_OF_WAY
 }
 
-/// Whether every determinant changes by little from one output time to the next, and about as much as over the step before. Notes
+/// True if every determinant changes by little from one output time to the next, and about as much as over the step before. Notes
 /// the last of these changes, and gives the length of its step.
 #[inline(always)]
 fn determinants_are_even(
@@ -326,7 +326,7 @@ fn determinants_are_even(
 }
 
 impl Stepper<'_> {
-    /// Stands where a tape has come to in lane `last`, having passed all before it from lane `first` on.
+    /// Is where a tape has come to in lane `last`, having passed all before it from lane `first` on.
     #[inline(always)]
     fn continue_from(
         &mut self,
@@ -336,7 +336,7 @@ impl Stepper<'_> {
         SolveQuality { residuals, pivot_ratio }: SolveQuality,
         change_step: f64,
     ) {
-        // The forecast goes by the middle and the end of the way.
+        // The forecast depends on the middle and the end of the way.
         for lane in [usize::midpoint(first, last), last] {
             let channels = 0..tape.channels().len();
             self.forecast.learn_values(times[lane], channels.map(|c| tape.channel(c, lane)));

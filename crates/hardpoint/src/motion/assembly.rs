@@ -1,6 +1,6 @@
 //! Closing a mechanism whose joints are open in the drawing.
 //!
-//! Lengths and places that don't fit leave gaps in the configuration as drawn. The gaps are closed along a path: the part
+//! Lengths and places that don't fit leave gaps in the configuration in the design configuration. The gaps are closed along a path: the part
 //! of them that is still open runs from 1 to 0 while every driver stays at zero, in steps that watch for limits and
 //! branches like those of any motion. So the mechanism closes on the branch that was drawn, and an assembled one stays as
 //! it is. Where the path ends before the gaps are closed, as it does from a drawing in a singular position (bars in line), the nominal
@@ -25,7 +25,7 @@ const CLOSED: f64 = 1e-12;
 const WORTH_TELLING: f64 = 1e-7;
 /// The least-squares search ends when a step improves its sum of squares by less than this part.
 const NO_BETTER: f64 = 1e-12;
-/// ... or after so many steps.
+/// ... or after that many steps.
 const MAX_SEARCH: usize = 200;
 /// A drawing counts as singular if its path ends before this part of the gaps is closed. A path that ends later ends at a limit of the
 /// mechanism, beyond which positions around the drawing are no better.
@@ -40,7 +40,7 @@ const DIRECTIONS: usize = 3;
 /// A search solves dense systems: larger ones are not tried, so that a failure is reported within seconds.
 const LARGEST_SEARCH: usize = 150;
 
-/// How a mechanism that did not close as drawn was closed.
+/// How a mechanism that did not close in the design configuration was closed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Assembly {
     /// What was open in the drawing, largest gaps first.
@@ -114,7 +114,7 @@ impl State<f64> {
 }
 
 impl Stepper<'_> {
-    /// Closes the mechanism as drawn, all drivers at zero, and stands on its branch.
+    /// Closes the mechanism in the design configuration, all drivers at zero, and is on its branch.
     pub(super) fn assemble(&mut self) -> Result<(), Box<Stop>> {
         // phi_0 at q = 0; what is round-off of the drawing counts as closed.
         self.measure_gaps();
@@ -187,7 +187,7 @@ impl Stepper<'_> {
         nominal.state.gap == self.state.gap || nominal.assemble_along_path().is_err()
     }
 
-    /// Assembles the mechanism from positions around the drawing, and stands where the bodies are nearest to it. Returns the number of
+    /// Assembles the mechanism from positions around the drawing, and is where the bodies are nearest to it. Returns the number of
     /// assemblies found; 0 where there is none.
     fn assemble_nearby(&mut self, drawn: &(AcceptedPosition, Topology)) -> usize {
         let unknowns: Vec<CoordinateId> = self.topology.unknown_coordinates().collect();
@@ -247,7 +247,7 @@ impl Stepper<'_> {
         self.state.turn_balls(&self.topology, self.topology.link_ids());
     }
 
-    /// Stands where a search ended, closed, with rows that are independent there; returns whether that is a regular position.
+    /// Is where a search ended, closed, with rows that are independent there; returns whether that is a regular position.
     fn stand_assembled(&mut self) -> bool {
         self.time = 1.0;
         if self.drive(Path::Assembly, 1.0).is_err() {
@@ -275,7 +275,7 @@ impl Stepper<'_> {
         true
     }
 
-    /// The assembly where it stands, and how far that is from the drawing.
+    /// The assembly where it is, and how far that is from the drawing.
     fn found_assembly(&self) -> FoundAssembly {
         let size = self.model.size();
         let (mut distance, mut side) = (0.0, 0.0);
@@ -296,7 +296,7 @@ impl Stepper<'_> {
         }
     }
 
-    /// By how much every row fails where the tree's joints are closed as drawn.
+    /// By how much every row fails where the tree's joints are closed in the design configuration.
     fn measure_gaps(&mut self) {
         let zero = 0.0;
         self.drivers.fill([zero; 3]);

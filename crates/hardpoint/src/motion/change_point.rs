@@ -45,7 +45,7 @@ pub(super) struct Crossing {
 }
 
 impl Stepper<'_> {
-    /// Crosses the change point that stopped the walk, where the model asks for it and the motion goes on smoothly; the stepper stands
+    /// Crosses the change point that stopped the walk, where the model asks for it and the motion goes on smoothly; the stepper is
     /// behind it then. Returns the stop where it does not.
     pub(super) fn cross(&mut self, path: Path, stop: Box<Stop>) -> Result<(), Box<Stop>> {
         let asked = self.model.at_change_points == ChangePointPolicy::Continue && path != Path::Assembly;
@@ -53,7 +53,7 @@ impl Stepper<'_> {
             return Err(stop);
         };
         let here = (self.saved.clone(), self.time, self.branch.clone());
-        // On a straight path the stop tells the time of all of it; the parameter is that of the position where it ended.
+        // On a straight path the stop indicates the time of all of it; the parameter is that of the position where it ended.
         let at =
             if path == Path::Laws { stop.failed_time } else { self.nearest_ahead(path).unwrap_or(self.time) };
         match self.cross_at(path, at, block) {
@@ -140,7 +140,7 @@ impl Stepper<'_> {
         Some(Crossing { times: [from, to], at, path, blocks, ends, values })
     }
 
-    /// Solves where it stands once more: near a singular position what Newton leaves, a square, is magnified.
+    /// Solves where it is once more: near a singular position what Newton leaves, a square, is magnified.
     fn polish(&mut self) -> Result<(), Refusal> {
         self.solve_within(f64::INFINITY)
     }
@@ -150,7 +150,7 @@ impl Stepper<'_> {
         (self.saved.clone(), channels.iter().map(|c| c.of(&self.state)).collect())
     }
 
-    /// Stands at an output time within the stretch that was crossed last, if it is there.
+    /// Is at an output time within the stretch that was crossed last, if it is there.
     pub(super) fn stand_within_crossing(&mut self, t: f64) -> Option<Result<(), Box<Stop>>> {
         let crossing = self.crossing.take()?;
         if !(t < crossing.times[1]) {

@@ -72,8 +72,8 @@ pub(crate) struct BatchResults<'f> {
 }
 
 impl<'m> DesignBatch<'m> {
-    /// By these programs. None where there is none, and where the nominal design is not as drawn at its first output time, where
-    /// `nominal` stands: designs could have gone other ways till there. `keeps` says whether the results of all output times are kept.
+    /// By these programs. None where there is none, and where the nominal design is not in the design configuration at its first output time, where
+    /// `nominal` is: designs could have gone other ways till there. `keeps` says whether the results of all output times are kept.
     pub fn new(mut nominal: Stepper<'m>, programs: ProgramOf<'m>, keeps: bool) -> Option<Self> {
         if nominal.saved.drivers.iter().any(|f| f[0] != 0.0) {
             return None;
@@ -187,7 +187,7 @@ impl<'m> DesignBatch<'m> {
         for n in 0..self.known.len() {
             let x = self.tape().channels()[n].saved(&saved.q, &saved.balls);
             self.known[n] = [[0.0; LANES]; NODES * ORDERS];
-            // q of the nominal design, in every lane; what is foreseen 0 beyond it is q itself
+            // q of the nominal design, in every lane; what is predicted 0 beyond it is q itself
             self.known[n][0] = [x; LANES];
         }
         (self.times, self.count) = ([t; NODES], 1);
@@ -219,7 +219,7 @@ impl<'m> DesignBatch<'m> {
         Some(solved)
     }
 
-    /// Tries the tape with so many corrections at output time k, so long beyond the newest position.
+    /// Tries the tape with that many corrections at output time k, so long beyond the newest position.
     fn solve(&mut self, corrections: usize, k: usize, ahead: &Lanes) -> Option<SolveQuality> {
         self.weights.set((self.times.map(|t| t - self.times[0]), self.count), ahead);
         let states_at = self.states_at(k);
@@ -247,7 +247,7 @@ impl<'m> DesignBatch<'m> {
         Some(solved)
     }
 
-    /// Whether every determinant has changed by little up to output time k, and about as much as over the step before.
+    /// True if every determinant has changed by little up to output time k, and about as much as over the step before.
     fn determinants_are_even(&mut self, k: usize) -> bool {
         let beside = self.course[k].h / self.course[k - 1].h;
         let mut even = true;

@@ -9,7 +9,7 @@ use hardpoint_tape::{Interpreter, LANES, Lanes, Operand, Pieces, PiecesRoom, Pro
 
 use crate::blocks::{AlignedLanes, lanes_of};
 
-/// A program of so many instructions does not stay in the fast memory of a core: where its pieces are alike, they share their code ...
+/// A program of that many instructions does not stay in the fast memory of a core: where its pieces are alike, they share their code ...
 const LONG: usize = 10_000;
 /// ... if that makes it shorter by this factor.
 const SHORTER: usize = 2;
@@ -61,7 +61,7 @@ impl fmt::Display for StepMethod {
     }
 }
 
-/// Programs, each recorded when it is first asked for; none where it cannot be.
+/// Programs, each recorded when it is first requested; none where it cannot be.
 #[derive(Debug)]
 pub(crate) struct Cache<K, P>(Mutex<BTreeMap<K, Option<Arc<P>>>>);
 
@@ -72,7 +72,7 @@ impl<K, P> Default for Cache<K, P> {
 }
 
 impl<K: Ord, P> Cache<K, P> {
-    /// The program for this, which `record` makes if it was not asked for before.
+    /// The program for this, which `record` makes if it was not requested before.
     pub fn get(&self, key: K, record: impl FnOnce(&K) -> Option<P>) -> Option<Arc<P>> {
         let mut programs = self.0.lock().expect("no one panics while recording");
         programs.entry(key).or_insert_with_key(|key| record(key).map(Arc::new)).clone()
@@ -134,7 +134,7 @@ impl Executable {
 }
 
 impl Runnable {
-    /// Its outputs in parts that end there.
+    /// Outputs in parts that end there.
     pub fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
         Self::in_pieces(program, ends, execution, |_| 0)
     }
@@ -161,12 +161,12 @@ impl Runnable {
         Self { inputs, sizes, form }
     }
 
-    /// How many numbers it is given.
+    /// Number of numbers it is given.
     pub fn inputs(&self) -> usize {
         self.inputs
     }
 
-    /// How many numbers it gives, in every part.
+    /// Number of numbers it gives, in every part.
     pub fn sizes(&self) -> [usize; PARTS] {
         self.sizes
     }
@@ -180,7 +180,7 @@ pub(crate) struct Staged {
 }
 
 impl Staged {
-    /// Its inputs from `design_at` on are those of the design; `runnable` makes the second part of it one that is run.
+    /// Inputs from `design_at` on are those of the design; `runnable` makes the second part of it one that is run.
     pub fn new(
         program: Program,
         design_at: usize,

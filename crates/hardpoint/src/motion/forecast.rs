@@ -29,7 +29,7 @@ const FARTHEST: f64 = 8.5;
 /// Polynomials through the last accepted positions.
 #[derive(Clone)]
 pub(super) struct Predictor {
-    /// What is foreseen: unknown coordinates, and quaternions of unknown balls.
+    /// What is predicted: unknown coordinates, and quaternions of unknown balls.
     channels: Vec<Channel>,
     /// Times of the positions, the newest first; how many there are.
     times: [f64; NODES],
@@ -41,7 +41,7 @@ pub(super) struct Predictor {
     differences: Vec<[f64; NODES * ORDERS]>,
 }
 
-/// What is foreseen.
+/// What is predicted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Channel {
     Coordinate(CoordinateId),
@@ -65,7 +65,7 @@ impl Channel {
         channels
     }
 
-    /// Where a state stands: value, first and second derivative.
+    /// Where a state is: value, first and second derivative.
     #[inline(always)]
     pub fn of<T: Real>(self, state: &State<T>) -> [T; ORDERS] {
         let [speeds, accelerations, _] = &state.motion.speeds;
@@ -82,7 +82,7 @@ impl Channel {
         }
     }
 
-    /// Puts what is foreseen into a state; balls with their last component.
+    /// Puts what is predicted into a state; balls with their last component.
     #[inline(always)]
     pub fn put<T: Real>(self, x: T, state: &mut State<T>) {
         self.save(x, &mut state.q, &mut state.balls);
@@ -92,7 +92,7 @@ impl Channel {
         }
     }
 
-    /// What stands in a saved position.
+    /// What is in a saved position.
     pub fn saved(self, q: &[f64], balls: &[Quat<f64>]) -> f64 {
         match self {
             Self::Coordinate(c) => q[c.0],
@@ -131,12 +131,12 @@ impl Predictor {
         self.count = 0;
     }
 
-    /// How many positions it goes by.
+    /// Number of positions it depends on.
     pub fn known(&self) -> usize {
         self.count
     }
 
-    /// Learns where the mechanism stands at time t.
+    /// Learns where the mechanism is at time t.
     #[inline(always)]
     pub fn learn(&mut self, t: f64, state: &State<f64>) {
         self.remember(t);
@@ -220,7 +220,7 @@ impl Predictor {
         n
     }
 
-    /// Sets the unknowns of a state to what is foreseen at time t, h beyond the newest position.
+    /// Sets the unknowns of a state to what is predicted at time t, h beyond the newest position.
     #[inline(always)]
     pub fn set(&mut self, state: &mut State<f64>, t: f64, h: f64) {
         let n = self.divide(h);
@@ -250,7 +250,7 @@ pub(super) struct Weights {
 }
 
 impl Weights {
-    /// For these positions, so many of them, each so long before the newest, and times so long behind it. Returns whether they had to
+    /// For these positions, that many of them, each so long before the newest, and times so long behind it. Returns whether they had to
     /// be worked out.
     #[inline(always)]
     pub fn set(&mut self, (nodes, count): ([f64; NODES], usize), ahead: &Lanes) -> bool {

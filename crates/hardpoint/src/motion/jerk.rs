@@ -15,7 +15,7 @@ pub struct BodyJerk {
 }
 
 impl BodyJerk {
-    /// Those of all bodies where a stepper stands with velocity and acceleration, at time t.
+    /// Those of all bodies where a stepper is with velocity and acceleration, at time t.
     pub(crate) fn all(stepper: &mut Stepper<'_>, t: f64) -> impl Iterator<Item = Self> {
         let Stepper { state, topology, parts, .. } = stepper;
         state.jerk(topology, |d| parts.law_of(d.0).at(t).ddd());

@@ -70,7 +70,7 @@ pub(crate) struct State<T> {
     pub residual: Vec<T>,
     /// Per row of a coupler's term: about what its coordinate is, to count angles through whole turns.
     pub near: Vec<T>,
-    /// Per row: by how much it failed in the design configuration as drawn, and how much of that is still allowed, with
+    /// Per row: by how much it failed in the design configuration in the design configuration, and how much of that is still allowed, with
     /// its rate: an assembly takes it from 1 to 0.
     /// phi_0, and 1 - s with its rate: an assembly holds `phi - (1 - s) phi_0 = 0`.
     pub gap: Vec<T>,
@@ -90,7 +90,7 @@ pub(crate) struct State<T> {
     pub iterations: usize,
 }
 
-/// So many corrections are told apart.
+/// Number of corrections are distinguished.
 pub(super) const CORRECTIONS: usize = 3;
 
 /// By how much the constraints fail.
@@ -215,7 +215,7 @@ impl<T: Real> State<T> {
         self.turn_base(topology, parts, c);
     }
 
-    /// The axes of the body on which a closure's loop stands.
+    /// The axes of the body on which a closure's loop is.
     #[inline(always)]
     fn turn_base(&mut self, topology: &Topology, parts: &PlanGeometry<T>, c: ClosureId) {
         let Closure { base, base_link, .. } = topology[c];
@@ -363,7 +363,7 @@ impl<T: Real> State<T> {
         topology.constraint(r).wrench(&self.ends[topology[r].closure.0])
     }
 
-    /// Residuals, wrenches and factors of block b where it stands.
+    /// Residuals, wrenches and factors of block b where it is.
     #[inline(always)]
     pub(super) fn linearise(
         &mut self,
@@ -426,7 +426,7 @@ impl<T: Real> State<T> {
         self.place_bodies(topology, parts, topology.driven_links());
         self.rates_of_driven(topology);
         for b in topology.block_ids() {
-            // Block after block: J is block lower triangular, so all that a block stands on is known by now.
+            // Block after block: J is block lower triangular, so all that a block is on is known by now.
             self.newton(topology, parts, drivers, b, trust)?;
             self.place_bodies(topology, parts, topology[b].link_ids());
             self.rates_of_block(topology, parts, drivers, b);

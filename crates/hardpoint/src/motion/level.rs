@@ -15,7 +15,7 @@ use crate::linalg::Factors;
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, ClosureId, Link, LinkId, LinkStep, RowId, RowTerm, Topology};
 
-/// How often the product of an m-th and an (n - m)-th derivative stands in the n-th of a product: `C(n, m)`.
+/// How often the product of an m-th and an (n - m)-th derivative is in the n-th of a product: `C(n, m)`.
 pub(crate) const BINOMIAL: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 2.0, 1.0]];
 
 /// What the equations of a position have in common, whatever they are solved for.
@@ -39,7 +39,7 @@ pub(crate) struct Flow<T> {
     pub speeds: [Vec<T>; 3],
     /// Per order and body: U.
     ///
-    /// `[n][body]`: V, A, B of a motion; W, W., W.. along the design. Ground, body 0, stands.
+    /// `[n][body]`: V, A, B of a motion; W, W., W.. along the design. Ground, body 0, is.
     pub twists: [Vec<Twist<T>>; 3],
     /// Per order and closure, as far as higher orders ask: `D_j - D_i`.
     pub apart: [Vec<Twist<T>>; 2],
@@ -47,9 +47,9 @@ pub(crate) struct Flow<T> {
     pub moves: [Vec<Twist<T>>; 3],
     /// Per row, of the order to be solved: `f - l . (z_j - z_i)`.
     pub demand: Vec<T>,
-    /// Whether driven coordinates go with it. Else their speeds are zero, and need not be looked at.
+    /// True if driven coordinates go with it. Else their speeds are zero, and need not be looked at.
     pub drives: bool,
-    /// Whether single axes on ground stand: in time they do, along the design they may not.
+    /// True if single axes on ground stand: in time they do, along the design they may not.
     pub ground_stands: bool,
     /// Per link: what it has besides the speeds of this order.
     /// `z_p(n) - z_c(n) + sum_{m=1..n} C(n,m) sum_a x_a(m) u_a(n-m)`.
@@ -57,7 +57,7 @@ pub(crate) struct Flow<T> {
 }
 
 impl<T: Real> Flow<T> {
-    /// Of so many bodies that stand.
+    /// Of that many bodies that stand.
     pub fn new(topology: &Topology, bodies: usize, drives: bool) -> Self {
         let none = Twist::zero();
         Self {
@@ -150,7 +150,7 @@ impl<T: Real> Flow<T> {
         }
         for &r in &topology[b].coupled {
             for term in &topology[r].terms {
-                // Of a coupler it is the sum over its terms, c_k times what each has; the first term, with factor 1, stands in its row.
+                // Of a coupler it is the sum over its terms, c_k times what each has; the first term, with factor 1, is in its row.
                 let x = self.demand[term.row.0];
                 self.demand[r.0] += x * T::constant(term.factor);
             }

@@ -52,7 +52,7 @@ impl<T: Real> Margins<T> {
         }
     }
 
-    /// The margin where `state` stands.
+    /// The margin where `state` is.
     pub fn at(&mut self, topology: &Topology, state: &State<T>) -> Margin {
         let values = topology.block_ids().map(|b| {
             let small = topology[b].unknowns.len() <= MOST_UNKNOWNS;

@@ -35,7 +35,7 @@ use crate::blocks::{Blocks, ResultRow};
 use crate::model::{BodyId, JointId, Model};
 use crate::space::{Mat3, Quat, Real, Vec3};
 
-/// How a body stands and moves, in global components; position, velocity and acceleration are those of
+/// How a body is and moves, in global components; position, velocity and acceleration are those of
 /// its frame's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyState {
@@ -63,7 +63,7 @@ impl BodyState {
         a: Vec3::ZERO,
         alpha: Vec3::ZERO,
     };
-    /// So many numbers it is.
+    /// Number of numbers it is.
     pub(crate) const NUMBERS: usize = 24;
 
     /// r, the columns of A, v, omega, a and alpha, one after the other.
@@ -86,7 +86,7 @@ impl BodyState {
         Quat::from_rotation(self.rotation).to_array()
     }
 
-    /// Of body b, where a state stands.
+    /// Of body b, where a state is.
     #[inline(always)]
     pub(crate) fn of<T: Real>(state: &State<T>, b: usize) -> Self {
         let numbers = Self::numbers_of(state, b);
@@ -128,15 +128,15 @@ impl BodyState {
 pub struct Motion {
     /// Output times that were solved, s.
     pub times: Vec<f64>,
-    /// How many bodies there are, ground included.
+    /// Number of bodies there are, ground included.
     pub bodies: usize,
     /// Of all bodies but ground, one after the other.
     pub(crate) states: Blocks,
     /// Of the tree.
     pub(crate) coordinates: Blocks,
-    /// Per output time, how far from a singular position; empty where only the bodies were asked for.
+    /// Per output time, how far from a singular position; empty where only the bodies were requested.
     pub margins: Vec<Margin>,
-    /// How it was closed before it moved, if it was open as drawn.
+    /// How it was closed before it moved, if it was open in the design configuration.
     pub assembly: Option<Assembly>,
     /// The singular position next after its end, if one is near.
     pub beyond: Option<SingularPosition>,
@@ -245,12 +245,12 @@ impl Motion {
         self.coordinates.row(k).all()
     }
 
-    /// How many output times were solved.
+    /// Number of output times were solved.
     pub fn len(&self) -> usize {
         self.times.len()
     }
 
-    /// Whether not even the first output time was solved.
+    /// True if not even the first output time was solved.
     pub fn is_empty(&self) -> bool {
         self.times.is_empty()
     }

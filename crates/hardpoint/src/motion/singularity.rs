@@ -42,7 +42,7 @@ pub(super) struct Surroundings {
     pub sliding: Vec<Vec<[f64; 2]>>,
     /// Per direction: the fastest unknown coordinate, in its unit; of curves the parameter, in lengths between their points.
     pub fastest: Vec<f64>,
-    /// How many of the directions are known.
+    /// Number of the directions are known.
     known: usize,
 }
 
@@ -89,7 +89,7 @@ impl Surroundings {
         }
     }
 
-    /// Makes room for so many directions.
+    /// Makes room for that many directions.
     fn make_room(&mut self, topology: &Topology, directions: usize) {
         self.known = directions;
         if self.fastest.len() >= directions {
@@ -177,7 +177,7 @@ impl Workspace {
         self.l.swap_with_slice(&mut state.l[1..]);
     }
 
-    /// Examines the position where a state stands, with its factors, along so many directions. `speed(direction, driver)` is
+    /// Examines the position where a state is, with its factors, along that many directions. `speed(direction, driver)` is
     /// how each driver moves along a direction, and `gap_rate` how the gaps of an assembly close.
     #[expect(clippy::too_many_arguments, reason = "all are borrowed from one stepper, some of them mutably")]
     pub fn examine(
@@ -280,7 +280,7 @@ impl Workspace {
     #[inline(never)]
     fn respond(&mut self, topology: &Topology, state: &mut State<f64>, b: BlockId, load: usize) -> f64 {
         let (block, response) = (&topology[b], &mut self.response);
-        // (24) with z = 0 and f = r, which stands still.
+        // (24) with z = 0 and f = r, which is at rest.
         for r in block.closures.iter().flat_map(|&c| topology[c].row_ids()) {
             // J c0 = r
             response.demand[r.0] = if topology[r].is_term { 0.0 } else { self.loads[load][r.0] };

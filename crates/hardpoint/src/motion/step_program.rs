@@ -3,10 +3,10 @@
 //! What [`State::solve`] computes is the same at every output time and for every design, as long as Newton's method takes as many
 //! corrections and the pivots keep their order. So it is recorded once, with a number of the tape in place of each number, together
 //! with the forecast before it and whatever is asked of the bodies after it; and what is left of it after folding is run eight lanes
-//! at a time. What was decided while recording is asked for again in every run, as numbers by which a tape judges it
+//! at a time. What was decided while recording is requested again in every run, as numbers by which a tape judges it
 //! ([`Tape::solve`](super::tape::Tape::solve)); where the answer is another, nothing has happened, and the kernel itself solves the step.
 //!
-//! Not recorded are mechanisms with curves, and with couplers, whose angles go by the turn that is expected; those that are so large that a
+//! Not recorded are mechanisms with curves, and with couplers, whose angles depend on the turn that is expected; those that are so large that a
 //! program each would cost more than it saves; and margins of sparse blocks.
 
 use std::sync::{Arc, OnceLock};
@@ -40,23 +40,23 @@ pub(super) const MOST_CORRECTIONS: usize = 2;
 const MOST_LINKS: usize = 4000;
 /// Nor are those whose sparse factors take more multiplications together.
 const MOST_MULTIPLICATIONS: usize = 70_000;
-/// What a channel is foreseen by.
+/// What a channel is predicted by.
 pub(super) const CONDITIONS: usize = NODES * ORDERS;
 
 /// What a program is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Purpose {
-    /// Whether its lanes are output times, of one design; else they are designs, at one output time.
+    /// True if its lanes are output times, of one design; else they are designs, at one output time.
     pub times: bool,
-    /// Whether the design is an input; else it is the nominal one.
+    /// True if the design is an input; else it is the nominal one.
     pub any_design: bool,
     /// Newton's corrections in one run: one or two.
     pub corrections: usize,
-    /// Whether it works out the derivatives of all bodies by all variables.
+    /// True if it works out the derivatives of all bodies by all variables.
     pub sensitivities: bool,
-    /// Whether it works out how far from a singular position the mechanism is.
+    /// True if it works out how far from a singular position the mechanism is.
     pub margins: bool,
-    /// Whether it works out the loads that are asked for.
+    /// True if it works out the loads that are requested.
     pub loads: bool,
 }
 
@@ -84,7 +84,7 @@ pub(crate) struct RecordedStep<'r> {
     pub values: &'r [Number],
     /// Value, speed and acceleration of every driver.
     pub drivers: &'r [[Number; 3]],
-    /// What forces that go by laws are multiplied by, in the order of the elements, where loads are asked for.
+    /// What forces that depend on laws are multiplied by, in the order of the elements, where loads are requested.
     pub laws: &'r [Number],
 }
 
@@ -109,7 +109,7 @@ pub(crate) struct StepProgram {
 pub(crate) struct BlockProgram {
     /// The largest factor in the order of the pivots.
     growth: f64,
-    /// Whether the determinant is positive, and whether the product of the pivots is.
+    /// True if the determinant is positive, and whether the product of the pivots is.
     pub positive: bool,
     positive_product: bool,
     /// Newton's passes.
@@ -120,7 +120,7 @@ pub(crate) struct BlockProgram {
 }
 
 impl BlockProgram {
-    /// Of block b, as it was just solved; none where more corrections were needed than are told apart.
+    /// Of block b, as it was just solved; none where more corrections were needed than are distinguished.
     fn of(state: &State<Number>, b: usize) -> Option<Self> {
         let (watched, (corrections, passes)) = (&state.watched[b], &state.corrections[b]);
         let corrected = passes.checked_sub(2).and_then(|k| corrections.get(k));
@@ -156,7 +156,7 @@ pub(crate) struct Unknown {
 /// what is added to the forecast: nothing, or all there is where the position was found by a run before.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inputs {
-    /// How many are known of each channel.
+    /// Number of are known of each channel.
     pub known: usize,
     pub drivers: usize,
     pub ahead: usize,
@@ -199,7 +199,7 @@ pub(super) enum Judged {
     ScaledResidual,
     /// The largest pivot of a block over its smallest, of all blocks.
     Pivots,
-    /// By how much speeds differ at most from those foreseen by the newest position, and the largest of all speeds; rad, or sizes.
+    /// By how much speeds differ at most from those predicted by the newest position, and the largest of all speeds; rad, or sizes.
     Apart,
     Fastest,
 }
@@ -225,7 +225,7 @@ impl StepProgram {
         }
     }
 
-    /// Records the step that is solved where `one`, of the nominal design, stands, and what `besides` makes of it; none where either cannot
+    /// Records the step that is solved where `one`, of the nominal design, is, and what `besides` makes of it; none where either cannot
     /// be recorded.
     pub fn record(
         one: &Stepper<'_>,
@@ -411,7 +411,7 @@ fn largest_of(numbers: impl Iterator<Item = Number>) -> Number {
     numbers.reduce(Number::larger).unwrap_or_else(|| Number::constant(f64::MIN))
 }
 
-/// By how much the speeds differ at most from those that speed and acceleration at the newest position foresee, so long ahead; and the
+/// By how much the speeds differ at most from those that speed and acceleration at the newest position predict, so long ahead; and the
 /// fastest of both. In rad, or sizes; a ball's are twice those of its quaternion.
 fn speeds(
     topology: &Topology,
@@ -436,7 +436,7 @@ fn speeds(
     [apart, fastest].map(|x| largest_of(x.into_iter()))
 }
 
-/// Makes inputs of what foresees the state, `offset` beside where `at` is; returns what is known of every channel, which is the same at
+/// Makes inputs of what predicts the state, `offset` beside where `at` is; returns what is known of every channel, which is the same at
 /// all of several output times.
 fn foresee(
     topology: &Topology,
@@ -464,11 +464,11 @@ fn foresee(
     channels.iter().map(one).collect()
 }
 
-/// Recording pays from so many steps on: it costs about as much as a few hundred of the kernel's, once, and later runs have it for
+/// Recording pays from that many steps on: it costs about as much as a few hundred of the kernel's, once, and later runs have it for
 /// nothing.
 const PAYS: usize = 100;
 
-/// The programs of a plan, each recorded when it is first asked for.
+/// The programs of a plan, each recorded when it is first requested.
 ///
 /// They are recorded of the nominal design where its motion begins, so that they do not depend on who asks first.
 #[derive(Debug)]
@@ -491,9 +491,9 @@ impl Programs {
         self.execution
     }
 
-    /// How so many steps are solved, if they can be recorded.
+    /// How that many steps are solved, if they can be recorded.
     pub fn solved_by(&self, steps: usize) -> StepMethod {
-        let asked = || "it was asked for".to_owned();
+        let asked = || "it was requested".to_owned();
         match self.execution {
             Execution::Kernel => StepMethod::Kernel(asked()),
             _ if !self.pay(steps) => {
@@ -508,7 +508,7 @@ impl Programs {
         }
     }
 
-    /// Whether so many steps are worth a program.
+    /// True if that many steps are worth a program.
     pub fn pay(&self, steps: usize) -> bool {
         match self.execution {
             Execution::Fastest => steps >= PAYS,
@@ -517,7 +517,7 @@ impl Programs {
         }
     }
 
-    /// The program for this purpose; `record` makes it for this execution, if it was not asked for before.
+    /// The program for this purpose; `record` makes it for this execution, if it was not requested before.
     pub fn step(
         &self,
         purpose: Purpose,
@@ -527,7 +527,7 @@ impl Programs {
     }
 
     /// The drivers' laws of the nominal design at eight times: in one part value, speed and acceleration of each driver, and where loads are
-    /// asked for the values of the laws of forces; in the next what must not be positive. None where a law is no plain formula.
+    /// requested the values of the laws of forces; in the next what must not be positive. None where a law is no plain formula.
     pub fn laws(&self, model: &Model, loads: bool) -> Option<Arc<Runnable>> {
         self.laws.get(loads, |_| {
             recording::begin();

@@ -32,17 +32,17 @@ const SPEED_FLOOR: f64 = 1e-3;
 /// The coordinates of a coupler must come within this of their prediction, rad: which turn an angle is in would
 /// otherwise be a guess.
 const TURN_TRUST: f64 = 1.0;
-/// From one output time to the next a determinant may become so many times what it was; a limit position that is nearer than 1.5
+/// From one output time to the next a determinant may become that many times what it was; a limit position that is nearer than 1.5
 /// such steps, or a crossing nearer than 3.5, changes it by more (405 motions into such positions, in 20 to 500 output times).
 pub(super) const MILD: [f64; 2] = [0.78, 1.28];
 /// ... and that part of it may change by so much from one such step to the next.
 pub(super) const MILD_CHANGE: f64 = 0.125;
-/// Between output times the law may nowhere be faster than so many times what it moves between any two of them nearby: what rests
+/// Between output times the law may nowhere be faster than that many times what it moves between any two of them nearby: what rests
 /// and pulses in between is looked at closely.
 pub(super) const EVEN: f64 = 2.0;
 /// A driver that moves by less than this between output times, in rad or sizes, rests.
 pub(super) const RESTS: f64 = 1e-12;
-/// Laws are looked at over so many output times at once.
+/// Laws are looked at over that many output times at once.
 const CELL: f64 = 64.0;
 /// Between output times a driver moves by no more than this, rad or sizes: whole turns look like rest from end to end.
 pub(super) const LONGEST: f64 = 1.0;
@@ -110,9 +110,9 @@ pub(crate) struct Stepper<'m> {
     pub effort: SolverStatistics,
     /// How often other rows were chosen.
     pub(super) selections: usize,
-    /// How the mechanism was closed, if it was open as drawn.
+    /// How the mechanism was closed, if it was open in the design configuration.
     pub assembly: Option<Assembly>,
-    /// Counts the angles whose turns only the path tells; `None` where there are none.
+    /// Counts the angles whose turns only the path indicates; `None` where there are none.
     pub turns: Option<TurnCounter<'m>>,
     /// The change point that was crossed last.
     pub(super) crossing: Option<Box<Crossing>>,
@@ -181,7 +181,7 @@ pub(super) struct AcceptedPosition {
 /// Why a step was refused.
 pub(super) enum Refusal {
     Position(PositionFailure),
-    /// The determinant changed its sign, or a turn cannot be told.
+    /// The determinant changed its sign, or a turn cannot be reported.
     Branch {
         block: BlockId,
     },
@@ -303,7 +303,7 @@ impl<'m> Stepper<'m> {
         Ok(())
     }
 
-    /// Lets angles go on from the accepted position, where the state stands with the rates of another path.
+    /// Lets angles go on from the accepted position, where the state is with the rates of another path.
     pub(super) fn renew_turns(&mut self) {
         if let Some(turns) = &mut self.turns {
             turns.renew(&self.state);
@@ -328,7 +328,7 @@ impl<'m> Stepper<'m> {
         }
         self.fastest_driver = self.driver_speed();
         let moved = self.foresee_at(h);
-        // abs(dq_0) <= max(half of the foreseen move, 0.02): a correction out of proportion may lead to another branch.
+        // abs(dq_0) <= max(half of the predicted move, 0.02): a correction out of proportion may lead to another branch.
         let trust = (TRUST * moved).max(TRUST_FLOOR);
         let selections = self.selections;
         if self.state.solve(&self.topology, &self.parts, &self.drivers, trust).is_err()
@@ -363,7 +363,7 @@ impl<'m> Stepper<'m> {
         }
     }
 
-    /// Whether the laws do nothing between here and the output time t that its two ends would not show, and no singular position is
+    /// True if the laws do nothing between here and the output time t that its two ends would not show, and no singular position is
     /// known to be near. The drivers are at t already.
     #[inline(always)]
     pub(super) fn is_clear(&mut self, t: f64, h: f64) -> bool {
@@ -458,7 +458,7 @@ impl<'m> Stepper<'m> {
         }
     }
 
-    /// Whether the position just solved is on the branch, in the turn that was expected, and closed.
+    /// True if the position just solved is on the branch, in the turn that was expected, and closed.
     pub(super) fn examine_position(&mut self) -> Result<(), Refusal> {
         for (b, &(_, positive)) in BlockId::each(&self.state.pivots) {
             // sign(det J) is that of the branch: between two positions of opposite sign lies a singular one.
@@ -480,7 +480,7 @@ impl<'m> Stepper<'m> {
         self.reselect()
     }
 
-    /// Foresees the position a step h beyond the saved one, from where the mechanism has been; returns how far the largest move
+    /// Predicts the position a step h beyond the saved one, from where the mechanism has been; returns how far the largest move
     /// goes (rad, or sizes), to second order.
     #[inline(always)]
     fn foresee_at(&mut self, h: f64) -> f64 {
@@ -538,7 +538,7 @@ impl<'m> Stepper<'m> {
         topology.coupler_terms().find(uncertain).and_then(|r| topology.closure_of(r).block)
     }
 
-    /// Whether the speeds are those of the same branch as before the step.
+    /// True if the speeds are those of the same branch as before the step.
     pub(super) fn speeds_are_smooth(&self, h: f64) -> bool {
         let (s, saved) = (&self.state, &self.saved);
         let (mut fastest, mut difference) = (0.0_f64, 0.0_f64);
@@ -618,7 +618,7 @@ impl<'m> Stepper<'m> {
                     entries.filter(|(_, x)| *x != 0.0).collect()
                 })
                 .collect();
-            // All rows of the block where it stands now, redundant ones included: those with the largest pivots.
+            // All rows of the block where it is now, redundant ones included: those with the largest pivots.
             let pivots = FullPivot::of_sparse(matrix, block.unknowns.len(), f64::MIN_POSITIVE);
             let mut selected: Vec<RowId> = pivots.rows.iter().map(|&r| rows[r]).collect();
             selected.sort_unstable();
@@ -653,12 +653,12 @@ impl<'m> Stepper<'m> {
     }
 }
 
-/// Whether speeds that differ by so much from the predicted ones are still those of the same branch, with so fast a coordinate and
+/// True if speeds that differ by so much from the predicted ones are still those of the same branch, with so fast a coordinate and
 /// driver at the most.
 #[inline(always)]
 pub(super) fn smooth(difference: f64, fastest: f64, fastest_driver: f64) -> bool {
     // Written so that NaN is refused.
-    // max abs(q. - foreseen) <= max(0.25 max abs(q.), 1e-3 max abs(f.)): on another branch the speeds are others
+    // max abs(q. - predicted) <= max(0.25 max abs(q.), 1e-3 max abs(f.)): on another branch the speeds are others
     difference <= f64::max(SPEED_TRUST * fastest, SPEED_FLOOR * fastest_driver)
 }
 

@@ -37,7 +37,7 @@ pub enum StopKind {
     Limit,
     /// A dead point or change point: beyond it the mechanism may take another branch (HP0402).
     BranchChange,
-    /// The configuration as drawn is open and cannot be closed (HP0406).
+    /// The configuration in the design configuration is open and cannot be closed (HP0406).
     DoesNotAssemble,
     /// Redundant constraints contradict each other there: the mechanism locks (HP0403).
     Locked {
@@ -177,7 +177,7 @@ impl Stop {
 }
 
 impl Closing {
-    /// Its kind and name, for messages.
+    /// Kind and name, for messages.
     pub fn name(self, model: &Model) -> String {
         match self {
             Self::Joint(j) => format!("joint `{}`", model.joints[j.0].name),

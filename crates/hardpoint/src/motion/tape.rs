@@ -14,11 +14,11 @@ use super::kinematics::Residuals;
 use super::step_program::{CONDITIONS, Inputs, Judged, Outputs, PER_BLOCK, Purpose, StepProgram};
 use super::stepper::{LOCKED, smooth};
 
-/// What is not solved after so many runs is left to the kernel.
+/// What is not solved after that many runs is left to the kernel.
 const MOST_RUNS: usize = 4;
 /// From one run to the next the first correction must become smaller by this factor, as Newton's corrections must.
 const CONTRACTS: f64 = 0.5;
-/// After so many groups of steps, a program that was refused in more than a quarter of them is given up.
+/// After that many groups of steps, a program that was refused in more than a quarter of them is given up.
 const TRIAL: usize = 8;
 
 /// A step that the program does not fit: the kernel solves it.
@@ -79,17 +79,17 @@ impl Tape {
         program.take_design(&mut self.inputs);
     }
 
-    /// Whether it is refused so often that the kernel alone is faster.
+    /// True if it is refused so often that the kernel alone is faster.
     pub fn is_of_no_use(&self) -> bool {
         self.tried >= TRIAL && 4 * self.refused > self.tried
     }
 
-    /// Whether so many steps take more than one run that a program with more corrections would be faster.
+    /// True if that many steps take more than one run that a program with more corrections would be faster.
     pub fn is_too_short(&self) -> bool {
         self.tried >= TRIAL && 4 * self.repeated > self.tried
     }
 
-    /// Whether its determinants have the signs of these branches.
+    /// True if its determinants have the signs of these branches.
     pub fn is_on(&self, branch: &[(bool, f64)]) -> bool {
         self.program.blocks.iter().zip(branch).all(|(block, (positive, _))| block.positive == *positive)
     }
@@ -120,7 +120,7 @@ impl Tape {
         self.program.purpose
     }
 
-    /// Foresees times so far ahead of the newest position by these weights: by position, the newest first, and order of its derivative;
+    /// Predicts times so far ahead of the newest position by these weights: by position, the newest first, and order of its derivative;
     /// they may be the ones of last time.
     #[inline(always)]
     pub fn look_ahead(&mut self, weights: &[Lanes; CONDITIONS], are_new: bool, ahead: &Lanes) {
@@ -148,7 +148,7 @@ impl Tape {
         self.uniforms.as_chunks_mut().0
     }
 
-    /// Value, speed and acceleration of every driver, then the laws of forces where loads are asked for.
+    /// Value, speed and acceleration of every driver, then the laws of forces where loads are requested.
     #[inline(always)]
     pub fn laws_mut(&mut self) -> &mut [Lanes] {
         let Inputs { drivers, ahead, .. } = self.program.inputs;
@@ -208,7 +208,7 @@ impl Tape {
         Ok(SolveQuality { residuals: Residuals { largest: residuals[0], scaled: residuals[1] }, pivot_ratio })
     }
 
-    /// Foresees the positions that were just found.
+    /// Predicts the positions that were just found.
     #[cold]
     fn go_on_from_here(&mut self) {
         let (inputs, known) = (lanes_of(&mut self.inputs), self.program.inputs.known);
@@ -276,7 +276,7 @@ impl Tape {
         self.program.unknowns.iter().map(move |u| (u.coordinate, [at(u.speed), at(u.speed + 1)]))
     }
 
-    /// Whether the speeds are those of the same branch as at the newest position, with so fast a driver.
+    /// True if the speeds are those of the same branch as at the newest position, with so fast a driver.
     #[inline(always)]
     pub fn speeds_are_smooth(&self, fastest_driver: f64) -> bool {
         let [apart, fastest] = [Judged::Apart, Judged::Fastest].map(|which| self.judged(which));
@@ -296,7 +296,7 @@ impl Tape {
         &self.outputs[loads..states]
     }
 
-    /// How many numbers all bodies but ground have, and how many their derivatives.
+    /// Number of numbers all bodies but ground have, and how many their derivatives.
     pub fn sizes(&self) -> [usize; 2] {
         let [_, states, derivatives] = self.program.program.step.sizes();
         [states, derivatives]
@@ -311,7 +311,7 @@ impl Tape {
     }
 }
 
-/// Whether no lane is larger; NaN is.
+/// True if no lane is larger; NaN is.
 #[inline(always)]
 pub(super) fn all_within(lanes: &Lanes, limit: f64) -> bool {
     lanes.iter().fold(true, |all, x| all & (*x <= limit))

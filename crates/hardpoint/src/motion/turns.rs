@@ -1,6 +1,6 @@
 //! Angles counted through whole turns along the path: of measures, and of the coordinates of cut joints that elements act on.
 //!
-//! An angle is known within a turn only; the path tells which turn it is in. Between output times an angle is predicted along the drivers,
+//! An angle is known within a turn only; the path indicates which turn it is in. Between output times an angle is predicted along the drivers,
 //! as every unknown is ([`super::walk`]), so that neither the output times nor what the laws do in between have a part in it. From one
 //! output time to the next of an even motion an angle moves by less than a radian, or the step is refused ([`TurnCounter::is_even`]).
 
@@ -83,7 +83,7 @@ impl<'m> TurnCounter<'m> {
         self.values.len()
     }
 
-    /// Counts from the design configuration, where the state stands.
+    /// Counts from the design configuration, where the state is.
     pub fn begin(&mut self, state: &State<f64>) {
         self.look(&|b| BodyState::of(state, b));
         for ((value, [now, ..]), origin) in self.values.iter_mut().zip(&self.found).zip(self.angles.origins())
@@ -107,7 +107,7 @@ impl<'m> TurnCounter<'m> {
         out.extend(self.found.iter().map(|[_, slope, bend]| [*slope, *bend]));
     }
 
-    /// Returns whether each angle, where the state stands after a step, is in the turn that was predicted. `predict` is given an angle; of what it
+    /// Returns whether each angle, where the state is after a step, is in the turn that was predicted. `predict` is given an angle; of what it
     /// returns the first is by how much the angle moves as seen from the accepted position, the second as seen from the new one, both to
     /// second order, and the third the farthest that it gets as seen from there, to first order.
     pub fn follow(&mut self, state: &State<f64>, predict: impl Fn(usize) -> [f64; 3]) -> bool {
@@ -128,7 +128,7 @@ impl<'m> TurnCounter<'m> {
     }
 
     /// Returns whether a step h from one output time to the next, over which the drivers move by so much in all, leaves no doubt about the turns of
-    /// any angle where the state stands then.
+    /// any angle where the state is then.
     pub fn is_even(&mut self, state: &State<f64>, h: f64, moved: f64) -> bool {
         self.look(&|b| BodyState::of(state, b));
         self.nearest();

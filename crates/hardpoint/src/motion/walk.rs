@@ -30,7 +30,7 @@ const NEAREST: f64 = 1e-6;
 /// A law that comes within this part of the distance to a singular position reaches it: the estimate of that distance, 2e-6 rad away, is
 /// good to about 1e-4 (`docs/theory.md`, section 4).
 const REACHED: f64 = 0.99;
-/// Number of parts of the way over which the range of a law is computed at most, to find out what it does first.
+/// Maximum number of parts of the way over which the range of a law is computed, to find out what it does first.
 const MOST_PARTS: usize = 2_000;
 /// A step that is refused at this length, rad or sizes, is refused for good.
 const SHORTEST: f64 = 1e-10;
@@ -41,16 +41,16 @@ const SUSPECT: f64 = 1e-2;
 /// The response to a load goes with this power of the distance, at most, where the loop cannot be closed beyond: 1/2; where two motions
 /// meet it is 1.
 const LIMIT: f64 = 0.75;
-/// A power this near to 1/2 or 1 tells of what kind a singular position ahead is; farther from it, other things have their part.
+/// A power this near to 1/2 or 1 indicates of what kind a singular position ahead is; farther from it, other things have their part.
 const TELLING: f64 = 0.1;
-/// A walk gives up after so many steps without a radian, or a size, of any driver.
+/// A walk gives up after that many steps without a radian, or a size, of any driver.
 const MOST_STEPS: usize = 20_000;
 /// Between two output times no driver is followed further than this, rad or sizes: what runs away would be followed for ever.
 const FARTHEST: f64 = 1e5;
 /// Between two output times a law may jump so often: each jump is followed by itself, and one that jumps without end would be followed for
 /// ever.
 const MOST_JUMPS: usize = 1_000;
-/// ... and so often without a time at which it does not jump: one that goes on like that is faster than times can be told apart.
+/// ... and so often without a time at which it does not jump: one that goes on like that is faster than times can be distinguished.
 const MOST_IN_A_ROW: usize = 32;
 /// A law that is not bounded over this part of a walk, however near by, and this large there, has a pole, 1e3 times what it is at
 /// the ends.
@@ -64,7 +64,7 @@ pub(super) const MOST_BEND: f64 = 0.4;
 /// What the drivers follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Path {
-    /// From the configuration as drawn, where joints may be open, to the closed one, all drivers at zero; the
+    /// From the configuration in the design configuration, where joints may be open, to the closed one, all drivers at zero; the
     /// parameter runs from 0 to 1 and is the part of every gap that is closed.
     Assembly,
     /// All drivers straight from one value to another, [`Stepper::line`], at one time; the parameter runs from 0 to 1. So the
@@ -122,7 +122,7 @@ impl Stepper<'_> {
             // The longest step with  sum over d of Du_d / rho_d <= 0.4  (22), Du_d the range of law d over [t, t + h]
             let mut h = self.stride(path, rest, ONE_TIME * scale);
             if path == Path::Laws && h <= ONE_TIME * scale && !(self.travelled() <= SHORTEST) {
-                // However many times are asked for, what a law does in no time is a jump, also at the end of the way.
+                // However many times are requested, what a law does in no time is a jump, also at the end of the way.
                 (jumps, in_a_row) = (jumps + 1, in_a_row + 1);
                 far += self.travelled();
                 if jumps > MOST_JUMPS || in_a_row > MOST_IN_A_ROW || !(far <= FARTHEST) {
@@ -213,14 +213,14 @@ impl Stepper<'_> {
         self.solve_within(f64::INFINITY)
     }
 
-    /// Finds out how near singular positions are to the saved position, where the state stands.
+    /// Finds out how near singular positions are to the saved position, where the state is.
     pub(super) fn examine_here(&mut self, path: Path) {
         self.examine(path);
         std::mem::swap(&mut self.around, &mut self.beyond);
         self.ahead = Lookahead::Examined;
     }
 
-    /// Finds out how near singular positions are to where the state stands: along each driver alone, or along the whole path where
+    /// Finds out how near singular positions are to where the state is: along each driver alone, or along the whole path where
     /// all go together.
     fn examine(&mut self, path: Path) {
         // On the laws' path one direction per driver, f_d' = 1: what is near is near whether a driver hurries or rests.
@@ -229,7 +229,7 @@ impl Stepper<'_> {
         let directions = if path == Path::Laws { drivers.len() } else { 1 };
         let workspace = workspace
             .get_or_insert_with(|| Box::new(Workspace::new(topology, state.pose.len(), drivers.len())));
-        // df_d/du: 1 of the driver that goes by itself; the line's f(1) - f(0) of all together; 0 of an assembly, whose gaps go
+        // df_d/du: 1 of the driver that depends on itself; the line's f(1) - f(0) of all together; 0 of an assembly, whose gaps go
         let speed = |direction: usize, d: usize| match path {
             Path::Assembly => 0.0,
             Path::Line { .. } => line[d][1] - line[d][0],
@@ -341,7 +341,7 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    /// Counts angles over a step h, to where the state stands; whether each is in the turn that is predicted along the drivers, from both
+    /// Counts angles over a step h, to where the state is; whether each is in the turn that is predicted along the drivers, from both
     /// ends.
     fn follow_turns(&mut self, path: Path, h: f64) -> bool {
         let is_fine = self.travelled() <= FINEST;
@@ -464,7 +464,7 @@ impl Stepper<'_> {
     }
 
     /// The singular position that the motion would come to if it went on as it does at the last output time; `None` where none is near
-    /// enough to be told from its surroundings.
+    /// enough to be reported from its surroundings.
     pub fn beyond(&mut self) -> Option<SingularPosition> {
         self.stand(Path::Laws).ok()?;
         let ahead = self.ahead(Path::Laws)?;
@@ -489,7 +489,7 @@ impl Stepper<'_> {
         })
     }
 
-    /// Whether what is near lies ahead, not behind.
+    /// True if what is near lies ahead, not behind.
     fn is_singular_ahead(&mut self, path: Path) -> bool {
         if self.stand(path).is_err() {
             return true;
@@ -541,7 +541,7 @@ impl Stepper<'_> {
             Refusal::Position(_) | Refusal::Branch { .. } | Refusal::TooNear => {
                 let ahead = self.ahead(path);
                 // The step that failed is no longer than a part of the way.
-                // (23) tells of a place only where it is about as near as the step that failed there.
+                // (23) indicates of a place only where it is about as near as the step that failed there.
                 let near = 1e3 * (t - self.time).abs().max(ONE_TIME * t.abs());
                 match ahead.filter(|a| a.distance > 0.0 && a.distance <= near) {
                     Some(a) => {
@@ -559,7 +559,7 @@ impl Stepper<'_> {
                     },
                 }
             }
-            // What is left of a row that was not solved with: the constraints agreed as drawn and do not here.
+            // What is left of a row that was not solved with: the constraints agreed in the design configuration and do not here.
             Refusal::Locked { row, residual } => {
                 let closure = self.topology.closure_of(row);
                 let quantity = self.topology.constraint(row).into();

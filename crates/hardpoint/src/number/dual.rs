@@ -11,7 +11,7 @@ use super::{Function, Real};
 pub struct Dual<T = f64> {
     /// The value.
     pub v: T,
-    /// Its derivative.
+    /// Derivative.
     pub d: T,
 }
 

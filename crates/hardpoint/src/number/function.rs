@@ -16,21 +16,21 @@ macro_rules! functions {
             /// All there are, in the order in which help lists them.
             pub const ALL: &[Self] = &[$(Self::$function),*];
 
-            /// Its name in expressions.
+            /// Name in expressions.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$function => $name,)*
                 }
             }
 
-            /// Its value, by the standard library.
+            /// Value, by the standard library.
             pub(super) fn of(self, x: f64) -> f64 {
                 match self {
                     $(Self::$function => $of(x),)*
                 }
             }
 
-            /// Its first three derivatives at `x`, where its value is `y`.
+            /// First three derivatives at `x`, where its value is `y`.
             #[inline(always)]
             pub(super) fn derivatives<T: Real>(self, $x: T, $y: T) -> [T; 3] {
                 match self {

@@ -77,7 +77,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
         self.0[3]
     }
 
-    /// Whether the value and all derivatives are finite.
+    /// True if the value and all derivatives are finite.
     pub fn is_finite(self) -> bool {
         self.0.iter().all(|x| x.value().is_finite())
     }
@@ -183,7 +183,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
         (self.compose([sin, cos, -sin, -cos]), self.compose([cos, -sin, -cos, sin]))
     }
 
-    /// Whether it is the same just before and after.
+    /// True if it is the same just before and after.
     #[inline(always)]
     fn is_still(self) -> bool {
         self.0[1..].iter().all(|x| x.is_zero())

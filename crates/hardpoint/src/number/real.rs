@@ -51,7 +51,7 @@ pub trait Real:
     /// number has for a `value` of its own is another thing.
     fn value(self) -> f64;
 
-    /// The plain value to decide by, where a recording is told otherwise what must hold for the decision to stand.
+    /// The plain value to decide by, where a recording is reported otherwise what must hold for the decision to stand.
     fn decisive(self) -> f64;
 
     /// `self * factor + addend`; programs may round once.
@@ -78,7 +78,7 @@ pub trait Real:
         self.sign_or(Self::constant(1.0))
     }
 
-    /// Whether its value is above another one. A recording takes that for granted, and a limit for where it is run.
+    /// True if its value is above another one. A recording takes that for granted, and a limit for where it is run.
     fn exceeds(self, o: Self) -> bool;
 
     /// This value if `first`, else the `other`; what is not taken may be NaN. What is recorded is no arithmetic then.
@@ -87,7 +87,7 @@ pub trait Real:
     /// The function of this value; by the standard library.
     fn map(self, function: Function) -> Self;
 
-    /// Whether it is zero, derivatives that it may carry included.
+    /// True if it is zero, derivatives that it may carry included.
     fn is_zero(self) -> bool;
 
     /// How this value compares with another; just after the instant, of numbers that carry time derivatives: ties are decided by the
@@ -142,7 +142,7 @@ pub trait Real:
     /// The larger of two; NaN if either is NaN.
     fn larger(self, o: Self) -> Self;
 
-    /// Whether it is known to be zero, derivatives that it may carry included.
+    /// True if it is known to be zero, derivatives that it may carry included.
     #[inline(always)]
     fn vanishes(self) -> bool {
         self.decisive() == 0.0

@@ -8,7 +8,7 @@ use super::Function;
 use super::real::{LARGEST_ANGLE, Real};
 
 thread_local! {
-    /// Whether the value of something that is recorded on this thread was looked at.
+    /// True if the value of something that is recorded on this thread was looked at.
     static LOOKED_AT: Cell<bool> = const { Cell::new(false) };
     static STRICT: Cell<bool> = const { Cell::new(false) };
     static LIMITS: RefCell<Vec<Number>> = const { RefCell::new(Vec::new()) };
@@ -21,7 +21,7 @@ pub(crate) fn begin() {
     LIMITS.take();
 }
 
-/// Records what goes by no value that is unknown: where a number that may be another is looked at and is zero by chance, it is no
+/// Records what depends on no value that is unknown: where a number that may be another is looked at and is zero by chance, it is no
 /// arithmetic.
 pub(crate) fn strictly<R>(f: impl FnOnce() -> R) -> R {
     STRICT.set(true);
@@ -35,12 +35,12 @@ pub(crate) fn limits() -> Vec<Number> {
     LIMITS.take()
 }
 
-/// Whether everything since [`begin`] is arithmetic: no value was looked at, since a program takes what is made of it for a constant.
+/// True if everything since [`begin`] is arithmetic: no value was looked at, since a program takes what is made of it for a constant.
 pub(crate) fn is_arithmetic() -> bool {
     !LOOKED_AT.get()
 }
 
-/// Decisions go by the values of the run that is recorded.
+/// Decisions depend on the values of the run that is recorded.
 impl Real for Number {
     #[inline(never)]
     fn operation<R>(operation: impl FnOnce() -> R) -> R {

@@ -47,9 +47,9 @@ pub struct Analysis<'m> {
     topology: Topology,
     /// With the model.
     design_map: DesignMap<'m>,
-    /// Per variable, the joints that it opens in the nominal design: worked out when first asked for.
+    /// Per variable, the joints that it opens in the nominal design: worked out when first requested.
     opens: Arc<OnceLock<Vec<Vec<JointDefect>>>>,
-    /// The output times and those between them that metrics ask for: worked out when first asked for.
+    /// The output times and those between them that metrics ask for: worked out when first requested.
     pub(super) between: Arc<OnceLock<Vec<f64>>>,
     /// Steps as straight-line programs, recorded when they pay.
     programs: Arc<Programs>,
@@ -68,7 +68,7 @@ impl<'m> Analysis<'m> {
         Self::with(model, Formulation::Relative)
     }
 
-    /// Plans the solution of a model in the formulation asked for.
+    /// Plans the solution of a model in the formulation requested.
     ///
     /// # Errors
     /// As [`Analysis::new`].
@@ -118,7 +118,7 @@ impl<'m> Analysis<'m> {
         self.solve(Run::new())
     }
 
-    /// Solves what is asked for, at all output times. Where something ends the run before, [`Solution::stop`] says what, and all that
+    /// Solves the request, at all output times. Where something ends the run before, [`Solution::stop`] says what, and all that
     /// was solved is there.
     pub fn solve(&self, mut run: Run<'_>) -> Solution {
         let (design, mut solution) = (self.prepare(run.design, run.scope), std::mem::take(&mut run.memory));
@@ -139,7 +139,7 @@ impl<'m> Analysis<'m> {
         StreamSummary { steps, admissibility: walk.admissibility(&design.opens), effort, stop }
     }
 
-    /// Whether and how the mechanism follows a change of the nominal design as a whole, in which variable k goes by `change[k]`:
+    /// True if and how the mechanism follows a change of the nominal design as a whole, in which variable k depends on `change[k]`:
     /// together, variables may be followed that are not one by one.
     pub fn admissibility_of(&self, change: &[f64]) -> Admissibility {
         let mut design = self.design(&[]);
@@ -164,7 +164,7 @@ impl<'m> Analysis<'m> {
         self.prepare(design, Scope::of_one(false, true))
     }
 
-    /// The design with variable k at `design[k]`, and what is asked for of it.
+    /// The design with variable k at `design[k]`, and the request of it.
     pub(super) fn prepare(&self, design: &[f64], scope: Scope) -> PreparedDesign {
         let values = self.model().whole(design);
         let sensitivities = scope.sensitivities;
@@ -222,12 +222,12 @@ impl<'m> Analysis<'m> {
         }
     }
 
-    /// Whether measures need more of a step than where its bodies are.
+    /// True if measures need more of a step than where its bodies are.
     pub(super) fn goes_by_step(&self) -> bool {
         (0..self.model().measures.len()).any(|k| self.model().goes_by_step(k))
     }
 
-    /// Whether any load is asked for.
+    /// True if any load is requested.
     pub(super) fn asks_for_loads(&self) -> bool {
         self.model().measures.iter().any(|m| m.kind.is_load())
     }
@@ -237,7 +237,7 @@ impl<'m> Analysis<'m> {
         let model = self.model();
         let is_compliance = |k: usize| matches!(model.measures[k].kind, MeasureKind::Compliance { .. });
         if (0..model.measures.len()).any(|k| model.goes_by_driver(k) || is_compliance(k)) {
-            return Some("measures go by a driver that moves alone, or say how elastic joints give way");
+            return Some("measures depend on a driver that moves alone, or say how elastic joints deflect");
         }
         if self.asks_for_loads() { load::hindrance(model, &self.topology) } else { None }
     }
@@ -248,7 +248,7 @@ impl<'m> Analysis<'m> {
         if nominal { self.programs.laws(self.model(), loads) } else { None }
     }
 
-    /// Whether steps of so many designs are worth a program.
+    /// True if steps of that many designs are worth a program.
     pub(super) fn programs_pay(&self, designs: usize) -> bool {
         self.programs.pay(designs * self.model().times.len())
     }
@@ -275,7 +275,7 @@ impl<'m> Analysis<'m> {
         }
     }
 
-    /// Empties a motion, with room for so many output times.
+    /// Empties a motion, with room for that many output times.
     pub(super) fn make_room(&self, motion: &mut Motion, steps: usize) {
         motion.bodies = self.model().bodies.len();
         motion.states.shape(BodyState::NUMBERS * (motion.bodies - 1), steps);

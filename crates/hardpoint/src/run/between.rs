@@ -31,7 +31,7 @@ const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
 const MOST_HALVINGS: u32 = 40;
 /// The times that metrics ask for are solved so often at most, each time nearer to where they are.
 const MOST_PASSES: usize = 4;
-/// Just before a jump of a law is this part of the run earlier: far more than times are told apart by, far less than anything moves in.
+/// Just before a jump of a law is this part of the run earlier: far more than times are distinguished by, far less than anything moves in.
 const JUST_BEFORE: f64 = 1e-12;
 /// Memory for the motion between output times.
 const BYTES: usize = 128 << 20;
@@ -142,7 +142,7 @@ fn times_of(model: &Model, laws: &[(&Law, f64)], coarser: f64, most: usize) -> O
     let mut ends = model.times.clone();
     for (law, _) in laws {
         let jumps = law.jumps(start, end);
-        // The curve before a jump ends there with other rates than it goes on with.
+        // The curve before a jump ends there with other rates than it continues with.
         let sharp = jumps.iter().filter(|jump| jump.time > start);
         ends.extend(sharp.flat_map(|jump| [jump.time - JUST_BEFORE * (end - start), jump.time]));
     }

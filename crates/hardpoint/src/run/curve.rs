@@ -3,7 +3,7 @@
 
 use crate::number::Real;
 
-/// A curve over time: at each time so many of its value, rate and acceleration.
+/// A curve over time: at each time that many of its value, rate and acceleration.
 pub(super) struct SampledCurve<'t, T> {
     pub(super) times: &'t [f64],
     pub(super) orders: usize,

@@ -1,4 +1,4 @@
-//! Many designs of one mechanism: eight side by side, on as many threads as are asked for.
+//! Many designs of one mechanism: eight side by side, on as many threads as are requested.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -173,7 +173,7 @@ impl Analysis<'_> {
         Some((effort, resisting))
     }
 
-    /// What solves so many designs side by side, where that pays and can be done, and keeps what it finds if that is asked for.
+    /// What solves that many designs side by side, where that pays and can be done, and keeps what it finds if that is requested.
     fn side_by_side(&self, designs: usize, sensitivities: bool, keeps: bool) -> Option<DesignBatch<'_>> {
         let pays = designs > 1 && self.programs_pay(designs);
         // All designs must have the same laws.

@@ -13,7 +13,7 @@ use crate::number::{Dual, Real};
 /// The value of a metric.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MetricValue {
-    /// In SI; `None` where the motion does not reach what is asked for.
+    /// In SI; `None` where the motion does not reach the request.
     pub value: Option<f64>,
     /// When it is taken, s; `None` for what is taken of the whole curve.
     pub time: Option<f64>,
@@ -23,7 +23,7 @@ pub struct MetricValue {
     /// Scale of the error, in SI: greatest less least value of the curve, for an integral times the travel of its abscissa, for a slope
     /// its own size.
     pub range: f64,
-    /// Its derivative by every design variable; NaN for those that the mechanism cannot follow, and all of them where no
+    /// Derivative by every design variable; NaN for those that the mechanism cannot follow, and all of them where no
     /// sensitivities were solved.
     pub d: Vec<f64>,
 }
@@ -541,7 +541,7 @@ fn left_at_points<T: Real>(
     counting.map(left).collect::<Option<Vec<T>>>().filter(|left| !left.is_empty())
 }
 
-/// Whether this part of the curve counts.
+/// True if this part of the curve counts.
 fn within_window(metric: &Metric, at: f64) -> bool {
     metric.window.is_none_or(|[low, high]| low <= at && at <= high)
 }

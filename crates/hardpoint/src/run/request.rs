@@ -1,4 +1,4 @@
-//! What a run is asked for.
+//! What a run is requested.
 
 use std::fmt;
 use std::num::NonZero;
@@ -74,7 +74,7 @@ impl<'r> Run<'r> {
     /// The changed design with variable k at `design[k]` (m, rad or a plain number; missing entries are 0, further ones count for
     /// nothing): its motion, solved exactly, and its sensitivities there.
     ///
-    /// Whether joints open under a further change is answered for the nominal design.
+    /// True if joints open under a further change is answered for the nominal design.
     pub fn at(self, design: &'r [f64]) -> Self {
         Self { design, ..self }
     }
@@ -100,7 +100,7 @@ impl<'r> Run<'r> {
         Self { memory, ..self }
     }
 
-    /// Solves designs on so many threads. The same designs share their lanes however many there are, so that every solution is the same
+    /// Solves designs on that many threads. The same designs share their lanes however many there are, so that every solution is the same
     /// to the last bit.
     pub fn threads(self, threads: NonZero<usize>) -> Self {
         Self { threads, ..self }

@@ -12,7 +12,7 @@ use crate::sensitivity::BodySensitivity;
 /// Results come in groups of up to eight output times; within a group the bodies' states come first, then variable by variable
 /// the sensitivities of those bodies that the variable moves. All others are zero.
 pub trait Sink {
-    /// Whether this body's results are wanted: what is not is not even worked out.
+    /// True if this body's results are wanted: what is not is not even worked out.
     fn wants(&self, body: BodyId) -> bool {
         let _ = body;
         true
@@ -24,7 +24,7 @@ pub trait Sink {
     /// A body's sensitivity by one variable at output time k.
     ///
     /// By variables that turn out to be such as the mechanism cannot follow, numbers may come nevertheless: the
-    /// [`Admissibility`](crate::sensitivity::Admissibility) at the end tells.
+    /// [`Admissibility`](crate::sensitivity::Admissibility) at the end indicates.
     fn sensitivity(&mut self, k: usize, variable: VariableId, body: BodyId, derivatives: &BodySensitivity);
 
     /// Memory for eight output times, k to k + 7, that are found at once, those of every number side by side. First, per body but

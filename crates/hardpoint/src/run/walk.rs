@@ -22,12 +22,12 @@ use super::analysis::Analysis;
 use super::request::Progress;
 use super::sink::{NullSink, Sink, hand_over};
 
-/// What is asked for of a design.
+/// The request of a design.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scope {
     pub sensitivities: bool,
     pub measures: bool,
-    /// How many designs are solved in all, this one included: what is worth a program for all of them.
+    /// Number of designs are solved in all, this one included: what is worth a program for all of them.
     pub of_many: usize,
 }
 
@@ -43,7 +43,7 @@ pub(crate) struct PreparedDesign {
     pub values: Vec<f64>,
     pub geometry: Geometry,
     pub laws: Vec<Law>,
-    /// How the variables change it, if that is asked for, and the joints that each opens in the nominal design.
+    /// How the variables change it, if that is requested, and the joints that each opens in the nominal design.
     pub fields: Vec<DesignVelocity>,
     pub opens: Vec<Vec<JointDefect>>,
     pub scope: Scope,
@@ -54,7 +54,7 @@ pub(crate) struct Walk<'a> {
     analysis: &'a Analysis<'a>,
     pub one: Stepper<'a>,
     abreast: TimeBatch<'a>,
-    /// `None` where no sensitivities are asked for.
+    /// `None` where no sensitivities are requested.
     pub solver: Option<SensitivitySolver>,
     /// `None` where no loads are.
     pub loads: Option<LoadSolver<'a>>,
@@ -176,7 +176,7 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// Tells the progress of so many output times; how many of them count, and the stop of a run that is told to end.
+    /// Indicates the progress of that many output times; how many of them count, and the stop of a run that is reported to end.
     fn tell(
         &self,
         solved: usize,
@@ -192,7 +192,7 @@ impl<'a> Walk<'a> {
         (solved, None)
     }
 
-    /// Output time k, where the stepper stands.
+    /// Output time k, where the stepper is.
     #[inline(always)]
     fn give_one<S: Sink>(&mut self, k: usize, sink: &mut S) {
         for body in (1..self.wanted.len()).filter(|b| self.wanted[*b]) {
@@ -212,7 +212,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// So many output times from k on, as a program has found them; the lanes that they are in.
+    /// That many output times from k on, as a program has found them; the lanes that they are in.
     #[inline(always)]
     fn give_abreast<S: Sink>(&mut self, k: usize, count: usize, sink: &mut S) -> Range<usize> {
         let first = k % LANES;

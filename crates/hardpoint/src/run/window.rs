@@ -32,7 +32,7 @@ pub struct Footprint {
 }
 
 impl Footprint {
-    /// That of a model with so many outputs, with or without sensitivities.
+    /// That of a model with that many outputs, with or without sensitivities.
     pub fn of(model: &Model, sensitivities: bool) -> Self {
         let variables = if sensitivities { model.variables.len() } else { 0 };
         let (bodies, outputs) = (model.bodies.len(), measure::outputs(model).len());
@@ -48,7 +48,7 @@ impl Footprint {
         self.motion + self.sensitivities + self.measured
     }
 
-    /// What a window of about so many bytes really takes: it holds one round of the lanes at least.
+    /// What a window of about that many bytes really takes: it holds one round of the lanes at least.
     pub fn of_window(self, bytes: usize) -> usize {
         self.bytes() * self.rows(bytes)
     }
@@ -59,7 +59,7 @@ impl Footprint {
 }
 
 impl Analysis<'_> {
-    /// As [`Analysis::solve`], window by window, each of about so many bytes: `each` sees the window's solution, and the
+    /// As [`Analysis::solve`], window by window, each of about that many bytes: `each` sees the window's solution, and the
     /// number of its first output time. What comes back are the facts of the whole run (stop, effort, assembly,
     /// admissibility), with the last window.
     ///
@@ -80,7 +80,7 @@ impl Analysis<'_> {
         solution
     }
 
-    /// Solves all output times, so many at a time; the last ones remain. Gives the number of the first of these.
+    /// Solves all output times, that many at a time; the last ones remain. Gives the number of the first of these.
     pub(super) fn walk(
         &self,
         design: &PreparedDesign,
@@ -232,7 +232,7 @@ impl Window {
 /// What to keep of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sampling {
-    /// At most so many output times: of more, every second, then every fourth, and so on.
+    /// At most that many output times: of more, every second, then every fourth, and so on.
     pub rows: usize,
     /// Poses and motion of the bodies.
     pub motion: bool,
@@ -256,7 +256,7 @@ impl SampledResults {
         Self { keep, stride: 1, solution: Solution::default() }
     }
 
-    /// Of so many output times, each is kept.
+    /// Of that many output times, each is kept.
     pub fn stride(&self) -> usize {
         self.stride
     }

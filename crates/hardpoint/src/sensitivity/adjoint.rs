@@ -66,7 +66,7 @@ pub(crate) struct Support {
 /// A marker on a body.
 #[derive(Clone, Copy, Debug)]
 struct MarkerPlace {
-    /// Its number in [`Adjoint::seen`].
+    /// Number in [`Adjoint::seen`].
     index: usize,
     joint: Transmitter,
     body: usize,
@@ -194,14 +194,14 @@ impl Adjoint {
         Support::new(topology, &self.fields, loaded)
     }
 
-    /// Sets what changing laws do where a stepper stands, at time t.
+    /// Sets what changing laws do where a stepper is, at time t.
     pub fn set_time(&mut self, stepper: &Stepper<'_>, t: f64) {
         let law = |d: DriverId| stepper.parts.law_of(d.0);
         self.fields.iter_mut().for_each(|field| field.set_time(law, t));
     }
 
-    /// Adds to `gradient`, by variable, the work of loads on bodies and its first two time derivatives; only so many
-    /// `orders` of these. `state` stands with all of its rates.
+    /// Adds to `gradient`, by variable, the work of loads on bodies and its first two time derivatives; only that many
+    /// `orders` of these. `state` is with all of its rates.
     pub fn add_work(
         &mut self,
         topology: &Topology,
@@ -284,7 +284,7 @@ impl Adjoint {
         gradient: &mut [[f64; 3]],
     ) {
         let Transmission { rows, links, pulls, .. } = &self.transmission;
-        // T_k . (z_p - z_c) + T_c . (z_j - z_i): of order n t(n) . e, since e stands
+        // T_k . (z_p - z_c) + T_c . (z_j - z_i): of order n t(n) . e, since e is
         for &(v, place, e) in &support.moves {
             for n in 0..orders {
                 gradient[v][n] += self.seen[place][n].on(e);
@@ -321,7 +321,7 @@ impl Adjoint {
 /// Watches the rows that were left out, as [`DirectDifferentiation::worst_defect`](super::DirectDifferentiation::worst_defect) does: each
 /// side of each row is a load of its own.
 pub(crate) struct DefectWatch {
-    /// Per body that such a row stands on: what loads on it are felt by.
+    /// Per body that such a row is on: what loads on it are felt by.
     supports: Vec<Option<Support>>,
     /// Per variable: the work on one side, the sum of all terms, and the largest of them.
     side: Vec<[f64; 3]>,
@@ -343,7 +343,7 @@ impl DefectWatch {
         }
     }
 
-    /// Notes which joints resist which variables where a stepper stands, at time t.
+    /// Notes which joints resist which variables where a stepper is, at time t.
     pub fn look(
         &mut self,
         adjoint: &mut Adjoint,

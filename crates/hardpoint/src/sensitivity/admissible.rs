@@ -7,7 +7,7 @@ use crate::design::DesignVelocity;
 use crate::model::{CouplerTerm, JointId, Model};
 use crate::space::Twist;
 
-/// Whether and how a mechanism follows a design variable.
+/// True if and how a mechanism follows a design variable.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Admissibility {
     /// Every joint stays closed with all bodies where they are: no re-assembly (paper, section 4).

@@ -1,6 +1,6 @@
 //! The three levels of one design variable at one step.
 //!
-//! What stands here under which name (`docs/theory.md`, sections 5 and 6; the paper's sections 3 and 5):
+//! What is here under which name (`docs/theory.md`, sections 5 and 6; the paper's sections 3 and 5):
 //!
 //! | here | theory | paper | what, per unit of the variable b |
 //! |---|---|---|---|
@@ -191,7 +191,7 @@ impl<T: Real> PlanVelocity<T> {
         Self { links, closures, kept, laws, shifts, law_rates, scale, reach }
     }
 
-    /// Whether it is the same at all times: no parameter of a law changes.
+    /// True if it is the same at all times: no parameter of a law changes.
     pub fn is_constant(&self) -> bool {
         self.laws.is_empty()
     }
@@ -295,7 +295,7 @@ impl<T: Real> PlanVelocity<T> {
         starts.chain(ends).fold(T::zero(), |sum, (load, body, e)| sum + load.on(state.pose[body].carry(e)))
     }
 
-    /// What they, and loads on bodies `[n][b]` that go by W, W. and W.., work on all that `flow` says this change makes of the motion.
+    /// What they, and loads on bodies `[n][b]` that depend on W, W. and W.., work on all that `flow` says this change makes of the motion.
     pub fn work(
         &self,
         (topology, state): (&Topology, &State<T>),
@@ -366,7 +366,7 @@ impl Defect {
     }
 }
 
-/// A defect below this part of the field's own speed is zero, even if nothing else stands in the row.
+/// A defect below this part of the field's own speed is zero, even if nothing else is in the row.
 pub(super) const DEFECT_FLOOR: f64 = 1e-9;
 
 impl<T: Real> DirectDifferentiation<T> {
@@ -378,7 +378,7 @@ impl<T: Real> DirectDifferentiation<T> {
         }
     }
 
-    /// W, W. and W.. of all bodies for one variable, where `state` stands with all of its rates.
+    /// W, W. and W.. of all bodies for one variable, where `state` is with all of its rates.
     pub fn solve(&mut self, topology: &Topology, state: &mut State<T>, field: &PlanVelocity<T>) {
         self.set_field(topology, state, field);
         self.solve_order::<0>(topology, state, field);
@@ -392,7 +392,7 @@ impl<T: Real> DirectDifferentiation<T> {
         self.solve_order::<0>(topology, state, field);
     }
 
-    /// The design twists of every marker of the field; all that it does not reach stands.
+    /// The design twists of every marker of the field; all that it does not reach is.
     #[inline(always)]
     fn set_field(&mut self, topology: &Topology, state: &State<T>, field: &PlanVelocity<T>) {
         let (none, Self { flow, z, moved }) = (Twist::zero(), self);
@@ -428,7 +428,7 @@ impl<T: Real> DirectDifferentiation<T> {
         field: &PlanVelocity<T>,
     ) {
         let (reach, Self { flow, z, .. }) = (&field.reach, self);
-        // demand = L' + df(n)/dp - l . (z_j(n) - z_i(n)); L' stands still, so it is asked for at order 0 alone. What (12) and (13) have
+        // demand = L' + df(n)/dp - l . (z_j(n) - z_i(n)); L' is at rest, so it is requested at order 0 alone. What (12) and (13) have
         // besides, -sum_{m=1..n} C(n,m) l(m) . (D_j(n-m) - D_i(n-m)), is the same for all that is solved here: see `Flow::solve`.
         reach.closures.iter().for_each(|&c| flow.ask(topology, c, T::zero()));
         for (m, z) in field.closures.iter().zip(&*z) {
@@ -448,7 +448,7 @@ impl<T: Real> DirectDifferentiation<T> {
         }
         if let Some(apart) = flow.apart.get_mut(N) {
             for (m, z) in field.closures.iter().zip(z).filter(|(m, _)| topology[m.at].block.is_some()) {
-                // D_j - D_i = (W_j - W_i) + (z_j - z_i), for the orders above; the first part stands there already.
+                // D_j - D_i = (W_j - W_i) + (z_j - z_i), for the orders above; the first part is there already.
                 apart[m.at.0] += if m.end == 1 { z[N] } else { -z[N] };
             }
         }

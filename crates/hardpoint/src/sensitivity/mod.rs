@@ -53,7 +53,7 @@ pub struct BodySensitivity {
 }
 
 impl BodySensitivity {
-    /// So many numbers it is.
+    /// Number of numbers it is.
     pub(crate) const NUMBERS: usize = 18;
 
     /// From them, in the order of the fields.
@@ -91,9 +91,9 @@ impl BodySensitivity {
 /// Sensitivities of all bodies over a solved motion.
 #[derive(Clone, Debug, Default)]
 pub struct Sensitivities {
-    /// How many variables there are.
+    /// Number of variables there are.
     pub variables: usize,
-    /// How many bodies, ground included.
+    /// Number of bodies, ground included.
     pub bodies: usize,
     /// Per variable: whether and how the mechanism follows the change.
     pub admissibility: Vec<Admissibility>,
@@ -114,7 +114,7 @@ impl Sensitivities {
         Some(Derivatives { row: self.derivatives.row(k), places })
     }
 
-    /// Whether a variable moves a body at all.
+    /// True if a variable moves a body at all.
     pub fn moves(&self, variable: VariableId, body: BodyId) -> bool {
         self.places[variable.0 * self.bodies + body.0].is_some()
     }
@@ -145,7 +145,7 @@ impl Sensitivities {
         self.derivatives.copy(k, &from.derivatives, j);
     }
 
-    /// Room for so many output times, in the memory that there is. `moved` says which variable moves which body.
+    /// Room for that many output times, in the memory that there is. `moved` says which variable moves which body.
     pub(crate) fn shape(
         &mut self,
         bodies: usize,

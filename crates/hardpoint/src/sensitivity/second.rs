@@ -89,7 +89,7 @@ impl FirstOrder {
         }
     }
 
-    /// Where a state stands. What the direction does not reach stays zero.
+    /// Where a state is. What the direction does not reach stays zero.
     fn solve(&mut self, topology: &Topology, state: &mut State<f64>) {
         // W_u, S_u by (11), and z_u = Ad(X) e_u by (8)
         self.direct.solve_position(topology, state, &self.field);
@@ -114,7 +114,7 @@ impl FirstOrder {
     /// How the markers of a closure go.
     fn ends(&self, topology: &Topology, c: ClosureId) -> MarkerPairRates<f64> {
         let ([i, j], [z_i, z_j], none) = (topology[c].bodies, self.closures[c.0], Twist::ZERO);
-        // D_w = W_w + z_w, in place of V; second rates are not asked for
+        // D_w = W_w + z_w, in place of V; second rates are not requested
         MarkerPairRates { v_i: self.w()[i.0] + z_i, v_j: self.w()[j.0] + z_j, a_i: none, a_j: none }
     }
 }
@@ -196,7 +196,7 @@ impl Seconds {
         }
     }
 
-    /// Solves all pairs where a stepper stands, at time t.
+    /// Solves all pairs where a stepper is, at time t.
     pub fn solve(&mut self, stepper: &mut Stepper<'_>, t: f64) {
         let (topology, state, parts) = (&stepper.topology, &mut stepper.state, &stepper.parts);
         for first in &mut self.firsts {
@@ -226,7 +226,7 @@ impl Seconds {
         }
     }
 
-    /// How many pairs there are.
+    /// Number of pairs there are.
     pub fn len(&self) -> usize {
         self.pairs.len()
     }

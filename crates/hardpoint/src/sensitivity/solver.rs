@@ -51,7 +51,7 @@ impl SensitivitySolver {
         }
     }
 
-    /// Room for all sensitivities over so many steps, in the memory that there is.
+    /// Room for all sensitivities over that many steps, in the memory that there is.
     pub fn make_room(&self, sensitivities: &mut Sensitivities, steps: usize) {
         sensitivities.shape(self.bodies, self.fields.len(), self.moved(), steps);
     }
@@ -62,7 +62,7 @@ impl SensitivitySolver {
         fields.flat_map(|(v, field)| field.reach.bodies.iter().map(move |b| (VariableId(v), BodyId(*b))))
     }
 
-    /// The output time t, where a stepper stands with velocity and acceleration: `found` gets the sensitivities of wanted bodies, and
+    /// The output time t, where a stepper is with velocity and acceleration: `found` gets the sensitivities of wanted bodies, and
     /// `each` all that is known of a variable before the next one.
     pub fn step(
         &mut self,
@@ -99,13 +99,13 @@ impl SensitivitySolver {
         note_defects(tape, topology, (times, first), (&mut self.resisting, 0));
     }
 
-    /// What so many steps say of every variable's admissibility, given the joints that each opens in the design.
+    /// What that many steps say of every variable's admissibility, given the joints that each opens in the design.
     pub fn admissibility(&self, opens: &[Vec<JointDefect>], steps: usize) -> Vec<Admissibility> {
         admissibility(opens, self.resisting.clone(), steps)
     }
 }
 
-/// What so many steps say of every variable, given the joints that each opens in the nominal design.
+/// What that many steps say of every variable, given the joints that each opens in the nominal design.
 pub(crate) fn admissibility(
     opens: &[Vec<JointDefect>],
     resisting: Vec<Resistance>,
@@ -164,7 +164,7 @@ fn components<T: Real>(flow: &Flow<T>, state: &State<T>, body: usize) -> [T; Bod
     [p.x, p.y, p.z, q.x, q.y, q.z, u.x, u.y, u.z, o.x, o.y, o.z, n.x, n.y, n.z, e.x, e.y, e.z]
 }
 
-/// Records the derivatives of all bodies by all variables with these fields, where the state stands, and what `each` makes of all that
+/// Records the derivatives of all bodies by all variables with these fields, where the state is, and what `each` makes of all that
 /// is known of a variable before the next one; none where a law changes, which no program knows.
 pub(crate) fn record_derivatives(
     model: &Model,

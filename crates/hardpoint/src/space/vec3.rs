@@ -33,7 +33,7 @@ impl Vec3<f64> {
         [self.x, self.y, self.z]
     }
 
-    /// Whether every component is a finite number.
+    /// True if every component is a finite number.
     pub fn is_finite(self) -> bool {
         self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
     }
@@ -44,7 +44,7 @@ impl Vec3<f64> {
         (n > 1e-12 && n.is_finite()).then(|| self * (1.0 / n))
     }
 
-    /// A unit vector square to this unit vector, chosen the same way every time.
+    /// A unit vector perpendicular to this unit vector, chosen the same way every time.
     pub fn any_square(self) -> Self {
         let a = self.to_array().map(f64::abs);
         let k = (0..3).fold(0, |best, k| if a[k] < a[best] { k } else { best });
@@ -118,7 +118,7 @@ impl<T: Real> Vec3<T> {
         )
     }
 
-    /// The mirror image in the plane square to this unit normal: `v - 2 (v . n) n`.
+    /// The mirror image in the plane perpendicular to this unit normal: `v - 2 (v . n) n`.
     pub fn mirrored(self, normal: Self) -> Self {
         self - normal * (T::constant(2.0) * self.dot(normal))
     }

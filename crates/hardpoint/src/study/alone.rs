@@ -13,7 +13,7 @@ use crate::space::Pose;
 pub struct DriverRates {
     /// Output times that were solved, s.
     pub times: Vec<f64>,
-    /// The drivers, as asked for.
+    /// The drivers, as requested.
     pub drivers: Vec<DriverId>,
     /// The columns: measures, then components of points.
     pub outputs: Vec<Output>,
@@ -24,7 +24,7 @@ pub struct DriverRates {
 }
 
 impl DriverRates {
-    /// Of output m at time k by driver d of those asked for, in the output's unit per m or rad; `None` of what does not follow from
+    /// Of output m at time k by driver d of those requested, in the output's unit per m or rad; `None` of what does not follow from
     /// positions alone.
     pub fn value(&self, k: usize, d: usize, m: usize) -> Option<f64> {
         let value = self.values[(k * self.drivers.len() + d) * self.outputs.len() + m];
@@ -33,7 +33,7 @@ impl DriverRates {
 }
 
 impl Analysis<'_> {
-    /// What drivers do by themselves along the motion of the design as drawn (`docs/theory.md`, section 7).
+    /// What drivers do by themselves along the motion of the nominal design (`docs/theory.md`, section 7).
     pub fn driver_rates(&self, drivers: &[DriverId]) -> DriverRates {
         let model = self.model();
         let design = self.design(&[]);

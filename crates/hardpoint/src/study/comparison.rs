@@ -31,7 +31,7 @@ pub struct Comparison {
     errors: Vec<StepError>,
     /// Without ground.
     bodies: usize,
-    /// How many orders each output has.
+    /// Number of orders each output has.
     orders: Vec<usize>,
 }
 

@@ -84,12 +84,12 @@ impl<'m> Motions<'m> {
         self.analyses[motion].model()
     }
 
-    /// How many there are.
+    /// Number of there are.
     pub fn len(&self) -> usize {
         self.analyses.len()
     }
 
-    /// Whether there is none.
+    /// True if there is none.
     pub fn is_empty(&self) -> bool {
         self.analyses.is_empty()
     }
@@ -129,7 +129,7 @@ impl<'m> From<Vec<Analysis<'m>>> for Motions<'m> {
 }
 
 impl EvaluationError {
-    /// Whether it was the caller who ended it.
+    /// True if it was the caller who ended it.
     pub fn interrupted(&self) -> bool {
         matches!(self.stop.kind, StopKind::Interrupted)
     }

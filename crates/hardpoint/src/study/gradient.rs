@@ -43,9 +43,9 @@ pub enum GradientMethod {
 pub struct Gradients {
     /// Output times that were solved, s.
     pub times: Vec<f64>,
-    /// The outputs asked for.
+    /// The outputs requested.
     pub outputs: Vec<Output>,
-    /// How many design variables there are.
+    /// Number of design variables there are.
     pub variables: usize,
     /// How they were worked out: direct or adjoint.
     pub method: GradientMethod,
@@ -58,7 +58,7 @@ pub struct Gradients {
 }
 
 impl Gradients {
-    /// Derivatives by every variable, at fixed t, of value, rate and acceleration of the m-th output asked for, at time k; in
+    /// Derivatives by every variable, at fixed t, of value, rate and acceleration of the m-th output requested, at time k; in
     /// the output's unit, per s, per s^2, per unit of the variable.
     ///
     /// Those of a variable that the mechanism cannot follow are NaN: [`Gradients::admissibility`] says why.
@@ -104,7 +104,7 @@ impl Analysis<'_> {
         }
     }
 
-    /// The way to go for so many outputs, so many of which are loads.
+    /// The way to go for that many outputs, that many of which are loads.
     fn method(&self, outputs: usize, loads: usize, method: GradientMethod) -> GradientMethod {
         let adjoint = OUTPUT_COST * (outputs - loads)
             + LOAD_COST * loads
@@ -197,18 +197,18 @@ struct AdjointSolver<'a> {
     adjoint: Adjoint,
     watch: DefectWatch,
     asked: Vec<Requested>,
-    /// `None` where no load is asked for.
+    /// `None` where no load is requested.
     loads: Option<(LoadSolver<'a>, LoadGradients)>,
     /// Bodies that outputs are measured on.
     bodies: Vec<usize>,
     poses: Vec<Pose<Dual<Rates>>>,
-    /// What measures go by; and the same as it goes with each variable that moves some of it.
+    /// What measures depend on; and the same as it goes with each variable that moves some of it.
     fixed: BodyFixed<Dual<Rates>>,
     moved: Vec<Option<BodyFixed<Dual<Rates>>>>,
     gradient: Vec<[f64; 3]>,
 }
 
-/// What is asked for.
+/// The request.
 enum Requested {
     /// A function of positions.
     Output(Box<RequestedOutput>),
@@ -232,7 +232,7 @@ struct RequestedOutput {
     support: Support,
     /// Variables that move what it is measured with within its body.
     variables: Vec<usize>,
-    /// Its derivatives by the six unit twists of each of these bodies, then by each of these variables: of value, rate and
+    /// Derivatives by the six unit twists of each of these bodies, then by each of these variables: of value, rate and
     /// acceleration.
     derivatives: Vec<[f64; 3]>,
 }
@@ -394,7 +394,7 @@ fn move_along(pose: &mut Pose<Dual<Rates>>, unit: usize) {
     let axis = Vec3::AXES[unit % 3].spread();
     let twist = if unit < 3 { Twist::turn(axis, Vec3::zero()) } else { Twist::slide(axis) };
     for c in &mut pose.rot.cols {
-        // de = w x e,    dr = v + w x r,  with their rates by those of e and r, since the unit twist stands in the world
+        // de = w x e,    dr = v + w x r,  with their rates by those of e and r, since the unit twist is in the world
         let rate = twist.w.cross(c.map(|x| x.v));
         set(c, rate);
     }

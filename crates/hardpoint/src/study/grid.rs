@@ -11,7 +11,7 @@ use crate::topology::{Formulation, TopologyError};
 
 use super::evaluation::StudyCost;
 
-/// A solved grid. Positions are counted row by row: in a row the first driver goes from position to position while the second stands.
+/// A solved grid. Positions are counted row by row: in a row the first driver goes from position to position while the second is.
 #[derive(Clone, Debug)]
 pub struct GridMap {
     /// The grid.
@@ -22,7 +22,7 @@ pub struct GridMap {
     still: Vec<bool>,
     /// Per position, what was found there.
     positions: Vec<Position>,
-    /// How many design variables there are.
+    /// Number of design variables there are.
     variables: usize,
     /// What stopped the motions that did not come to their end.
     pub stops: Vec<GridStop>,
@@ -51,13 +51,13 @@ enum Position {
     NotTried,
 }
 
-/// The times of the two parts of every motion: the second driver goes to where it stands, then the first one sweeps.
+/// The times of the two parts of every motion: the second driver goes to where it is, then the first one sweeps.
 pub(super) const STANDS: [f64; 2] = [0.0, 1.0];
 
 impl GridMap {
     /// Solves a grid at the design with variable k at `design[k]`; `more` is asked at every position, and may end it.
     ///
-    /// Each row is reached from the drawn position: first the second driver goes to where it stands in that row, then the first one goes up,
+    /// Each row is reached from the drawn position: first the second driver goes to where it is in that row, then the first one goes up,
     /// and in a motion of its own down. So a position beyond a limit on one side says nothing of the other side.
     ///
     /// # Errors
@@ -82,7 +82,7 @@ impl GridMap {
         };
         for row in 0..second.len() {
             for sign in [1.0, -1.0] {
-                // Each side from the middle outwards; where the first driver is as drawn counts as the upper side.
+                // Each side from the middle outwards; where the first driver is in the design configuration counts as the upper side.
                 let mut places: Vec<usize> =
                     (0..first.len()).filter(|k| (first[*k] >= 0.0) == (sign > 0.0)).collect();
                 if sign < 0.0 {
@@ -148,19 +148,19 @@ impl GridMap {
         numbers
     }
 
-    /// Whether output m has numbers in a map: what follows from positions, or from what happens while one driver alone moves. Velocities,
+    /// True if output m has numbers in a map: what follows from positions, or from what happens while one driver alone moves. Velocities,
     /// accelerations and what follows from them are those of a motion, and there is none.
     pub fn has(&self, m: usize) -> bool {
         self.still[m]
     }
 
-    /// Output m where the first driver stands at its value i, the second at its value j; `None` where that was not reached, or where
+    /// Output m where the first driver is at its value i, the second at its value j; `None` where that was not reached, or where
     /// there is no such number.
     pub fn value(&self, [i, j]: [usize; 2], m: usize) -> Option<f64> {
         self.number([i, j], m)
     }
 
-    /// Its derivative by a design variable; `None` also where the mechanism cannot follow that.
+    /// Derivative by a design variable; `None` also where the mechanism cannot follow that.
     pub fn d(&self, [i, j]: [usize; 2], variable: VariableId, m: usize) -> Option<f64> {
         self.number([i, j], (1 + variable.0) * self.outputs.len() + m)
     }
@@ -172,7 +172,7 @@ impl GridMap {
         }
     }
 
-    /// Whether a position was reached.
+    /// True if a position was reached.
     pub fn is_solved(&self, [i, j]: [usize; 2]) -> bool {
         matches!(self.positions[j * self.grid.values[0].len() + i], Position::Solved(_))
     }
@@ -185,12 +185,12 @@ impl GridMap {
         }
     }
 
-    /// How many positions were reached.
+    /// Number of positions were reached.
     pub fn solved(&self) -> usize {
         self.positions.iter().filter(|p| matches!(p, Position::Solved(_))).count()
     }
 
-    /// Whether the caller ended it before all positions were tried.
+    /// True if the caller ended it before all positions were tried.
     pub fn interrupted(&self) -> bool {
         self.positions.iter().any(|p| matches!(p, Position::NotTried))
     }
@@ -202,12 +202,12 @@ impl GridMap {
     }
 }
 
-/// Where the first driver stands at a time.
+/// Where the first driver is at a time.
 fn sweep(farthest: f64, time: f64) -> f64 {
     farthest * (time - STANDS[1]).max(0.0)
 }
 
-/// When it stands there, on its way to the farthest place of its side.
+/// When it is there, on its way to the farthest place of its side.
 fn time_of(place: f64, farthest: f64) -> f64 {
     STANDS[1] + if place == 0.0 { 0.0 } else { place / farthest }
 }
@@ -243,7 +243,7 @@ fn row_model(model: &Model, grid: &Grid, ways: [f64; 2], places: impl Iterator<I
 }
 
 /// A law written here. Where the driver's laws count from zero and the drawing follows the design, the driver has gone back by what the
-/// drawing has moved before the first place is passed, so that it stands where the grid says in every design.
+/// drawing has moved before the first place is passed, so that it is where the grid says in every design.
 pub(super) fn law_of(model: &Model, driver: DriverId, text: String) -> (Law, Option<Formula>) {
     let [_, stands] = STANDS;
     let law =

@@ -10,7 +10,7 @@ pub struct Jerks {
     pub times: Vec<f64>,
     /// `states[k * bodies + b]` at time k of body b; body 0 is ground.
     pub states: Vec<BodyJerk>,
-    /// How many bodies there are, ground included.
+    /// Number of bodies there are, ground included.
     pub bodies: usize,
     /// Why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
@@ -32,7 +32,7 @@ impl Analysis<'_> {
         self.jerks_in(&design, usize::MAX, &mut |_| ())
     }
 
-    /// As [`Analysis::jerks`] of the nominal design, so many output times at a time: `each` sees them one part after the other.
+    /// As [`Analysis::jerks`] of the nominal design, that many output times at a time: `each` sees them one part after the other.
     pub fn jerks_in_windows(&self, rows: usize, mut each: impl FnMut(&Jerks)) {
         let design = self.design(&[]);
         let last = self.jerks_in(&design, rows, &mut each);

@@ -16,9 +16,9 @@ pub struct JointLoad {
     /// The moment about that place, N m.
     pub moment: Vec3,
     /// Which components of force and moment are known: where constraints say the same, some of what joints carry depends on how stiff
-    /// they are, and what stands here is one of many answers.
+    /// they are, and what is here is one of many answers.
     pub known: [[bool; 3]; 2],
-    /// The same force and moment along the global axes as drawn, which have turned with the body.
+    /// The same force and moment along the global axes in the design configuration, which have turned with the body.
     pub in_body: [Vec3; 2],
     /// Which components of these are known.
     pub known_in_body: [[bool; 3]; 2],
@@ -31,7 +31,7 @@ pub struct JointLoad {
 /// What a driver gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriverLoad {
-    /// Its force, N, or moment, N m; positive where it works while what it drives grows.
+    /// Force, N, or moment, N m; positive where it works while what it drives grows.
     pub force: f64,
     /// The speed that it prescribes, m/s or rad/s: times the force it is the power, W.
     pub speed: f64,

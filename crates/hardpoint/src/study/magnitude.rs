@@ -14,13 +14,13 @@ pub struct Magnitude {
     size: f64,
     /// Of orders 0, 1 and 2: lengths in sizes, angles in rad, per s to the power of the order.
     orders: [f64; 3],
-    /// Its mass, kg, and what pushes it besides, N: weights, given forces, and preloads.
+    /// Mass, kg, and what pushes it besides, N: weights, given forces, and preloads.
     mass: f64,
     pushed: f64,
 }
 
 impl Magnitude {
-    /// That of a mechanism which stands still.
+    /// That of a mechanism which is at rest.
     pub fn at_rest(model: &Model) -> Self {
         let mass = model.mass();
         let given: f64 = model.elements.iter().map(|e| e.kind.push(model)).sum();
@@ -44,7 +44,7 @@ impl Magnitude {
         }
     }
 
-    /// The same, but for orders that are round-off: where a motion stands still or runs at a steady speed all the `span`, s, the next order
+    /// The same, but for orders that are round-off: where a motion is at rest or runs at a steady speed all the `span`, s, the next order
     /// counts as if the one before were gone through once in that time.
     #[must_use]
     pub fn or_once_in(mut self, span: f64) -> Self {

@@ -1,4 +1,4 @@
-//! The nearest admissible change: what was asked for, with as much more as keeps the joints closed.
+//! The nearest admissible change: what was requested, with as much more as keeps the joints closed.
 
 use crate::linalg::{FullPivot, least_squares};
 use crate::model::{Change, End, Model, VariableId};
@@ -6,31 +6,31 @@ use crate::run::{Analysis, Walk};
 use crate::sensitivity::{DirectDifferentiation, PlanVelocity, conditions_at_design};
 use crate::space::Vec3;
 
-/// Conditions that the motion adds are taken at so many of its output times, evenly.
+/// Conditions that the motion adds are taken at that many of its output times, evenly.
 const TIMES: usize = 24;
 /// A condition is met where its defect is below this part of what the largest change makes of the strongest condition: some
 /// hundred times the round-off of typed coordinates.
 const MET: f64 = 1e-7;
-/// A variable that was asked for moves by this part of what others do: it is kept where they can make up for it.
+/// A variable that was requested moves by this part of what others do: it is kept where they can make up for it.
 const KEPT: f64 = 1e-9;
 
-/// An admissible change near one that was asked for.
+/// An admissible change near one that was requested.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NearestAdmissible {
     /// By how much every variable changes, m, rad, or plain.
     pub change: Vec<f64>,
-    /// How many independent conditions there are.
+    /// Number of independent conditions there are.
     pub conditions: usize,
-    /// The largest defect of the change that was asked for, and of this one, in units of the mechanism's size or rad.
+    /// The largest defect of the change that was requested, and of this one, in units of the mechanism's size or rad.
     pub defects: [f64; 2],
 }
 
 /// The change nearest to `change` that keeps all joints closed with all bodies where they are (paper, section 4), and over the
 /// motion meets what redundant constraints ask for; to first order.
 ///
-/// It is the least-squares projection onto the null space of these conditions, over the variables asked for and all others of
+/// It is the least-squares projection onto the null space of these conditions, over the variables requested and all others of
 /// the model that move one coordinate of a hardpoint or tilt one joint ([`add_coordinates`](super::add_coordinates),
-/// [`add_tilts`](super::add_tilts)), each measured by its [natural step](crate::model::Model::natural_step); what was asked for is
+/// [`add_tilts`](super::add_tilts)), each measured by its [natural step](crate::model::Model::natural_step); what was requested is
 /// kept as long as others can make up for it.
 pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> NearestAdmissible {
     let model = analysis.model();
@@ -40,7 +40,7 @@ pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> NearestAdm
     let weight: Vec<f64> = (0..asked.len()).map(|v| weight(model, &asked, v)).collect();
     let mut rows = conditions(analysis, &scales);
     // What does not move opens nothing.
-    // A_kv = d(defect k)/d(b_v) natural_v / unit_k, 0 for what stands
+    // A_kv = d(defect k)/d(b_v) natural_v / unit_k, 0 for what is
     rows.iter_mut()
         .for_each(|row| row.iter_mut().zip(&weight).filter(|x| *x.1 == 0.0).for_each(|x| *x.0 = 0.0));
     rows.retain(|row| row.iter().any(|x| x.abs() > MET));
@@ -50,7 +50,7 @@ pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> NearestAdm
     let mut found = asked.clone();
     if !a.is_empty() {
         // d = x - B (A B)^+ A x    with W = B B: the least change, measured by W^-1, that meets them
-        // min (d - x)^T W^-1 (d - x)  with  A d = 0,  x what was asked for                                   (35)
+        // min (d - x)^T W^-1 (d - x)  with  A d = 0,  x what was requested                                   (35)
         let b: Vec<f64> = weight.iter().map(|w| w.sqrt()).collect();
         let right = a.iter().map(|row| dot(row, &asked)).collect();
         let least = least_squares([a.len(), b.len()], |i, v| a[i][v] * b[v], &[right]).remove(0);

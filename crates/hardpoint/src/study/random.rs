@@ -7,7 +7,7 @@ use rand_distr::{Distribution, StandardNormal, StandardUniform};
 
 use crate::model::Scatter;
 
-/// Below so many standard deviations a cut-off normal is drawn from within its reach, above from the normal: either way at least a third
+/// Below that many standard deviations a cut-off normal is drawn from within its reach, above from the normal: either way at least a third
 /// of the trials count.
 const NARROW: f64 = 1.5;
 /// Terms of the series for even narrower ones: each is less than `k^2 / 2 / j` of the one before.
@@ -16,7 +16,7 @@ const TERMS: i32 = 60;
 /// Moments of one coordinate of a deviation; the mean is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moments {
-    /// Its standard deviation, in the unit of the reach.
+    /// Standard deviation, in the unit of the reach.
     pub sigma: f64,
     /// The mean of its fourth power over that of its square, squared: 3 of a normal distribution.
     pub kurtosis: f64,

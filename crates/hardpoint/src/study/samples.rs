@@ -1,7 +1,7 @@
 //! Many designs in all motions, each by its number: what Monte Carlo, sweeps and their like have in common.
 //!
 //! Designs go in blocks of fixed size, and eight of a block side by side. A block is the same whoever solves it and however many are
-//! asked for, so that no result depends on threads, and the first designs of many are those of few, to the last bit.
+//! requested, so that no result depends on threads, and the first designs of many are those of few, to the last bit.
 
 use std::collections::BTreeMap;
 use std::num::NonZero;
@@ -25,7 +25,7 @@ pub struct SampleRun<'w> {
     pub numbers: Range<usize>,
     /// The values of all variables of the design of a number.
     pub design: &'w (dyn Fn(usize) -> Vec<f64> + Sync),
-    /// On so many threads.
+    /// On that many threads.
     pub threads: NonZero<usize>,
     /// Is asked before every block whether to go on.
     pub more: &'w (dyn Fn() -> bool + Sync),

@@ -15,11 +15,11 @@ use crate::space::Pose;
 pub struct SecondDerivatives {
     /// Output times that were solved, s.
     pub times: Vec<f64>,
-    /// The pairs, as asked for.
+    /// The pairs, as requested.
     pub pairs: Vec<[usize; 2]>,
     /// The columns: measures, then components of points.
     pub outputs: Vec<Output>,
-    /// How many bodies there are, ground included.
+    /// Number of bodies there are, ground included.
     pub bodies: usize,
     /// `values[(k * pairs + p) * outputs + m]`, and likewise by body.
     values: Vec<f64>,
@@ -86,7 +86,7 @@ impl Analysis<'_> {
 struct SecondDerivativeSolver<'a> {
     analysis: &'a Analysis<'a>,
     seconds: Seconds,
-    /// Per pair, what measures go by.
+    /// Per pair, what measures depend on.
     fixed: Vec<BodyFixed<Dual<Dual>>>,
     asked_for: Vec<usize>,
     poses: Vec<Pose<Dual<Dual>>>,

@@ -11,7 +11,7 @@ use basin::{
 
 /// So near to stationary, as a part of the gradient at the start, nothing is left to find.
 const STATIONARY: f64 = 1e-13;
-/// So many points are kept: a line search may go back a few.
+/// Number of points are kept: a line search may go back a few.
 const KEPT: usize = 16;
 
 /// What was found at the points that were looked at last.
@@ -105,7 +105,7 @@ impl<'p> TrustRegion<'p> {
         run.into_stepper().ok().map(Self)
     }
 
-    /// Does one iteration: where it stands then; `None` where it has come to its end.
+    /// Does one iteration: where it is then; `None` where it has come to its end.
     pub fn step(&mut self) -> Option<Vec<f64>> {
         next(&mut self.0)
     }

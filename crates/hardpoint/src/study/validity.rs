@@ -14,7 +14,7 @@ const ROUND_OFF: f64 = 1e-10;
 /// A variable that moves an output by less than this part of what the strongest does is not judged by it: next to nothing, any
 /// bend is large.
 const SLIGHT: f64 = 1e-2;
-/// Second derivatives of so many bytes are held at once; between such parts the work can be ended.
+/// Second derivatives of that many bytes are held at once; between such parts the work can be ended.
 const MOST_BYTES: usize = 8 << 20;
 
 /// How far the sensitivities by one design variable can be trusted.
@@ -26,7 +26,7 @@ pub struct Validity {
     pub linear_up_to: Vec<Option<f64>>,
 }
 
-/// How many times a change may be made until its second-order part is 5 % of its first-order part; infinite where that is
+/// Number of times a change may be made until its second-order part is 5 % of its first-order part; infinite where that is
 /// exactly linear. Both parts are those of a natural step.
 pub(super) fn linear_up_to(first: f64, second: f64) -> f64 {
     // y(b + s) = y + y_b s + y_bb s^2 / 2:  abs(y_bb s^2 / 2) = 0.05 abs(y_b s)  at  s = 0.05 abs(y_b) / abs(y_bb / 2)  (34)

@@ -59,7 +59,7 @@ pub struct Verification {
     pub scheme: DifferenceScheme,
     /// One entry per variable, in the model's order.
     pub checks: Vec<VariableCheck>,
-    /// Whether the sweep was ended before all variables were checked.
+    /// True if the sweep was ended before all variables were checked.
     pub interrupted: bool,
 }
 
@@ -98,7 +98,7 @@ impl VariableCheck {
 }
 
 impl Verification {
-    /// Whether every variable that has sensitivities passed.
+    /// True if every variable that has sensitivities passed.
     pub fn passed(&self) -> bool {
         !self.interrupted
             && self

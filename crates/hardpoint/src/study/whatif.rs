@@ -1,4 +1,4 @@
-//! What if the design were changed so: foreseen from the derivatives of today's design, and solved exactly.
+//! What if the design were changed so: predicted from the derivatives of today's design, and solved exactly.
 
 use crate::joint::Quantity;
 use crate::model::{Change, DesignVariable, Dimension, End, HardpointId, JointId, Model, VariableId, change};
@@ -9,7 +9,7 @@ use crate::space::Vec3;
 use super::second::SecondDerivatives;
 use super::validity::linear_up_to;
 
-/// A changed design: today's curves, those foreseen, and those solved exactly.
+/// A changed design: today's curves, those predicted, and those solved exactly.
 #[derive(Clone, Debug)]
 pub struct WhatIf {
     /// By how much every variable changes, m, rad, or plain.
@@ -25,11 +25,11 @@ pub struct WhatIf {
     /// The joints that the change opens in the design configuration, so that the mechanism re-assembles; none where it is
     /// admissible as a whole.
     pub opens: Vec<JointDefect>,
-    /// Changed variables that the mechanism cannot follow, not even together: then nothing is foreseen.
+    /// Changed variables that the mechanism cannot follow, not even together: then nothing is predicted.
     pub cannot_follow: Vec<VariableId>,
 }
 
-/// How well one output was foreseen.
+/// How well one output was predicted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PredictionQuality {
     /// Largest exact change over the motion, and the index of its time.
@@ -37,12 +37,12 @@ pub struct PredictionQuality {
     /// Largest error of the first-order prediction, and of the second-order one, which follows for positions alone
     /// ([`KnownOrders::by_position`](crate::model::KnownOrders::by_position)).
     pub errors: [Option<f64>; 2],
-    /// How many times the change could be made before its second-order part is 5 % of the first-order one; infinite where
+    /// Number of times the change could be made before its second-order part is 5 % of the first-order one; infinite where
     /// it is exactly linear, `None` where the first-order part is nothing or the second-order one is not known.
     pub linear_up_to: Option<f64>,
 }
 
-/// Foresees and solves a changed design; `today` is the nominal design's solution.
+/// Predicts and solves a changed design; `today` is the nominal design's solution.
 pub fn what_if(analysis: &Analysis<'_>, today: Solution, change: &[f64]) -> WhatIf {
     let model = analysis.model();
     let change = model.whole(change);
@@ -78,7 +78,7 @@ impl WhatIf {
         self.today.measured.len().min(self.exact.measured.len())
     }
 
-    /// Whether there is none.
+    /// True if there is none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -97,7 +97,7 @@ impl WhatIf {
         0.5 * self.bend.value(k, 0, m)
     }
 
-    /// The value of output m at time k as foreseen to first and to second order.
+    /// The value of output m at time k as predicted to first and to second order.
     pub fn foreseen(&self, k: usize, m: usize) -> [f64; 2] {
         // y + y_b . d,    y + y_b . d + d . y_bb d / 2
         let linear = self.today.measured.value(k, m)[0] + self.first(k, m);
@@ -109,7 +109,7 @@ impl WhatIf {
         value_beside(&self.today, &self.exact, k, m)
     }
 
-    /// How well output m was foreseen over the motion; `None` where nothing was foreseen or solved.
+    /// How well output m was predicted over the motion; `None` where nothing was predicted or solved.
     pub fn foresight(&self, m: usize) -> Option<PredictionQuality> {
         if self.is_empty() || !self.cannot_follow.is_empty() {
             return None;
@@ -148,9 +148,9 @@ pub fn value_beside(today: &Solution, other: &Solution, k: usize, m: usize) -> f
     }
 }
 
-/// A variable that a name stands for: one of the model's, or else `HARDPOINT.x`, `.y`, `.z`, or `JOINT.tilt_x`, `.tilt_y`,
+/// A variable that a name represents: one of the model's, or else `HARDPOINT.x`, `.y`, `.z`, or `JOINT.tilt_x`, `.tilt_y`,
 /// `.tilt_z` (about a global axis through the joint's place), which the model is given as a new variable. A coordinate that
-/// one of the model's variables is already stands for that variable.
+/// one of the model's variables is already represents that variable.
 pub fn variable_named(model: &mut Model, name: &str) -> Option<VariableId> {
     if let Some(known) = model.variable(name) {
         return Some(known);
@@ -211,7 +211,7 @@ pub fn coordinate(model: &Model, hardpoint: HardpointId, axis: usize) -> Option<
     model.variables.iter().enumerate().find_map(of)
 }
 
-/// Whether a variable is a hardpoint's coordinate under the hardpoint's name, and an earlier variable is the same coordinate, up
+/// True if a variable is a hardpoint's coordinate under the hardpoint's name, and an earlier variable is the same coordinate, up
 /// to sign and unit.
 pub fn repeats_coordinate(model: &Model, variable: VariableId) -> bool {
     let own = &model.variables[variable.0];

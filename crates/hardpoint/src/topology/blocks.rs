@@ -138,7 +138,7 @@ fn independent_groups(topology: &Topology, jacobian: &[SparseRow]) -> Option<Vec
         }
     }
     // An unknown depends on every other unknown of the row that it is matched with. A loop could be solved before the body
-    // on which it stands has its place, but places are what is computed, so it waits for those unknowns too.
+    // on which it is has its place, but places are what is computed, so it waits for those unknowns too.
     let mut depends: DiGraph<(), ()> = DiGraph::default();
     for _ in &coordinates {
         depends.add_node(());
@@ -164,7 +164,7 @@ fn independent_groups(topology: &Topology, jacobian: &[SparseRow]) -> Option<Vec
     Some(groups)
 }
 
-/// How many motions stay free where the mechanism stands a little differently, so that nothing lines up by chance: every place is
+/// Number of motions stay free where the mechanism is a little differently, so that nothing lines up by chance: every place is
 /// shifted by up to 3 % of the size, every axis keeps its direction.
 ///
 /// Fewer than in the drawing mean that the drawing is a singular position, not that a driver is missing. Planar mechanisms keep their

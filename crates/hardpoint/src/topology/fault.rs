@@ -12,7 +12,7 @@ pub enum TopologyError {
     /// Motions remain that no driver prescribes (HP0301).
     #[error("{}", under_driven_text(.freedom, .bodies))]
     UnderDriven {
-        /// How many motions remain free.
+        /// Number of motions remain free.
         freedom: usize,
         /// The joints that move in them.
         joints: Vec<JointId>,
@@ -21,10 +21,10 @@ pub enum TopologyError {
         /// Names of the bodies that move in them.
         bodies: Vec<String>,
     },
-    /// The configuration as drawn is singular: motions are free there that are not free nearby (HP0304).
+    /// The configuration in the design configuration is singular: motions are free there that are not free nearby (HP0304).
     #[error("the mechanism is drawn in a singular position ({})", dozen(.bodies))]
     Singular {
-        /// How many motions are free in that position only.
+        /// Number of motions are free in that position only.
         freedom: usize,
         /// The joints that move in them.
         joints: Vec<JointId>,

@@ -48,7 +48,7 @@ pub struct Topology {
     pub closures: Vec<Closure>,
     /// Groups of unknowns that are solved together, in order.
     pub blocks: Vec<Block>,
-    /// For every row of every closure (numbered through): where it stands.
+    /// For every row of every closure (numbered through): where it is.
     pub rows: Vec<RowPlace>,
     /// The rows that are couplers.
     pub coupled_rows: Vec<RowId>,
@@ -65,7 +65,7 @@ pub enum JointRole {
     Tree {
         /// The body that it places.
         child: BodyId,
-        /// How many unknown coordinates that leaves.
+        /// Number of unknown coordinates that leaves.
         unknowns: usize,
     },
     /// It is cut into constraint rows.
@@ -75,7 +75,7 @@ pub enum JointRole {
 /// Why a joint is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CutReason {
-    /// Its type has no tree form: a rod or a leg.
+    /// Type has no tree form: a rod or a leg.
     AlwaysCut,
     /// Both of its bodies are placed by other joints, which leave fewer unknowns.
     ClosesLoop,
@@ -96,7 +96,7 @@ pub struct Link {
     pub child: BodyId,
     /// Which end of the joint is on the parent: 0 (i) or 1 (j).
     pub parent_end: usize,
-    /// Its chain of freedoms from parent to child.
+    /// Chain of freedoms from parent to child.
     pub steps: Vec<LinkStep>,
     /// 0 if drivers alone place the child, k + 1 if block k does.
     pub stage: usize,
@@ -109,20 +109,20 @@ pub struct LinkStep {
     pub freedom: Freedom,
     /// -1 where the link runs from body j to body i, so that coordinates stay those of j relative to i.
     pub sign: f64,
-    /// Its first coordinate.
+    /// First coordinate.
     pub first: CoordinateId,
-    /// Whether a driver prescribes it.
+    /// True if a driver prescribes it.
     pub is_driven: bool,
 }
 
 /// A coordinate of the tree.
 #[derive(Clone, Copy, Debug)]
 pub struct Coordinate {
-    /// Its link.
+    /// Link.
     pub link: LinkId,
     /// What sets its value.
     pub set_by: SetBy,
-    /// Whether it is a length (else an angle).
+    /// True if it is a length (else an angle).
     pub is_length: bool,
     /// What it is compared with: the size of the largest loop that it moves, m, if it is a length; else 1 rad.
     pub unit: f64,
@@ -155,7 +155,7 @@ pub struct Closure {
     pub coupler: Option<usize>,
     /// Bodies i and j.
     pub bodies: [BodyId; 2],
-    /// The body on which its loop stands: where the ways from its two bodies to ground meet. Points are held together along
+    /// The body on which its loop is: where the ways from its two bodies to ground meet. Points are held together along
     /// its axes, so that the loop knows nothing of where its base goes.
     pub base: BodyId,
     /// The link that places the base, if that is done by the block that solves the closure.
@@ -166,9 +166,9 @@ pub struct Closure {
     pub first_row: RowId,
     /// If a point follows a curve: which of all curves, counted over the closures.
     pub contact: Option<usize>,
-    /// Whether any of its rows asks for the markers' axes, rather than for their points only.
+    /// True if any of its rows asks for the markers' axes, rather than for their points only.
     pub has_axes: bool,
-    /// Whether the rows that it is solved with ask for points only.
+    /// True if the rows that it is solved with ask for points only.
     pub solved_by_points: bool,
     /// The block that solves it; `None` if no unknown moves it.
     pub block: Option<BlockId>,
@@ -185,7 +185,7 @@ pub struct Closure {
 pub struct ClosureColumn {
     /// The column.
     pub column: usize,
-    /// Its coordinate.
+    /// Coordinate.
     pub coordinate: CoordinateId,
     /// +1 or -1: whether it moves body j of the closure, or body i.
     pub side: f64,
@@ -201,39 +201,39 @@ pub struct LoopLink {
 }
 
 impl Closure {
-    /// Its rows' places in [`Topology::rows`].
+    /// Rows' places in [`Topology::rows`].
     #[inline(always)]
     fn range(&self) -> Range<usize> {
         self.first_row.0..self.first_row.0 + self.rows.len()
     }
 
-    /// Its rows.
+    /// Rows.
     #[inline(always)]
     pub fn row_ids(&self) -> impl Ids<RowId> + use<> {
         RowId::all(self.range())
     }
 
-    /// Its rows, with the constraint of each.
+    /// Rows, with the constraint of each.
     #[inline(always)]
     pub fn numbered_rows(&self) -> impl Iterator<Item = (RowId, Row)> + Clone {
         self.row_ids().zip(self.rows.iter().copied())
     }
 }
 
-/// Where a constraint row stands.
+/// Where a constraint row is.
 #[derive(Clone, Debug)]
 pub struct RowPlace {
-    /// Its closure.
+    /// Closure.
     pub closure: ClosureId,
     /// Which of the closure's rows.
     pub index: usize,
-    /// Whether it is one of the independent rows that are solved with; else it is redundant and watched.
+    /// True if it is one of the independent rows that are solved with; else it is redundant and watched.
     pub selected: bool,
     /// The further terms of a coupler, which this row is the first of.
     pub terms: Vec<RowTerm>,
     /// Of a coupler: the columns of its block where its terms stand.
     pub columns: Vec<CoupledColumn>,
-    /// Whether it is a further term of a coupler, and no constraint by itself.
+    /// True if it is a further term of a coupler, and no constraint by itself.
     pub is_term: bool,
     /// Value of the sum of a coupler, per coefficient of its first term, at this term; zero elsewhere.
     pub constant: f64,
@@ -246,7 +246,7 @@ pub struct RowPlace {
 pub struct RowTerm {
     /// The row.
     pub row: RowId,
-    /// Its factor.
+    /// Factor.
     pub factor: f64,
 }
 
@@ -274,7 +274,7 @@ pub struct Block {
     pub selected: Vec<RowId>,
     /// The range of [`Topology::links`] that it places.
     links: Range<usize>,
-    /// How many multiplications its factors take in the design configuration, if they are sparse.
+    /// Number of multiplications its factors take in the design configuration, if they are sparse.
     pub multiplications: usize,
 }
 
@@ -352,7 +352,7 @@ impl Topology {
         self[place.closure].rows[place.index]
     }
 
-    /// How many coordinates are unknown.
+    /// Number of coordinates are unknown.
     pub fn unknowns(&self) -> usize {
         self.blocks.iter().map(|b| b.unknowns.len()).sum()
     }
@@ -426,19 +426,19 @@ impl Topology {
 }
 
 impl RowPlace {
-    /// Whether the motion needs its wrench: it is solved with, or a term of a coupler.
+    /// True if the motion needs its wrench: it is solved with, or a term of a coupler.
     pub fn drives(&self) -> bool {
         self.selected || self.is_term || !self.terms.is_empty()
     }
 
-    /// Whether it is left out of the solution because other rows imply it.
+    /// True if it is left out of the solution because other rows imply it.
     pub fn is_redundant(&self) -> bool {
         !self.selected && !self.is_term
     }
 }
 
 impl Coordinate {
-    /// Whether a block is solved for it.
+    /// True if a block is solved for it.
     pub fn is_unknown(&self) -> bool {
         matches!(self.set_by, SetBy::Block { .. })
     }
@@ -452,12 +452,12 @@ impl Link {
         self.steps[step].first
     }
 
-    /// Its coordinates.
+    /// Coordinates.
     pub fn coordinates(&self) -> impl Iterator<Item = CoordinateId> + '_ {
         self.steps.iter().flat_map(LinkStep::coordinates)
     }
 
-    /// Whether its unit twists never change: a single freedom that starts on ground.
+    /// True if its unit twists never change: a single freedom that starts on ground.
     #[inline(always)]
     pub fn keeps_its_twist(&self) -> bool {
         self.parent == GROUND && self.steps.len() == 1
@@ -473,7 +473,7 @@ impl Link {
 }
 
 impl LinkStep {
-    /// Its coordinates: one, or three of a ball.
+    /// Coordinates: one, or three of a ball.
     #[inline(always)]
     pub fn coordinates(&self) -> impl Ids<CoordinateId> + use<> {
         CoordinateId::all(self.first.0..self.first.0 + self.freedom.coordinates())

@@ -1,4 +1,4 @@
-//! Under-driven, over-driven, locked, at a limit: each is told apart, and names what it is about.
+//! Under-driven, over-driven, locked, at a limit: each is distinguished, and names what it is about.
 
 use hardpoint::motion::StopKind;
 use hardpoint::space::Vec3;

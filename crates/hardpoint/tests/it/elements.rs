@@ -14,7 +14,7 @@ use crate::loads::{
 };
 use crate::workbench::*;
 
-/// Two ways to the same number agree to this part of the largest that stands in it.
+/// Two ways to the same number agree to this part of the largest that is in it.
 const SAME: f64 = 1e-11;
 
 /// A draft with a parameter, a design variable of the same name.
@@ -105,7 +105,7 @@ fn a_progressive_spring_follows_its_free_length_and_its_scale() {
 
 #[test]
 fn a_point_of_a_table_has_the_force_that_stands_there() {
-    // The lever's spring, 0.3 m long as drawn, gets 0.05 m shorter: it pushes with what the table says there.
+    // The lever's spring, 0.3 m long in the design configuration, gets 0.05 m shorter: it pushes with what the table says there.
     let mut draft = Draft::new("bump stop")
         .body("piston")
         .translational("slide", ["ground", "piston"], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0])
@@ -407,7 +407,7 @@ fn slide_friction(joint: &str, coefficient: f64, length: Option<f64>, viscous: O
         viscous: viscous.map(NumberDraft::from),
         fades: None,
     };
-    ElementDraft::new(format!("rubs at {joint}"), kind)
+    ElementDraft::new(format!("has friction at {joint}"), kind)
 }
 
 /// A block that slides along x at a steady speed, pushed down off its guide's middle.
@@ -489,7 +489,7 @@ fn friction_of_all_kinds_follows_the_design() {
     let mut kinds = Vec::new();
     for joint in &model.joints {
         let mut element = match joint.kind.name {
-            "revolute" | "spherical" => friction(&format!("rubs at {}", joint.name), &joint.name, 0.15, 0.02),
+            "revolute" | "spherical" => friction(&format!("has friction at {}", joint.name), &joint.name, 0.15, 0.02),
             "cylindrical" | "translational" => slide_friction(&joint.name, 0.1, Some(0.2), Some(30.0)),
             _ => continue,
         };
@@ -511,11 +511,11 @@ fn friction_of_all_kinds_follows_the_design() {
     differentiated(&draft, &names[..6]);
     // And the guide of a press, pressed at its ends: in the plane, as its constraints out of it are redundant.
     let mut press = press();
-    press.forces.push(friction("rubs at B", "B", 0.2, 0.04));
+    press.forces.push(friction("has friction at B", "B", 0.2, 0.04));
     press.forces.push(slide_friction("guide", 0.1, Some(0.3), Some(20.0)));
     let open = Model::from_draft(&press).unwrap();
     let shared = Analysis::new(&open).unwrap().loads(&[]).shared_friction;
-    assert_eq!(shared, [open.element("rubs at guide").unwrap()]);
+    assert_eq!(shared, [open.element("has friction at guide").unwrap()]);
     let ElementKindDraft::SlideFriction { normal, fades, .. } = &mut press.forces.last_mut().unwrap().kind
     else {
         unreachable!()

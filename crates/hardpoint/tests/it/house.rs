@@ -57,7 +57,7 @@ fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
     out
 }
 
-/// Whether a line names a room, in a path or in braces: `crate::{model::Model, run::Analysis}`.
+/// True if a line names a room, in a path or in braces: `crate::{model::Model, run::Analysis}`.
 fn mentions(line: &str, room: &str) -> bool {
     let braces = line.trim_start().starts_with("use crate::{") || line.contains(" use crate::{");
     line.contains(&format!("crate::{room}::"))

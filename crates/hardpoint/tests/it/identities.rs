@@ -161,7 +161,7 @@ fn a_request_means_the_same_whatever_way_it_is_run() {
     analysis.solve_in_windows(Run::new().at(&design), 1, |_, window| seen.extend(bits(window)));
     assert_eq!(seen, bits(&whole));
 
-    // Among other designs, with what is asked for.
+    // Among other designs, with the request.
     let designs = [vec![], design.to_vec(), vec![0.0; variables]];
     let mut visited = Vec::new();
     analysis.solve_designs(Run::new(), &designs, |k, solution| {
@@ -378,7 +378,7 @@ fn a_moved_and_turned_mechanism_has_the_same_measures_and_turned_motion() {
         }
         for k in 0..a.motion.len() {
             for (m, output) in a.measured.outputs.iter().enumerate() {
-                // Toe, camber and global coordinates are meant to depend on where the mechanism stands.
+                // Toe, camber and global coordinates are meant to depend on where the mechanism is.
                 if output.name.contains('.') || ["toe", "camber"].contains(&output.name.as_str()) {
                     continue;
                 }

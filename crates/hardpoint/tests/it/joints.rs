@@ -142,7 +142,7 @@ pub fn cam_and_slot() -> Draft {
         [x, 0.15 + 0.2 * (x - 0.08) * (x - 0.08), 0.0]
     });
     let z = Some([0.0, 0.0, 1.0]);
-    // The pitch curve of the roller's centre passes through its place as drawn: sqrt(0.04^2 - 0.01^2) above the axis.
+    // The pitch curve of the roller's centre passes through its place in the design configuration: sqrt(0.04^2 - 0.01^2) above the axis.
     let roller = [[0.0; 3], [0.0, 0.0015_f64.sqrt(), 0.01]];
     let cam = joint("cam", "point_on_curve", ["disc", "lifter"], &roller, z).curve(circle, true);
     let pin = joint("pin", "slot", ["lever", "lifter"], &[[0.0, 0.15, 0.0], [0.08, 0.15, 0.0]], z)

@@ -12,7 +12,7 @@ use hardpoint::{draft::*, model::*};
 
 use crate::workbench::*;
 
-/// Two ways to the same number agree to this part of the largest that stands in it.
+/// Two ways to the same number agree to this part of the largest that is in it.
 const SAME: f64 = 1e-11;
 
 pub fn on(body: &str, at: impl Into<LocationDraft>) -> PointRef {
@@ -620,8 +620,8 @@ fn friction_takes_what_the_reactions_that_it_makes_itself_say() {
     let mut draft = press();
     let pins = [("A", 0.3, 0.03), ("B", 0.2, 0.06), ("C", 0.15, 0.02)];
     for (joint, coefficient, radius) in pins {
-        draft.forces.push(friction(&format!("rubs at {joint}"), joint, coefficient, radius));
-        let force = MeasureKindDraft::SpringForce { force: format!("rubs at {joint}") };
+        draft.forces.push(friction(&format!("has friction at {joint}"), joint, coefficient, radius));
+        let force = MeasureKindDraft::SpringForce { force: format!("has friction at {joint}") };
         draft = draft.measure(format!("moment at {joint}"), force);
         draft = draft.measure(format!("force at {joint}"), reaction(joint, ReactionPart::Radial));
         draft = draft.measure(format!("angle at {joint}"), joint);
@@ -955,7 +955,7 @@ pub fn asking_for_all(mut draft: Draft) -> Draft {
 fn adjoint_gradients_of_loads_are_the_direct_ones() {
     let mut rubbing = press();
     for (joint, coefficient, radius) in [("A", 0.3, 0.03), ("B", 0.2, 0.06), ("C", 0.15, 0.02)] {
-        rubbing.forces.push(friction(&format!("rubs at {joint}"), joint, coefficient, radius));
+        rubbing.forces.push(friction(&format!("has friction at {joint}"), joint, coefficient, radius));
     }
     let heavies = REFERENCES.map(heavy);
     // Every type of joint, and laws that change

@@ -270,7 +270,7 @@ fn large_blocks_run_as_programs_that_agree_with_the_kernel() {
     }
 }
 
-/// n x m scissors of unit cells, pinned to each other at their corners; the first one stands on the ground, and the one at `at` is
+/// n x m scissors of unit cells, pinned to each other at their corners; the first one is on the ground, and the one at `at` is
 /// driven open.
 fn scissors(n: usize, m: usize, at: [usize; 2]) -> Draft {
     let z = Some([0.0, 0.0, 1.0]);
@@ -306,13 +306,13 @@ fn scissors(n: usize, m: usize, at: [usize; 2]) -> Draft {
 #[test]
 fn a_grid_of_scissors_opens_as_lazy_tongs_do() {
     let largest = opens_as_lazy_tongs_do(12, [0, 0], 1e-10);
-    assert_eq!(largest, 2, "driven where it stands");
+    assert_eq!(largest, 2, "driven where it is");
 }
 
 #[test]
 fn a_grid_of_scissors_that_is_driven_at_its_other_end_is_one_block() {
     for n in [3, 8, 20] {
-        // Every loop stands on others that follow from it.
+        // Every loop is on others that follow from it.
         let largest = opens_as_lazy_tongs_do(n, [n - 1, n - 1], 1e-10);
         assert_eq!(largest, 2 * n * n - 2);
     }

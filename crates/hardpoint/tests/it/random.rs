@@ -20,7 +20,7 @@ struct Family {
     number: u64,
     name: &'static str,
     draw: fn(&mut Rng) -> Option<Draft>,
-    /// None where only survival is asked for.
+    /// None where only survival is requested.
     promise: Option<Promise>,
 }
 

@@ -74,7 +74,7 @@ fn every_number_of_every_case_holds_in_both_formulations() {
 
 const EXECUTIONS: [Execution; 3] = [Execution::Kernel, Execution::Interpreted, Execution::Compiled];
 
-/// With so many steps from one output time to the next.
+/// With that many steps from one output time to the next.
 const BETWEEN: usize = 64;
 
 fn refined(model: &Model) -> Model {

@@ -140,7 +140,7 @@ impl Case {
         Ok(())
     }
 
-    /// The case's output times are every so many of the solution's.
+    /// The case's output times are every that many of the solution's.
     pub fn compare(&self, model: &Model, solution: &Solution, every: usize) -> Result<Comparison, String> {
         let mut scales = Scales::default();
         for result in &self.results {

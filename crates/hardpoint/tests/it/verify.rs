@@ -91,7 +91,7 @@ fn sensitivities_match_resolved_designs_and_the_error_falls_as_it_must() {
                 }
                 assert_eq!(check.outcome, CheckOutcome::Passed, "{name} {variable}: {:?}", check.sweep);
                 worst = worst.max(check.worst().unwrap().error);
-                // Where truncation rules, well above the best agreement, a step 10 times finer errs so many times less.
+                // Where truncation rules, well above the best agreement, a step 10 times finer errs that many times less.
                 let best = check.sweep.iter().min_by(|a, b| a.error.total_cmp(&b.error)).unwrap();
                 let noise = |step: f64| f64::max(best.error, NOISE / step);
                 let coarse = check

@@ -74,7 +74,7 @@ export function thinLink(mechanism: Mechanism, kit: Kit, body: number): Object3D
 function layOut(mechanism: Mechanism, body: number): { basis: Basis; points: Flat[] } {
   const shape = mechanism.shapePoints(body)
   const normal = mechanism.into(body, mechanism.plane!)
-  // Hardpoints of a planar mechanism may differ a little in height; the first stands for all.
+  // Hardpoints of a planar mechanism may differ a little in height; the first represents all.
   const basis = new Basis((shape[0] ?? normal.clone().setScalar(0)).clone().add(mechanism.lift(body)), normal)
   return { basis, points: shape.map((point) => basis.to(point)) }
 }

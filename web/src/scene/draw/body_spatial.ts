@@ -97,7 +97,7 @@ function axisAt(mechanism: Mechanism, body: number, at: Vector3): Vector3 | unde
   return hinges.find((hinge) => hinge.axis && mechanism.same(hinge.at, at))?.axis
 }
 
-/** A tapered rod; with a hinge square to it at an end a flat bar, twisted from one hinge's axis to the other's. */
+/** A tapered rod; with a hinge perpendicular to it at an end a flat bar, twisted from one hinge's axis to the other's. */
 function straight(mechanism: Mechanism, kit: Kit, body: number, a: Vector3, b: Vector3): Object3D[] {
   const s = kit.unit
   const colour = kit.body(body)

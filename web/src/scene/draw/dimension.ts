@@ -5,7 +5,7 @@ import { square } from '../flat'
 import { place, stretch } from '../kit'
 import type { Mechanism } from '../mechanism'
 
-/** How far beside the two places the line stands, its heads, how far its ends reach over, in units. */
+/** How far beside the two places the line is, its heads, how far its ends reach over, in units. */
 const BESIDE = 7
 const HEAD = 2.2
 const OVER = 1
@@ -48,7 +48,7 @@ function span([p, q]: Vector3[]): number {
   return p.distanceTo(q)
 }
 
-/** Square to the line, away from the middle of the mechanism. */
+/** Perpendicular to the line, away from the middle of the mechanism. */
 function aside(mechanism: Mechanism, middle: Vector3, along: Vector3): Vector3 {
   const outwards = middle.sub(mechanism.centre)
   if (!mechanism.plane) return square(outwards, along)

@@ -15,11 +15,11 @@ const HEAD = 2.6
 const ARC: [number, number] = [4.4, 8]
 /** Width of the line, px. */
 const LINE = 2.6
-/** How far beside a slide, a jack, a leg and a point the arrow stands, and before a hinge, in units. */
+/** How far beside a slide, a jack, a leg and a point the arrow is, and before a hinge, in units. */
 const BESIDE = { slide: 4.2, jack: 5.4, leg: 3.6, point: 3.6, hinge: 3.2 }
 /** How far outboard of a wheel's centre, as a part of its radius. */
 const OUTBOARD = 0.36
-/** Where along a leg its arrow stands. */
+/** Where along a leg its arrow is. */
 const ALONG_LEG = 0.55
 
 /** What is driven, as an arrow that is the travel of this motion. */
@@ -44,7 +44,7 @@ function arrowOf(mechanism: Mechanism, kit: Kit, driver: Driver, travel: Travel)
 /** An arc about the hinge, in the frame of the body that carries it. */
 function hingeArrow(mechanism: Mechanism, kit: Kit, joint: JointMark, { curve, low, high, onwards }: Travel): Arrow {
   const s = kit.unit
-  // The arc stands on ground where the hinge does, else on the first body.
+  // The arc is on ground where the hinge does, else on the first body.
   const turned = joint.body_j === 0
   const [base, moving] = turned ? [joint.body_j, joint.body_i] : [joint.body_i, joint.body_j]
   const place0 = new Vector3(...(turned ? joint.at_j : joint.at_i))
@@ -90,7 +90,7 @@ function slideArrow(mechanism: Mechanism, kit: Kit, joint: JointMark, index: num
   return { body: slide.rail, object: double(kit, foot, slide.axis, atLeast(slide.low, slide.high, LEAST * kit.unit)) }
 }
 
-/** Square to an axis in the plane of the mechanism, or upwards. */
+/** Perpendicular to an axis in the plane of the mechanism, or upwards. */
 function sideways(mechanism: Mechanism, body: number, axis: Vector3): Vector3 {
   return mechanism.plane ? mechanism.into(body, mechanism.plane).cross(axis) : square(mechanism.into(body, mechanism.up), axis)
 }

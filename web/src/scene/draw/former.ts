@@ -20,7 +20,7 @@ export const formerDesign: Draw = (mechanism, kit) => {
   const bodies = report.bodies.flatMap(({ name }, body): Drawn[] => {
     if (body === 0 || !differs(mechanism, former, body, least)) return []
     const lines = centreLines(former, body)
-    // A block that one hardpoint stands for has none.
+    // A block that one hardpoint represents has none.
     if (lines.length === 0) return []
     const lift = former.lift(body, former.topLayer + 2)
     const object = new Group().add(...lines.flatMap(([a, b]) => dashes(kit, a.clone().add(lift), b.clone().add(lift))))

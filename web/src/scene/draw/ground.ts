@@ -50,7 +50,7 @@ function feet(mechanism: Mechanism): Foot[] {
     if ((body_i !== 0 && body_j !== 0) || turning.has(index)) return []
     const hinge = HINGES.includes(kind)
     if (!hinge && !BALLS.includes(kind)) return []
-    // What slides stands at the ends of its way.
+    // What slides is at the ends of its way.
     if ((kind === 'cylindrical' || kind === 'inline') && !(mechanism.plane && square(mechanism, joint))) return []
     const [body, place, own] = body_i === 0 ? [body_j, joint.at_i, joint.at_j] : [body_i, joint.at_j, joint.at_i]
     const at = mechanism.worldAt(0, new Vector3(...place), 0)
@@ -78,7 +78,7 @@ function feet(mechanism: Mechanism): Foot[] {
 const mean = (points: Vector3[], none: Vector3) =>
   points.length > 0 ? points.reduce((sum, point) => sum.add(point), new Vector3()).divideScalar(points.length) : none.clone()
 
-/** Whether an axis is square to the plane: what slides along it is a pin there. */
+/** True if an axis is perpendicular to the plane: what slides along it is a pin there. */
 const square = (mechanism: Mechanism, { axis, body_i }: JointMark) =>
   axis !== null && Math.abs(mechanism.alongAt(body_i, new Vector3(...axis), 0).dot(mechanism.plane!)) > 0.9
 

@@ -14,7 +14,7 @@ const FOLD = { aside: 2.1, plate: 7.4 }
 const CHEEK = { aside: 1.35, thickness: 0.55, eye: 1.5, width: 1.6 }
 /** Radii of the cone at the plate and at the ball. */
 const CONE = [1.9, 1]
-/** So many times its usual height a foot is at most. */
+/** Maximum number of times its usual height a foot is. */
 const HIGHEST = 6
 /** A foot is a little larger than the pin that it holds. */
 const ROOM = 1.15

@@ -16,7 +16,7 @@ const CARRIAGE = 9.5
 const LINE = { aside: 1.75, room: 3.9 }
 /** A tube round a bar: outer and inner radius, length on ground and on a body. */
 const TUBE = { outer: 1.9, inner: 1.35, onGround: 9, onBody: 7 }
-/** Its foot: down to the plate, radius, side of the plate. */
+/** Foot: down to the plate, radius, side of the plate. */
 const FOOT = { down: 4.2, radius: 1.2, plate: 6 }
 /** Rail in space: room beyond the travel; bars on a body: distance from the middle and radius. */
 const RAIL = { room: 4.2, aside: 1.6, bar: 0.55 }
@@ -53,7 +53,7 @@ function inPlane(mechanism: Mechanism, kit: Kit, slide: Slide): Piece[] {
   return grounded ? [piece(0, ...hatchedRails(mechanism, kit, slide, LINE.aside, LINE.room + (carries ? 2 : 0))), piece(block, body)] : [piece(block, body)]
 }
 
-/** Whether a body lies along the slide at a place of it. */
+/** True if a body lies along the slide at a place of it. */
 function isBar(mechanism: Mechanism, { rail, axis }: Slide, body: number, at: Vector3): boolean {
   const along = mechanism.into(body, mechanism.alongAt(rail, axis, 0))
   return mechanism.shapePoints(body).filter((point) => point.clone().sub(at).cross(along).length() < 0.02 * mechanism.size).length > 1
@@ -111,7 +111,7 @@ function slidingStrut(mechanism: Mechanism, kit: Kit, joint: JointMark, slide: S
 interface End {
   body: number
   at: Vector3
-  /** Whether another joint holds the body there. */
+  /** True if another joint holds the body there. */
   held: boolean
 }
 
@@ -139,7 +139,7 @@ function farthest(mechanism: Mechanism, some: End[], others: End[]): [End, End] 
   return pairs.reduce((best, pair) => (rank(pair) > rank(best) ? pair : best))
 }
 
-/** The axis of the world that is most downwards and square to a slide. */
+/** The axis of the world that is most downwards and perpendicular to a slide. */
 function below(mechanism: Mechanism, axis: Vector3): Vector3 {
   const down = mechanism.up.clone().negate()
   const ways = [0, 1, 2].flatMap((k) => [1, -1].map((sign) => new Vector3().setComponent(k, sign)))

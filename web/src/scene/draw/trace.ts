@@ -11,7 +11,7 @@ const FORMER = 1.5
 /** Radius of the dots, and of the present point, in units. */
 const DOT = 0.6
 const PRESENT = 1.05
-/** At least so many equal times are marked. */
+/** At least that many equal times are marked. */
 const DOTS = 12
 
 /** The path of the chosen point, with dots at equal times, which show its speed, and a larger one where it is; gaps where there is no solution. */

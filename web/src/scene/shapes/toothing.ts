@@ -1,6 +1,6 @@
 import type { Flat } from '../flat'
 
-/** Fewest and most teeth that are still told apart; real counts between them are drawn as they are. */
+/** Fewest and most teeth that are still distinguished; real counts between them are drawn as they are. */
 const FEWEST = 12
 const MOST = 48
 /** Most teeth of a gear whose mate has few enough: its teeth are as large as that one's. */
@@ -13,7 +13,7 @@ const HEIGHT = { ofPitch: 0.62, ofRadius: 0.16 }
 const FOOT = 0.26
 const TIP = 0.1
 
-/** How many teeth are drawn on two gears: in their ratio, so that they mesh while they turn. */
+/** Number of teeth are drawn on two gears: in their ratio, so that they mesh while they turn. */
 export function drawnTeeth([a, b]: [number, number]): [number, number] {
   const [few, many] = a < b ? [a, b] : [b, a]
   if (Number.isInteger(a) && Number.isInteger(b) && few >= FEWEST && few <= MOST && many <= MATE) return [a, b]

@@ -59,7 +59,7 @@ pub(super) fn load(bytes: &[u8], into: &mut Triangles) -> Result<(), String> {
     Ok(())
 }
 
-/// Whether a binary file is as long as it and its parts say.
+/// True if a binary file is as long as it and its parts say.
 fn is_whole(bytes: &[u8]) -> bool {
     let word = |at: usize| {
         let word = bytes.get(at..at + 4)?.try_into().ok()?;
@@ -138,7 +138,7 @@ fn add(
     Ok(())
 }
 
-/// The items of an accessor, so many bytes each.
+/// The items of an accessor, that many bytes each.
 fn items<const SIZE: usize>(of: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<[u8; SIZE]>, String> {
     if of.sparse().is_some() {
         return Err("it has sparse data".into());

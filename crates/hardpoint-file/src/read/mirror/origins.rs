@@ -12,7 +12,7 @@ pub(crate) struct Origins {
     pub names: BTreeMap<String, String>,
     /// The words that are exchanged in names.
     pub(super) words: Vec<(String, String)>,
-    /// The names of what stands in another file than the first, and in which.
+    /// The names of what is in another file than the first, and in which.
     pub included: BTreeMap<String, String>,
 }
 
@@ -25,7 +25,7 @@ impl Origins {
     }
 }
 
-/// What is wrong with something that was written once is told once, in its own name; and of what was made, from what.
+/// What is wrong with something that was written once is reported once, in its own name; and of what was made, from what.
 pub(crate) fn told_once(list: Vec<Diagnostic>, origins: &Origins) -> Vec<Diagnostic> {
     if origins.words.is_empty() {
         return list;

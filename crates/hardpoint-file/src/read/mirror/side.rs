@@ -208,12 +208,12 @@ impl<'a> Side<'_, 'a> {
         })
     }
 
-    /// Whether a driver's law has the other sign on the other side while the first does what it does.
+    /// True if a driver's law has the other sign on the other side while the first does what it does.
     fn is_turned(&self, driver: &str) -> bool {
         self.opposite.contains(driver) != self.is_handed(driver)
     }
 
-    /// Whether a driver's coordinate changes its sign in the mirror.
+    /// True if a driver's coordinate changes its sign in the mirror.
     fn is_handed(&self, driver: &str) -> bool {
         let Some(drives) = self.entry("drivers", driver) else { return false };
         match (word(drives, "joint"), word(drives, "measure")) {
@@ -260,7 +260,7 @@ impl<'a> Side<'_, 'a> {
     }
 
     /// A coupler holds the same relation between coordinates of joints that are mirrored; of others, and of joints whose angle changes
-    /// its sign, it goes by these signs.
+    /// its sign, it depends on these signs.
     fn coupler(&mut self, name: &str, coupler: &mut DeTable<'a>, at: Range<usize>) {
         // The entry is mirrored already: the originals stand in the model.
         let Some(original) = self.entry("couplers", name) else { return };
@@ -291,7 +291,7 @@ impl<'a> Side<'_, 'a> {
                 None => {
                     let twin = self.rule.twin(name).unwrap_or_default();
                     let message = format!(
-                        "coupler `{name}` cannot be mirrored: the axis of joint `{joint}` is neither square to the mirror nor in it"
+                        "coupler `{name}` cannot be mirrored: the axis of joint `{joint}` is neither perpendicular to the mirror nor in it"
                     );
                     let help =
                         format!("write `{twin}` by hand with a `type`, or put `{name}` under `except`");
@@ -324,9 +324,9 @@ impl<'a> Side<'_, 'a> {
         }
     }
 
-    /// Whether a coordinate of a joint changes its sign in the mirror; none where it becomes another one.
+    /// True if a coordinate of a joint changes its sign in the mirror; none where it becomes another one.
     fn sign(&self, joint: &str, coordinate: &str) -> Option<bool> {
-        // What is not known is told when it is read.
+        // What is not known is reported when it is read.
         let Some(table) = self.entry("joints", joint) else { return Some(false) };
         let Some(kind) = type_of(table) else { return Some(false) };
         let coordinate = Some(coordinate).filter(|c| !c.is_empty());
@@ -378,7 +378,7 @@ impl<'a> Side<'_, 'a> {
         let direction = [direction.x, direction.y, direction.z];
         let out = direction[self.rule.across] != 0.0;
         let in_plane = (0..3).any(|k| k != self.rule.across && direction[k] != 0.0);
-        // An arrow square to the mirror is turned round; a turn is where the arrow is not.
+        // An arrow perpendicular to the mirror is turned round; a turn is where the arrow is not.
         if out && in_plane { None } else { Some((out != angle) != swapped) }
     }
 
@@ -543,7 +543,7 @@ fn text<'a>(text: impl Into<String>, at: &Value<'_>) -> Value<'a> {
     Spanned::new(at.span(), DeValue::String(Cow::Owned(text.into())))
 }
 
-/// Puts a value into a table under a key that stands where the value does.
+/// Puts a value into a table under a key that is where the value does.
 fn put<'a>(table: &mut DeTable<'a>, key: &'static str, value: Value<'a>) {
     table.insert(Spanned::new(value.span(), Cow::Borrowed(key)), value);
 }

@@ -95,7 +95,7 @@ impl Checker<'_> {
         if !held.is_empty() && c.rest == OtherDrivers::Held {
             let [are, them] = if held.len() == 1 { ["is", "it"] } else { ["are", "them"] };
             fault.note(format!(
-                "{} {are} held as drawn, since the case gives no law for {them}",
+                "{} {are} fixed in the design configuration, since the case gives no law for {them}",
                 held.join(", ")
             ));
         }

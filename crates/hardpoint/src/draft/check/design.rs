@@ -44,7 +44,7 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0229: bounds between which the model as drawn does not lie, or a typical size that is none.
+    /// HP0229: bounds between which the model in the design configuration does not lie, or a typical size that is none.
     fn range(&mut self, v: &VariableDraft, here: Here) {
         // Those of a parameter are counted from its value.
         if let Some([low, high]) = v.bounds.filter(|_| !self.unread(here, "value")) {
@@ -53,7 +53,7 @@ impl Checker<'_> {
                 self.fault("HP0229", here.key("bounds"), message)
                     .help("give the lower bound first, then the upper");
             } else if !(low <= 0.0 && high >= 0.0) {
-                let message = format!("the model as drawn is not within the bounds of `{}`", v.name);
+                let message = format!("the model in the design configuration is not within the bounds of `{}`", v.name);
                 self.fault("HP0229", here.key("bounds"), message).help(
                     "bounds of a parameter enclose its value, those of another design variable enclose 0",
                 );
@@ -279,12 +279,12 @@ impl Checker<'_> {
     }
 }
 
-/// Whether these velocities together are one.
+/// True if these velocities together are one.
 fn vectors(velocities: &[Vec3]) -> bool {
     velocities.iter().all(|v| v.is_finite()) && velocities.iter().any(|v| v.norm() >= 1e-12)
 }
 
-/// Whether a rate is one.
+/// True if a rate is one.
 fn number(rate: f64) -> bool {
     rate.is_finite() && rate != 0.0
 }

@@ -1,4 +1,4 @@
-//! Checks of what drivers prescribe: a joint's coordinate, or an unnamed joint that has what is asked for.
+//! Checks of what drivers prescribe: a joint's coordinate, or an unnamed joint that has the request.
 
 use crate::constraint::Row;
 use crate::draft::{
@@ -19,7 +19,7 @@ use super::{Checker, Here, frame_along};
 pub(super) struct Driven {
     pub joint: JointId,
     pub coordinate: usize,
-    /// What it is as drawn, where that is what laws from zero count from.
+    /// What it is in the design configuration, where that is what laws from zero count from.
     zero: Zero,
 }
 
@@ -45,7 +45,7 @@ struct Axes {
 
 /// A direction nearer to the line of sight than this, as a sine, has no angle.
 const HEADLESS: f64 = 1e-6;
-/// The body that stands.
+/// The body that is.
 const GROUND_NAME: &str = "ground";
 
 /// Design value of a driver's coordinate, over hardpoints, or as the joint keeps it.
@@ -63,7 +63,7 @@ impl AsDrawn {
 }
 
 impl DriverDraft {
-    /// Whether its laws give the whole value of what it prescribes.
+    /// True if its laws give the whole value of what it prescribes.
     pub(super) fn counts_from_zero(&self) -> bool {
         self.from_zero || matches!(self.drives, DrivenDraft::Measure(_))
     }
@@ -302,7 +302,7 @@ impl Checker<'_> {
         self.driven_joint(d, &joint::COURSE, [GROUND, body], [place, place], Some(axes), zero)
     }
 
-    /// Where a direction points as drawn.
+    /// Where a direction points in the design configuration.
     fn vector(&self, direction: Direction) -> Option<Vec3> {
         match direction {
             Direction::Along(v) => Some(v),
@@ -315,7 +315,7 @@ impl Checker<'_> {
         self.model.joints.iter().find(|j| j.bodies.contains(&body)).map(|j| j.at[0])
     }
 
-    /// The value of a driver's coordinate as drawn, if it is another than zero. HP0213 where laws count from a zero that there is not.
+    /// The value of a driver's coordinate in the design configuration, if it is another than zero. HP0213 where laws count from a zero that there is not.
     pub(super) fn as_drawn(&mut self, d: &DriverDraft, driven: Driven, here: Here) -> Option<AsDrawn> {
         let joint = &self.model.joints[driven.joint.0];
         let mut sources = Vec::new();
@@ -395,7 +395,7 @@ impl Checker<'_> {
         Some(Driven { joint: JointId(self.model.joints.len() - 1), coordinate: 0, zero })
     }
 
-    /// Whether a joint's coordinate may be prescribed: by one driver, and not where a constraint keeps it.
+    /// True if a joint's coordinate may be prescribed: by one driver, and not where a constraint keeps it.
     fn drivable(
         &mut self,
         d: &DriverDraft,

@@ -86,7 +86,7 @@ impl Checker<'_> {
                 } else if preload.is_some() && table {
                     let message = format!("`{}` has both a table and a `preload`", e.name);
                     self.fault("HP0251", here.key("preload"), message)
-                        .note("without a `free_length` the way counts from the drawing, and the table's force at 0 is that as drawn")
+                        .note("without a `free_length` the way counts from the drawing, and the table's force at 0 is that in the design configuration")
                         .help("leave the preload out: shift the table by it, or give the `free_length`");
                 } else if free_length.is_some() && preload.is_some() {
                     let message = format!("`{}` has both a `free_length` and a `preload`", e.name);
@@ -198,7 +198,7 @@ impl Checker<'_> {
                         self.model.joints[joint.0].name
                     );
                     self.fault("HP0251", here.key("joint"), message)
-                        .help("name a joint that stands somewhere");
+                        .help("name a joint that is somewhere");
                 }
             }
             ElementKind::PointForce { at, .. } => {
@@ -291,7 +291,7 @@ impl Checker<'_> {
         table.ok()
     }
 
-    /// HP0251: what a spring's force goes by does not fit together.
+    /// HP0251: what a spring's force depends on does not fit together.
     fn spring_forces(&mut self, kind: &ElementKind, name: &str, here: Here) {
         let ElementKind::Spring { compression, extension, scale, .. } = kind else { return };
         if compression.is_some() && extension.is_some() {

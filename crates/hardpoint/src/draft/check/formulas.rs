@@ -16,7 +16,7 @@ use crate::space::Vec3;
 
 use super::{Checker, Here, LISTED_NAMES, extent_of_joints};
 
-/// A formula, and where it stands.
+/// A formula, and where it is.
 pub(super) struct Written {
     formula: Formula,
     at: DraftLocation,
@@ -472,7 +472,7 @@ pub enum ConstantError {
     Follows(String, String),
     /// It uses a parameter that is faulty, which is reported elsewhere.
     Faulty,
-    /// Its value is not finite.
+    /// Value is not finite.
     NotFinite,
 }
 

@@ -8,7 +8,7 @@ use super::{Checker, Here};
 /// More positions than this are surely a slip: each is solved with all its sensitivities, and all are held.
 const MOST_POSITIONS: usize = 100_000;
 
-/// Positions nearer to each other than this part of a driver's way cannot be told apart by the times at which it passes them.
+/// Positions nearer to each other than this part of a driver's way cannot be distinguished by the times at which it passes them.
 const APART: f64 = 1e-9;
 
 impl Checker<'_> {
@@ -43,7 +43,7 @@ impl Checker<'_> {
                 };
                 let [x, y] = [0, 1].map(|k| draft.drivers.get(k).map_or("DRIVER", |d| d.name.as_str()));
                 let fault = self.fault("HP0240", at, message);
-                fault.note("a grid has two drivers; all others are held as drawn");
+                fault.note("a grid has two drivers; all others are fixed in the design configuration");
                 fault.help(match draft.drivers.len() {
                     0 | 1 => "a mechanism with fewer than two drivers has no grid: give the case `laws` instead".into(),
                     _ => format!(

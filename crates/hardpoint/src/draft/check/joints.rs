@@ -97,7 +97,7 @@ impl Checker<'_> {
             (Some((_, z)), Some((_, x))) => {
                 if z.dot(x).abs() > SQUARE_TOLERANCE {
                     let angle = degrees_between(z, x);
-                    let message = format!("the axes of joint `{name}` are not square to each other");
+                    let message = format!("the axes of joint `{name}` are not perpendicular to each other");
                     self.fault("HP0209", here.key("axis2"), message)
                         .note(format!("the angle between `axis` and `axis2` is {angle:.4} deg"))
                         .help("turn one of them until they are square");
@@ -120,7 +120,7 @@ impl Checker<'_> {
         Some(Joint { name, kind, bodies, at, axis, axis2, frames, length, curve, cut, unnamed: false })
     }
 
-    /// HP0226: a curve that is missing, out of place, or no curve in the plane square to the joint's axis.
+    /// HP0226: a curve that is missing, out of place, or no curve in the plane perpendicular to the joint's axis.
     fn curve(
         &mut self,
         j: &JointDraft,
@@ -164,7 +164,7 @@ impl Checker<'_> {
         let off_plane =
             local.iter().enumerate().find(|(_, p)| (p.z - local[0].z).abs() > SQUARE_TOLERANCE * size);
         if let Some((k, p)) = off_plane {
-            let message = format!("the curve of `{name}` does not lie in a plane square to its axis");
+            let message = format!("the curve of `{name}` does not lie in a plane perpendicular to its axis");
             self.fault("HP0226", here.key("curve"), message)
                 .note(format!("point {k} is {:e} m from the plane of point 0", (p.z - local[0].z).abs()))
                 .help("let all points have the same coordinate along `axis`");

@@ -71,7 +71,7 @@ impl Checker<'_> {
             && rigid
             && !self.draft.unread.any_of(Section::Forces)
         {
-            let message = format!("`{}` measures what gives way, but nothing does", m.name);
+            let message = format!("`{}` measures what deflects, but nothing does", m.name);
             self.fault("HP0250", here.key("type"), message)
                 .help("give joints that yield as `[forces]` of `type = \"elastic_joint\"`");
         }
@@ -269,7 +269,7 @@ impl Checker<'_> {
         None
     }
 
-    /// Whether a wheel or an axle of that name may measure what could not be read.
+    /// True if a wheel or an axle of that name may measure what could not be read.
     fn may_measure(&self, owner: &str) -> bool {
         let (draft, unread) = (self.draft, &self.draft.unread);
         let wheel = draft.wheels.iter().position(|w| w.name == owner).map(|k| (Section::Wheels, k));
@@ -354,7 +354,7 @@ impl Checker<'_> {
                 let what = self.model.output_name(*of);
                 let message = format!("`{name}` needs what `{what}` does under a force, which is not known");
                 self.fault("HP0233", here.key("of"), message)
-                    .note("forces are let give way at every position by itself")
+                    .note("forces are let deflect at every position by itself")
                     .help("take a measure that follows from positions alone");
                 false
             }

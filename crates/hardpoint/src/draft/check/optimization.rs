@@ -16,7 +16,7 @@ use super::{Checker, Here, LISTED_NAMES};
 
 /// Of each thing that is limited, the highest lower and the lowest upper limit so far: what it is as written, and in which limit.
 type Tightest<'d> = HashMap<Key, [Option<(f64, f64, &'d str)>; 2]>;
-/// What tells what is limited from all else.
+/// What indicates what is limited from all else.
 type Key = (u8, usize, usize);
 
 impl Checker<'_> {
@@ -363,7 +363,7 @@ impl Checker<'_> {
     }
 }
 
-/// Where the side of a box stands; of all else, the name.
+/// Where the side of a box is; of all else, the name.
 fn side_of(of: &LimitTargetDraft) -> &'static str {
     if let LimitTargetDraft::Coordinate(_, axis) = of { AXES[axis % 3] } else { "name" }
 }
@@ -377,7 +377,7 @@ fn key(of: LimitTarget) -> Key {
     }
 }
 
-/// How many units make one SI unit of it.
+/// Number of units make one SI unit of it.
 pub(super) fn per_si(of: Dimension, per_metre: f64, per_radian: f64) -> f64 {
     per_metre.powi(of.length_in_units().into()) * per_radian.powi(of.angle.into())
 }

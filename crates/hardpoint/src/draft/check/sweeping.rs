@@ -96,7 +96,7 @@ impl Checker<'_> {
                 let key = if one.low.is_some() { "from" } else { "to" };
                 self.fault("HP0246", here.key(key), message)
                     .note("it begins with `from` and ends with `to`; what is not given is a bound of the variable")
-                    .help("give the lower one as `from`; leave out a variable that is to stay as drawn");
+                    .help("give the lower one as `from`; leave out a variable that is to stay in the design configuration");
                 continue;
             }
             found.push(SweepRange { variable, low, high, levels });

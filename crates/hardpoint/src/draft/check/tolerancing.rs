@@ -242,7 +242,7 @@ impl Checker<'_> {
         found
     }
 
-    /// Whether both have a tolerance that is normal.
+    /// True if both have a tolerance that is normal.
     fn can_correlate(
         &mut self,
         one: &CorrelationDraft,
@@ -284,7 +284,7 @@ impl Checker<'_> {
         {
             let message = format!("`keep_sigmas` cannot be {sigmas}");
             self.fault("HP0243", HERE.key("keep_sigmas"), message)
-                .note("it says how many standard deviations have to fit between a metric as drawn and its limit")
+                .note("it says how many standard deviations have to fit between a metric in the design configuration and its limit")
                 .help(format!("give a number above zero, up to {MOST_SIGMAS}, like `keep_sigmas = 3`"));
         }
         if t.limits.is_empty() && !self.unread(HERE, "limits") {
@@ -306,7 +306,7 @@ impl Checker<'_> {
 
 /// More standard deviations than these are surely a slip, and no normal distribution knows them.
 const MOST_SIGMAS: f64 = 30.0;
-/// Whether they can hold together takes the cube of their number.
+/// True if they can hold together takes the cube of their number.
 const MOST_CORRELATIONS: usize = 300;
 
 /// Of the variables that are correlated at all.

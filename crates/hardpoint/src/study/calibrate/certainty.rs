@@ -1,10 +1,10 @@
-//! How well readings tell the variables: covariance, and what cannot be told apart.
+//! How well readings tell the variables: covariance, and what cannot be distinguished.
 
 use super::fit::{Bench, SearchResult, weighed};
 
-/// A direction whose standard deviation is more natural steps than this, about the mechanism's size, is not told.
+/// A direction whose standard deviation is more natural steps than this, about the mechanism's size, is not reported.
 const VAGUE: f64 = 1.0;
-/// A variable with no more than this part in what is not told is not touched by it.
+/// A variable with no more than this part in what is not reported is not touched by it.
 const PART: f64 = 1e-6;
 
 /// How well the variables are known. In SI.
@@ -12,7 +12,7 @@ const PART: f64 = 1e-6;
 pub struct Certainty {
     /// Standard deviation of each variable that was sought; `None` where the readings do not tell it.
     pub sigmas: Vec<Option<f64>>,
-    /// Their covariance, over the directions that are told.
+    /// Their covariance, over the directions that are reported.
     pub covariance: Vec<Vec<f64>>,
     /// What the readings do not tell.
     pub untold: Vec<UnidentifiableChange>,
@@ -28,16 +28,16 @@ pub struct Certainty {
 /// A change of the design that changes nothing that was read, or next to nothing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnidentifiableChange {
-    /// How far each variable goes; the one that goes farthest goes by a natural step.
+    /// How far each variable goes; the one that goes farthest depends on a natural step.
     pub direction: Vec<f64>,
-    /// Its standard deviation as a multiple of that; `None` where the readings tell nothing of it.
+    /// Standard deviation as a multiple of that; `None` where the readings tell nothing of it.
     pub sigma: Option<f64>,
 }
 
 /// The same in natural steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Known {
-    /// Directions that are told, with their standard deviations.
+    /// Directions that are reported, with their standard deviations.
     pub told: Vec<(Vec<f64>, f64)>,
     /// Those that are not, and theirs where they have any.
     pub untold: Vec<(Vec<f64>, Option<f64>)>,

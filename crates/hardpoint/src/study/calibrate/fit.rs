@@ -39,7 +39,7 @@ pub(super) struct Bench<'b> {
     not_reached: Vec<UnreachedPosture>,
     /// The readings that are compared, by their place among all.
     pub compared: Vec<usize>,
-    /// Whether standard deviations were given.
+    /// True if standard deviations were given.
     pub has_sigmas: bool,
     drawn: Vec<Option<ReachedPosture>>,
     pub cost: RefCell<StudyCost>,
@@ -118,7 +118,7 @@ impl<'b> Bench<'b> {
         Ok(())
     }
 
-    /// The design so many natural steps from the drawing.
+    /// The design that many natural steps from the drawing.
     pub fn design(&self, x: &[f64]) -> Vec<f64> {
         let mut design = vec![0.0; self.model.variables.len()];
         for ((v, step), x) in self.variables.iter().zip(&self.steps).zip(x) {
@@ -127,7 +127,7 @@ impl<'b> Bench<'b> {
         design
     }
 
-    /// All postures that are reached as drawn, of a design; `None` where one is not, or the caller wants no more.
+    /// All postures that are reached in the design configuration, of a design; `None` where one is not, or the caller wants no more.
     fn stands(&self, x: &[f64], more: &dyn Fn() -> bool) -> Option<Vec<Option<ReachedPosture>>> {
         let design = self.design(x);
         self.cost.borrow_mut().designs += 1;
@@ -332,7 +332,7 @@ impl<'b> Bench<'b> {
     }
 }
 
-/// What rows tell of directions, each row by what it counts: those that are told, and how many singular values are above round-off.
+/// What rows tell of directions, each row by what it counts: those that are reported, and how many singular values are above round-off.
 pub(super) fn weighed(rows: &[Vec<f64>], weights: &[f64], n: usize) -> (Singular, usize) {
     let weighted: Vec<Vec<f64>> =
         rows.iter().zip(weights).map(|(row, w)| row.iter().map(|x| w.sqrt() * x).collect()).collect();

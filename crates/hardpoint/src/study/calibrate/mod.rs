@@ -1,4 +1,4 @@
-//! Which geometry explains what was measured: best fit, how well it is known, what cannot be told, what to measure next.
+//! Which geometry explains what was measured: best fit, how well it is known, what cannot be reported, what to measure next.
 //!
 //! A reading i of an output y in a posture with standard deviation s_i has the residual `r_i = (y(b) - m_i) / s_i`; the fit makes the sum
 //! of their squares least, or that of a robust loss. With the exact Jacobian `J = dr/db` of what was read,
@@ -7,7 +7,7 @@
 //! covariance = (J' W J)^-1,    W = the weights of the loss
 //! ```
 //!
-//! over the directions that the readings tell anything of; the others are named and stay as drawn (`docs/theory.md`, section 13).
+//! over the directions that the readings tell anything of; the others are named and stay in the design configuration (`docs/theory.md`, section 13).
 
 mod certainty;
 mod fit;
@@ -33,7 +33,7 @@ pub struct Reading {
     pub output: usize,
     /// What was read.
     pub value: f64,
-    /// Its standard deviation; none where that is to be found from the residuals, the same for all.
+    /// Standard deviation; none where that is to be found from the residuals, the same for all.
     pub sigma: Option<f64>,
 }
 
@@ -49,10 +49,10 @@ pub struct Measurements {
 /// What a residual far from the others counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Loss {
-    /// Its square.
+    /// Square.
     #[default]
     Squares,
-    /// Its square up to 1.345 standard deviations, beyond that its size.
+    /// Square up to 1.345 standard deviations, beyond that its size.
     Huber,
     /// The logarithm of its square: beyond some standard deviations next to nothing.
     Cauchy,
@@ -83,7 +83,7 @@ pub enum FitStatus {
     Interrupted,
 }
 
-/// A posture that the mechanism as drawn does not reach, whose readings are left out.
+/// A posture that the mechanism in the design configuration does not reach, whose readings are left out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnreachedPosture {
     /// The posture.
@@ -95,7 +95,7 @@ pub struct UnreachedPosture {
 /// A reading beside what the design found gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FittedReading {
-    /// As drawn, SI.
+    /// In the design configuration, SI.
     pub before: f64,
     /// Of the design found.
     pub value: f64,
@@ -122,7 +122,7 @@ pub struct Calibration {
     pub fitted: Vec<Option<FittedReading>>,
     /// Postures whose readings were left out.
     pub not_reached: Vec<UnreachedPosture>,
-    /// The sum that was made least, of the design as drawn and of the one found: of squared residuals in standard deviations, or of the
+    /// The sum that was made least, of the nominal design and of the one found: of squared residuals in standard deviations, or of the
     /// loss. Where no standard deviations were given, in those that were found.
     pub objective: [f64; 2],
     /// Objective after each iteration.
@@ -140,7 +140,7 @@ pub struct Calibration {
 pub enum CalibrationError {
     /// The mechanism cannot be driven.
     Topology(TopologyError),
-    /// The mechanism as drawn reaches none of the postures; what happens on the way to the first.
+    /// The mechanism in the design configuration reaches none of the postures; what happens on the way to the first.
     NothingReached(String),
     /// The mechanism can follow none of the variables.
     NothingVaries,
@@ -153,7 +153,7 @@ pub enum CalibrationError {
     },
 }
 
-/// What is asked for.
+/// The request.
 #[derive(Clone, Copy, Debug)]
 pub struct CalibrationRequest<'a> {
     /// What was measured.
@@ -164,11 +164,11 @@ pub struct CalibrationRequest<'a> {
     pub loss: Loss,
     /// In which formulation the mechanism is solved.
     pub formulation: Formulation,
-    /// At most so many iterations.
+    /// At most that many iterations.
     pub iterations: usize,
 }
 
-/// Finds the design that explains measurements best. `progress` is told the objective after every iteration, and `more` is asked at every
+/// Finds the design that explains measurements best. `progress` is reported the objective after every iteration, and `more` is asked at every
 /// posture whether to go on.
 ///
 /// # Errors

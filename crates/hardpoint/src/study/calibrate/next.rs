@@ -9,11 +9,11 @@ use super::certainty::Known;
 use super::fit::{Bench, SearchResult};
 use super::posture::derivative;
 
-/// So many readings are proposed.
+/// Number of readings are proposed.
 const PROPOSED: usize = 5;
-/// Of a motion, about so many postures are looked at.
+/// Of a motion, about that many postures are looked at.
 const LOOKED_AT: usize = 24;
-/// A reading tells a direction that the others do not tell if it makes its standard deviation less than a natural step, about the
+/// A reading indicates a direction that the others do not tell if it makes its standard deviation less than a natural step, about the
 /// mechanism's size.
 const TELLS: f64 = 1.0;
 
@@ -26,9 +26,9 @@ pub struct NextReading {
     pub drivers: Vec<f64>,
     /// The standard deviation that was assumed.
     pub sigma: f64,
-    /// Of what is not told, the direction that it would tell best.
+    /// Of what is not reported, the direction that it would tell best.
     pub tells: Option<usize>,
-    /// The variable whose standard deviation it makes smaller by the largest part, by its place among those sought; none where it tells
+    /// The variable whose standard deviation it makes smaller by the largest part, by its place among those sought; none where it indicates
     /// nothing of those that are known.
     pub improves: Option<Improvement>,
 }
@@ -38,7 +38,7 @@ pub struct NextReading {
 pub struct Improvement {
     /// The variable, by its place among those sought.
     pub variable: usize,
-    /// Its standard deviation now, SI.
+    /// Standard deviation now, SI.
     pub before: f64,
     /// With the reading.
     pub after: f64,
@@ -72,7 +72,7 @@ impl Bench<'_> {
         found.into_iter().take(PROPOSED).map(|(_, next)| next).collect()
     }
 
-    /// How much it is worth, the change of the logarithm of the determinant, and by far more for what is not told.
+    /// How much it is worth, the change of the logarithm of the determinant, and by far more for what is not reported.
     fn judged(
         &self,
         Candidate { mut next, g }: Candidate,
@@ -95,7 +95,7 @@ impl Bench<'_> {
         };
         let part = |i: &Improvement| i.after / i.before;
         let most = (0..n).filter_map(improved).min_by(|a, b| part(a).total_cmp(&part(b)));
-        // What a reading of something not told does to the rest is not known before that is told.
+        // What a reading of something not reported does to the rest is not known before that is reported.
         next.improves = most.filter(|_| next.tells.is_none() && new.is_none_or(|(_, by)| by <= TELLS));
         let worth = match next.tells {
             Some(_) => 1e6 + new.map_or(0.0, |(_, by)| by.ln()),

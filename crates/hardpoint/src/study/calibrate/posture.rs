@@ -21,7 +21,7 @@ impl ReachedPosture {
         self.0.measured.value(self.last(), output)[0]
     }
 
-    /// Whether the mechanism follows a variable there.
+    /// True if the mechanism follows a variable there.
     pub fn follows(&self, variable: VariableId) -> bool {
         self.0.sensitivities.at(self.last(), variable.0).is_some()
     }

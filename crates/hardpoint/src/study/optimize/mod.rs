@@ -32,7 +32,7 @@ use LIMIT_KEPT as KEPT;
 /// A design this near to optimal is an optimum.
 const OPTIMAL: f64 = 1e-6;
 /// A search that came to rest short of this, relative to the scale of the goals or to the gradient at the start, starts again where it
-/// stands ...
+/// is ...
 const SHARP: f64 = 5e-9;
 /// ... as often as this.
 const AGAIN: usize = 3;
@@ -74,19 +74,19 @@ const PATIENCE: usize = 20;
 const HALVED: f64 = 0.5;
 /// The first solver has done its work where a step gains less than this part of the objective: others make an end of it.
 const HARDLY_LESS: f64 = 1e-6;
-/// A start that cannot be judged is drawn nearer so many times.
+/// A start that cannot be judged is drawn nearer that many times.
 const HALVINGS: i32 = 8;
-/// Low-discrepancy points have so many coordinates; further variables start where they are drawn.
+/// Low-discrepancy points have that many coordinates; further variables start where they are drawn.
 const MOST_DIMENSIONS: usize = 256;
 
 /// What an optimisation found.
 #[derive(Clone, Debug)]
 pub struct OptimizationResult {
-    /// The design as drawn; `None` where it cannot be judged.
+    /// The nominal design; `None` where it cannot be judged.
     pub drawn: Option<DesignAssessment>,
     /// Why not.
     pub drawn_refused: Option<FailedDesign>,
-    /// The searches, one per start, in order; that of number 0 starts from the design as drawn.
+    /// The searches, one per start, in order; that of number 0 starts from the nominal design.
     pub searches: Vec<SearchResult>,
     /// The best of them, by its place there: of those that keep all limits the one with the least objective, of others the one that
     /// exceeds them least. `None` where none could start.
@@ -123,7 +123,7 @@ pub struct SearchResult {
     pub found: Option<DesignAssessment>,
     /// How near to optimal that is, and what binds.
     pub optimality: Optimality,
-    /// Its iterations, in order, the start first.
+    /// Iterations, in order, the start first.
     pub iterations: Vec<Iteration>,
     /// Per searched variable, how much of the change of the objective it brought: along the way, the mean gradient of each step times
     /// the step.
@@ -154,7 +154,7 @@ pub enum OptimizationStatus {
 /// One iteration of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Iteration {
-    /// Its number; 0 is the start.
+    /// Number; 0 is the start.
     pub number: usize,
     /// The objective there.
     pub objective: f64,
@@ -181,7 +181,7 @@ pub struct FailedDesign {
     pub why: String,
 }
 
-/// What is told of a search under way.
+/// What is informed of a search under way.
 #[derive(Clone, Copy, Debug)]
 pub enum SearchProgress<'s> {
     /// It did an iteration.
@@ -190,15 +190,15 @@ pub enum SearchProgress<'s> {
     End(&'s SearchResult),
 }
 
-/// How an optimisation is done, besides what is asked for.
+/// How an optimisation is done, besides the request.
 pub struct OptimizationRequest<'w> {
-    /// Is told of every iteration and of the end of every search, by its number, and may end them all.
+    /// Receives every iteration and of the end of every search, by its number, and may end them all.
     pub progress: &'w mut (dyn FnMut(usize, SearchProgress<'_>) -> ControlFlow<()> + Send),
     /// Is asked at every output time of every motion whether to go on.
     pub more: &'w (dyn Fn() -> bool + Sync),
-    /// Searches run on so many threads; what they find does not depend on it.
+    /// Searches run on that many threads; what they find does not depend on it.
     pub threads: NonZero<usize>,
-    /// The number of the first start: 0 is the design as drawn. Searches from other numbers can be done elsewhere.
+    /// The number of the first start: 0 is the nominal design. Searches from other numbers can be done elsewhere.
     pub first: usize,
 }
 
@@ -250,7 +250,7 @@ pub fn optimize(
 /// Judges one design, given by the values of all variables of the model.
 ///
 /// # Errors
-/// Fails where a motion stops, comes closer to a singular position than the margin that is asked for, or a goal has no value.
+/// Fails where a motion stops, comes closer to a singular position than the margin that is requested, or a goal has no value.
 pub fn judge(
     model: &Model,
     motions: &Motions<'_>,
@@ -266,7 +266,7 @@ pub fn judge(
     }
 }
 
-/// The k-th start, as parts of the bounds: the design as drawn, then points that fill the bounds evenly.
+/// The k-th start, as parts of the bounds: the nominal design, then points that fill the bounds evenly.
 fn start(problem: &Problem<'_>, k: usize) -> Vec<f64> {
     let drawn = problem.parts(&vec![0.0; problem.model.variables.len()]);
     let dimension = |(d, drawn): (usize, f64)| match k {
@@ -336,7 +336,7 @@ fn search(
 ) -> SearchResult {
     let memory = Memory::new(problem, more);
     let n = start.len();
-    // A start that cannot be judged is drawn nearer to the design as drawn, half of the way each time.
+    // A start that cannot be judged is drawn nearer to the nominal design, half of the way each time.
     let drawn = problem.parts(&vec![0.0; problem.model.variables.len()]);
     let nearer = |halvings: i32| -> Vec<f64> {
         let part = 0.5_f64.powi(halvings);
@@ -380,7 +380,7 @@ struct Descent<'p> {
     /// Of limits, and of the gradient at the start.
     scales: Vec<f64>,
     steepest: f64,
-    /// Where it stands, as parts of the bounds.
+    /// Where it is, as parts of the bounds.
     at: Vec<f64>,
     here: Point,
     best: Point,
@@ -420,7 +420,7 @@ impl<'p> Descent<'p> {
         point.violation(|k| self.scales[k])
     }
 
-    /// Whether one design is better than another: it keeps the limits, and serves the goals better.
+    /// True if one design is better than another: it keeps the limits, and serves the goals better.
     fn is_better(&self, one: &Point, other: &Point) -> bool {
         let [a, b] = [one, other].map(|p| self.violation(p));
         match [a <= KEPT, b <= KEPT] {
@@ -437,7 +437,7 @@ impl<'p> Descent<'p> {
         }
     }
 
-    /// The solver that is made for goals and limits like these, from where the search stands. Least squares come near to bounds from
+    /// The solver that is made for goals and limits like these, from where the search is. Least squares come near to bounds from
     /// within, slowly: what they leave is left to sequential programming.
     fn solver(&self, squares: bool) -> Option<Box<dyn Solver + 'p>> {
         if squares {

@@ -23,7 +23,7 @@ const LEAST_SCALE: f64 = 1e-6;
 pub enum ActiveConstraint {
     /// The lower bound of a searched variable, by its place in [`OptimizationSettings::variables`](crate::model::OptimizationSettings::variables).
     Lower(usize),
-    /// Its upper bound.
+    /// Upper bound.
     Upper(usize),
     /// The lower end of a limit, by its place in [`OptimizationSettings::limits`](crate::model::OptimizationSettings::limits), in a motion.
     Least(usize, Option<usize>),

@@ -27,7 +27,7 @@ pub(super) struct Taken {
     /// Which goal or limit it is taken for.
     pub of: usize,
     pub motion: usize,
-    /// Its place in the metrics of that motion.
+    /// Place in the metrics of that motion.
     pub metric: usize,
 }
 
@@ -74,22 +74,22 @@ pub(super) struct Point {
 /// A limit, or one of several numbers that it holds for.
 #[derive(Clone, Debug)]
 pub(super) struct LimitRow {
-    /// Its place in [`Problem::limits`].
+    /// Place in [`Problem::limits`].
     pub of: usize,
     /// At most 0 where the limit is kept; 0 where it asks for one value.
     pub exceeds: f64,
     pub d: Vec<f64>,
     pub equal: bool,
-    /// Whether it is the upper one.
+    /// True if it is the upper one.
     pub upper: bool,
-    /// Whether there is a [`Spread`] of it, which says more of how it goes with the design.
+    /// True if there is a [`Spread`] of it, which says more of how it goes with the design.
     pub spread: bool,
 }
 
 /// How far a curve ranges, and how far it may: by its greatest value less its least one.
 #[derive(Clone, Debug)]
 pub(super) struct Spread {
-    /// Its place in [`Problem::limits`].
+    /// Place in [`Problem::limits`].
     pub of: usize,
     pub most: f64,
     /// All that may be the greatest value, and all that may be the least one, negative.
@@ -102,7 +102,7 @@ pub(super) struct Refusal {
     /// In which motion.
     pub motion: Option<usize>,
     pub why: String,
-    /// Whether it was the caller who ended it.
+    /// True if it was the caller who ended it.
     pub interrupted: bool,
 }
 
@@ -119,7 +119,7 @@ impl Point {
         self.plain.values.is_empty() && self.peaks.is_empty()
     }
 
-    /// Whether all goals are squares, and nothing but bounds limits the design.
+    /// True if all goals are squares, and nothing but bounds limits the design.
     pub fn is_squares(&self) -> bool {
         self.has_only_squares() && self.limits.is_empty()
     }
@@ -129,7 +129,7 @@ impl Point {
         self.misfits.values.iter().map(|r| r * r).sum::<f64>().sqrt()
     }
 
-    /// Its derivative by every searched variable, where it has one.
+    /// Derivative by every searched variable, where it has one.
     pub fn gradient(&self, variables: usize) -> Vec<f64> {
         let mut g = vec![0.0; variables];
         let mut add = |by: f64, d: &[f64]| g.iter_mut().zip(d).for_each(|(g, d)| *g += by * d);
@@ -233,7 +233,7 @@ impl<'m> Problem<'m> {
         Ok(point)
     }
 
-    /// Whether all motions keep away from singular positions.
+    /// True if all motions keep away from singular positions.
     fn margins(&self, found: &DesignEvaluation) -> Result<(), Refusal> {
         let Some(limit) = self.asked.margin else { return Ok(()) };
         for (motion, solution) in found.solutions.iter().enumerate() {

@@ -74,7 +74,7 @@ impl<'p> Memory<'p> {
 
 /// A solver under way.
 pub(super) trait Solver {
-    /// Does one iteration: where it stands then, as parts of the bounds; `None` where it has come to its end.
+    /// Does one iteration: where it is then, as parts of the bounds; `None` where it has come to its end.
     fn step(&mut self) -> Option<Vec<f64>>;
 }
 
@@ -137,7 +137,7 @@ pub(super) struct Programming<'p> {
     /// What the objective, and every limit, is multiplied by.
     scale: f64,
     limit_scales: Vec<f64>,
-    /// How many groups of peaks and limited ranges there are, and how many rows of each kind: the same for every design.
+    /// Number of groups of peaks and limited ranges there are, and how many rows of each kind: the same for every design.
     peaks: usize,
     spreads: usize,
     equal: usize,

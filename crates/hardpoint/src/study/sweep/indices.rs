@@ -12,7 +12,7 @@ pub struct SobolIndex {
     pub pairs: usize,
 }
 
-/// The indices of a metric by each of so many variables, from its values in the designs of
+/// The indices of a metric by each of that many variables, from its values in the designs of
 /// [`SweepMethod::Indices`](crate::model::SweepMethod::Indices), NaN where a design has none. `None` where it does not vary, or fewer than
 /// two pairs have it.
 ///

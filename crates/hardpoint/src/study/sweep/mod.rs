@@ -27,7 +27,7 @@ pub struct SweptMetric {
     pub metric: usize,
     /// In which motion, by its place among those studied.
     pub motion: usize,
-    /// Its place among the metrics of that motion.
+    /// Place among the metrics of that motion.
     place: usize,
 }
 
@@ -38,7 +38,7 @@ pub struct SweptBlock {
     pub numbers: Range<usize>,
     /// Per metric, its value in each design; NaN where it has none.
     pub metrics: Vec<Vec<f64>>,
-    /// Per motion, its curves; empty where none are asked for.
+    /// Per motion, its curves; empty where none are requested.
     pub curves: Vec<SweptCurves>,
     /// What happened to designs that do not move to the end, motion by motion.
     pub failures: Vec<SweptFailure>,
@@ -58,7 +58,7 @@ pub struct SweptCurves {
 /// A design that does not move to the end of a motion.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SweptFailure {
-    /// Its number.
+    /// Number.
     pub number: usize,
     /// In which motion, by its place among those studied.
     pub motion: usize,
@@ -96,7 +96,7 @@ impl<'a> Sweep<'a> {
         Ok(Self { motions, asked, plan, metrics: pairs.filter_map(of_motion).collect() })
     }
 
-    /// Its designs.
+    /// Designs.
     pub fn plan(&self) -> &SweepPlan<'a> {
         &self.plan
     }
@@ -106,7 +106,7 @@ impl<'a> Sweep<'a> {
         &self.metrics
     }
 
-    /// The design as drawn, as the only one of its block.
+    /// The nominal design, as the only one of its block.
     pub fn drawn(&self) -> SweptBlock {
         let mut block = SweptBlock { numbers: 0..1, ..SweptBlock::default() };
         for (motion, analysis) in self.motions.analyses().iter().enumerate() {

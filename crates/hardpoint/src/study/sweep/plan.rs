@@ -22,12 +22,12 @@ pub enum SweepPlanError {
     NoDesigns,
     /// There are more than [`SweepSettings::MOST`].
     TooMany,
-    /// There are no Sobol sequences of so many dimensions, but of so many.
+    /// There are no Sobol sequences of that many dimensions, but of that many.
     TooManyDimensions(usize),
 }
 
 impl<'a> SweepPlan<'a> {
-    /// The designs that are asked for.
+    /// The designs that are requested.
     ///
     /// # Errors
     /// Where they cannot be chosen.
@@ -35,7 +35,7 @@ impl<'a> SweepPlan<'a> {
         Self::of(asked, model.variables.len())
     }
 
-    /// The same of a model with so many variables.
+    /// The same of a model with that many variables.
     pub(super) fn of(asked: &'a SweepSettings, variables: usize) -> Result<Self, SweepPlanError> {
         let count = asked.count().ok_or(SweepPlanError::TooMany)?;
         if asked.ranges.is_empty() {
@@ -56,7 +56,7 @@ impl<'a> SweepPlan<'a> {
         Ok(Self { asked, variables, count, sobol })
     }
 
-    /// How many there are.
+    /// Number of there are.
     pub fn count(&self) -> usize {
         self.count
     }
@@ -116,7 +116,7 @@ impl<'a> SweepPlan<'a> {
     }
 }
 
-/// Where a permutation of so many numbers takes one of them: a Feistel network over the next power of 4, walked until it comes back below.
+/// Where a permutation of that many numbers takes one of them: a Feistel network over the next power of 4, walked until it comes back below.
 fn permuted(number: usize, count: usize, key: u64) -> usize {
     const ROUNDS: u64 = 6;
     let mut half = 1;

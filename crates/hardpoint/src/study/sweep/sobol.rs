@@ -61,7 +61,7 @@ fn directions(line: &str) -> [u32; BITS] {
     v
 }
 
-/// Owen's nested scrambling by a hash: every bit is turned over or not by what stands above it (B. Burley, "Practical Hash-based Owen
+/// Owen's nested scrambling by a hash: every bit is turned over or not by what is above it (B. Burley, "Practical Hash-based Owen
 /// Scrambling", JCGT 9 (2020) no. 4, with the hash of N. Vegdahl, 2021). A point set that is evenly spread stays so.
 fn scrambled(x: u32, seed: u32) -> u32 {
     let mut x = x.reverse_bits();
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn the_first_points_are_those_of_another_implementation() {
-        // scipy.stats.qmc.Sobol(25, scramble=False) goes by Gray's code; dimensions 0, 1, 2, 3, 10, 20, 24.
+        // scipy.stats.qmc.Sobol(25, scramble=False) depends on Gray's code; dimensions 0, 1, 2, 3, 10, 20, 24.
         const DIMENSIONS: [usize; 7] = [0, 1, 2, 3, 10, 20, 24];
         const POINTS: [[f64; 7]; 8] = [
             [0.0; 7],

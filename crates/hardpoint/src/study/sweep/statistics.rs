@@ -3,7 +3,7 @@
 /// How a metric is distributed over the designs that have it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Distribution {
-    /// How many have it.
+    /// Number of have it.
     pub known: usize,
     /// Mean.
     pub mean: f64,

@@ -4,7 +4,7 @@
 //! minimise  sum c_a / t_a     subject to  k^2 t' Q_j t <= r_j^2  (squares)  or  w_j . t <= r_j  (worst case)
 //! ```
 //!
-//! with `t_a` the reaches, `r_j` the room between the value as drawn and a limit, `Q_ab = sum over variables i of a, l of b of
+//! with `t_a` the reaches, `r_j` the room between the value in the design configuration and a limit, `Q_ab = sum over variables i of a, l of b of
 //! g_i g_l rho_il (s_i / t_a) (s_l / t_b)` and `w_a = |gradient by the variables of a|`. All of it is convex, so that what fulfils the
 //! conditions of optimality is the optimum. It is found by a barrier and Newton's method.
 
@@ -14,18 +14,18 @@ use crate::model::{AllocationRule, AllocationSettings};
 use super::monte_carlo::MonteCarlo;
 use super::{Study, ToleranceResult, dot};
 
-/// No tolerance is made looser than so many times what it is: beyond that no limit has a say in it, and no derivative either.
+/// No tolerance is made looser than that many times what it is: beyond that no limit has a say in it, and no derivative either.
 const MOST: f64 = 1000.0;
-/// The barrier gives way by this factor ...
+/// The barrier deflects by this factor ...
 const HARDER: f64 = 10.0;
 /// ... until what it costs is less than this part of the costs. Newton's equations are then of a condition near its inverse.
 const SHARP: f64 = 1e-8;
-/// Newton's method ends where the cost would fall by less than this part, and after so many steps at the latest.
+/// Newton's method ends where the cost would fall by less than this part, and after that many steps at the latest.
 const STILL: f64 = 1e-18;
 /// So near to the end a whole step is right, and the barrier's own value is round-off.
 const NEAR: f64 = 1e-4;
 const STEPS: usize = 100;
-/// A step that leaves what is allowed, or gains nothing, is halved so many times.
+/// A step that leaves what is allowed, or gains nothing, is halved that many times.
 const HALVINGS: usize = 60;
 
 /// The loosest tolerances.
@@ -53,7 +53,7 @@ pub struct Allocation {
 pub struct AllocatedTolerance {
     /// Which of the tolerances.
     pub tolerance: usize,
-    /// Its reach before.
+    /// Reach before.
     pub before: f64,
     /// The loosest; `None` where no limit has a say in it.
     pub after: Option<f64>,
@@ -66,7 +66,7 @@ pub enum AllocationError {
     NoCosts,
     /// There is no limit.
     NoLimits,
-    /// This limit (in the order of [`ToleranceResult::limits`]) is not kept by the design as drawn.
+    /// This limit (in the order of [`ToleranceResult::limits`]) is not kept by the nominal design.
     AsDrawn(usize),
     /// Tolerances without a cost use up the room of this one.
     Fixed(usize),
@@ -75,7 +75,7 @@ pub enum AllocationError {
 /// What one limit asks for.
 struct Room {
     limit: usize,
-    /// Its room, in SI.
+    /// Room, in SI.
     room: f64,
     /// By squares: `k^2 t' Q t`, in parts of the tolerances as they are.
     q: Vec<Vec<f64>>,

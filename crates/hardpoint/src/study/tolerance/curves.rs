@@ -5,19 +5,19 @@ use crate::model::OutputSource;
 use super::deviations::Deviations;
 use super::{SecondOrder, Study};
 
-/// Second derivatives of so many bytes are held for bands; of more variables and longer motions, bands are of first order.
+/// Second derivatives of that many bytes are held for bands; of more variables and longer motions, bands are of first order.
 const MOST_BYTES: usize = 256 << 20;
-/// And so many while they are worked out.
+/// And that many while they are worked out.
 const PART_BYTES: usize = 16 << 20;
 
 /// What tolerances make of a measure along one motion.
 #[derive(Clone, Debug)]
 pub struct CurveBands {
-    /// Its place in [`Model::measures`](crate::model::Model::measures).
+    /// Place in [`Model::measures`](crate::model::Model::measures).
     pub measure: usize,
     /// The motion, by its place among those studied.
     pub motion: usize,
-    /// Its column in [`MeasureResults`](crate::measure::Measured).
+    /// Column in [`MeasureResults`](crate::measure::Measured).
     pub column: usize,
     /// Output times, s.
     pub times: Vec<f64>,
@@ -28,7 +28,7 @@ pub struct CurveBands {
 /// The same at one output time, in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandPoint {
-    /// As drawn.
+    /// In the design configuration.
     pub nominal: f64,
     /// The standard deviation to first order.
     pub sigma: f64,
@@ -47,7 +47,7 @@ impl CurveBands {
 }
 
 impl Study<'_> {
-    /// The bands of all curves that are asked for, as far as there is `more` time.
+    /// The bands of all curves that are requested, as far as there is `more` time.
     pub(super) fn curves(&self, more: &(dyn Fn() -> bool + Sync)) -> Vec<CurveBands> {
         (0..self.motions.len()).flat_map(|motion| self.curves_of(motion, more)).collect()
     }

@@ -191,7 +191,7 @@ impl Deviations {
         d
     }
 
-    /// The values of all variables of the model, so many, with these deviations.
+    /// The values of all variables of the model, that many, with these deviations.
     pub fn design(&self, variables: usize, deviations: &[f64]) -> Vec<f64> {
         let mut design = vec![0.0; variables];
         self.variables.iter().zip(deviations).for_each(|(v, d)| design[v.variable.0] = *d);

@@ -30,7 +30,7 @@ pub use monte_carlo::{FailureGroup, MonteCarlo, SampledCurve, SampledMetric, Yie
 pub use worst::Extreme;
 
 /// Where the second-order part of a deviation, or the shift of its mean, is more than this part of the first-order standard deviation, the
-/// linear answer is told to be off.
+/// linear answer is reported to be off.
 pub const NONLINEAR: f64 = 0.1;
 /// Gradients are differenced over this part of a natural step to either side: the error of the difference, in h^2, and round-off, in 1/h,
 /// are then some 1e-8 of the second derivative.
@@ -41,25 +41,25 @@ const STEP: f64 = 1e-4;
 pub struct ToleranceResult {
     /// The variables that may be off, in the order of the tolerances.
     pub variables: Vec<TolerancedVariable>,
-    /// Variables with a tolerance that the mechanism cannot follow: they stay as drawn.
+    /// Variables with a tolerance that the mechanism cannot follow: they stay in the design configuration.
     pub left_out: Vec<VariableId>,
     /// Per metric and motion.
     pub metrics: Vec<MetricSpread>,
     /// Per metric and motion, what each variable contributes to its variance.
     pub contributions: Vec<Contributions>,
-    /// Metrics that have no value as drawn: the metric, and the motion.
+    /// Metrics that have no value in the design configuration: the metric, and the motion.
     pub unknown: Vec<(usize, usize)>,
     /// Per measure and motion.
     pub curves: Vec<CurveBands>,
     /// Per limit, and per motion that its metric is taken of.
     pub limits: Vec<LimitYield>,
-    /// The designs that were drawn, if any were asked for.
+    /// The designs that were drawn, if any were requested.
     pub sampled: Option<MonteCarlo>,
-    /// The loosest tolerances, if they were asked for.
+    /// The loosest tolerances, if they were requested.
     pub allocation: Option<Allocation>,
     /// What it cost.
     pub cost: StudyCost,
-    /// Whether it was ended before all was done.
+    /// True if it was ended before all was done.
     pub interrupted: bool,
 }
 
@@ -70,7 +70,7 @@ pub struct TolerancedVariable {
     pub variable: VariableId,
     /// By which of the tolerances.
     pub tolerance: usize,
-    /// Its standard deviation, m, rad or a plain number.
+    /// Standard deviation, m, rad or a plain number.
     pub sigma: f64,
     /// The kurtosis of its deviation: 3 where it is normal.
     pub kurtosis: f64,
@@ -79,15 +79,15 @@ pub struct TolerancedVariable {
 /// What tolerances make of a metric in one motion, from derivatives. All in SI.
 #[derive(Clone, Debug)]
 pub struct MetricSpread {
-    /// Its place in [`Model::metrics`].
+    /// Place in [`Model::metrics`].
     pub metric: usize,
     /// The motion, by its place among those studied.
     pub motion: usize,
-    /// As drawn.
+    /// In the design configuration.
     pub nominal: f64,
-    /// Its derivative by every variable that may be off.
+    /// Derivative by every variable that may be off.
     pub d: Vec<f64>,
-    /// Its standard deviation to first order: the root of the sum of squares.
+    /// Standard deviation to first order: the root of the sum of squares.
     pub sigma: f64,
     /// The part of the first-order variance that each variable contributes; they add up to 1. With correlated variables one may be
     /// negative: it takes away from what another brings.
@@ -106,7 +106,7 @@ pub struct MetricSpread {
 /// Moments to second order, in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondOrder {
-    /// By how much the mean is off the value as drawn.
+    /// By how much the mean is off the value in the design configuration.
     pub shift: f64,
     /// The standard deviation.
     pub sigma: f64,
@@ -114,10 +114,10 @@ pub struct SecondOrder {
     pub bend: f64,
 }
 
-/// Whether a limit will be kept.
+/// True if a limit will be kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitYield {
-    /// Its place in [`ToleranceSettings::limits`].
+    /// Place in [`ToleranceSettings::limits`].
     pub limit: usize,
     /// The place of its metric and motion in [`ToleranceResult::metrics`].
     pub spread: usize,
@@ -135,7 +135,7 @@ impl ToleranceResult {
     }
 }
 
-/// The designs that are drawn within tolerances, by their numbers: all variables, in SI. Those that are left out stay as drawn.
+/// The designs that are drawn within tolerances, by their numbers: all variables, in SI. Those that are left out stay in the design configuration.
 pub fn toleranced_designs(
     model: &Model,
     asked: &ToleranceSettings,
@@ -149,23 +149,23 @@ pub fn toleranced_designs(
 /// Why nothing can be said.
 #[derive(Clone, Debug)]
 pub enum ToleranceError {
-    /// The design as drawn does not come to its end in some motion, or it was ended there.
+    /// The nominal design does not come to its end in some motion, or it was ended there.
     Drawn(EvaluationError),
     /// The mechanism can follow none of the variables with a tolerance.
     NothingVaries,
 }
 
-/// What is told of a study under way.
+/// What is informed of a study under way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ToleranceStage {
-    /// So many gradients of so many are differenced.
+    /// Number of gradients of that many are differenced.
     Derivatives(usize, usize),
-    /// So many designs of so many were solved.
+    /// Number of designs of that many were solved.
     Designs(usize, usize),
 }
 
 impl MetricSpread {
-    /// The mean to second order, or as drawn where that is not known.
+    /// The mean to second order, or in the design configuration where that is not known.
     pub fn mean(&self) -> f64 {
         self.nominal + self.second.map_or(0.0, |s| s.shift)
     }
@@ -182,17 +182,17 @@ impl MetricSpread {
         Some(if part <= self.round_off { 0.0 } else { part / self.sigma })
     }
 
-    /// Whether the linear answer is off, as told by the second derivatives.
+    /// True if the linear answer is off, as reported by the second derivatives.
     pub fn is_nonlinear(&self) -> bool {
         self.nonlinearity().is_none_or(|part| !(part <= NONLINEAR))
     }
 }
 
 /// Studies the tolerances of a design in some motions of the mechanism, each of which is the model's own of that number
-/// ([`Model::motions`]). `tell` is told how far it is and may end it, `more` is asked at every output time of single designs.
+/// ([`Model::motions`]). `tell` is reported how far it is and may end it, `more` is asked at every output time of single designs.
 ///
 /// # Errors
-/// A [`ToleranceError`] where there is nothing to go by.
+/// A [`ToleranceError`] where there is nothing to depend on.
 pub fn tolerance(
     model: &Model,
     motions: &Motions<'_>,
@@ -277,10 +277,10 @@ struct Study<'s> {
 
 /// A metric in one motion.
 struct Taken {
-    /// Its place in [`Model::metrics`].
+    /// Place in [`Model::metrics`].
     metric: usize,
     motion: usize,
-    /// Its place in the metrics of the motion.
+    /// Place in the metrics of the motion.
     place: usize,
 }
 

@@ -19,7 +19,7 @@ use super::{CurveBands, MetricSpread, Study, ToleranceResult, ToleranceStage};
 /// What was found of designs that were drawn. All in SI.
 #[derive(Clone, Debug, Default)]
 pub struct MonteCarlo {
-    /// So many were solved.
+    /// That many were solved.
     pub samples: usize,
     /// Of the metrics, in the order of [`ToleranceResult::metrics`].
     pub metrics: Vec<SampledMetric>,
@@ -31,7 +31,7 @@ pub struct MonteCarlo {
     pub all: Option<Yield>,
     /// Designs that do not move to the end in some motion, by what happens there.
     pub failures: Vec<FailureGroup>,
-    /// How many designs these are.
+    /// Number of designs these are.
     pub failed: usize,
     /// What it cost.
     pub cost: StudyCost,
@@ -72,9 +72,9 @@ pub struct SampledCurve {
 /// The part of designs that keep something.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Yield {
-    /// So many keep it.
+    /// That many keep it.
     pub kept: usize,
-    /// Of so many.
+    /// Of that many.
     pub of: usize,
 }
 
@@ -85,9 +85,9 @@ pub struct FailureGroup {
     pub motion: usize,
     /// What happened to the first of them.
     pub why: String,
-    /// Its number.
+    /// Number.
     pub first: usize,
-    /// How many there are.
+    /// Number of there are.
     pub count: usize,
 }
 
@@ -97,7 +97,7 @@ impl Yield {
         self.kept as f64 / self.of as f64
     }
 
-    /// Its standard error: that of a part with one more that keeps it and one more that does not, since none of many is not never.
+    /// Standard error: that of a part with one more that keeps it and one more that does not, since none of many is not never.
     pub fn error(self) -> f64 {
         let n = self.of as f64 + 2.0;
         let part = (self.kept as f64 + 1.0) / n;
@@ -149,7 +149,7 @@ struct Block {
 }
 
 impl Study<'_> {
-    /// Draws as many designs as asked for and solves them, or as many as there is time for.
+    /// Draws as many designs as requested and solves them, or as many as there is time for.
     pub(super) fn sample(
         &self,
         deviations: &Deviations,

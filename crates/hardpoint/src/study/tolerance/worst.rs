@@ -3,9 +3,9 @@
 use super::deviations::{Block, Deviations};
 use super::dot;
 
-/// An ascent ends after so many rounds over all tolerances; it gains in each of them, and ends mostly after two or three.
+/// An ascent ends after that many rounds over all tolerances; it gains in each of them, and ends mostly after two or three.
 const ROUNDS: usize = 50;
-/// Within a sphere the direction is improved so many times in each round.
+/// Within a sphere the direction is improved that many times in each round.
 const TURNS: usize = 10;
 /// Where what is gained is less than this part, it is round-off.
 const NO_MORE: f64 = 1e-12;

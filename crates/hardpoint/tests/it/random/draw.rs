@@ -8,7 +8,7 @@ use hardpoint::{draft::*, model::*};
 use super::rank::{Basis, coupler_row, driver_row, joint_rows};
 
 /// A row of an exactly determined mechanism keeps at least this part of its length beside the rows before it. Weaker ones
-/// exist in practice, but near a singular position nothing smooth can be asked for.
+/// exist in practice, but near a singular position nothing smooth can be requested.
 const WELL_POSED: f64 = 0.05;
 
 /// Steele's, Lea's and Flood's splitmix64: small, and good enough to draw with.
@@ -83,7 +83,7 @@ impl Rng {
     }
 }
 
-/// A draft that grows, closed as drawn at every moment.
+/// A draft that grows, closed in the design configuration at every moment.
 pub struct Drawing<'r> {
     pub rng: &'r mut Rng,
     pub draft: Draft,
@@ -384,7 +384,7 @@ impl<'r> Drawing<'r> {
         DirectionDraft::Through(names[0].clone(), names[1].clone())
     }
 
-    /// A direction square to that one.
+    /// A direction perpendicular to that one.
     fn square_to(&mut self, z: Vec3) -> Vec3 {
         let v = loop {
             let v = z.cross(self.rng.direction());
@@ -406,7 +406,7 @@ impl<'r> Drawing<'r> {
         }
     }
 
-    /// A joint of that type anywhere, closed as drawn.
+    /// A joint of that type anywhere, closed in the design configuration.
     fn joint(&mut self, kind: &'static JointType, bodies: [usize; 2]) -> JointDraft {
         let z = self.rng.direction();
         let mut j = JointDraft {

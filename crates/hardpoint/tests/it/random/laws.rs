@@ -34,7 +34,7 @@ const MOST_SUBSTEPS: usize = 200_000;
 pub struct Promise {
     /// No row is redundant, so that any change of the design can be followed.
     pub exact: bool,
-    /// Closed as drawn.
+    /// Closed in the design configuration.
     pub closed: bool,
 }
 
@@ -529,7 +529,7 @@ impl Case<'_> {
                 }
             }
         };
-        // Where an orientation is driven, the direction that is seen turning is square to `about` but otherwise chosen by
+        // Where an orientation is driven, the direction that is seen turning is perpendicular to `about` but otherwise chosen by
         // the global axes, so that such a driver means something else once the mechanism is turned.
         // The same is true of the Euler angles of a marker whose x axis nobody gave.
         let turns = self.draft.drivers.iter().any(|d| matches!(d.drives, DrivenDraft::Orientation { .. }))
@@ -568,12 +568,12 @@ struct Group {
     /// A deviation counts as a part of the largest of the numbers, but at least of this.
     floor: f64,
     values: Vec<f64>,
-    /// Whether it is an angle that is counted through whole turns.
+    /// True if it is an angle that is counted through whole turns.
     counts_turns: bool,
 }
 
 /// All numbers of a solution, lengths in sizes, by names in alphabetical order; those of a moved mechanism are moved back, and
-/// with `anywhere` those left out that depend on where it stands.
+/// with `anywhere` those left out that depend on where it is.
 fn flat(model: &Model, s: &Solution, size: f64, moved: Option<Pose>, anywhere: bool) -> Vec<Group> {
     let times = s.motion.len();
     let by_name = |names: Vec<&str>| {

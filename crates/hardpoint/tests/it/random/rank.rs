@@ -8,19 +8,19 @@ use hardpoint::space::{Mat3, Pose, Twist, Vec3};
 /// generator accepts no row that keeps less than a hundredth.
 const DEPENDENT: f64 = 1e-6;
 
-/// Rows that are independent of each other, made square to each other.
+/// Rows that are independent of each other, made perpendicular to each other.
 #[derive(Clone, Default)]
 pub struct Basis {
     vectors: Vec<Vec<f64>>,
 }
 
 impl Basis {
-    /// How many independent rows there are.
+    /// Number of independent rows there are.
     pub fn rank(&self) -> usize {
         self.vectors.len()
     }
 
-    /// Adds a row; returns the part of its length that is square to those before. A dependent row is not added.
+    /// Adds a row; returns the part of its length that is perpendicular to those before. A dependent row is not added.
     pub fn add(&mut self, mut row: Vec<f64>) -> f64 {
         let norm = |row: &[f64]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
         let before = norm(&row);
@@ -81,7 +81,7 @@ pub fn coupler_row(model: &Model, c: usize, size: f64) -> Vec<f64> {
     sum
 }
 
-/// How many freedoms the joints and couplers leave, by their rows alone.
+/// Number of freedoms the joints and couplers leave, by their rows alone.
 pub fn mobility(model: &Model) -> usize {
     let size = model.size();
     let mut basis = Basis::default();
