@@ -13,7 +13,7 @@ use hardpoint_file::{ModelFile, Units};
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
 use hardpoint_report::facts::Facts;
-use hardpoint_report::payload::{Changed, Request, report};
+use hardpoint_report::payload::{ChangedDesign, Request, report};
 use hardpoint_report::summary::Summary;
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -273,7 +273,7 @@ impl Run {
             let course = Course::of(&file.model, &today);
             let mut summary = Summary::new(file, analysis.topology(), &course);
             summary.diagnostics = diagnose::all(file, &summary, &course, None);
-            let changed = is_changed.then(|| Changed {
+            let changed = is_changed.then(|| ChangedDesign {
                 name: "changed".into(),
                 note: "The design of this run.".into(),
                 change: &self.changes,

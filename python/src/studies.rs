@@ -13,12 +13,12 @@ use hardpoint::study::{
     toleranced_designs, validity, verify, what_if,
 };
 use hardpoint::topology::Formulation;
-use hardpoint_report::calibrate::{CalibrateFacts, Calibrated};
+use hardpoint_report::calibrate::{CalibrateFacts, CalibrationInputs};
 use hardpoint_report::diagnose;
 use hardpoint_report::maps::MapFact;
 use hardpoint_report::optimize::{OptimizeFacts, rounded};
 use hardpoint_report::page::Table;
-use hardpoint_report::tolerance::{Studied, ToleranceFacts};
+use hardpoint_report::tolerance::{ToleranceInputs, ToleranceFacts};
 use hardpoint_report::validity::ValidityFact;
 use hardpoint_report::verdict::Verdict;
 use hardpoint_report::whatif::WhatIfFacts;
@@ -167,7 +167,7 @@ impl Model {
                 "the mechanism can follow none of the variables with a tolerance; give tolerances to variables that it can follow",
             ),
         })?;
-        let facts = ToleranceFacts::of(&Studied { file, numbers: &numbers, asked: &asked, found: &found });
+        let facts = ToleranceFacts::of(&ToleranceInputs { file, numbers: &numbers, asked: &asked, found: &found });
         Ok(outcome(&facts, &facts.tables()))
     }
 
@@ -251,7 +251,7 @@ impl Model {
             )),
         })?;
         let facts =
-            CalibrateFacts::of(&Calibrated { file, measured: &table, data: measured, loss, found: &found });
+            CalibrateFacts::of(&CalibrationInputs { file, measured: &table, data: measured, loss, found: &found });
         Ok((outcome(&facts, &facts.tables()), self.values_of(&found.design)))
     }
 

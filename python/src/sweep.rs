@@ -8,7 +8,7 @@ use hardpoint::draft::did_you_mean;
 use hardpoint::model::{SweepMethod, SweepRange, SweepSettings, VariableId};
 use hardpoint::study::{BLOCK, Sweep as Designs, SweepPlanError, SweptBlock};
 use hardpoint_report::cells::Cells;
-use hardpoint_report::sweep::{Swept, Tally};
+use hardpoint_report::sweep::{SweepInputs, Tally};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use serde::Deserialize;
@@ -132,7 +132,7 @@ impl Model {
 
 impl Sweep {
     /// The sweep and its tables.
-    fn with<X>(&self, of: impl FnOnce(Swept<'_>) -> X) -> Result<X, Failure> {
+    fn with<X>(&self, of: impl FnOnce(SweepInputs<'_>) -> X) -> Result<X, Failure> {
         let file = &self.model.get().whole;
         let designs = Designs::new(&file.model, &self.motions, &self.numbers, &self.asked).map_err(|why| {
             Failure::Misunderstood(match why {
@@ -145,7 +145,7 @@ impl Sweep {
                 ),
             })
         })?;
-        Ok(of(Swept {
+        Ok(of(SweepInputs {
             file,
             numbers: &self.numbers,
             asked: &self.asked,

@@ -638,8 +638,8 @@ pub struct Calibrate {
     #[arg(long, value_name = "NAME=SIGMA")]
     pub sigma: Vec<String>,
     /// What a residual far from the others counts
-    #[arg(long, value_enum, default_value_t = LossWord::Squares)]
-    pub loss: LossWord,
+    #[arg(long, value_enum, default_value_t = LossKind::Squares)]
+    pub loss: LossKind,
     /// End after that many iterations
     #[arg(long, value_name = "N", default_value = "100")]
     pub iterations: NonZero<usize>,
@@ -650,7 +650,7 @@ pub struct Calibrate {
 
 /// What a residual counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LossWord {
+pub enum LossKind {
     /// Square: best where errors are normal
     Squares,
     /// Less than its square beyond 1.345 standard deviations: where some readings are off

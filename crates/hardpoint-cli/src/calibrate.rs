@@ -6,13 +6,13 @@ use hardpoint::model::VariableId;
 use hardpoint::study::{Calibration, CalibrationError, CalibrationRequest, FitStatus, Loss, calibrate};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
-use hardpoint_report::calibrate::{CalibrateFacts, Calibrated};
+use hardpoint_report::calibrate::{CalibrateFacts, CalibrationInputs};
 use hardpoint_report::figures::{number, some_of};
 
-use crate::args::{Calibrate, LossWord};
-use crate::folder::{Folder, NotWritten};
+use crate::args::{Calibrate, LossKind};
+use crate::folder::{Folder, WriteError};
 use crate::outcome::Outcome;
-use crate::pages::{Found, page};
+use crate::pages::{FoundDesign, page};
 use crate::session::{Session, json_text};
 use crate::text;
 
@@ -39,9 +39,9 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
 
     session.patient(true);
     let loss = match options.loss {
-        LossWord::Squares => Loss::Squares,
-        LossWord::Huber => Loss::Huber,
-        LossWord::Cauchy => Loss::Cauchy,
+        LossKind::Squares => Loss::Squares,
+        LossKind::Huber => Loss::Huber,
+        LossKind::Cauchy => Loss::Cauchy,
     };
     let asked = CalibrationRequest {
         measured: &measured.measurements,
@@ -52,7 +52,7 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
     };
     let found = search(session, &file, &asked)?;
     let data = options.measured.display().to_string();
-    let calibrated = Calibrated { file: &file, measured: &measured, data: &data, loss, found: &found };
+    let calibrated = CalibrationInputs { file: &file, measured: &measured, data: &data, loss, found: &found };
     let mut facts = CalibrateFacts::of(&calibrated);
     facts.seconds = session.seconds();
     let mut saved = Ok(None);
@@ -171,13 +171,13 @@ fn search(
 
 /// What is written.
 struct Results<'a> {
-    calibrated: Calibrated<'a>,
+    calibrated: CalibrationInputs<'a>,
     options: &'a Calibrate,
 }
 
 impl Results<'_> {
     /// Tables, the page, and the summary last.
-    fn write(&self, folder: &mut Folder, facts: &mut CalibrateFacts) -> Result<(), NotWritten> {
+    fn write(&self, folder: &mut Folder, facts: &mut CalibrateFacts) -> Result<(), WriteError> {
         let of = &self.calibrated;
         folder.write("residuals.csv", |out| Ok(of.write_residuals(out)?))?;
         folder.write("covariance.csv", |out| Ok(of.write_covariance(out)?))?;
@@ -197,7 +197,7 @@ impl Results<'_> {
         let model = self.calibrated.file.model.motions().into_iter().next()?;
         let analysis = Analysis::with(&model, self.options.common.formulation()).ok()?;
         let design = &self.calibrated.found.design;
-        let found = Found { design, note: "The design that explains what was measured." };
+        let found = FoundDesign { design, note: "The design that explains what was measured." };
         let finish = |page, today: &Solution| facts.page(&self.calibrated, page, &today.measured.outputs);
         page(self.calibrated.file, &analysis, Some(&found), finish)
     }

@@ -6,11 +6,11 @@ use hardpoint::Run;
 use hardpoint::draft::did_you_mean;
 use hardpoint::study::{add_coordinates, variable_named};
 use hardpoint_file::ModelFile;
-use hardpoint_report::compare::{CompareFacts, Solved, are_alike};
+use hardpoint_report::compare::{CompareFacts, SolvedModel, are_alike};
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::some_of;
-use hardpoint_report::payload::{Changed, Request, report};
+use hardpoint_report::payload::{ChangedDesign, Request, report};
 use hardpoint_report::summary::Summary;
 
 use crate::args::Compare;
@@ -70,7 +70,7 @@ fn compare_in(
             outcome = Outcome::Stopped;
         }
     }
-    let both = [Solved { file: &file, solution: &today }, Solved { file: &other, solution: &exact }];
+    let both = [SolvedModel { file: &file, solution: &today }, SolvedModel { file: &other, solution: &exact }];
     let facts = CompareFacts::of(both);
     let names: Vec<&str> = facts.measures.iter().map(|c| c.measure.as_str()).collect();
     if let Some(name) = options.measure.iter().find(|name| !names.contains(&name.as_str())) {
@@ -101,7 +101,7 @@ fn compare_in(
             let course = Course::of(&file.model, &today);
             let mut summary = Summary::new(&file, analysis.topology(), &course);
             summary.diagnostics = diagnose::all(&file, &summary, &course, None);
-            let changed = Changed {
+            let changed = ChangedDesign {
                 name: other.file_name().into(),
                 note: format!("The design of {}.", other.file_name()),
                 change: &change,

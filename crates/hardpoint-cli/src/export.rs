@@ -8,7 +8,7 @@ use hardpoint_report::GENERATOR;
 use serde_json::json;
 
 use crate::args::Export;
-use crate::folder::{Folder, NotWritten};
+use crate::folder::{Folder, WriteError};
 use crate::outcome::Outcome;
 use crate::session::Session;
 use crate::text;
@@ -62,7 +62,7 @@ fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Re
     Ok(Outcome::Done)
 }
 
-fn write(to: &Path, exported: &ExportedModel) -> Result<(), NotWritten> {
+fn write(to: &Path, exported: &ExportedModel) -> Result<(), WriteError> {
     let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let name = to.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let mut folder = Folder::open(parent)?;

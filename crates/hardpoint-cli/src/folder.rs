@@ -22,14 +22,14 @@ pub struct Folder {
 }
 
 /// A file under way.
-pub struct Writing {
+pub struct PendingFile {
     file: BufWriter<File>,
     beside: TempPath,
     path: PathBuf,
 }
 
 /// A file or folder that could not be written.
-pub struct NotWritten {
+pub struct WriteError {
     /// Which.
     pub path: PathBuf,
     /// Why.
@@ -39,8 +39,8 @@ pub struct NotWritten {
 impl Folder {
     /// The folder, made where it does not exist. Fails at once if nothing can be written there, so that a
     /// long run is not lost. What a killed run left under way is removed.
-    pub fn open(path: &Path) -> Result<Self, NotWritten> {
-        let not_written = |error| NotWritten { path: path.into(), error };
+    pub fn open(path: &Path) -> Result<Self, WriteError> {
+        let not_written = |error| WriteError { path: path.into(), error };
         std::fs::create_dir_all(path).map_err(not_written)?;
         tempfile::tempfile_in(path).map_err(not_written)?;
         remove_abandoned(path);
@@ -48,24 +48,24 @@ impl Folder {
     }
 
     /// Begins a file beside its place.
-    pub fn begin(&self, name: &str) -> Result<Writing, NotWritten> {
+    pub fn begin(&self, name: &str) -> Result<PendingFile, WriteError> {
         let path = self.path.join(name);
         match temporary(&self.path, name) {
             Ok(file) => {
                 let (file, beside) = file.into_parts();
-                Ok(Writing { file: BufWriter::with_capacity(BUFFER, file), beside, path })
+                Ok(PendingFile { file: BufWriter::with_capacity(BUFFER, file), beside, path })
             }
-            Err(error) => Err(NotWritten { path, error }),
+            Err(error) => Err(WriteError { path, error }),
         }
     }
 
     /// Ends a file.
-    pub fn end(&mut self, mut writing: Writing) -> Result<(), NotWritten> {
+    pub fn end(&mut self, mut writing: PendingFile) -> Result<(), WriteError> {
         if let Err(error) = writing.flush() {
             return Err(writing.failed(error));
         }
-        let Writing { file, beside, path } = writing;
-        let file = file.into_inner().map_err(|e| NotWritten { path: path.clone(), error: e.into_error() })?;
+        let PendingFile { file, beside, path } = writing;
+        let file = file.into_inner().map_err(|e| WriteError { path: path.clone(), error: e.into_error() })?;
         self.pending.push((NamedTempFile::from_parts(file, beside), path));
         Ok(())
     }
@@ -74,8 +74,8 @@ impl Folder {
     pub fn write<T>(
         &mut self,
         name: &str,
-        content: impl FnOnce(&mut Writing) -> io::Result<T>,
-    ) -> Result<T, NotWritten> {
+        content: impl FnOnce(&mut PendingFile) -> io::Result<T>,
+    ) -> Result<T, WriteError> {
         let mut writing = self.begin(name)?;
         let told = content(&mut writing).map_err(|error| writing.failed(error))?;
         self.end(writing).map(|()| told)
@@ -83,28 +83,28 @@ impl Folder {
 
     /// Puts all files in their places, the last one last; files of this family that were not written now are removed, so that
     /// nothing is next to them that is not of the same run.
-    pub fn commit(mut self, family: &[&str]) -> Result<(), NotWritten> {
+    pub fn commit(mut self, family: &[&str]) -> Result<(), WriteError> {
         let last = self.pending.last().map(|(_, path)| path.clone());
         for path in family.iter().map(|name| self.path.join(name)) {
             // The last one vouches for the others: while they change places, there is none.
             let stays = self.pending.iter().any(|(_, p)| *p == path) && Some(&path) != last.as_ref();
             let removed = if stays { Ok(()) } else { std::fs::remove_file(&path) };
             if let Err(error) = removed.or_else(|e| if is_absent(&e) { Ok(()) } else { Err(e) }) {
-                return Err(NotWritten { path, error });
+                return Err(WriteError { path, error });
             }
         }
         for (file, path) in std::mem::take(&mut self.pending) {
             let beside = file.path().to_owned();
-            file.persist(&path).map_err(|e| NotWritten { path, error: e.error })?;
+            file.persist(&path).map_err(|e| WriteError { path, error: e.error })?;
             under_way(|list| list.retain(|p| *p != beside));
         }
         Ok(())
     }
 
     /// Puts all files in their places, where there are none yet.
-    pub fn commit_new(mut self) -> Result<(), NotWritten> {
+    pub fn commit_new(mut self) -> Result<(), WriteError> {
         for (file, path) in std::mem::take(&mut self.pending) {
-            file.persist_noclobber(&path).map_err(|e| NotWritten { path, error: e.error })?;
+            file.persist_noclobber(&path).map_err(|e| WriteError { path, error: e.error })?;
         }
         Ok(())
     }
@@ -115,10 +115,10 @@ impl Folder {
     }
 }
 
-impl Writing {
+impl PendingFile {
     /// That it could not be written.
-    pub fn failed(&self, error: impl Into<io::Error>) -> NotWritten {
-        NotWritten { path: self.path.clone(), error: error.into() }
+    pub fn failed(&self, error: impl Into<io::Error>) -> WriteError {
+        WriteError { path: self.path.clone(), error: error.into() }
     }
 
     /// Another view of what is written, from its beginning.
@@ -128,7 +128,7 @@ impl Writing {
     }
 }
 
-impl Write for Writing {
+impl Write for PendingFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.file.write(bytes)
     }
@@ -138,7 +138,7 @@ impl Write for Writing {
     }
 }
 
-impl io::Seek for Writing {
+impl io::Seek for PendingFile {
     fn seek(&mut self, to: io::SeekFrom) -> io::Result<u64> {
         self.file.seek(to)
     }

@@ -13,7 +13,7 @@ use serde_json::json;
 
 use crate::args::Import;
 use crate::check;
-use crate::folder::{Folder, NotWritten};
+use crate::folder::{Folder, WriteError};
 use crate::outcome::Outcome;
 use crate::session::Session;
 use crate::text;
@@ -112,7 +112,7 @@ fn beside(folder: &Path, path: &str) -> Option<Vec<u8>> {
 }
 
 /// The model and what it refers to; the model comes last, so that it never is there without them.
-fn write(to: &Path, imported: &ImportedModel) -> Result<(), NotWritten> {
+fn write(to: &Path, imported: &ImportedModel) -> Result<(), WriteError> {
     let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     for (name, bytes) in &imported.files {
         let path = parent.join(name);

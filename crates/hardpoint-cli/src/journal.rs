@@ -29,7 +29,7 @@ pub struct Journal {
 }
 
 /// Why a journal cannot be resumed.
-pub enum NoJournal {
+pub enum JournalError {
     /// It is of another sweep.
     Other,
     /// Another program writes it.
@@ -38,7 +38,7 @@ pub enum NoJournal {
     Failed(io::Error),
 }
 
-impl From<io::Error> for NoJournal {
+impl From<io::Error> for JournalError {
     fn from(error: io::Error) -> Self {
         Self::Failed(error)
     }
@@ -47,7 +47,7 @@ impl From<io::Error> for NoJournal {
 impl Journal {
     /// The journal of a sweep: begun, or opened with all blocks that are whole; one `anew` begins from nothing, whatever is there. Without
     /// a path it is a file that nobody else sees.
-    pub fn open(path: Option<&Path>, fingerprint: Fingerprint, anew: bool) -> Result<Self, NoJournal> {
+    pub fn open(path: Option<&Path>, fingerprint: Fingerprint, anew: bool) -> Result<Self, JournalError> {
         let Some(path) = path else {
             let mut journal = Self { file: tempfile::tempfile()?, path: None, blocks: Vec::new(), end: 0 };
             journal.begin(fingerprint)?;
@@ -55,7 +55,7 @@ impl Journal {
         };
         let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
         match file.try_lock() {
-            Err(TryLockError::WouldBlock) => return Err(NoJournal::Busy),
+            Err(TryLockError::WouldBlock) => return Err(JournalError::Busy),
             // Where there are no locks, nobody is kept out.
             Err(TryLockError::Error(_)) | Ok(()) => {}
         }
@@ -65,7 +65,7 @@ impl Journal {
         if anew || head.len() < HEAD.len() + 16 {
             journal.begin(fingerprint)?;
         } else if head[..HEAD.len()] != *HEAD || head[HEAD.len()..] != fingerprint.to_le_bytes() {
-            return Err(NoJournal::Other);
+            return Err(JournalError::Other);
         } else {
             journal.find_blocks(head.len() as u64)?;
         }
@@ -302,7 +302,7 @@ mod tests {
     fn opened(path: &Path) -> Journal {
         match Journal::open(Some(path), 7, false) {
             Ok(journal) => journal,
-            Err(NoJournal::Failed(e)) => panic!("{e}"),
+            Err(JournalError::Failed(e)) => panic!("{e}"),
             Err(_) => panic!("not ours"),
         }
     }
@@ -354,13 +354,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("sweep.partial");
         let journal = opened(&path);
-        assert!(matches!(Journal::open(Some(&path), 7, false), Err(NoJournal::Busy)));
+        assert!(matches!(Journal::open(Some(&path), 7, false), Err(JournalError::Busy)));
         drop(journal);
         let before = std::fs::read(&path).unwrap();
-        assert!(matches!(Journal::open(Some(&path), 8, false), Err(NoJournal::Other)));
+        assert!(matches!(Journal::open(Some(&path), 8, false), Err(JournalError::Other)));
         assert_eq!(std::fs::read(&path).unwrap(), before);
         assert!(Journal::open(Some(&path), 8, true).is_ok());
         std::fs::write(&path, "a note of forty letters, not a journal..").unwrap();
-        assert!(matches!(Journal::open(Some(&path), 8, false), Err(NoJournal::Other)));
+        assert!(matches!(Journal::open(Some(&path), 8, false), Err(JournalError::Other)));
     }
 }

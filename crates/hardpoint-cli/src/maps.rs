@@ -9,7 +9,7 @@ use hardpoint_file::ModelFile;
 use hardpoint_report::maps::{MapFact, write_csv, write_sensitivity_csv};
 use hardpoint_report::summary::Summary;
 
-use crate::folder::{Folder, NotWritten};
+use crate::folder::{Folder, WriteError};
 use crate::session::{Session, json_text};
 
 /// Solves all maps of a file, as far as the user has patience.
@@ -30,7 +30,7 @@ pub fn note(maps: &[MapFact], summary: &mut Summary) {
 }
 
 /// Writes them, into files of these names.
-pub fn write(maps: &[MapFact], folder: &mut Folder) -> Result<Vec<&'static str>, NotWritten> {
+pub fn write(maps: &[MapFact], folder: &mut Folder) -> Result<Vec<&'static str>, WriteError> {
     if maps.is_empty() {
         return Ok(Vec::new());
     }

@@ -14,9 +14,9 @@ use hardpoint_file::ModelFile;
 use hardpoint_report::optimize::{OptimizeFacts, iteration_line, start_line, to_save};
 
 use crate::args::Optimize;
-use crate::folder::{Folder, NotWritten};
+use crate::folder::{Folder, WriteError};
 use crate::outcome::Outcome;
-use crate::pages::{Found, Study, page, threads};
+use crate::pages::{FoundDesign, Study, page, threads};
 use crate::session::{Session, json_text};
 use crate::text;
 
@@ -188,7 +188,7 @@ impl<'a> Search<'a> {
     }
 
     /// A page for each motion, and the summary last.
-    fn write(&mut self, folder: &mut Folder) -> Result<(), NotWritten> {
+    fn write(&mut self, folder: &mut Folder) -> Result<(), WriteError> {
         let pages = self.write_pages(folder)?;
         self.facts.files.extend(pages);
         self.facts.files.push(folder.path_of("summary.json").display().to_string());
@@ -211,7 +211,7 @@ impl Study for Search<'_> {
     }
 
     fn page(&self, motion: usize) -> Option<String> {
-        let found = Found { design: self.best()?, note: "The design that the search found." };
+        let found = FoundDesign { design: self.best()?, note: "The design that the search found." };
         let analysis = &self.motions.analyses()[motion];
         let finish =
             |page, today: &Solution| self.facts.page(page, analysis.model(), &today.measured.outputs);

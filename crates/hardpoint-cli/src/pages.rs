@@ -11,10 +11,10 @@ use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
 use hardpoint_report::optimize::case_name;
 use hardpoint_report::page::Payload;
-use hardpoint_report::payload::{Changed, Request, report};
+use hardpoint_report::payload::{ChangedDesign, Request, report};
 use hardpoint_report::summary::Summary;
 
-use crate::folder::{Folder, NotWritten, file_name};
+use crate::folder::{Folder, WriteError, file_name};
 
 /// A page as HTML, with its case, where there are cases.
 pub type Page = (Option<String>, String);
@@ -37,7 +37,7 @@ pub trait Study {
     }
 
     /// Writes them, and names what was written.
-    fn write_pages(&self, folder: &mut Folder) -> Result<Vec<String>, NotWritten> {
+    fn write_pages(&self, folder: &mut Folder) -> Result<Vec<String>, WriteError> {
         let mut written = Vec::new();
         for (case, html) in self.pages() {
             let name = case.map_or("report.html".into(), |case| format!("report-{}.html", file_name(&case)));
@@ -49,7 +49,7 @@ pub trait Study {
 }
 
 /// The design that a study found.
-pub struct Found<'a> {
+pub struct FoundDesign<'a> {
     /// Change of every variable, in SI.
     pub design: &'a [f64],
     /// What it is, in a sentence.
@@ -60,7 +60,7 @@ pub struct Found<'a> {
 pub fn page(
     file: &ModelFile,
     analysis: &Analysis<'_>,
-    found: Option<&Found<'_>>,
+    found: Option<&FoundDesign<'_>>,
     finish: impl Fn(Payload, &Solution) -> Payload,
 ) -> Option<String> {
     let mut file = file.clone();
@@ -73,7 +73,7 @@ pub fn page(
     let mut summary = Summary::new(&file, analysis.topology(), &course);
     summary.diagnostics = diagnose::all(&file, &summary, &course, None);
     let exact = found.map(|f| analysis.solve(Run::new().at(f.design).without_sensitivities()));
-    let changed = found.zip(exact.as_ref()).map(|(found, exact)| Changed {
+    let changed = found.zip(exact.as_ref()).map(|(found, exact)| ChangedDesign {
         name: "found".into(),
         note: found.note.into(),
         change: found.design,

@@ -24,7 +24,7 @@ use hardpoint_report::validity::ValidityFact;
 use serde::Serialize;
 
 use crate::args::Run;
-use crate::folder::{Folder, NotWritten, of_case};
+use crate::folder::{Folder, WriteError, of_case};
 use crate::maps;
 use crate::outcome::Outcome;
 use crate::pages;
@@ -401,7 +401,7 @@ fn write_jerk(
     file: &ModelFile,
     analysis: &Analysis<'_>,
     folder: &mut Folder,
-) -> Result<(), NotWritten> {
+) -> Result<(), WriteError> {
     let _working = session.working("third derivatives");
     let columns = Columns { model: &file.model, units: file.units, bodies: true, angles: None };
     folder.write("jerk.csv", |out| {
@@ -457,7 +457,7 @@ impl Results<'_> {
         report(&Request { differences: &self.differences, ..run }, &finish).expect("a payload is plain data")
     }
 
-    fn write(&self, folder: &mut Folder, summary: &mut Summary, session: &Session) -> Result<(), NotWritten> {
+    fn write(&self, folder: &mut Folder, summary: &mut Summary, session: &Session) -> Result<(), WriteError> {
         let started = Instant::now();
         let _working = session.working("writing");
         let html = self.page(summary);

@@ -21,7 +21,7 @@ use hardpoint_report::{GENERATOR, diagnose};
 use serde_json::json;
 
 use crate::args::Motions;
-use crate::folder::{self, Folder, NotWritten};
+use crate::folder::{self, Folder, WriteError};
 use crate::meter::{Listener, Meter};
 use crate::outcome::Outcome;
 use crate::text;
@@ -531,7 +531,7 @@ impl Session {
     }
 
     /// Indicates that a result could not be written.
-    pub fn not_written(&self, failure: &NotWritten) -> Outcome {
+    pub fn not_written(&self, failure: &WriteError) -> Outcome {
         let message = format!("`{}` cannot be written", failure.path.display());
         let help = "name a folder that you may write to with `-o`";
         self.refuse("HP0601", &message, Some(&failure.path), &failure.error.to_string(), help);
@@ -600,7 +600,7 @@ pub fn json_text(document: &impl serde::Serialize) -> String {
 }
 
 /// Writes a text, whole or not at all.
-fn write_text(to: &Path, text: &str) -> Result<(), NotWritten> {
+fn write_text(to: &Path, text: &str) -> Result<(), WriteError> {
     let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let name = to.file_name().map(|n| n.to_string_lossy().into_owned());
     let mut folder = Folder::open(parent)?;

@@ -12,11 +12,11 @@ use hardpoint::study::{Motions, Sweep as Designs, SweepPlanError};
 use hardpoint_file::ModelFile;
 use hardpoint_report::figures::some_of;
 use hardpoint_report::page::SweepPlot;
-use hardpoint_report::sweep::{SweepFacts, Swept, Tally};
+use hardpoint_report::sweep::{SweepFacts, SweepInputs, Tally};
 
 use crate::args::{Method, Sweep, TableForm};
-use crate::folder::{Folder, NotWritten};
-use crate::journal::{Checksum, Fingerprint, Journal, NoJournal};
+use crate::folder::{Folder, WriteError};
+use crate::journal::{Checksum, Fingerprint, Journal, JournalError};
 use crate::long_table::{TableFormat, TableWriter};
 use crate::outcome::Outcome;
 use crate::pages::{Page, Study, page, threads};
@@ -86,11 +86,11 @@ fn swept<X>(
 
     session.patient(true);
     solve(session, &designs, &mut journal, options)?;
-    let swept = Swept { file, numbers: &numbers, asked: &asked, motions: &motions, sweep: &designs };
+    let swept = SweepInputs { file, numbers: &numbers, asked: &asked, motions: &motions, sweep: &designs };
     let results = Results { swept, journal: &journal, format: options.format.of() };
     let (facts, made) = end(&results, folder)?;
     if facts.status != "interrupted" {
-        journal.remove().map_err(|error| session.not_written(&NotWritten { path: JOURNAL.into(), error }))?;
+        journal.remove().map_err(|error| session.not_written(&WriteError { path: JOURNAL.into(), error }))?;
     }
     Ok((facts, made))
 }
@@ -230,15 +230,15 @@ fn journal(
             }
             Ok(journal)
         }
-        Err(NoJournal::Other) => Err(session.misunderstood(&format!(
+        Err(JournalError::Other) => Err(session.misunderstood(&format!(
             "`{shown}` is of a sweep that has not ended, over another model or other designs; use another folder with `-o`, or begin anew \
              with `--restart`"
         ))),
-        Err(NoJournal::Busy) => Err(session.misunderstood(&format!(
+        Err(JournalError::Busy) => Err(session.misunderstood(&format!(
             "`{shown}` is being written by another sweep; wait for its end, or use another folder with `-o`"
         ))),
-        Err(NoJournal::Failed(error)) => {
-            Err(session.not_written(&NotWritten { path: path.unwrap_or(JOURNAL.into()), error }))
+        Err(JournalError::Failed(error)) => {
+            Err(session.not_written(&WriteError { path: path.unwrap_or(JOURNAL.into()), error }))
         }
     }
 }
@@ -266,14 +266,14 @@ fn solve(
         designs.run(from, threads(options.threads), &|| session.go_on().is_continue(), &mut done);
     }
     match failure {
-        Some(error) => Err(session.not_written(&NotWritten { path: JOURNAL.into(), error })),
+        Some(error) => Err(session.not_written(&WriteError { path: JOURNAL.into(), error })),
         None => Ok(()),
     }
 }
 
 /// What is written, from what the journal has.
 struct Results<'a> {
-    swept: Swept<'a>,
+    swept: SweepInputs<'a>,
     journal: &'a Journal,
     format: TableFormat,
 }
@@ -335,7 +335,7 @@ impl Results<'_> {
         folder: &mut Folder,
         tally: &mut Tally,
         files: &mut Vec<String>,
-    ) -> Result<(), NotWritten> {
+    ) -> Result<(), WriteError> {
         let (swept, suffix) = (self.swept, self.format.suffix());
         let name = format!("designs.{suffix}");
         folder.write(&name, |out| {
@@ -361,12 +361,12 @@ impl Results<'_> {
 }
 
 fn not_read(session: &Session, error: io::Error) -> Outcome {
-    session.not_written(&NotWritten { path: JOURNAL.into(), error })
+    session.not_written(&WriteError { path: JOURNAL.into(), error })
 }
 
 /// What the pages of a sweep are made of.
 struct Pages<'a> {
-    swept: Swept<'a>,
+    swept: SweepInputs<'a>,
     facts: &'a SweepFacts,
     plot: &'a SweepPlot,
 }

@@ -14,7 +14,7 @@ use hardpoint_report::figures::bytes;
 use hardpoint_report::npy::{Npy, Sidecar, add_motion, add_sensitivities};
 
 use crate::args::{Format, Orientation, Run};
-use crate::folder::{Folder, NotWritten, Writing};
+use crate::folder::{Folder, WriteError, PendingFile};
 use crate::long_table::{TableFormat, TableWriter};
 use crate::session::json_text;
 
@@ -105,12 +105,12 @@ impl<'m> Plan<'m> {
     }
 
     /// Begins the tables.
-    pub fn begin(self, folder: &Folder) -> Result<Tables<'m>, NotWritten> {
-        let begun = |name: &str, begin: &dyn Fn(Writing) -> io::Result<Table<'m>>| {
+    pub fn begin(self, folder: &Folder) -> Result<Tables<'m>, WriteError> {
+        let begun = |name: &str, begin: &dyn Fn(PendingFile) -> io::Result<Table<'m>>| {
             let name = format!("{name}.{}", self.format.suffix());
             let table = begin(folder.begin(&name)?);
             table
-                .map_err(|error| NotWritten { path: folder.path_of(&name), error })
+                .map_err(|error| WriteError { path: folder.path_of(&name), error })
                 .map(|table| (name, table))
         };
         let motion = self.motion.map(|c| begun("motion", &|out| self.motion_table(c, out))).transpose()?;
@@ -121,7 +121,7 @@ impl<'m> Plan<'m> {
         Ok(Tables { plan: self, motion, sensitivity, rows: Vec::new(), failure: None })
     }
 
-    fn motion_table(&self, columns: Columns<'m>, out: Writing) -> io::Result<Table<'m>> {
+    fn motion_table(&self, columns: Columns<'m>, out: PendingFile) -> io::Result<Table<'m>> {
         Ok(match self.format {
             Format::Csv => Table::Motion(Box::new(MotionCsv::new(columns, out)?)),
             Format::Npy => Table::MotionNpy(columns, Npy::new(&[1 + columns.of_motion().len()], out)?),
@@ -131,7 +131,7 @@ impl<'m> Plan<'m> {
         })
     }
 
-    fn sensitivity_table(&self, columns: Columns<'m>, out: Writing) -> io::Result<Table<'m>> {
+    fn sensitivity_table(&self, columns: Columns<'m>, out: PendingFile) -> io::Result<Table<'m>> {
         let of = columns.of_sensitivities();
         Ok(match self.format {
             Format::Csv => Table::Sensitivity(Box::new(SensitivityCsv::new(columns, out)?)),
@@ -150,11 +150,11 @@ const VARIABLE: [&str; 2] = ["variable", "per"];
 
 /// Begins a Parquet file: time, texts, numbers. The metadata have what it is of, and the unit of each column of numbers.
 fn parquet(
-    out: Writing,
+    out: PendingFile,
     columns: Columns<'_>,
     texts: &[&str],
     numbers: &[Column],
-) -> io::Result<TableWriter<Writing>> {
+) -> io::Result<TableWriter<PendingFile>> {
     let time = Column { name: "t".into(), unit: "s".into() };
     let number = |c: &Column| (c.header(), Cells::Numbers(Vec::new()));
     let text = |name: &&str| ((*name).to_owned(), Cells::Texts(Vec::new()));
@@ -169,11 +169,11 @@ fn parquet(
 /// A table under way.
 enum Table<'m> {
     Motion(Box<MotionCsv<'m, Writing>>),
-    MotionNpy(Columns<'m>, Npy<Writing>),
-    MotionParquet(Columns<'m>, Box<TableWriter<Writing>>),
+    MotionNpy(Columns<'m>, Npy<PendingFile>),
+    MotionParquet(Columns<'m>, Box<TableWriter<PendingFile>>),
     Sensitivity(Box<SensitivityCsv<'m, Writing>>),
-    SensitivityNpy(Columns<'m>, Npy<Writing>),
-    SensitivityParquet(Columns<'m>, Box<TableWriter<Writing>>),
+    SensitivityNpy(Columns<'m>, Npy<PendingFile>),
+    SensitivityParquet(Columns<'m>, Box<TableWriter<PendingFile>>),
 }
 
 impl Table<'_> {
@@ -188,7 +188,7 @@ impl Table<'_> {
         }
     }
 
-    fn end(self) -> io::Result<Writing> {
+    fn end(self) -> io::Result<PendingFile> {
         match self {
             Self::Motion(table) => table.end(),
             Self::Sensitivity(table) => table.end(),
@@ -242,7 +242,7 @@ pub struct Tables<'m> {
 
 /// What was written.
 #[derive(Debug)]
-pub struct Written {
+pub struct TableSummary {
     /// The names of the files.
     pub names: Vec<String>,
     /// What is not among them, and why.
@@ -278,9 +278,9 @@ impl Tables<'_> {
         folder: &mut Folder,
         answers: &[Admissibility],
         go_on: impl FnMut() -> bool,
-    ) -> Result<Written, NotWritten> {
+    ) -> Result<TableSummary, WriteError> {
         let Self { plan, motion, sensitivity, rows, failure } = self;
-        let failed = |name: &str, folder: &Folder, error| NotWritten { path: folder.path_of(name), error };
+        let failed = |name: &str, folder: &Folder, error| WriteError { path: folder.path_of(name), error };
         if let Some((name, error)) = failure {
             return Err(failed(&name, folder, error));
         }
@@ -336,7 +336,7 @@ impl Tables<'_> {
             folder.write("columns.json", |out| io::Write::write_all(out, json.as_bytes()))?;
             names.push("columns.json".into());
         }
-        Ok(Written { names, left_out })
+        Ok(TableSummary { names, left_out })
     }
 }
 

@@ -10,10 +10,10 @@ use hardpoint_file::ModelFile;
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::some_of;
 use hardpoint_report::optimize::case_name;
-use hardpoint_report::tolerance::{Studied, ToleranceFacts};
+use hardpoint_report::tolerance::{ToleranceInputs, ToleranceFacts};
 
 use crate::args::{Allocate, Tolerance};
-use crate::folder::{Folder, NotWritten};
+use crate::folder::{Folder, WriteError};
 use crate::outcome::Outcome;
 use crate::pages::{Study, page, threads};
 use crate::session::{Session, json_text};
@@ -28,7 +28,7 @@ pub fn run(options: &Tolerance) -> Outcome {
 fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, Outcome> {
     let file = session.read(&options.common.model)?;
     let numbers = session.numbers_of(&file, &options.motions)?;
-    let asking = Asking { samples: options.samples, seed: options.seed, allocate: options.allocate };
+    let asking = ToleranceOverrides { samples: options.samples, seed: options.seed, allocate: options.allocate };
     let asked = asked(session, &file, &asking)?;
     let models = file.model.motions();
     let models: Vec<Model> = numbers.iter().map(|k| models[*k].clone()).collect();
@@ -38,7 +38,7 @@ fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, Outco
 
     session.patient(true);
     let found = examine(session, &file, &motions, &numbers, &asked, options.threads)?;
-    let studied = Studied { file: &file, numbers: &numbers, asked: &asked, found: &found };
+    let studied = ToleranceInputs { file: &file, numbers: &numbers, asked: &asked, found: &found };
     let mut results = Results::of(session, studied, &motions);
     let mut written = None;
     if let Some(mut folder) = folder {
@@ -61,7 +61,7 @@ const FILES: [&str; 5] = ["metrics.csv", "contributions.csv", "bands.csv", "samp
 
 /// The request besides what the file says.
 #[derive(Default)]
-pub struct Asking {
+pub struct ToleranceOverrides {
     /// Number of designs are drawn.
     pub samples: Option<u32>,
     /// From this number.
@@ -71,7 +71,7 @@ pub struct Asking {
 }
 
 /// The request, by the file and besides.
-pub fn asked(session: &Session, file: &ModelFile, options: &Asking) -> Result<ToleranceSettings, Outcome> {
+pub fn asked(session: &Session, file: &ModelFile, options: &ToleranceOverrides) -> Result<ToleranceSettings, Outcome> {
     let asked = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
     let Some(mut asked) = asked else {
         let why = format!(
@@ -151,7 +151,7 @@ pub fn examine(
 
 /// A study that has ended.
 pub struct Results<'a> {
-    studied: Studied<'a>,
+    studied: ToleranceInputs<'a>,
     motions: &'a Motions<'a>,
     /// What it comes to.
     pub facts: ToleranceFacts,
@@ -159,18 +159,18 @@ pub struct Results<'a> {
 
 impl<'a> Results<'a> {
     /// Of what was found just now.
-    pub fn of(session: &Session, studied: Studied<'a>, motions: &'a Motions<'a>) -> Self {
+    pub fn of(session: &Session, studied: ToleranceInputs<'a>, motions: &'a Motions<'a>) -> Self {
         let mut facts = ToleranceFacts::of(&studied);
         facts.seconds = session.seconds();
         Self { studied, motions, facts }
     }
 
     /// Tables, a page for each motion, and the summary last.
-    fn write(&mut self, folder: &mut Folder) -> Result<(), NotWritten> {
+    fn write(&mut self, folder: &mut Folder) -> Result<(), WriteError> {
         let pages = self.write_pages(folder)?;
         self.facts.files.extend(pages);
         let studied = &self.studied;
-        let Studied { file, asked, found, .. } = *studied;
+        let ToleranceInputs { file, asked, found, .. } = *studied;
         folder.write("metrics.csv", |out| studied.write_metrics(out).map_err(Into::into))?;
         folder.write("contributions.csv", |out| studied.write_contributions(out).map_err(Into::into))?;
         folder.write("bands.csv", |out| studied.write_bands(out).map_err(Into::into))?;

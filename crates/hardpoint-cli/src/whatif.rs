@@ -12,7 +12,7 @@ use hardpoint_file::{AngleUnit, Diagnostic, LengthUnit, ModelFile, Units};
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
 use hardpoint_report::metric::MetricChange;
-use hardpoint_report::payload::{Changed, Request, report};
+use hardpoint_report::payload::{ChangedDesign, Request, report};
 use hardpoint_report::summary::Summary;
 use hardpoint_report::whatif::{ChangeFact, WhatIfFacts};
 
@@ -120,7 +120,7 @@ fn whatif_in(
     };
     let mut written = None;
     if let Some((mut folder, (course, summary))) = folder.zip(gathered) {
-        let beside = changed.as_ref().map(|changed| Changed::of(&file.model, changed));
+        let beside = changed.as_ref().map(|changed| ChangedDesign::of(&file.model, changed));
         let request = Request { changed: beside, ..Request::of(&file, &analysis, &course, &summary) };
         let finish = |payload| facts.page(payload, names, options.over.as_deref(), &wanted);
         let html = report(&request, &finish).expect("a payload is plain data");

@@ -14,7 +14,7 @@ use hardpoint_report::course::Course;
 use hardpoint_report::facts::VariableFact;
 use hardpoint_report::figures::{count, number, order_unit, per};
 use hardpoint_report::metric::MetricFact;
-use hardpoint_report::summary::{Ranked, Ranking, RunStatus, Summary};
+use hardpoint_report::summary::{RankedVariable, Ranking, RunStatus, Summary};
 use rust_xlsxwriter::{
     Chart, ChartAxisLabelPosition, ChartFormat, ChartLine, ChartMarker, ChartType, DocProperties, Format,
     FormatAlign, Workbook, Worksheet, XlsxError,
@@ -322,7 +322,7 @@ impl Contents<'_> {
         let mut page = Page::new(LARGEST)?;
         page.header(&["measure", "order", "by variable", "largest", "unit", "at t [s]"])?;
         page.sheet.set_freeze_panes(1, 0)?;
-        let row = |of: &Ranking, r: &Ranked| -> Vec<Cell> {
+        let row = |of: &Ranking, r: &RankedVariable| -> Vec<Cell> {
             let unit = if r.unit == "1" { "" } else { &r.unit };
             vec![
                 of.measure.as_str().into(),

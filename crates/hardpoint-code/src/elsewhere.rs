@@ -2,14 +2,14 @@
 
 use hardpoint_tape::{Lanes, Program};
 
-use crate::{Counts, Line, PARTS, Unsupported, Width};
+use crate::{Counts, Line, PARTS, UnsupportedProgram, Width};
 
 /// There is none.
 #[derive(Debug)]
 pub enum Machine {}
 
-pub fn widest() -> Result<Width, Unsupported> {
-    Err(Unsupported::Target)
+pub fn widest() -> Result<Width, UnsupportedProgram> {
+    Err(UnsupportedProgram::Target)
 }
 
 pub fn has(_: Width) -> bool {
@@ -17,8 +17,8 @@ pub fn has(_: Width) -> bool {
 }
 
 impl Machine {
-    pub fn new(_: &Program, _: [usize; PARTS - 1], _: Width) -> Result<(Self, Counts), Unsupported> {
-        Err(Unsupported::Target)
+    pub fn new(_: &Program, _: [usize; PARTS - 1], _: Width) -> Result<(Self, Counts), UnsupportedProgram> {
+        Err(UnsupportedProgram::Target)
     }
 
     pub fn run(&self, _: &mut Vec<Line>, _: &[Lanes], _: &[f64], _: [&mut [Lanes]; PARTS]) {

@@ -32,7 +32,7 @@
 //!
 //! This is the only crate of Hardpoint that holds `unsafe`; `docs/machine-code.md` says where, and why it is sound.
 //!
-//! Not supported: other machines than x86-64, Windows, and systems that do not let memory become executable. [`Unsupported`]
+//! Not supported: other machines than x86-64, Windows, and systems that do not let memory become executable. [`UnsupportedProgram`]
 //! says which it is.
 
 #[cfg_attr(not(all(target_arch = "x86_64", unix)), path = "elsewhere.rs")]
@@ -79,7 +79,7 @@ const MOST: usize = 1 << 22;
 
 /// Why there is no machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Unsupported {
+pub enum UnsupportedProgram {
     /// Another kind of machine or system.
     #[error("machine code is made for x86-64 on Unix systems only")]
     Target,
@@ -147,7 +147,7 @@ impl Code {
     /// # Panics
     ///
     /// If an operand does not exist, or a value is read before it is computed.
-    pub fn new(program: &Program) -> Result<Self, Unsupported> {
+    pub fn new(program: &Program) -> Result<Self, UnsupportedProgram> {
         Self::with(program, x86_64::widest()?)
     }
 
@@ -156,7 +156,7 @@ impl Code {
     /// # Panics
     ///
     /// As [`new`](Self::new).
-    pub fn with(program: &Program, width: Width) -> Result<Self, Unsupported> {
+    pub fn with(program: &Program, width: Width) -> Result<Self, UnsupportedProgram> {
         Self::in_parts_with(program, [program.outputs.len(); PARTS - 1], width)
     }
 
@@ -166,7 +166,7 @@ impl Code {
     /// # Panics
     ///
     /// As [`new`](Self::new), and if the ends do not ascend or lie beyond the outputs.
-    pub fn in_parts(program: &Program, ends: [usize; PARTS - 1]) -> Result<Self, Unsupported> {
+    pub fn in_parts(program: &Program, ends: [usize; PARTS - 1]) -> Result<Self, UnsupportedProgram> {
         Self::in_parts_with(program, ends, x86_64::widest()?)
     }
 
@@ -179,7 +179,7 @@ impl Code {
         program: &Program,
         ends: [usize; PARTS - 1],
         width: Width,
-    ) -> Result<Self, Unsupported> {
+    ) -> Result<Self, UnsupportedProgram> {
         let (machine, counts) = x86_64::Machine::new(program, ends, width)?;
         Ok(Self { machine, width, counts })
     }

@@ -67,7 +67,7 @@ pub use units::{AngleUnit, LengthUnit, Units};
 
 use diagnostic::{closest, shown};
 use places::Places;
-use read::include::{self, Files, Hindrance, shifted};
+use read::include::{self, Files, IncludeError, shifted};
 use read::mirror::{Origins, opposites, told_once, with_origin};
 pub use tree::Texts;
 use tree::{Folder, Reader};
@@ -379,7 +379,7 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
     let others = parts.iter().map(|part| (beside(&part.name), part.text.as_str()));
     let source = Source::of_files(file_name, text, others);
     let mut list = Vec::new();
-    for Hindrance { file, at, error } in hindrances {
+    for IncludeError { file, at, error } in hindrances {
         let start = source.range(file).start;
         let at = at.start + start..at.end + start;
         let d = source.diagnostic(Severity::Error, error.code, error.message, Some(at));

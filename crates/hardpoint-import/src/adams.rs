@@ -9,7 +9,7 @@ use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::adams_statement::{SEAM, SHORTEST, Statement, number, statements};
 use crate::law::{self, Language};
-use crate::markers::{Joined, Marker, carrying, counted, join, offset, way};
+use crate::markers::{MarkerJoint, Marker, carrying, counted, join, offset, way};
 use crate::mechanism::{Coordinate, Drives, GROUND, Law, Mechanism};
 use crate::report::{ImportLog, SourceSpan};
 use crate::turn::{from_z_and_x, home, sequence};
@@ -164,7 +164,7 @@ struct Reader<'n> {
     refused: BTreeSet<String>,
     /// Markers whose place is not in the file.
     unplaced: BTreeSet<String>,
-    joints: BTreeMap<String, Joined>,
+    joints: BTreeMap<String, MarkerJoint>,
     splines: BTreeMap<String, Vec<[f64; 2]>>,
     /// Functions of variables.
     variables: BTreeMap<String, String>,
@@ -396,7 +396,7 @@ impl Reader<'_> {
                 ),
             }
         }
-        self.joints.insert(s.id.clone(), Joined { number, kind, markers });
+        self.joints.insert(s.id.clone(), MarkerJoint { number, kind, markers });
     }
 
     fn primitive(&mut self, s: &Statement) {
@@ -719,7 +719,7 @@ impl Reader<'_> {
         let names: Vec<&str> =
             s.text("JOINTS").unwrap_or_default().split([',', ':', SEAM]).map(str::trim).collect();
         let cv = s.reference("CV").and_then(|id| self.markers.get(id)).copied();
-        let joints: Vec<&Joined> = names.iter().filter_map(|id| self.joints.get(*id)).collect();
+        let joints: Vec<&MarkerJoint> = names.iter().filter_map(|id| self.joints.get(*id)).collect();
         let (Some(cv), [a, b]) = (cv, &joints[..]) else {
             if names.iter().any(|id| self.refused.contains(*id)) {
                 self.notes.refused("GEAR", &s.label, Some(s.at), "one of its joints is refused");
@@ -732,7 +732,7 @@ impl Reader<'_> {
             );
             return;
         };
-        let speed = |k: &Joined| {
+        let speed = |k: &MarkerJoint| {
             // Of the part that is not the carrier, against the carrier.
             let sign = if k.markers[1].body == cv.body { -1.0 } else { 1.0 };
             let z = k.markers[0].z();

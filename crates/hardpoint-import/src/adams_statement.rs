@@ -2,7 +2,7 @@
 
 use hardpoint::space::Vec3;
 
-use crate::markers::Called;
+use crate::markers::JointSource;
 use crate::report::{ImportLog, SourceSpan};
 
 /// Words may be cut short to that many letters.
@@ -48,8 +48,8 @@ impl Statement {
     }
 
     /// What it is called, and where it is.
-    pub fn called(&self) -> Called<'_> {
-        Called { kind: &self.name, name: &self.label, at: Some(self.at) }
+    pub fn called(&self) -> JointSource<'_> {
+        JointSource { kind: &self.name, name: &self.label, at: Some(self.at) }
     }
 
     /// Numbers behind a key; angles in rad. What is wrong with them is reported.

@@ -6,7 +6,7 @@ use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::chain;
 use crate::law::{self, Language};
-use crate::markers::{Called, Joined, Marker, carrying, counted, is_drawn, join, linked, offset, screw, way};
+use crate::markers::{JointSource, MarkerJoint, Marker, carrying, counted, is_drawn, join, linked, offset, screw, way};
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Times};
 use crate::report::{ImportLog, SourceSpan};
 use crate::series::{Series, StoredPose};
@@ -142,7 +142,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let stored = stored(&lines.unwrap_or_default(), notes);
     // The solver closes what is drawn open before it moves: its first stored positions are what moves.
     let begins = m.times.is_none_or(|t| stored.0.first() == Some(&t.start));
-    let first = |t: &Told<'_>| Some((t.path.to_owned(), t.states.as_ref()?.first()?.pose));
+    let first = |t: &StoredPart<'_>| Some((t.path.to_owned(), t.states.as_ref()?.first()?.pose));
     let closed = stored.1.iter().filter(|_| begins).filter_map(first).collect();
     let mut reader = Reader {
         m,
@@ -232,7 +232,7 @@ struct Reader<'n> {
     notes: &'n mut ImportLog,
     /// By their paths.
     markers: BTreeMap<String, Marker>,
-    joints: BTreeMap<String, Joined>,
+    joints: BTreeMap<String, MarkerJoint>,
     parts: BTreeMap<String, usize>,
     /// Where the stored motion has the parts when it begins.
     closed: BTreeMap<String, Pose>,
@@ -260,7 +260,7 @@ impl Reader<'_> {
             let closed = self.closed.get(&path).filter(off).filter(|_| !is_fixed).copied();
             self.moved += usize::from(closed.is_some());
             let pose = closed.unwrap_or(drawn);
-            let called = Called { kind: "Part", name: part.name(), at: Some(part.at) };
+            let called = JointSource { kind: "Part", name: part.name(), at: Some(part.at) };
             let body =
                 if is_fixed { GROUND } else { self.m.body(part.name(), called.note(self.notes), Some(pose)) };
             if self.parts.insert(path.clone(), body).is_some() {
@@ -382,7 +382,7 @@ impl Reader<'_> {
     }
 
     fn joint(&mut self, joint: &Node<'_>) {
-        let called = Called { kind: joint.text, name: joint.name(), at: Some(joint.at) };
+        let called = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
         let kind = match joint.text {
             "FixedJoint" => "fixed",
             "RevoluteJoint" => "revolute",
@@ -475,13 +475,13 @@ impl Reader<'_> {
             _ => join(&mut self.m, self.notes, called, kind, [i, j]),
         };
         let Some(number) = number else { return };
-        self.joints.insert(joint.name().to_owned(), Joined { number, kind, markers: [i, j] });
+        self.joints.insert(joint.name().to_owned(), MarkerJoint { number, kind, markers: [i, j] });
     }
 
     /// A joint with a link between its two ends.
     fn link(&mut self, joint: &Node<'_>, kinds: [&'static str; 2]) {
         let Some(markers) = self.pair(joint) else { return };
-        let called = Called { kind: joint.text, name: joint.name(), at: Some(joint.at) };
+        let called = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
         let distance = joint.child("distanceIJ").and_then(|_| joint.numbers::<1>("distanceIJ", self.notes));
         linked(&mut self.m, self.notes, called, kinds, markers, distance.map(|[d]| d));
     }
@@ -489,19 +489,19 @@ impl Reader<'_> {
     /// A screw holds one coordinate: 2 pi z = pitch * angle, of marker J against marker I. What else holds the parts are other joints.
     fn screw(&mut self, joint: &Node<'_>) {
         let Some([i, j]) = self.pair(joint) else { return };
-        let called = Called { kind: joint.text, name: joint.name(), at: Some(joint.at) };
+        let called = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
         let Some(pitch) = joint.numbers::<1>("pitch", self.notes).map(|[p]| p).filter(|p| *p != 0.0) else {
             let message = format!("the screw `{}` has no pitch", joint.name());
             let help = "give it a `pitch` other than zero";
             self.notes.problem_with("HP0804", Some(joint.at), message, help);
             return;
         };
-        let joints: Vec<Joined> = self.joints.values().copied().collect();
+        let joints: Vec<MarkerJoint> = self.joints.values().copied().collect();
         if screw(&mut self.m, self.notes, called, &joints, [i, j], pitch).is_none()
             && let Some(number) = join(&mut self.m, self.notes, called, "screw", [i, j])
         {
             self.m.joints[number].lead = Some(pitch);
-            self.joints.insert(joint.name().to_owned(), Joined { number, kind: "screw", markers: [i, j] });
+            self.joints.insert(joint.name().to_owned(), MarkerJoint { number, kind: "screw", markers: [i, j] });
         }
     }
 
@@ -509,7 +509,7 @@ impl Reader<'_> {
     fn gear(&mut self, joint: &Node<'_>) {
         let Some([i, j]) = self.pair(joint) else { return };
         let hinges = ["revolute", "cylindrical"];
-        let note = Called { kind: joint.text, name: joint.name(), at: Some(joint.at) }.note(self.notes);
+        let note = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) }.note(self.notes);
         let radius = |reader: &mut Self, key: &str| {
             joint.numbers::<1>(key, reader.notes).map(|[r]| r).filter(|r| *r != 0.0)
         };
@@ -607,7 +607,7 @@ impl Reader<'_> {
         let drawn = if turns { drawn.angle } else { drawn.displacement };
         let text = counted(&law::translate(function, Language::Ondsel)?, drawn, turns);
         let law = if law::constant(&text) == Some(0.0) { Law::Held } else { Law::Text(text) };
-        let note = Called { kind: motion.text, name: motion.name(), at: Some(motion.at) }.note(self.notes);
+        let note = JointSource { kind: motion.text, name: motion.name(), at: Some(motion.at) }.note(self.notes);
         self.m.driver(motion.name(), note, Drives::Coordinate(coordinate), law);
         self.notes.taken(motion.text, motion.name(), Some(motion.at));
         Ok(())
@@ -631,12 +631,12 @@ impl Reader<'_> {
         };
         let Some(markers) = self.pair(motion) else { return Ok(()) };
         let [p, q, r] = angles;
-        let called = Called { kind: motion.text, name: motion.name(), at: Some(motion.at) };
+        let called = JointSource { kind: motion.text, name: motion.name(), at: Some(motion.at) };
         chain::drive(&mut self.m, self.notes, called, markers, ways, [(a, p), (b, q), (c, r)])
     }
 
     /// The joint between the markers of a motion that names no joint.
-    fn between(&mut self, motion: &Node<'_>) -> Result<Option<Joined>, String> {
+    fn between(&mut self, motion: &Node<'_>) -> Result<Option<MarkerJoint>, String> {
         let Some([i, j]) = self.pair(motion) else { return Ok(None) };
         let same = |a: &Marker, b: &Marker| a.body == b.body && a.pose == b.pose;
         let found = self.joints.values().find(|k| same(&k.markers[0], &i) && same(&k.markers[1], &j));
@@ -684,7 +684,7 @@ impl Reader<'_> {
 }
 
 /// What the file has stored of a part.
-struct Told<'t> {
+struct StoredPart<'t> {
     path: &'t str,
     at: SourceSpan,
     /// One for each of the times, or none where a number is missing.
@@ -692,7 +692,7 @@ struct Told<'t> {
 }
 
 /// The stored times, and the series of the parts: the column of the input, and then one for each output time.
-fn stored<'t>(lines: &[(&'t str, SourceSpan)], notes: &mut ImportLog) -> (Vec<f64>, Vec<Told<'t>>) {
+fn stored<'t>(lines: &[(&'t str, SourceSpan)], notes: &mut ImportLog) -> (Vec<f64>, Vec<StoredPart<'t>>) {
     let row = |line: &str| -> Vec<Option<f64>> { line.split_whitespace().skip(1).map(number).collect() };
     let nothing = (Vec::new(), Vec::new());
     let is_times = |l: &str| l.starts_with("Time") && !l.starts_with("TimeSeries");
@@ -733,20 +733,20 @@ fn stored<'t>(lines: &[(&'t str, SourceSpan)], notes: &mut ImportLog) -> (Vec<f6
                 rates: rates.map(|names| vector(names, step)),
             })
         };
-        told.push(Told { path: path.trim(), at, states: (0..times.len()).map(state).collect() });
+        told.push(StoredPart { path: path.trim(), at, states: (0..times.len()).map(state).collect() });
     }
     (times, told)
 }
 
 /// The stored motion of the bodies.
 fn series(
-    (times, told): (Vec<f64>, Vec<Told<'_>>),
+    (times, told): (Vec<f64>, Vec<StoredPart<'_>>),
     m: &Mechanism,
     parts: &BTreeMap<String, usize>,
     notes: &mut ImportLog,
 ) -> Option<Series> {
     let mut series = Series { times, bodies: Vec::new() };
-    for Told { path, at, states } in told {
+    for StoredPart { path, at, states } in told {
         match (parts.get(path).filter(|b| **b != GROUND), states) {
             (Some(body), Some(states)) => {
                 series.bodies.push((m.bodies[*body].name.clone(), states));

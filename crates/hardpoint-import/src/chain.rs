@@ -5,7 +5,7 @@ use hardpoint::law::Law as Function;
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::law;
-use crate::markers::{Called, Marker};
+use crate::markers::{JointSource, Marker};
 use crate::mechanism::{Coordinate, Drives, Joint, Law, Mechanism};
 use crate::report::ImportLog;
 use crate::turn::{X, Y, Z};
@@ -28,7 +28,7 @@ struct Step {
 pub fn drive(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: Called<'_>,
+    called: JointSource<'_>,
     [i, j]: [Marker; 2],
     ways: [String; 3],
     turns: [(usize, String); 3],

@@ -7,7 +7,7 @@ use hardpoint::space::{Mat3, Vec3};
 
 use crate::chrono_part::{self, Inertial, Masses};
 use crate::corner::{Corner, spin_axis};
-use crate::markers::Called;
+use crate::markers::JointSource;
 use crate::mechanism::{Force, ForceOn, GROUND, Joint, Mechanism, Spring};
 use crate::report::{ImportLog, SourceSpan};
 use crate::robot;
@@ -138,7 +138,7 @@ impl Side<'_> {
             if let Some(Inertial { mass, inertia }) = Inertial::of(tree) {
                 let rotation = tree.get("Rotation").and_then(quaternion).unwrap_or_else(crate::turn::none);
                 let frame = hardpoint::space::Pose { rot: self.axes(tree, rotation), r };
-                let called = Called { kind: "mass", name: &name, at: Some(tree.at) };
+                let called = JointSource { kind: "mass", name: &name, at: Some(tree.at) };
                 robot::mass(self.m, self.notes, called, body, frame, mass, inertia);
             }
         }
@@ -339,5 +339,5 @@ fn quaternion(tree: &Tree) -> Option<Mat3> {
 }
 
 fn note(kind: &str, name: &str, at: SourceSpan, notes: &ImportLog) -> String {
-    Called { kind, name, at: Some(at) }.note(notes)
+    JointSource { kind, name, at: Some(at) }.note(notes)
 }

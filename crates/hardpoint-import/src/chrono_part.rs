@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::corner::plain;
-use crate::markers::Called;
+use crate::markers::JointSource;
 use crate::mechanism::{GROUND, Mechanism, Spring};
 use crate::report::{ImportLog, SourceSpan};
 use crate::robot;
@@ -115,7 +115,7 @@ impl Masses<'_> {
         let is_global = self.root.text_of("Vehicle-Frame Inertia") == Some("true");
         let rot = axes.filter(|_| !is_global).unwrap_or_else(none);
         let frame = Pose { rot, r: over(centre, self.side) };
-        let called = Called { kind: "mass", name: &name, at: Some(tree.at) };
+        let called = JointSource { kind: "mass", name: &name, at: Some(tree.at) };
         robot::mass(self.m, self.notes, called, body, frame, mass, inertia);
     }
 

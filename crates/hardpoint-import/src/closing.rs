@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::str::FromStr;
 
-use crate::markers::{Called, Marker, join};
+use crate::markers::{JointSource, Marker, join};
 use crate::mechanism::{Mechanism, NamedFrame};
 use crate::report::ImportLog;
 use crate::robot;
@@ -125,7 +125,7 @@ fn connect(
     axis: usize,
     ends: [&NamedFrame; 2],
 ) {
-    let called = Called { kind: "loop", name, at: None };
+    let called = JointSource { kind: "loop", name, at: None };
     if kind == "fixed" {
         let ends = ends.map(|f| Marker { body: f.body, pose: f.pose });
         robot::weld(m, notes, called, kind, ends);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use hardpoint::model::VehicleEnd;
 use hardpoint::space::Vec3;
 
-use crate::markers::Called;
+use crate::markers::JointSource;
 use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mechanism, Spring, Wheel};
 use crate::report::{ImportLog, SourceSpan};
 use crate::sides::over;
@@ -760,7 +760,7 @@ impl Corner {
     pub fn force(&self, m: &mut Mechanism, notes: &mut ImportLog, base: &str, ends: Ends) {
         let Some((spring, at)) = self.springs.get(base) else { return };
         let name = format!("{base}{}", self.suffix);
-        let note = Called { kind: base, name: &name, at: Some(*at) }.note(notes);
+        let note = JointSource { kind: base, name: &name, at: Some(*at) }.note(notes);
         m.force(Force { name: name.clone(), note, on: ForceOn::Points(ends), spring: spring.clone() });
         notes.taken("force", &name, Some(*at));
     }

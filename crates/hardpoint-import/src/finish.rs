@@ -274,7 +274,7 @@ fn straightened(m: &mut Mechanism, notes: &mut ImportLog) {
 
 /// The motions that nothing drives.
 #[derive(Default)]
-struct Left {
+struct FreeMotions {
     /// How many.
     count: usize,
     /// The joints that move in them.
@@ -286,7 +286,7 @@ struct Left {
 }
 
 /// What nothing drives.
-fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<Left, Box<Diagnostic>> {
+fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<Diagnostic>> {
     let refused = |message: String| {
         notes.diagnostic("HP0808", None, format!("the imported mechanism does not work: {message}"))
     };
@@ -295,7 +295,7 @@ fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<Left, Box<Diagnostic>> {
     }
     let file = parsed(m).map_err(|why| Box::new(refused(why)))?;
     match Analysis::new(&file.model) {
-        Ok(_) => Ok(Left::default()),
+        Ok(_) => Ok(FreeMotions::default()),
         Err(fault) => {
             let message = refused(format!("{fault}"));
             let message = fault.notes().into_iter().fold(message, |m, n| m.note(n));
@@ -310,9 +310,9 @@ fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<Left, Box<Diagnostic>> {
             };
             match &fault {
                 TopologyError::UnderDriven { freedom, joints, bodies, .. } => {
-                    Ok(Left { count: *freedom, joints: own(joints), bodies: named(bodies), singular: None })
+                    Ok(FreeMotions { count: *freedom, joints: own(joints), bodies: named(bodies), singular: None })
                 }
-                TopologyError::Singular { freedom, joints, bodies, .. } => Ok(Left {
+                TopologyError::Singular { freedom, joints, bodies, .. } => Ok(FreeMotions {
                     count: *freedom,
                     joints: own(joints),
                     bodies: named(bodies),
@@ -403,7 +403,7 @@ const TOGETHER: [&[usize]; 4] = [ALL_AXES, &[0, 1], &[0, 2], &[1, 2]];
 
 /// What could be held, best first: coordinates of the joints that move, then turns and ways of their bodies, then of any body. A ball joint
 /// is held as a whole where it can be: the spin of a body between two of them is none of the freedoms that are counted.
-fn candidates<'m>(m: &'m Mechanism, left: &'m Left) -> impl Iterator<Item = SharedModel> + 'm {
+fn candidates<'m>(m: &'m Mechanism, left: &'m FreeMotions) -> impl Iterator<Item = SharedModel> + 'm {
     let joints = &left.joints;
     let free = joints.iter().flat_map(move |&joint| {
         let constant = ["distance", "revolute_spherical"].contains(&m.joints[joint].kind);

@@ -7,7 +7,7 @@ use hardpoint::space::{Pose, Quat, Vec3};
 use roxmltree::Node;
 
 use crate::law::{self, Language};
-use crate::markers::{Called, Joined, Marker, carrying, counted, is_drawn, join, linked, offset, screw, way};
+use crate::markers::{JointSource, MarkerJoint, Marker, carrying, counted, is_drawn, join, linked, offset, screw, way};
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Times};
 use crate::report::{ImportLog, SourceSpan};
 use crate::turn::home;
@@ -259,7 +259,7 @@ struct Reader<'a, 'i, 'n> {
     notes: &'n mut ImportLog,
     objects: BTreeMap<&'a str, Object<'a, 'i>>,
     bodies: BTreeMap<&'a str, usize>,
-    joints: BTreeMap<&'a str, Joined>,
+    joints: BTreeMap<&'a str, MarkerJoint>,
 }
 
 impl<'a, 'i> Reader<'a, 'i, '_> {
@@ -297,7 +297,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let object = &self.objects[part];
             let pose = outer.compose(object.pose(self.notes));
             let object = &self.objects[part];
-            let called = Called { kind: "part", name: object.label(), at: object.at() };
+            let called = JointSource { kind: "part", name: object.label(), at: object.at() };
             let body = if grounded.contains(part) {
                 GROUND
             } else {
@@ -460,7 +460,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         };
         let ends = [1, 2].map(|k| self.marker(joint, k, root, outer));
         let [Some(i), Some(j)] = ends else { return };
-        let called = Called { kind: &kind, name: label, at };
+        let called = JointSource { kind: &kind, name: label, at };
         let note = called.note(self.notes);
         let number = match type_name {
             "distance" => {
@@ -481,7 +481,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         if has_limits {
             self.notes.refused("limits", label, at, "drivers prescribe what moves: nothing stops at a limit");
         }
-        self.joints.insert(joint, Joined { number, kind: type_name, markers: [i, j] });
+        self.joints.insert(joint, MarkerJoint { number, kind: type_name, markers: [i, j] });
     }
 
     /// Between which values a hinge or a slide may go, counted from the drawing.
@@ -512,7 +512,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
 
     /// A distance between two surfaces, lines or points. What kind of surface a face is is in its shape alone; how its frame lies as
     /// drawn, where the distance holds, mostly indicates.
-    fn distance(&mut self, called: Called<'_>, elements: [&str; 2], ends: [Marker; 2], said: f64) {
+    fn distance(&mut self, called: JointSource<'_>, elements: [&str; 2], ends: [Marker; 2], said: f64) {
         // The face, or else the edge, comes first.
         let rank = |e: &str| ["Face", "Edge", "Vertex"].iter().position(|x| *x == e).unwrap_or(3);
         let swapped = rank(elements[1]) < rank(elements[0]);
@@ -633,7 +633,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         };
         match terms {
             Some(terms) => {
-                let note = Called { kind: &kind, name: label, at }.note(self.notes);
+                let note = JointSource { kind: &kind, name: label, at }.note(self.notes);
                 self.m.coupler(label, note, terms);
                 self.notes.approximated(&kind, label, at, "a coupler of the joints that carry its two parts");
             }
@@ -649,18 +649,18 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     /// As the solver has it, one relation of the slide and the turn; a joint of its own where no others say how its parts move.
     fn screw(&mut self, joint: &'a str, markers: [Marker; 2], lead: Option<f64>) {
         let object = &self.objects[joint];
-        let called = Called { kind: "Screw", name: object.label(), at: object.at() };
+        let called = JointSource { kind: "Screw", name: object.label(), at: object.at() };
         let Some(lead) = lead else {
             let message = format!("the screw `{}` has no pitch", called.name);
             self.notes.problem_with("HP0804", called.at, message, "give it a distance other than zero");
             return;
         };
-        let joints: Vec<Joined> = self.joints.values().copied().collect();
+        let joints: Vec<MarkerJoint> = self.joints.values().copied().collect();
         if screw(&mut self.m, self.notes, called, &joints, markers, lead).is_none()
             && let Some(number) = join(&mut self.m, self.notes, called, "screw", markers)
         {
             self.m.joints[number].lead = Some(lead);
-            self.joints.insert(joint, Joined { number, kind: "screw", markers });
+            self.joints.insert(joint, MarkerJoint { number, kind: "screw", markers });
         }
     }
 
@@ -689,7 +689,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             turns,
         );
         let law = if law::constant(&text) == Some(0.0) { Law::Held } else { Law::Text(text) };
-        let note = Called { kind: "motion", name: label, at }.note(self.notes);
+        let note = JointSource { kind: "motion", name: label, at }.note(self.notes);
         self.m.driver(label, note, Drives::Coordinate(coordinate), law);
         self.notes.taken("motion", label, at);
         Ok(())

@@ -56,7 +56,7 @@ pub fn offset(i: &Marker, j: &Marker) -> Offset {
 
 /// What a joint is called and where it is in the source.
 #[derive(Clone, Copy, Debug)]
-pub struct Called<'s> {
+pub struct JointSource<'s> {
     /// What it is in the source.
     pub kind: &'s str,
     /// Name.
@@ -65,7 +65,7 @@ pub struct Called<'s> {
     pub at: Option<SourceSpan>,
 }
 
-impl Called<'_> {
+impl JointSource<'_> {
     /// For a comment in the model file.
     pub fn note(&self, notes: &ImportLog) -> String {
         match self.at.and_then(|at| notes.place(at)) {
@@ -79,7 +79,7 @@ impl Called<'_> {
 pub fn join(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: Called<'_>,
+    called: JointSource<'_>,
     kind: &'static str,
     [i, j]: [Marker; 2],
 ) -> Option<usize> {
@@ -201,7 +201,7 @@ pub fn is_drawn(m: &Mechanism, said: f64, drawn: f64) -> bool {
 pub fn linked(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: Called<'_>,
+    called: JointSource<'_>,
     kinds: [&'static str; 2],
     [i, j]: [Marker; 2],
     distance: Option<f64>,
@@ -261,7 +261,7 @@ pub fn linked(
 
 /// How body j slides along an axis against body i, and how it turns about it: coordinates of joints with their factors. Either of one
 /// joint between both, or of those that carry them on a third.
-pub fn relative(joints: &[Joined], [i, j]: [usize; 2], axis: Vec3) -> Option<[Vec<(Coordinate, f64)>; 2]> {
+pub fn relative(joints: &[MarkerJoint], [i, j]: [usize; 2], axis: Vec3) -> Option<[Vec<(Coordinate, f64)>; 2]> {
     let bases = joints.iter().flat_map(|k| k.markers.map(|m| m.body));
     let bases: BTreeSet<usize> = bases.chain([i, j]).collect();
     // The joint between both, if there is one, is met with body i as the base.
@@ -298,8 +298,8 @@ pub fn relative(joints: &[Joined], [i, j]: [usize; 2], axis: Vec3) -> Option<[Ve
 pub fn screw(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: Called<'_>,
-    joints: &[Joined],
+    called: JointSource<'_>,
+    joints: &[MarkerJoint],
     [i, j]: [Marker; 2],
     pitch: f64,
 ) -> Option<()> {
@@ -314,7 +314,7 @@ pub fn screw(
 
 /// A joint that was made of two markers.
 #[derive(Clone, Copy, Debug)]
-pub struct Joined {
+pub struct MarkerJoint {
     /// Number.
     pub number: usize,
     /// Type.
@@ -325,11 +325,11 @@ pub struct Joined {
 
 /// The joint of one of these types that carries a body, its axis along this one.
 pub fn carrying<'j>(
-    mut joints: impl Iterator<Item = &'j Joined>,
+    mut joints: impl Iterator<Item = &'j MarkerJoint>,
     body: usize,
     kinds: &[&str],
     axis: Vec3,
-) -> Option<&'j Joined> {
+) -> Option<&'j MarkerJoint> {
     joints.find(|k| {
         let is_on = k.markers.iter().any(|m| m.body == body);
         is_on && kinds.contains(&k.kind) && k.markers[0].z().cross(axis).norm() <= AWRY
@@ -337,7 +337,7 @@ pub fn carrying<'j>(
 }
 
 /// How a joint's coordinate counts for a body and an axis: up or down.
-pub fn way(joint: &Joined, body: usize, axis: Vec3) -> f64 {
+pub fn way(joint: &MarkerJoint, body: usize, axis: Vec3) -> f64 {
     let sign = if joint.markers[1].body == body { 1.0 } else { -1.0 };
     sign * joint.markers[0].z().dot(axis).signum()
 }

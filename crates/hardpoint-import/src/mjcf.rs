@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use hardpoint::space::{Mat3, Pose, Vec3};
 use roxmltree::{Document, Node};
 
-use crate::markers::{Called, Marker, join};
+use crate::markers::{JointSource, Marker, join};
 use crate::mechanism::{Coordinate, GROUND, Joint, Mechanism};
 use crate::report::{ImportLog, SourceSpan};
 use crate::shapes::Solid;
@@ -255,7 +255,7 @@ struct Inside {
 }
 
 /// A joint of a body.
-struct Jointed<'d> {
+struct JointOnBody<'d> {
     element: Element<'d>,
     /// What its coordinates count from.
     pose: Pose,
@@ -278,7 +278,7 @@ struct Free {
 }
 
 /// A shape to be shown.
-struct Shown<'d> {
+struct VisibleShape<'d> {
     element: Element<'d>,
     body: usize,
     link: String,
@@ -308,7 +308,7 @@ struct Reader<'d, 'n> {
     rods: BTreeMap<String, [String; 2]>,
     meets: Vec<Meet>,
     free: Vec<Free>,
-    shapes: Vec<Shown<'d>>,
+    shapes: Vec<VisibleShape<'d>>,
     /// The names of all joints.
     names: BTreeSet<String>,
     /// The places of the includes that have been reported of.
@@ -316,7 +316,7 @@ struct Reader<'d, 'n> {
     /// Number of times that files were put into each other.
     expanded: usize,
     /// Masses of the geoms.
-    solids: Vec<Weighed>,
+    solids: Vec<GeomMass>,
     /// Bodies whose mass is written.
     weighed: BTreeSet<usize>,
     /// Number of geoms that are meshes, whose masses are not computed.
@@ -324,7 +324,7 @@ struct Reader<'d, 'n> {
 }
 
 /// The mass of a geom.
-struct Weighed {
+struct GeomMass {
     body: usize,
     centre: Vec3,
     mass: f64,
@@ -503,7 +503,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         }
         let mut joints = Vec::new();
         self.joints_of(element, pose, class.as_deref(), 0, &mut joints);
-        let note = Called { kind: "body", name: &name, at }.note(self.notes);
+        let note = JointSource { kind: "body", name: &name, at }.note(self.notes);
         // Several joints of a body follow each other: bodies without a shape are between them.
         let mut carrier = outer.body;
         let mut done = Vec::new();
@@ -549,12 +549,12 @@ impl<'d, 'n> Reader<'d, 'n> {
         pose: Pose,
         class: Option<&str>,
         depth: usize,
-        out: &mut Vec<Jointed<'d>>,
+        out: &mut Vec<JointOnBody<'d>>,
     ) {
         for (text, node) in self.contents(element, 0) {
             match node.tag_name().name() {
                 "joint" | "freejoint" => {
-                    out.push(Jointed { element: (text, node), pose, class: class.map(str::to_owned) });
+                    out.push(JointOnBody { element: (text, node), pose, class: class.map(str::to_owned) });
                 }
                 "frame" if depth < DEEPEST => {
                     let inner = node.attribute("childclass").or(class);
@@ -581,7 +581,7 @@ impl<'d, 'n> Reader<'d, 'n> {
             self.notes.problem_with("HP0803", at, message, "rename one of them");
         }
         xml::unknown(text, node, &name, JOINT, self.notes);
-        let called = Called { kind: "joint", name: &name, at };
+        let called = JointSource { kind: "joint", name: &name, at };
         let (type_name, coordinate) = match kind.as_str() {
             "hinge" => ("revolute", Some("angle")),
             "slide" => ("translational", Some("displacement")),
@@ -641,7 +641,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         &mut self,
         element: Element<'d>,
         class: Option<&str>,
-        called: Called<'_>,
+        called: JointSource<'_>,
         coordinate: Option<Coordinate>,
     ) {
         let mut number = |key: &str| {
@@ -669,14 +669,14 @@ impl<'d, 'n> Reader<'d, 'n> {
         let turns = coordinate.is_some_and(|c| c.name == "angle");
         // Coordinates count from the drawing, where the joint's value is `ref`.
         let free = if turns { self.angle(springref - zero) } else { springref - zero };
-        let called = Called { kind: "spring", ..called };
+        let called = JointSource { kind: "spring", ..called };
         robot::joint_spring(&mut self.m, self.notes, called, coordinate, [stiffness, damping, free]);
         robot::friction(self.notes, called.name, called.at, friction);
     }
 
     /// The mass of a body that is written.
     fn inertial(&mut self, element: Element<'d>, inside: &Inside, name: &str) {
-        let called = Called { kind: "inertial", name, at: xml::at(element.0, element.1) };
+        let called = JointSource { kind: "inertial", name, at: xml::at(element.0, element.1) };
         let frame = inside.pose.compose(self.pose(element, None));
         let [mass] = self.numbers::<1>(element, "mass", None).unwrap_or_default();
         let diagonal = self.numbers::<3>(element, "diaginertia", None);
@@ -711,12 +711,12 @@ impl<'d, 'n> Reader<'d, 'n> {
             column.into()
         });
         let inertia = rot * Mat3 { cols: axes } * rot.transpose();
-        self.solids.push(Weighed { body: inside.body, centre: inside.pose.point(place.r), mass, inertia });
+        self.solids.push(GeomMass { body: inside.body, centre: inside.pose.point(place.r), mass, inertia });
     }
 
     /// Masses of bodies by their geoms, where they are not written, and gravity.
     fn masses(&mut self, top: &[Element<'d>]) {
-        let mut of_body: BTreeMap<usize, Vec<Weighed>> = BTreeMap::new();
+        let mut of_body: BTreeMap<usize, Vec<GeomMass>> = BTreeMap::new();
         for solid in std::mem::take(&mut self.solids) {
             if solid.body != GROUND && !self.weighed.contains(&solid.body) {
                 of_body.entry(solid.body).or_default().push(solid);
@@ -737,7 +737,7 @@ impl<'d, 'n> Reader<'d, 'n> {
                 }
             }
             let name = self.m.bodies[body].name.clone();
-            let called = Called { kind: "mass of geoms", name: &name, at: None };
+            let called = JointSource { kind: "mass of geoms", name: &name, at: None };
             let frame = Pose { rot: home().rot, r: centre };
             let matrix = Mat3 { cols: matrix.map(Vec3::from) };
             robot::mass(&mut self.m, self.notes, called, body, frame, mass, Some(matrix));
@@ -803,7 +803,7 @@ impl<'d, 'n> Reader<'d, 'n> {
             found
         });
         let place = if ends.is_some() { owner.inverse().compose(inside.pose) } else { place };
-        self.shapes.push(Shown {
+        self.shapes.push(VisibleShape {
             element,
             body: inside.body,
             link: link.to_owned(),
@@ -817,7 +817,7 @@ impl<'d, 'n> Reader<'d, 'n> {
 }
 
 /// Shows a geom.
-fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: Shown<'_>) {
+fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) {
     let (text, node) = shape.element;
     let at = xml::at(text, node);
     match (shape.kind.as_str(), &shape.mesh) {

@@ -4,7 +4,7 @@
 use hardpoint::space::{Mat3, Pose};
 use roxmltree::Node;
 
-use crate::markers::{Called, Marker};
+use crate::markers::{JointSource, Marker};
 use crate::mechanism::{
     Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mass, Mechanism, Spring, TurnedFrame,
 };
@@ -232,7 +232,7 @@ pub fn follow(
     [own, master]: [Coordinate; 2],
     [factor, constant]: [f64; 2],
 ) {
-    let note = Called { kind: "mimic of", name: other, at }.note(notes);
+    let note = JointSource { kind: "mimic of", name: other, at }.note(notes);
     m.coupler_to(&format!("{name}_mimic"), note, vec![(own, 1.0), (master, -factor)], constant);
     notes.taken("mimic", name, at);
 }
@@ -242,7 +242,7 @@ pub fn follow(
 pub fn weld(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: Called<'_>,
+    called: JointSource<'_>,
     kind: &'static str,
     [i, j]: [Marker; 2],
 ) -> Option<usize> {
@@ -317,7 +317,7 @@ fn turn_of(turn: Mat3, angle: f64) -> hardpoint::space::Vec3 {
 pub fn mass(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: Called<'_>,
+    called: JointSource<'_>,
     body: usize,
     frame: Pose,
     mass: f64,
@@ -376,7 +376,7 @@ pub fn standard_gravity(m: &mut Mechanism, notes: &mut ImportLog, format: &str) 
 pub fn joint_spring(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: Called<'_>,
+    called: JointSource<'_>,
     coordinate: Option<Coordinate>,
     [stiffness, damping, free]: [f64; 3],
 ) {

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use hardpoint::space::{Pose, Quat};
 use roxmltree::{Document, Node};
 
-use crate::markers::{Called, Joined};
+use crate::markers::{JointSource, MarkerJoint};
 use crate::mechanism::{GROUND, Joint, Mechanism};
 use crate::report::ImportLog;
 use crate::shapes::Solid;
@@ -222,13 +222,13 @@ struct Model<'d> {
 
 /// Something in a model that has yet to be placed.
 #[derive(Clone, Copy)]
-enum Waiting<'d> {
+enum UnplacedItem<'d> {
     Element(Node<'d, 'd>),
     Model(usize),
 }
 
 /// A shape of a link.
-struct Shown<'d> {
+struct VisibleShape<'d> {
     text: usize,
     visual: Node<'d, 'd>,
     body: usize,
@@ -251,10 +251,10 @@ struct Reader<'d, 'n> {
     scopes: BTreeSet<String>,
     /// The names of all joints, likewise.
     names: BTreeSet<String>,
-    joints: BTreeMap<String, Joined>,
+    joints: BTreeMap<String, MarkerJoint>,
     /// True if the file has more than one model: then names have their model's before them.
     several: bool,
-    shapes: Vec<Shown<'d>>,
+    shapes: Vec<VisibleShape<'d>>,
     /// Number of models, links, frames and joints.
     declared: usize,
     /// Frames that are neither links nor joints.
@@ -299,7 +299,7 @@ impl<'d> Reader<'d, '_> {
         for link in named(model.node, "link") {
             let name = self.name_of(model.text, link);
             let at = xml::at(model.text, link);
-            let note = Called { kind: "link", name: &name, at }.note(self.notes);
+            let note = JointSource { kind: "link", name: &name, at }.note(self.notes);
             let full = format!("{}{name}", model.scope);
             let body = self.m.body(&full, note, None);
             self.notes.taken("link", &name, at);
@@ -415,13 +415,13 @@ impl<'d> Reader<'d, '_> {
         let of_model = Frame { body: model.canonical.unwrap_or(GROUND), pose: place };
         let elements =
             children(model.node).filter(|n| ["link", "frame", "joint"].contains(&n.tag_name().name()));
-        let mut waiting: Vec<Waiting<'d>> = model.inner.iter().map(|k| Waiting::Model(*k)).collect();
-        waiting.extend(elements.map(Waiting::Element));
+        let mut waiting: Vec<UnplacedItem<'d>> = model.inner.iter().map(|k| UnplacedItem::Model(*k)).collect();
+        waiting.extend(elements.map(UnplacedItem::Element));
         loop {
             let before = waiting.len();
             waiting.retain(|w| match *w {
-                Waiting::Model(inner) => !self.place_inner(inner, &model, of_model),
-                Waiting::Element(node) => !self.place_frame(node, &model, of_model),
+                UnplacedItem::Model(inner) => !self.place_inner(inner, &model, of_model),
+                UnplacedItem::Element(node) => !self.place_frame(node, &model, of_model),
             });
             if waiting.is_empty() {
                 return;
@@ -432,8 +432,8 @@ impl<'d> Reader<'d, '_> {
         }
         for w in waiting {
             let (text, node) = match w {
-                Waiting::Element(node) => (model.text, node),
-                Waiting::Model(inner) => (self.models[inner].text, self.models[inner].node),
+                UnplacedItem::Element(node) => (model.text, node),
+                UnplacedItem::Model(inner) => (self.models[inner].text, self.models[inner].node),
             };
             let held = child(node, "child").and_then(|c| c.text()).unwrap_or_default().trim();
             if node.has_tag_name("joint") && self.frame(&model.scope, held).is_none() {
@@ -632,7 +632,7 @@ impl<'d> Reader<'d, '_> {
                 let [xy, xz, yz] = ["ixy", "ixz", "iyz"].map(|key| number(i, key, 0.0));
                 let [xx, yy, zz] = diagonal;
                 let cols = [[xx, xy, xz].into(), [xy, yy, yz].into(), [xz, yz, zz].into()];
-                let called = Called { kind: "inertial", name, at: xml::at(model.text, inertial) };
+                let called = JointSource { kind: "inertial", name, at: xml::at(model.text, inertial) };
                 let matrix = hardpoint::space::Mat3 { cols };
                 robot::mass(&mut self.m, self.notes, called, body, frame, mass, Some(matrix));
             }
@@ -675,7 +675,7 @@ impl<'d> Reader<'d, '_> {
             let base = written.and_then(relative_to).and_then(|frame| self.frame(&model.scope, frame));
             let base = base.map_or_else(home, |frame| pose.inverse().compose(frame.pose));
             let place = base.compose(written.map_or_else(home, |p| self.written_pose(model.text, p)));
-            self.shapes.push(Shown { text: model.text, visual, body, link: name.to_owned(), place });
+            self.shapes.push(VisibleShape { text: model.text, visual, body, link: name.to_owned(), place });
         }
     }
 }
@@ -687,8 +687,8 @@ fn relative_to<'a>(pose: Node<'a, '_>) -> Option<&'a str> {
 }
 
 /// The shape of a link, of one `visual`.
-fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: Shown<'_>) {
-    let Shown { text, visual, body, link, place } = shape;
+fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) {
+    let VisibleShape { text, visual, body, link, place } = shape;
     let at = xml::at(text, visual);
     let Some(shape) = child(visual, "geometry").and_then(|g| children(g).next()) else {
         notes.refused("visual", &link, at, "it has no shape");

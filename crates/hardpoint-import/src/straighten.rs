@@ -11,7 +11,7 @@ use crate::turn::{X, Y, Z};
 pub const MEANT: f64 = 2e-3;
 
 /// What was straightened.
-pub struct Straightened {
+pub struct StraightenedAxes {
     /// The joints whose axes are turned.
     pub joints: Vec<String>,
     /// By how much at most, in rad.
@@ -19,9 +19,9 @@ pub struct Straightened {
 }
 
 /// Turns the axes in loops that are nearly parallel to a global axis, or to one before them, until they are.
-pub fn straighten(m: &mut Mechanism) -> Option<Straightened> {
+pub fn straighten(m: &mut Mechanism) -> Option<StraightenedAxes> {
     let mut known: Vec<Vec3> = [X, Y, Z].map(Vec3::from).to_vec();
-    let mut done = Straightened { joints: Vec::new(), by: 0.0 };
+    let mut done = StraightenedAxes { joints: Vec::new(), by: 0.0 };
     let turned: Vec<usize> = m.turned.iter().map(|frame| frame.joint).collect();
     // A frame turns about the axis that closes it, whatever that is near.
     for k in in_loops(m).into_iter().filter(|k| !turned.contains(k)) {

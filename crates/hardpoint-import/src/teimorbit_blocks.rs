@@ -4,7 +4,7 @@
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::lotus::half_round;
-use crate::markers::Called;
+use crate::markers::JointSource;
 use crate::mechanism::Mechanism;
 use crate::report::ImportLog;
 use crate::robot;
@@ -88,7 +88,7 @@ fn part(block: &Block, usage: &str, m: &mut Mechanism, notes: &mut ImportLog) {
         }
         let frame = Pose { rot: none(), r: over(half_round([x, y, z]), side) };
         let name = format!("{name}{suffix}");
-        let called = Called { kind: "mass", name: &name, at: Some(block.at) };
+        let called = JointSource { kind: "mass", name: &name, at: Some(block.at) };
         robot::mass(m, notes, called, carrier, frame, mass, Some(Mat3 { cols }));
     }
     if numbers.iter().any(|x| *x != 0.0) {

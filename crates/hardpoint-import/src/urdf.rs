@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use hardpoint::space::{Pose, Vec3};
 use roxmltree::Node;
 
-use crate::markers::{Called, Marker, join};
+use crate::markers::{JointSource, Marker, join};
 use crate::mechanism::{Coordinate, GROUND, Mechanism};
 use crate::report::{ImportLog, SourceSpan};
 use crate::shapes::Solid;
@@ -125,7 +125,7 @@ const IRRELEVANT_IN_GAZEBO: [&str; 36] = [
 const DEEPEST: usize = 100;
 
 /// A joint as it is written.
-struct Written<'a, 'i> {
+struct JointDeclaration<'a, 'i> {
     node: Node<'a, 'i>,
     name: String,
     kind: String,
@@ -185,7 +185,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         reader.notes.problem_with("HP0802", None, message, "leave out of the source what need not move");
         return None;
     }
-    let mut joints: Vec<Written<'_, '_>> = named(robot, "joint").filter_map(|j| reader.written(j)).collect();
+    let mut joints: Vec<JointDeclaration<'_, '_>> = named(robot, "joint").filter_map(|j| reader.written(j)).collect();
     reader.followers(robot, &mut joints);
     reader.tree(&joints);
     reader.mimics(&joints);
@@ -301,7 +301,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         Some(name.to_owned())
     }
 
-    fn written(&mut self, node: Node<'a, 'i>) -> Option<Written<'a, 'i>> {
+    fn written(&mut self, node: Node<'a, 'i>) -> Option<JointDeclaration<'a, 'i>> {
         let name = self.name(node)?;
         let (parent, child_link) = (self.linked(node, "parent"), self.linked(node, "child"));
         let origin = self.origin(node);
@@ -348,7 +348,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let message = format!("there are two joints `{name}`");
             self.notes.problem_with("HP0803", xml::at(0, node), message, "rename one of them");
         }
-        Some(Written {
+        Some(JointDeclaration {
             node,
             name,
             kind,
@@ -364,7 +364,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     }
 
     /// Bodies and joints, from the roots outward.
-    fn tree(&mut self, joints: &[Written<'a, 'i>]) {
+    fn tree(&mut self, joints: &[JointDeclaration<'a, 'i>]) {
         let is_child = |name: &str| joints.iter().any(|j| j.child == name);
         let names: Vec<String> = self.links.keys().cloned().collect();
         self.poses.insert("world".into(), (GROUND, home()));
@@ -414,12 +414,12 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     fn body(&mut self, name: &str, pose: Pose) -> usize {
         let at = self.links.get(name).and_then(|n| xml::at(0, *n));
         self.notes.taken("link", name, at);
-        let note = Called { kind: "link", name, at }.note(self.notes);
+        let note = JointSource { kind: "link", name, at }.note(self.notes);
         self.m.body(name, note, Some(pose))
     }
 
     /// A joint of the tree, which is drawn where its coordinate has the value `drawn`.
-    fn joint(&mut self, j: &Written<'a, 'i>, drawn: f64) {
+    fn joint(&mut self, j: &JointDeclaration<'a, 'i>, drawn: f64) {
         let (Some(&(parent, outer)), Some(&(body, inner))) =
             (self.poses.get(&j.parent), self.poses.get(&j.child))
         else {
@@ -474,13 +474,13 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         };
         if type_name == "fixed" {
             let ends = [(i, at_i), (j, at_j)].map(|(body, pose)| Marker { body, pose });
-            return robot::weld(&mut self.m, self.notes, Called { kind: "joint", name, at }, "fixed", ends);
+            return robot::weld(&mut self.m, self.notes, JointSource { kind: "joint", name, at }, "fixed", ends);
         }
         // A universal joint turns about x of the first frame and y of the second.
         let axes = if kind == "universal" { [X, Y].map(Vec3::from) } else { [axis; 2] };
         let end = |body, pose: Pose, axis| Marker::along(body, pose.r, pose.rot * axis);
         let ends = [end(i, at_i, axes[0])?, end(j, at_j, axes[1])?];
-        let number = join(&mut self.m, self.notes, Called { kind: "joint", name, at }, type_name, ends)?;
+        let number = join(&mut self.m, self.notes, JointSource { kind: "joint", name, at }, type_name, ends)?;
         if let Some(coordinate) = coordinate {
             self.joints.insert(name.to_owned(), Coordinate { joint: number, name: coordinate });
         }
@@ -489,7 +489,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
 }
 
 /// Where a joint is in the design configuration: at zero, or where the joint that it follows puts it.
-fn value_as_drawn(joints: &[Written<'_, '_>], k: usize, depth: usize) -> f64 {
+fn value_as_drawn(joints: &[JointDeclaration<'_, '_>], k: usize, depth: usize) -> f64 {
     let Some(mimic) = &joints[k].mimic else { return 0.0 };
     let master = joints.iter().position(|j| j.name == mimic.joint).filter(|_| depth < DEEPEST);
     mimic.offset + mimic.factor * master.map_or(0.0, |m| value_as_drawn(joints, m, depth + 1))

@@ -158,7 +158,7 @@ pub struct NextFact {
 
 /// What the facts are made of.
 #[derive(Clone, Copy, Debug)]
-pub struct Calibrated<'a> {
+pub struct CalibrationInputs<'a> {
     /// The model file.
     pub file: &'a ModelFile,
     /// What was measured, and its file's name.
@@ -171,7 +171,7 @@ pub struct Calibrated<'a> {
     pub found: &'a Calibration,
 }
 
-impl Calibrated<'_> {
+impl CalibrationInputs<'_> {
     fn model(&self) -> &Model {
         &self.file.model
     }
@@ -331,7 +331,7 @@ impl Calibrated<'_> {
 
 impl CalibrateFacts {
     /// Those of a calibration.
-    pub fn of(of: &Calibrated<'_>) -> Self {
+    pub fn of(of: &CalibrationInputs<'_>) -> Self {
         let (model, units, found) = (of.model(), of.units(), of.found);
         let certainty = &found.certainty;
         let variable = |k: usize| {
@@ -416,7 +416,7 @@ impl CalibrateFacts {
         facts
     }
 
-    fn sentence(&self, of: &Calibrated<'_>) -> String {
+    fn sentence(&self, of: &CalibrationInputs<'_>) -> String {
         let fit = match self.scatter.filter(|_| of.has_sigmas()) {
             // A chi square of n degrees of freedom, as a standard deviation: 1 within 1 / sqrt(2 n).
             Some(s) if (s - 1.0).abs() * (2.0 * self.freedom as f64).sqrt() > FITS => {
@@ -570,7 +570,7 @@ impl CalibrateFacts {
     }
 
     /// The page of the design found becomes that of the calibration: residuals as points, and what is reported here first among its checks.
-    pub fn page(&self, of: &Calibrated<'_>, mut page: Payload, outputs: &[Output]) -> Payload {
+    pub fn page(&self, of: &CalibrationInputs<'_>, mut page: Payload, outputs: &[Output]) -> Payload {
         let first = of.compared().next().map(|(r, _)| &of.output(r.output).name);
         page.first = first.and_then(|name| outputs.iter().position(|o| o.name == *name)).or(page.first);
         let fact = Fact { label: "readings".into(), value: self.readings.to_string() };
@@ -604,7 +604,7 @@ fn together(covariance: &[Vec<f64>], variables: &[CalibratedVariable]) -> Vec<(S
     found
 }
 
-fn untold(of: &Calibrated<'_>, untold: &UnidentifiableChange) -> UntoldFact {
+fn untold(of: &CalibrationInputs<'_>, untold: &UnidentifiableChange) -> UntoldFact {
     let (model, units) = (of.model(), of.units());
     let shown = |k: usize| {
         let variable = &model.variables[of.found.variables[k].0];
@@ -620,7 +620,7 @@ fn untold(of: &Calibrated<'_>, untold: &UnidentifiableChange) -> UntoldFact {
     UntoldFact { variables, sigma: untold.sigma.map(|s| s * most) }
 }
 
-fn next(of: &Calibrated<'_>, next: &NextReading, variables: &[CalibratedVariable]) -> NextFact {
+fn next(of: &CalibrationInputs<'_>, next: &NextReading, variables: &[CalibratedVariable]) -> NextFact {
     let improves = next.improves.as_ref();
     let variable = improves.map(|i| &variables[i.variable]);
     let in_units = |i: &hardpoint::study::Improvement| {

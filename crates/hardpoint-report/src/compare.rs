@@ -74,7 +74,7 @@ pub struct CurveDifference {
 
 /// A model file, and its motion.
 #[derive(Clone, Copy, Debug)]
-pub struct Solved<'a> {
+pub struct SolvedModel<'a> {
     /// The model, and where it is.
     pub file: &'a ModelFile,
     /// Solution.
@@ -83,7 +83,7 @@ pub struct Solved<'a> {
 
 impl CompareFacts {
     /// Those of two models, solved over the same output times.
-    pub fn of(both: [Solved<'_>; 2]) -> Self {
+    pub fn of(both: [SolvedModel<'_>; 2]) -> Self {
         let [a, b] = both;
         let units = a.file.units;
         let steps = both.map(|s| s.solution.motion.len());
@@ -207,7 +207,7 @@ fn shown_difference(by: Option<f64>, unit: &str) -> String {
 }
 
 /// True if two mechanisms have the same bodies and outputs in the same order, so that they can be drawn beside each other.
-pub fn are_alike(both: [Solved<'_>; 2]) -> bool {
+pub fn are_alike(both: [SolvedModel<'_>; 2]) -> bool {
     let bodies = both.map(|s| s.file.model.bodies.iter().map(|b| &b.name).collect::<Vec<_>>());
     let outputs =
         both.map(|s| s.solution.measured.outputs.iter().map(|o| (&o.name, o.dimension)).collect::<Vec<_>>());
@@ -248,14 +248,14 @@ fn parameters(a: &Model, b: &Model, units: Units) -> Vec<Difference> {
         .collect()
 }
 
-fn curves([a, b]: [Solved<'_>; 2], units: Units, steps: usize) -> Vec<CurveDifference> {
-    let outputs = |s: &Solved<'_>| s.solution.measured.outputs.clone();
+fn curves([a, b]: [SolvedModel<'_>; 2], units: Units, steps: usize) -> Vec<CurveDifference> {
+    let outputs = |s: &SolvedModel<'_>| s.solution.measured.outputs.clone();
     let theirs = outputs(&b);
     let round_off = RoundOff::new(&a.file.model, Magnitude::of_motion(&a.file.model, &a.solution.motion));
     let compare = |(m, output): (usize, &hardpoint::measure::Output)| {
         let other = theirs.iter().position(|o| o.name == output.name && o.dimension == output.dimension)?;
         let shown = |x: f64| units.from_si(output.dimension, x);
-        let curve = |s: &Solved<'_>, m: usize| -> Vec<f64> {
+        let curve = |s: &SolvedModel<'_>, m: usize| -> Vec<f64> {
             (0..steps).map(|k| shown(s.solution.measured.value(k, m)[0])).collect()
         };
         let both = [curve(&a, m), curve(&b, other)];
@@ -274,7 +274,7 @@ fn curves([a, b]: [Solved<'_>; 2], units: Units, steps: usize) -> Vec<CurveDiffe
     outputs(&a).iter().enumerate().filter_map(compare).collect()
 }
 
-fn of_metrics([a, b]: [Solved<'_>; 2], units: Units) -> Vec<Difference> {
+fn of_metrics([a, b]: [SolvedModel<'_>; 2], units: Units) -> Vec<Difference> {
     let [first, second] = [a, b].map(|s| metrics(&s.file.model, s.solution));
     let compare = |(k, metric): (usize, &hardpoint::model::Metric)| {
         let (model, others) = (&a.file.model, &b.file.model);

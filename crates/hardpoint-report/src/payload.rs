@@ -11,7 +11,7 @@ mod first;
 mod loads;
 mod values;
 
-pub use designs::Changed;
+pub use designs::ChangedDesign;
 
 use std::path::Path;
 
@@ -59,7 +59,7 @@ pub struct Request<'a> {
     /// `differences[b]` are those of variable b, where there are any; of no variable where this is empty.
     pub differences: &'a [Option<Difference>],
     /// Another design over the same motion.
-    pub changed: Option<Changed<'a>>,
+    pub changed: Option<ChangedDesign<'a>>,
 }
 
 impl<'a> Request<'a> {
@@ -80,7 +80,7 @@ pub fn payload(request: &Request<'_>) -> Payload {
 }
 
 /// A changed design as it is on the page of today's, which shows so much; `request` is of today's.
-pub fn design(request: &Request<'_>, changed: &Changed<'_>, shown: Detail) -> Design {
+pub fn design(request: &Request<'_>, changed: &ChangedDesign<'_>, shown: Detail) -> Design {
     let compose = Compose::new(request, None, shown);
     let (bodies, values) = (compose.bodies(), compose.values(request.summary));
     compose.exact(changed, request.course.stride, &bodies, &values)
@@ -109,7 +109,7 @@ fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payloa
         outputs: solution.measured.outputs.len(),
         loads: loads::count(model),
         compared: request.differences.iter().any(Option::is_some),
-        designs: request.changed.as_ref().map_or(0, Changed::designs),
+        designs: request.changed.as_ref().map_or(0, ChangedDesign::designs),
     };
     let alone = driver_rates(request);
     let compose = |detail: Detail| finish(composed(request, alone.as_ref(), detail));

@@ -178,12 +178,12 @@ pub struct Ranking {
     /// `value`, `rate` or `acceleration`.
     pub order: &'static str,
     /// Sensitivities above round-off.
-    pub largest: Vec<Ranked>,
+    pub largest: Vec<RankedVariable>,
 }
 
 /// The largest sensitivity of a measure by one variable over the motion.
 #[derive(Clone, Debug, Serialize)]
-pub struct Ranked {
+pub struct RankedVariable {
     /// The variable.
     pub variable: String,
     /// The variable's unit; only sensitivities by the same unit can be compared.
@@ -277,7 +277,7 @@ fn rankings(model: &Model, units: Units, course: &Course) -> Vec<Ranking> {
                 if most.abs() <= round_off.of(b, output.dimension, order) {
                     continue;
                 }
-                largest.push(Ranked {
+                largest.push(RankedVariable {
                     variable: variable.name.clone(),
                     value: units.derivative_from_si(output.dimension, variable.quantity, most),
                     unit: per(&order_unit(units, output.dimension, order), &unit),
@@ -287,7 +287,7 @@ fn rankings(model: &Model, units: Units, course: &Course) -> Vec<Ranking> {
             }
             let kinds = [Quantity::Length, Quantity::Angle, Quantity::Number].map(|q| symbol(units, q));
             // Units of parameters of laws come last.
-            let kind = |r: &Ranked| {
+            let kind = |r: &RankedVariable| {
                 (kinds.iter().position(|unit| *unit == r.per).unwrap_or(kinds.len()), r.per.clone())
             };
             largest.sort_by(|a, b| kind(a).cmp(&kind(b)).then(b.value.abs().total_cmp(&a.value.abs())));

@@ -147,7 +147,7 @@ pub struct InfluenceFact {
 
 /// What the facts are made of.
 #[derive(Clone, Copy)]
-pub struct Swept<'a> {
+pub struct SweepInputs<'a> {
     /// The model file.
     pub file: &'a ModelFile,
     /// Per motion, its number among those of the model.
@@ -173,7 +173,7 @@ pub struct Tally {
 
 /// The designs that are drawn, and what is known of all.
 #[derive(Clone, Debug, Default)]
-struct Drawn {
+struct DrawnDesigns {
     numbers: Vec<usize>,
     /// Per variable, per design, as shown.
     variables: Vec<Vec<f64>>,
@@ -181,7 +181,7 @@ struct Drawn {
     metrics: Vec<Vec<f64>>,
 }
 
-impl Swept<'_> {
+impl SweepInputs<'_> {
     fn model(&self) -> &Model {
         &self.file.model
     }
@@ -367,7 +367,7 @@ impl Swept<'_> {
         mut column: impl FnMut(usize) -> io::Result<Vec<f64>>,
     ) -> io::Result<(SweepFacts, SweepPlot)> {
         let (file, asked) = (self.file, self.asked);
-        let mut drawn = Drawn { numbers: self.drawn_numbers(tally.designs), ..Drawn::default() };
+        let mut drawn = DrawnDesigns { numbers: self.drawn_numbers(tally.designs), ..DrawnDesigns::default() };
         drawn.variables = vec![Vec::new(); asked.ranges.len()];
         for number in &drawn.numbers {
             drawn.variables.iter_mut().zip(self.variables_of(*number)).for_each(|(c, x)| c.push(x));
@@ -473,7 +473,7 @@ impl Swept<'_> {
 }
 
 /// What the page draws.
-fn plot(facts: &SweepFacts, drawn: Drawn) -> SweepPlot {
+fn plot(facts: &SweepFacts, drawn: DrawnDesigns) -> SweepPlot {
     let variable = |(v, values): (&SweptVariable, Vec<f64>)| SweepAxis {
         name: v.name.clone(),
         unit: v.unit.clone(),
@@ -681,7 +681,7 @@ impl SweepFacts {
     /// The page of a motion of the nominal design becomes that of the sweep: what is reported here comes first among its checks.
     pub fn page(
         &self,
-        swept: &Swept<'_>,
+        swept: &SweepInputs<'_>,
         plot: &SweepPlot,
         motion: usize,
         mut page: Payload,

@@ -236,7 +236,7 @@ pub struct AllocationFact {
 
 /// What the facts are made of.
 #[derive(Clone, Copy, Debug)]
-pub struct Studied<'a> {
+pub struct ToleranceInputs<'a> {
     /// The model file.
     pub file: &'a ModelFile,
     /// Per motion, its number among those of the model.
@@ -247,7 +247,7 @@ pub struct Studied<'a> {
     pub found: &'a ToleranceResult,
 }
 
-impl Studied<'_> {
+impl ToleranceInputs<'_> {
     fn model(&self) -> &Model {
         &self.file.model
     }
@@ -535,8 +535,8 @@ fn yield_text(part: f64, error: f64) -> String {
 
 impl ToleranceFacts {
     /// Those of a study.
-    pub fn of(studied: &Studied<'_>) -> Self {
-        let Studied { file, asked, found, .. } = *studied;
+    pub fn of(studied: &ToleranceInputs<'_>) -> Self {
+        let ToleranceInputs { file, asked, found, .. } = *studied;
         let part = |of: &MonteCarlo| of.all.map(Yield::part);
         let loose = found.allocation.as_ref().and_then(|a| a.sampled.as_ref());
         let mut facts = Self {
@@ -830,7 +830,7 @@ fn standard_error(part: f64, of: usize) -> f64 {
     Yield { kept: (part * of as f64).round() as usize, of }.error()
 }
 
-fn tolerated(studied: &Studied<'_>, k: usize) -> ToleratedFact {
+fn tolerated(studied: &ToleranceInputs<'_>, k: usize) -> ToleratedFact {
     let (model, of) = (studied.model(), studied.found.variables[k]);
     let (variable, tolerance) = (&model.variables[of.variable.0], &studied.asked.tolerances[of.tolerance]);
     let shown = |x: f64| studied.units().from_si(variable.quantity, x);
@@ -848,7 +848,7 @@ fn tolerated(studied: &Studied<'_>, k: usize) -> ToleratedFact {
     }
 }
 
-fn spread(studied: &Studied<'_>, k: usize) -> SpreadFact {
+fn spread(studied: &ToleranceInputs<'_>, k: usize) -> SpreadFact {
     let (of, dimension) = (&studied.found.metrics[k], studied.dimension(&studied.found.metrics[k]));
     let units = studied.units();
     let shown = |x: f64| units.from_si(dimension, x);
@@ -919,7 +919,7 @@ fn spread(studied: &Studied<'_>, k: usize) -> SpreadFact {
     }
 }
 
-fn limit(studied: &Studied<'_>, k: usize) -> YieldFact {
+fn limit(studied: &ToleranceInputs<'_>, k: usize) -> YieldFact {
     let found = &studied.found.limits[k];
     let limit = &studied.asked.limits[found.limit];
     let of = &studied.found.metrics[found.spread];
@@ -941,7 +941,7 @@ fn limit(studied: &Studied<'_>, k: usize) -> YieldFact {
     }
 }
 
-fn failures(studied: &Studied<'_>, sampled: &MonteCarlo) -> Vec<FailureFact> {
+fn failures(studied: &ToleranceInputs<'_>, sampled: &MonteCarlo) -> Vec<FailureFact> {
     let fact = |f: &hardpoint::study::FailureGroup| FailureFact {
         case: studied.case(f.motion),
         why: f.why.clone(),
@@ -951,7 +951,7 @@ fn failures(studied: &Studied<'_>, sampled: &MonteCarlo) -> Vec<FailureFact> {
     sampled.failures.iter().map(fact).collect()
 }
 
-fn allocation(studied: &Studied<'_>, found: &Allocation) -> AllocationFact {
+fn allocation(studied: &ToleranceInputs<'_>, found: &Allocation) -> AllocationFact {
     let name = |k: usize| {
         let limit = &studied.asked.limits[studied.found.limits[k].limit];
         titled(&limit.name, &studied.case(studied.found.metrics[studied.found.limits[k].spread].motion))

@@ -11,7 +11,7 @@ use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
 use hardpoint_report::page::{Design, Detail, ModelText};
-use hardpoint_report::payload::{self, Changed, Request};
+use hardpoint_report::payload::{self, ChangedDesign, Request};
 use hardpoint_report::summary::Summary;
 
 use crate::protocol::{
@@ -201,7 +201,7 @@ impl Open {
             return None;
         }
         let request = Request::of(&self.bare, &self.analysis, &self.today, &self.summary);
-        let changed = Changed {
+        let changed = ChangedDesign {
             name: "changed".into(),
             note: String::new(),
             change: values,

@@ -17,7 +17,7 @@ use hardpoint_report::optimize::{OptimizeFacts, iteration_line, rounded, start_l
 use hardpoint_report::page::{ModelText, Payload};
 use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
-use hardpoint_report::tolerance::{Studied as Toleranced, ToleranceFacts};
+use hardpoint_report::tolerance::{ToleranceInputs as Toleranced, ToleranceFacts};
 use hardpoint_report::validity::ValidityFact;
 
 use crate::protocol::{

@@ -18,7 +18,7 @@ pub struct Address {
 
 /// How a request that may pass showed its token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shown {
+pub enum TokenSource {
     /// In the address: from the terminal.
     InAddress,
     /// As a page of the server does.
@@ -58,7 +58,7 @@ impl Address {
     ///
     /// # Errors
     /// Why not, in a sentence for whoever sent it.
-    pub fn lets_in(&self, method: &Method, uri: &Uri, headers: &HeaderMap) -> Result<Shown, &'static str> {
+    pub fn lets_in(&self, method: &Method, uri: &Uri, headers: &HeaderMap) -> Result<TokenSource, &'static str> {
         const HOST: &str = "This server answers to 127.0.0.1 and localhost only.";
         const FOREIGN: &str = "This server answers to its own pages only.";
         const TOKEN: &str =
@@ -86,9 +86,9 @@ impl Address {
         }
         let in_header = one(headers, HEADER).is_some_and(|token| self.is_token(token));
         if in_header || self.is_in_cookie(headers) {
-            Ok(if in_address { Shown::InAddress } else { Shown::ByPage })
+            Ok(if in_address { TokenSource::InAddress } else { TokenSource::ByPage })
         } else if in_address {
-            Ok(Shown::InAddress)
+            Ok(TokenSource::InAddress)
         } else {
             Err(TOKEN)
         }
@@ -137,7 +137,7 @@ mod tests {
 
     const TOKEN: &str = "0123456789abcdef";
 
-    fn asked(uri: &str, headers: &[(&str, &str)]) -> Result<Shown, &'static str> {
+    fn asked(uri: &str, headers: &[(&str, &str)]) -> Result<TokenSource, &'static str> {
         let mut all = HeaderMap::new();
         for (name, value) in headers {
             all.append(header::HeaderName::from_bytes(name.as_bytes()).unwrap(), value.parse().unwrap());
@@ -150,13 +150,13 @@ mod tests {
         let host = ("host", "127.0.0.1:4000");
         let cookie = ("cookie", "a=b; hardpoint-4000=0123456789abcdef");
         let with_token = format!("/?token={TOKEN}");
-        assert_eq!(asked(&with_token, &[host]), Ok(Shown::InAddress));
-        assert_eq!(asked("/", &[("host", "LOCALHOST:4000"), cookie]), Ok(Shown::ByPage));
+        assert_eq!(asked(&with_token, &[host]), Ok(TokenSource::InAddress));
+        assert_eq!(asked("/", &[("host", "LOCALHOST:4000"), cookie]), Ok(TokenSource::ByPage));
         assert_eq!(
             asked("/", &[host, (HEADER, TOKEN), ("origin", "http://localhost:4000")]),
-            Ok(Shown::ByPage)
+            Ok(TokenSource::ByPage)
         );
-        assert_eq!(asked("/", &[host, cookie, ("sec-fetch-site", "same-origin")]), Ok(Shown::ByPage));
+        assert_eq!(asked("/", &[host, cookie, ("sec-fetch-site", "same-origin")]), Ok(TokenSource::ByPage));
         let link = [("sec-fetch-site", "cross-site"), ("sec-fetch-mode", "navigate")];
         assert!(asked(&with_token, &[host, link[0], link[1]]).is_ok());
 

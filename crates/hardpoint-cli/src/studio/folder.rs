@@ -53,7 +53,7 @@ pub struct Entry {
 }
 
 /// Why a file was not read or written.
-pub enum NoFile {
+pub enum FileError {
     /// The name is none of a model file in this folder.
     Name,
     /// There is none of that name.
@@ -82,13 +82,13 @@ impl Models {
     }
 
     /// Where a file of that name is, whether there is one or not.
-    fn place(&self, name: &str) -> Result<PathBuf, NoFile> {
+    fn place(&self, name: &str) -> Result<PathBuf, FileError> {
         let odd = |c: char| c.is_control() || matches!(c, '/' | '\\' | ':' | '\u{fffd}');
         let plain = name.len() <= LONGEST_NAME && name.len() > ENDING.len() && !name.starts_with('.');
         if plain && name.ends_with(ENDING) && !name.contains(odd) {
             Ok(self.real.join(name))
         } else {
-            Err(NoFile::Name)
+            Err(FileError::Name)
         }
     }
 
@@ -98,25 +98,25 @@ impl Models {
     }
 
     /// The file of that name itself, whatever links to it; it lies in the folder.
-    fn existing(&self, name: &str) -> Result<PathBuf, NoFile> {
+    fn existing(&self, name: &str) -> Result<PathBuf, FileError> {
         let place = self.place(name)?;
-        let real = place.canonicalize().map_err(NoFile::of)?;
+        let real = place.canonicalize().map_err(FileError::of)?;
         // A pipe or a device would be waited for.
-        let is_file = real.metadata().map_err(NoFile::of)?.is_file();
-        if is_file && real.parent() == Some(&*self.real) { Ok(real) } else { Err(NoFile::Name) }
+        let is_file = real.metadata().map_err(FileError::of)?.is_file();
+        if is_file && real.parent() == Some(&*self.real) { Ok(real) } else { Err(FileError::Name) }
     }
 
     /// The text of a model.
-    pub fn read(&self, name: &str) -> Result<Text, NoFile> {
-        let file = std::fs::File::open(self.existing(name)?).map_err(NoFile::of)?;
+    pub fn read(&self, name: &str) -> Result<Text, FileError> {
+        let file = std::fs::File::open(self.existing(name)?).map_err(FileError::of)?;
         let mut bytes = Vec::new();
-        file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(NoFile::of)?;
+        file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(FileError::of)?;
         if bytes.len() as u64 > LARGEST_FILE {
-            return Err(NoFile::TooLarge);
+            return Err(FileError::TooLarge);
         }
         let revision = revision(&bytes);
         let text = String::from_utf8(bytes);
-        let text = text.map_err(|_| NoFile::Failed(format!("`{name}` is not a text in UTF-8")))?;
+        let text = text.map_err(|_| FileError::Failed(format!("`{name}` is not a text in UTF-8")))?;
         Ok(Text { text, revision })
     }
 
@@ -126,16 +126,16 @@ impl Models {
     }
 
     /// Saves a text in place of the one of that revision, whole or not at all, for the page `by`.
-    pub fn save(&self, name: &str, text: &str, before: &str, by: &str) -> Result<Revision, NoFile> {
+    pub fn save(&self, name: &str, text: &str, before: &str, by: &str) -> Result<Revision, FileError> {
         let mut saved = self.saved();
         let real = self.existing(name)?;
         let now = self.read(name)?;
         if now.revision != before {
-            return Err(NoFile::Changed(now));
+            return Err(FileError::Changed(now));
         }
-        let permissions = real.metadata().map_err(NoFile::of)?.permissions();
+        let permissions = real.metadata().map_err(FileError::of)?.permissions();
         if permissions.readonly() {
-            return Err(NoFile::Failed(format!("`{name}` is read-only")));
+            return Err(FileError::Failed(format!("`{name}` is read-only")));
         }
         // What links to a file still does when it was saved.
         let own_name = real.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
@@ -147,7 +147,7 @@ impl Models {
     }
 
     /// Saves a text under a name that no file has.
-    pub fn save_new(&self, name: &str, text: &str, by: &str) -> Result<Revision, NoFile> {
+    pub fn save_new(&self, name: &str, text: &str, by: &str) -> Result<Revision, FileError> {
         let mut saved = self.saved();
         self.place(name)?;
         self.written(name, text, Folder::commit_new)?;
@@ -160,15 +160,15 @@ impl Models {
         &self,
         name: &str,
         text: &str,
-        commit: impl FnOnce(Folder) -> Result<(), crate::folder::NotWritten>,
-    ) -> Result<(), NoFile> {
+        commit: impl FnOnce(Folder) -> Result<(), crate::folder::WriteError>,
+    ) -> Result<(), FileError> {
         let written = Folder::open(&self.real).and_then(|mut folder| {
             folder.write(name, |out| out.write_all(text.as_bytes()))?;
             commit(folder)
         });
         written.map_err(|e| match e.error.kind() {
-            ErrorKind::AlreadyExists => NoFile::Exists,
-            _ => NoFile::Failed(format!("`{name}` cannot be written: {}", e.error)),
+            ErrorKind::AlreadyExists => FileError::Exists,
+            _ => FileError::Failed(format!("`{name}` cannot be written: {}", e.error)),
         })
     }
 
@@ -226,7 +226,7 @@ pub fn revision(bytes: &[u8]) -> Revision {
     format!("{:032x}", checksum(bytes))
 }
 
-impl NoFile {
+impl FileError {
     fn of(error: io::Error) -> Self {
         match error.kind() {
             ErrorKind::NotFound => Self::Absent,

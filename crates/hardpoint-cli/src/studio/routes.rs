@@ -10,9 +10,9 @@ use hyper::header;
 use hyper::{Method, Request, StatusCode};
 use serde_json::json;
 
-use super::folder::NoFile;
+use super::folder::FileError;
 use super::server::{Answer, body};
-use super::studies::Asked;
+use super::studies::StudyRequest;
 use super::{Studio, page, watch};
 
 /// The query of an address; of a key that is there twice the last.
@@ -137,7 +137,7 @@ async fn save(studio: Arc<Studio>, query: &Query, request: Request<Incoming>) ->
         // That somebody else changed the file is said before anything about the text.
         let now = models.read(&file).map_err(|why| no_file(&file, why))?;
         if now.revision != before {
-            return Err(no_file(&file, NoFile::Changed(now)));
+            return Err(no_file(&file, FileError::Changed(now)));
         }
         is_model(&studio, &file, &text, anyway)?;
         let saved = models.save(&file, &text, &before, &client).map_err(|why| no_file(&file, why))?;
@@ -172,11 +172,11 @@ fn is_model(studio: &Studio, file: &str, text: &str, anyway: bool) -> Result<(),
 
 async fn begin(studio: Arc<Studio>, request: Request<Incoming>) -> Result<Answer, Answer> {
     let bytes = body(request).await?;
-    let asked: Asked = serde_json::from_slice(&bytes)
+    let asked: StudyRequest = serde_json::from_slice(&bytes)
         .map_err(|e| Answer::refusal(StatusCode::BAD_REQUEST, &format!("the request is no study: {e}")))?;
     blocking(move || {
         if !studio.models.is_name(&asked.file) {
-            return Err(no_file(&asked.file, NoFile::Name));
+            return Err(no_file(&asked.file, FileError::Name));
         }
         let file = studio.models.parse(&asked.file, &asked.text).map_err(|found| no_model(&found))?;
         match studio.studies.begin(file, asked) {
@@ -207,21 +207,21 @@ fn no_model(found: &Diagnostics) -> Answer {
 }
 
 /// Why there is no such file, or why it is not written.
-pub fn no_file(name: &str, why: NoFile) -> Answer {
+pub fn no_file(name: &str, why: FileError) -> Answer {
     let (status, sentence): (StatusCode, Cow<'_, str>) = match why {
-        NoFile::Name => {
+        FileError::Name => {
             let why = format!(
                 "`{name}` is not the name of a model in this folder: those are plain names that end with `.toml`"
             );
             (StatusCode::BAD_REQUEST, why.into())
         }
-        NoFile::Absent => (StatusCode::NOT_FOUND, format!("there is no `{name}` in this folder").into()),
-        NoFile::Exists => (StatusCode::CONFLICT, format!("there is a `{name}` already").into()),
-        NoFile::TooLarge => {
+        FileError::Absent => (StatusCode::NOT_FOUND, format!("there is no `{name}` in this folder").into()),
+        FileError::Exists => (StatusCode::CONFLICT, format!("there is a `{name}` already").into()),
+        FileError::TooLarge => {
             (StatusCode::PAYLOAD_TOO_LARGE, format!("`{name}` is too large for a model").into())
         }
-        NoFile::Failed(why) => (StatusCode::INTERNAL_SERVER_ERROR, why.into()),
-        NoFile::Changed(now) => {
+        FileError::Failed(why) => (StatusCode::INTERNAL_SERVER_ERROR, why.into()),
+        FileError::Changed(now) => {
             let error = format!("`{name}` was changed on disk meanwhile");
             let document =
                 json!({ "error": error, "file": name, "text": now.text, "revision": now.revision });

@@ -26,7 +26,7 @@ use hardpoint_file::LARGEST_FILE;
 use crate::session::Session;
 
 use super::Studio;
-use super::address::Shown;
+use super::address::TokenSource;
 use super::routes;
 
 /// Number of connections at once; more of them wait until others end.
@@ -163,7 +163,7 @@ async fn answer(studio: Arc<Studio>, request: Request<Incoming>) -> Result<Respo
             tokio::spawn(swallow(request.into_body()));
             Answer::text(StatusCode::FORBIDDEN, why)
         }
-        Ok(Shown::InAddress) if request.method() == Method::GET && request.uri().path() == "/" => {
+        Ok(TokenSource::InAddress) if request.method() == Method::GET && request.uri().path() == "/" => {
             // The token stays in a cookie, and not in the address, which is seen and kept.
             let rest = request.uri().query().unwrap_or_default();
             let rest = form_urlencoded::parse(rest.as_bytes()).filter(|(key, _)| key != "token");

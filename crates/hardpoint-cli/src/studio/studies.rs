@@ -12,7 +12,7 @@ use hardpoint::study::Motions;
 use hardpoint::topology::Formulation;
 use hardpoint_file::ModelFile;
 use hardpoint_report::page::Table;
-use hardpoint_report::tolerance::Studied;
+use hardpoint_report::tolerance::ToleranceInputs;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use tokio::sync::broadcast;
@@ -36,9 +36,9 @@ const EVENTS: usize = 256;
 /// What a page asks for.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Asked {
+pub struct StudyRequest {
     /// The kind of study.
-    pub what: What,
+    pub what: StudyKind,
     /// Name of the model file, for what it names beside it.
     pub file: String,
     /// The model as the page has it.
@@ -54,7 +54,7 @@ pub struct Asked {
 /// The kinds of studies.
 #[derive(Clone, Copy, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum What {
+pub enum StudyKind {
     /// As `hardpoint optimize`.
     Optimize,
     /// As `hardpoint tolerance`.
@@ -84,7 +84,7 @@ enum Rule {
 /// A study under way, or ended.
 pub struct Study {
     id: u64,
-    what: What,
+    what: StudyKind,
     cancelled: Arc<AtomicBool>,
     state: Mutex<State>,
     events: broadcast::Sender<Arc<str>>,
@@ -150,7 +150,7 @@ impl Studies {
     }
 
     /// Begins one; `None` where too many are under way.
-    pub fn begin(&self, file: ModelFile, asked: Asked) -> Option<Arc<Study>> {
+    pub fn begin(&self, file: ModelFile, asked: StudyRequest) -> Option<Arc<Study>> {
         let study = {
             let mut list = self.list();
             if list.iter().filter(|s| !s.has_ended()).count() >= AT_ONCE {
@@ -256,13 +256,13 @@ impl Study {
         self.tell(document);
     }
 
-    fn work(self: &Arc<Self>, file: &ModelFile, asked: &Asked) {
+    fn work(self: &Arc<Self>, file: &ModelFile, asked: &StudyRequest) {
         let heard = Arc::new(Heard { study: Arc::clone(self), refusal: Mutex::default() });
         let session = Session::for_page(Arc::clone(&heard) as Arc<dyn Listener>, Arc::clone(&self.cancelled));
         let done = catch_unwind(AssertUnwindSafe(|| match asked.what {
-            What::Optimize => optimized(&session, file, asked),
-            What::Tolerance => examined(&session, file, asked),
-            What::Sweep => swept(&session, file, asked),
+            StudyKind::Optimize => optimized(&session, file, asked),
+            StudyKind::Tolerance => examined(&session, file, asked),
+            StudyKind::Sweep => swept(&session, file, asked),
         }));
         self.end(match done {
             Ok(Ok(end)) => end,
@@ -307,7 +307,7 @@ impl Listener for Heard {
     }
 }
 
-fn optimized(session: &Session, file: &ModelFile, asked: &Asked) -> Result<End, Outcome> {
+fn optimized(session: &Session, file: &ModelFile, asked: &StudyRequest) -> Result<End, Outcome> {
     let mut file = file.clone();
     if let Some(name) = &asked.case {
         let case = session.case(&file, name)?;
@@ -337,7 +337,7 @@ fn optimized(session: &Session, file: &ModelFile, asked: &Asked) -> Result<End, 
     })
 }
 
-fn examined(session: &Session, file: &ModelFile, asked: &Asked) -> Result<End, Outcome> {
+fn examined(session: &Session, file: &ModelFile, asked: &StudyRequest) -> Result<End, Outcome> {
     let numbers = session.numbers_of(file, &args::Motions { case: asked.case.clone() })?;
     let Options { samples, seed, allocate, .. } = asked.options;
     let allocate = allocate.map(|rule| match rule {
@@ -345,13 +345,13 @@ fn examined(session: &Session, file: &ModelFile, asked: &Asked) -> Result<End, O
         Rule::WorstCase => Allocate::WorstCase,
     });
     at_most(session, samples, args::MOST_DRAWN)?;
-    let wanted = tolerance::asked(session, file, &tolerance::Asking { samples, seed, allocate })?;
+    let wanted = tolerance::asked(session, file, &tolerance::ToleranceOverrides { samples, seed, allocate })?;
     let models = file.model.motions();
     let models: Vec<Model> = numbers.iter().map(|k| models[*k].clone()).collect();
     let motions = Motions::of(&models, Formulation::Relative);
     let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(file, &fault))?;
     let found = tolerance::examine(session, file, &motions, &numbers, &wanted, None)?;
-    let studied = Studied { file, numbers: &numbers, asked: &wanted, found: &found };
+    let studied = ToleranceInputs { file, numbers: &numbers, asked: &wanted, found: &found };
     let results = tolerance::Results::of(session, studied, &motions);
     Ok(End {
         state: if found.interrupted { "cancelled" } else { "done" },
@@ -363,7 +363,7 @@ fn examined(session: &Session, file: &ModelFile, asked: &Asked) -> Result<End, O
     })
 }
 
-fn swept(session: &Session, file: &ModelFile, asked: &Asked) -> Result<End, Outcome> {
+fn swept(session: &Session, file: &ModelFile, asked: &StudyRequest) -> Result<End, Outcome> {
     let Options { samples, seed, .. } = asked.options;
     at_most(session, samples, args::MOST_SWEPT)?;
     let motions = args::Motions { case: asked.case.clone() };

@@ -9,11 +9,11 @@ use flate2::read::DeflateDecoder;
 use tempfile::TempDir;
 
 /// A folder with a model.
-pub struct Bench {
+pub struct FitWorkspace {
     folder: TempDir,
 }
 
-impl Bench {
+impl FitWorkspace {
     /// With these model files of `tests/models`.
     pub fn with(models: &[&str]) -> Self {
         let bench = Self { folder: TempDir::new().unwrap() };

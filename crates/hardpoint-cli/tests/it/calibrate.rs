@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use crate::bench::Bench;
+use crate::bench::FitWorkspace;
 
-fn bench() -> Bench {
+fn bench() -> FitWorkspace {
     let studies = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/studies");
-    let bench = Bench::with(&[]);
+    let bench = FitWorkspace::with(&[]);
     for name in ["strut_calibrate.toml", "strut_measured.csv"] {
         bench.put(name, &std::fs::read_to_string(studies.join(name)).unwrap());
     }

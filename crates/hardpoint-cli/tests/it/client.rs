@@ -5,7 +5,7 @@ use std::net::{Ipv4Addr, TcpStream};
 use std::process::{Child, ExitStatus, Stdio};
 use std::time::Duration;
 
-use crate::bench::Bench;
+use crate::bench::FitWorkspace;
 
 /// After which a server counts as hung, whatever the machine does besides.
 const HANG: Duration = Duration::from_secs(900);
@@ -38,7 +38,7 @@ impl Reply {
 
 impl Server {
     /// Started in the folder of a bench.
-    pub fn start(bench: &Bench, arguments: &[&str]) -> Self {
+    pub fn start(bench: &FitWorkspace, arguments: &[&str]) -> Self {
         let all = [&["studio", "--no-browser"], arguments].concat();
         let mut child = bench.command(&all).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let mut line = String::new();

@@ -3,7 +3,7 @@
 use std::io::{Read, Write};
 use std::path::Path;
 
-use crate::bench::Bench;
+use crate::bench::FitWorkspace;
 use crate::client::Server;
 
 const TOKEN: &str = "a-token-of-this-test";
@@ -13,12 +13,12 @@ fn study_file(name: &str) -> String {
     std::fs::read_to_string(path).unwrap()
 }
 
-fn slider() -> Bench {
-    Bench::with(&["slider.toml"])
+fn slider() -> FitWorkspace {
+    FitWorkspace::with(&["slider.toml"])
 }
 
 /// What is in a page's packed block.
-fn payload(bench: &Bench, html: &str) -> serde_json::Value {
+fn payload(bench: &FitWorkspace, html: &str) -> serde_json::Value {
     bench.put("served.html", html);
     let page = bench.page("served.html");
     std::fs::remove_file(bench.path("served.html")).unwrap();
@@ -583,7 +583,7 @@ fn a_server_that_was_killed_is_found_again_on_its_port_with_its_token() {
 
 #[test]
 fn without_a_model_all_models_are_shown_and_what_is_none_is_not() {
-    let bench = Bench::with(&[]);
+    let bench = FitWorkspace::with(&[]);
     std::fs::create_dir(bench.path("models")).unwrap();
     let slider = slider().text("slider.toml");
     bench.put("models/slider.toml", &slider);

@@ -7,7 +7,7 @@
 use super::calls;
 use super::encoder::{Assembler, Gpr, Memory, Opcode, Sign, Source};
 use super::frame::{self, Frame};
-use super::lower::{Action, Lowered, NEVER, Name, Step};
+use super::lower::{Action, LoweredProgram, NEVER, Name, Step};
 use crate::Counts;
 
 /// No register.
@@ -27,7 +27,7 @@ struct Holder {
 /// Registers and memory, as they are after the instructions so far.
 #[derive(Debug)]
 pub struct Allocator<'l> {
-    lowered: &'l Lowered,
+    lowered: &'l LoweredProgram,
     frame: Frame,
     assembler: Assembler,
     counts: Counts,
@@ -48,7 +48,7 @@ pub struct Allocator<'l> {
 }
 
 impl<'l> Allocator<'l> {
-    pub fn new(lowered: &'l Lowered, frame: Frame, assembler: Assembler) -> Self {
+    pub fn new(lowered: &'l LoweredProgram, frame: Frame, assembler: Assembler) -> Self {
         let registers = frame.registers();
         let home = (0..lowered.names.len() as Name).map(|n| frame.home(n)).collect();
         Self {

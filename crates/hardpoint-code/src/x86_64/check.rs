@@ -2,10 +2,10 @@
 
 use hardpoint_tape::{Operand, Program};
 
-use crate::{MOST, PARTS, Unsupported};
+use crate::{MOST, PARTS, UnsupportedProgram};
 
 /// Every offset fits into an instruction.
-pub fn size(program: &Program) -> Result<(), Unsupported> {
+pub fn size(program: &Program) -> Result<(), UnsupportedProgram> {
     let all = [
         ("inputs", program.inputs),
         ("uniforms", program.uniforms),
@@ -14,7 +14,7 @@ pub fn size(program: &Program) -> Result<(), Unsupported> {
         ("outputs", program.outputs.len()),
     ];
     match all.into_iter().find(|(_, count)| *count > MOST) {
-        Some((what, count)) => Err(Unsupported::Size { what, count }),
+        Some((what, count)) => Err(UnsupportedProgram::Size { what, count }),
         None => Ok(()),
     }
 }

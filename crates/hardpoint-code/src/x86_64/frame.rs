@@ -19,7 +19,7 @@
 use hardpoint_tape::Program;
 
 use super::encoder::{Assembler, Gpr, Memory, When};
-use super::lower::{Lowered, NEVER, Name, Names};
+use super::lower::{LoweredProgram, NEVER, Name, Names};
 use crate::{PARTS, Width};
 
 /// Where the parts of the outputs are.
@@ -148,7 +148,7 @@ impl Frame {
     /// All the code: `body` adds what is done for one vector of each number.
     pub fn around<T>(
         &self,
-        lowered: &Lowered,
+        lowered: &LoweredProgram,
         body: impl FnOnce(Assembler) -> (Assembler, T),
     ) -> (Assembler, T) {
         let mut a = Assembler::new(self.width);
@@ -195,7 +195,7 @@ impl Frame {
         (a, result)
     }
 
-    fn spread_uniforms(&self, a: &mut Assembler, lowered: &Lowered) {
+    fn spread_uniforms(&self, a: &mut Assembler, lowered: &LoweredProgram) {
         for k in 0..self.uniforms {
             let name = self.names.uniforms + k as Name;
             if lowered.first[name as usize] != NEVER || lowered.outputs.contains(&name) {

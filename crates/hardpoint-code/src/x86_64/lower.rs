@@ -90,7 +90,7 @@ impl Names {
 
 /// A program that can be turned into code from front to back.
 #[derive(Debug)]
-pub struct Lowered {
+pub struct LoweredProgram {
     pub names: Names,
     pub steps: Vec<Step>,
     /// Of each name, the first instruction that reads it.
@@ -101,7 +101,7 @@ pub struct Lowered {
     by_value: Vec<(Name, u32)>,
 }
 
-impl Lowered {
+impl LoweredProgram {
     /// Expects a program whose operands exist.
     pub fn new(program: &Program) -> Self {
         let names = Names::new(program);

@@ -12,10 +12,10 @@ use std::ffi::c_void;
 
 use hardpoint_tape::{LANES, Lanes, Program};
 
-use crate::{Counts, Line, PARTS, Unsupported, Width};
+use crate::{Counts, Line, PARTS, UnsupportedProgram, Width};
 use allocate::Allocator;
 use frame::Frame;
-use lower::Lowered;
+use lower::LoweredProgram;
 use memory::Executable;
 
 /// Machine code as a function: inputs, uniforms, where the parts of the outputs are, scratch, constants, groups.
@@ -46,8 +46,8 @@ pub struct Machine {
 }
 
 /// The widest that is here.
-pub fn widest() -> Result<Width, Unsupported> {
-    Width::ALL.into_iter().rev().find(|w| has(*w)).ok_or(Unsupported::Cpu)
+pub fn widest() -> Result<Width, UnsupportedProgram> {
+    Width::ALL.into_iter().rev().find(|w| has(*w)).ok_or(UnsupportedProgram::Cpu)
 }
 
 /// True if CPU and system have it.
@@ -64,16 +64,16 @@ impl Machine {
         program: &Program,
         ends: [usize; PARTS - 1],
         width: Width,
-    ) -> Result<(Self, Counts), Unsupported> {
+    ) -> Result<(Self, Counts), UnsupportedProgram> {
         if !has(width) {
-            return Err(Unsupported::Width(width));
+            return Err(UnsupportedProgram::Width(width));
         }
         check::size(program)?;
         check::operands(program);
         let outputs = check::parts(program, ends);
         let (bytes, frame, counts) = emit(program, outputs, width);
         let executable =
-            Executable::new(&bytes).map_err(|e| Unsupported::Memory { error: e.raw_os_error() })?;
+            Executable::new(&bytes).map_err(|e| UnsupportedProgram::Memory { error: e.raw_os_error() })?;
         let machine = Self {
             executable,
             constants: spread(&program.constants, frame.constant_bytes() as usize / size_of::<f64>()),
@@ -153,7 +153,7 @@ fn spread(constants: &[f64], times: usize) -> Vec<Line> {
 
 /// The bytes of the code, for that many outputs in each part.
 fn emit(program: &Program, outputs: [usize; PARTS], width: Width) -> (Vec<u8>, Frame, Counts) {
-    let lowered = Lowered::new(program);
+    let lowered = LoweredProgram::new(program);
     let frame = Frame::new(program, outputs, lowered.names, width);
     let (assembler, counts) =
         frame.around(&lowered, |assembler| Allocator::new(&lowered, frame, assembler).run());

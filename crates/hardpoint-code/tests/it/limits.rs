@@ -1,6 +1,6 @@
 //! What code must not do, and what it refuses.
 
-use hardpoint_code::{Code, PARTS, Scratch, Unsupported, Width};
+use hardpoint_code::{Code, PARTS, Scratch, UnsupportedProgram, Width};
 use hardpoint_tape::{Call, Instruction, LANES, Lanes, Operand, Program};
 
 use crate::plain;
@@ -186,7 +186,7 @@ fn programs_too_large_for_offsets_are_refused_in_words() {
     let Some(width) = Width::ALL.into_iter().find(|w| w.is_here()) else { return };
     let program = Program { inputs: usize::MAX, ..Program::default() };
     let refused = Code::with(&program, width).expect_err("it is refused");
-    assert_eq!(refused, Unsupported::Size { what: "inputs", count: usize::MAX });
+    assert_eq!(refused, UnsupportedProgram::Size { what: "inputs", count: usize::MAX });
     assert_eq!(
         refused.to_string(),
         "the program has 18446744073709551615 inputs, more than machine code is made for (4194304)"
@@ -196,13 +196,13 @@ fn programs_too_large_for_offsets_are_refused_in_words() {
 #[test]
 fn every_reason_is_a_sentence() {
     for (reason, text) in [
-        (Unsupported::Target, "machine code is made for x86-64 on Unix systems only"),
-        (Unsupported::Cpu, "the CPU has neither AVX2 with fused multiplication nor AVX-512"),
-        (Unsupported::Width(Width::Avx512), "the CPU has no AVX-512"),
+        (UnsupportedProgram::Target, "machine code is made for x86-64 on Unix systems only"),
+        (UnsupportedProgram::Cpu, "the CPU has neither AVX2 with fused multiplication nor AVX-512"),
+        (UnsupportedProgram::Width(Width::Avx512), "the CPU has no AVX-512"),
     ] {
         assert_eq!(reason.to_string(), text);
     }
-    let text = Unsupported::Memory { error: 13 }.to_string();
+    let text = UnsupportedProgram::Memory { error: 13 }.to_string();
     assert!(text.starts_with("the system does not let memory be made executable ("), "{text}");
 }
 
@@ -214,10 +214,10 @@ fn code_is_made_where_it_can_be() {
     let target = cfg!(all(target_arch = "x86_64", unix));
     match Width::ALL.into_iter().rev().find(|w| w.is_here()) {
         Some(widest) => assert_eq!(made, Ok(widest)),
-        None => assert_eq!(made, Err(if target { Unsupported::Cpu } else { Unsupported::Target })),
+        None => assert_eq!(made, Err(if target { UnsupportedProgram::Cpu } else { UnsupportedProgram::Target })),
     }
     for width in Width::ALL.into_iter().filter(|w| !w.is_here()) {
-        let reason = if target { Unsupported::Width(width) } else { Unsupported::Target };
+        let reason = if target { UnsupportedProgram::Width(width) } else { UnsupportedProgram::Target };
         assert_eq!(Code::with(&program, width).err(), Some(reason));
     }
 }

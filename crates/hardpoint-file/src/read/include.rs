@@ -56,15 +56,15 @@ pub(crate) struct Part {
 }
 
 /// What hinders the reading of a file, and where it is requested: in which file (0 is the first), and there.
-pub(crate) struct Hindrance {
+pub(crate) struct IncludeError {
     pub file: usize,
     pub at: Range<usize>,
     pub error: DataError,
 }
 
 /// All files that a text includes, and those include, each once.
-pub(crate) fn parts(folder: Folder<'_>, text: &str) -> (Vec<Part>, Vec<Hindrance>) {
-    let (mut parts, mut hindrances): (Vec<Part>, Vec<Hindrance>) = Default::default();
+pub(crate) fn parts(folder: Folder<'_>, text: &str) -> (Vec<Part>, Vec<IncludeError>) {
+    let (mut parts, mut hindrances): (Vec<Part>, Vec<IncludeError>) = Default::default();
     let (mut file, mut bytes) = (0, text.len() as u64);
     while file <= parts.len() {
         let (name, text) = match file.checked_sub(1) {
@@ -101,7 +101,7 @@ pub(crate) fn parts(folder: Folder<'_>, text: &str) -> (Vec<Part>, Vec<Hindrance
                 }
                 Err(error) => error,
             };
-            hindrances.push(Hindrance { file, at, error });
+            hindrances.push(IncludeError { file, at, error });
         }
         file += 1;
     }

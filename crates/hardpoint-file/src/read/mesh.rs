@@ -146,7 +146,7 @@ pub fn triangles(name: &str, bytes: &[u8]) -> Result<Vec<[[f64; 3]; 3]>, String>
 
 /// What a model says of a mesh.
 #[derive(Clone)]
-pub(crate) struct MeshSaid {
+pub(crate) struct MeshDraft {
     /// The name of its file, and where that is said.
     file: (String, Range<usize>),
     frame: MeshFrame,
@@ -162,17 +162,17 @@ pub(crate) enum BodyMesh {
     /// It has none.
     None,
     /// What is said of it.
-    Said(MeshSaid),
+    Said(MeshDraft),
     /// It could not be read.
     Faulty,
 }
 
 impl Reader<'_> {
     /// The shape of a body: a file's name, or a table with it.
-    pub(super) fn mesh(&mut self, body: &Fields<'_>, f: Field<'_>) -> Option<MeshSaid> {
+    pub(super) fn mesh(&mut self, body: &Fields<'_>, f: Field<'_>) -> Option<MeshDraft> {
         if f.value.get_ref().is_str() {
             let file = (self.text(body, f)?, f.value.span());
-            return Some(MeshSaid { file, frame: MeshFrame::World, scale: 1.0, mirror: None });
+            return Some(MeshDraft { file, frame: MeshFrame::World, scale: 1.0, mirror: None });
         }
         let subject = body.subject(f.key);
         let table = self.table(f.value, &subject, "the name of a file, or a table with it")?;
@@ -189,11 +189,11 @@ impl Reader<'_> {
                 Some("write what one unit of the file is in the model's length unit, like `0.001`".into());
             return None;
         }
-        Some(MeshSaid { file: (name?, file?.value.span()), frame: frame?, scale: scale?, mirror })
+        Some(MeshDraft { file: (name?, file?.value.span()), frame: frame?, scale: scale?, mirror })
     }
 
     /// A mesh as it is drawn.
-    pub(super) fn drawn(&mut self, said: &MeshSaid) -> Option<Mesh> {
+    pub(super) fn drawn(&mut self, said: &MeshDraft) -> Option<Mesh> {
         // Drawing it changes no result, and whoever gives the text has drawn it already: the engine of a page does without the readers
         // of meshes.
         if cfg!(target_family = "wasm") || matches!(self.folder, Folder::Given(_)) {
@@ -268,7 +268,7 @@ impl Reader<'_> {
     }
 
     /// What the surface in a file bounds, in the file's own unit and axes.
-    fn solid_in_file(&mut self, said: &MeshSaid) -> Result<Solid, DataError> {
+    fn solid_in_file(&mut self, said: &MeshDraft) -> Result<Solid, DataError> {
         let (name, _) = &said.file;
         // Meshes do not go with a model's text, what they weigh does.
         let known = format!("{name} as a solid");

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 use super::{Reader, Statement};
-use crate::markers::Called;
+use crate::markers::JointSource;
 use crate::mechanism::{Force, ForceOn, GROUND, Spring};
 use crate::robot;
 
@@ -109,7 +109,7 @@ impl Reader<'_> {
         let Some(mass) = first("MASS").map(|m| m * unit).filter(|m| *m != 0.0 && body != GROUND) else {
             return;
         };
-        let called = Called { kind: "mass", ..s.called() };
+        let called = JointSource { kind: "mass", ..s.called() };
         let marker =
             |reader: &Self, key: &str| s.reference(key).and_then(|id| reader.markers.get(id)).copied();
         let own = self.m.bodies[body].pose;

@@ -3,7 +3,7 @@
 use hardpoint::space::{Pose, Quat, Vec3};
 
 use super::{CLOSED, Element, Meet, Reader};
-use crate::markers::{Called, Marker, join};
+use crate::markers::{JointSource, Marker, join};
 use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Spring};
 use crate::turn::{home, none};
 use crate::{robot, xml};
@@ -70,7 +70,7 @@ impl<'d> Reader<'d, '_> {
     fn closure(&mut self, element: Element<'d>, kind: &str, name: &str) {
         let (text, node) = element;
         let at = xml::at(text, node);
-        let called = Called { kind, name, at };
+        let called = JointSource { kind, name, at };
         let sites = ["site1", "site2"].map(|key| node.attribute(key));
         let ends = if let [Some(a), Some(b)] = sites {
             let found = [a, b].map(|s| self.sites.get(s).copied());
@@ -152,7 +152,7 @@ impl<'d> Reader<'d, '_> {
             }
         }
         for (k, meet) in meets.iter().enumerate() {
-            let called = Called { kind: "connect", name: &meet.name, at: meet.at };
+            let called = JointSource { kind: "connect", name: &meet.name, at: meet.at };
             match partner[k] {
                 None => {
                     join(&mut self.m, self.notes, called, "spherical", meet.ends);
@@ -181,7 +181,7 @@ impl<'d> Reader<'d, '_> {
             }
             let why = "nothing holds its six freedoms in the source: it is fixed in the design configuration";
             self.notes.approximated("joint", &free.name, free.at, why);
-            let note = Called { kind: "joint", name: &free.name, at: free.at }.note(self.notes);
+            let note = JointSource { kind: "joint", name: &free.name, at: free.at }.note(self.notes);
             self.m.joint(Joint::new(&free.name, note, "fixed", [i, j], free.place));
         }
     }
@@ -229,7 +229,7 @@ impl<'d> Reader<'d, '_> {
             self.notes.refused(kind, name, at, "a relation that is not linear has no equivalent");
             return;
         }
-        let called = Called { kind, name, at };
+        let called = JointSource { kind, name, at };
         let note = called.note(self.notes);
         let mut terms = first;
         if let Some(second) = second {
@@ -271,7 +271,7 @@ impl<'d> Reader<'d, '_> {
             return;
         }
         self.notes.taken("tendon", name, at);
-        let note = Called { kind: "tendon", name, at }.note(self.notes);
+        let note = JointSource { kind: "tendon", name, at }.note(self.notes);
         let rod = Joint::new(name, note, "distance", [i, j], to.r).between(from.r, to.r);
         self.m.joint(Joint { length: (constant != 0.0).then_some(length), ..rod });
     }
@@ -335,7 +335,7 @@ impl<'d> Reader<'d, '_> {
             self.notes.refused(kind, name, at, "no spring has a stiffness or damping below zero");
             return;
         }
-        let called = Called { kind, name, at };
+        let called = JointSource { kind, name, at };
         // A length below zero represents that of the drawing.
         let free = lengths.first().copied().filter(|l| *l > 0.0 && stiffness > 0.0);
         self.m.force(Force {

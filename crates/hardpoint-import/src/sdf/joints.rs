@@ -6,7 +6,7 @@ use hardpoint::space::{Pose, Vec3};
 use roxmltree::Node;
 
 use super::{Frame, Model, Reader, version};
-use crate::markers::{Called, Joined, Marker, carrying, join, way};
+use crate::markers::{JointSource, MarkerJoint, Marker, carrying, join, way};
 use crate::mechanism::{Coordinate, Mechanism};
 use crate::turn::home;
 use crate::xml::{Vocabulary, child, children, exactly, local, named};
@@ -151,7 +151,7 @@ impl<'d> Reader<'d, '_> {
         let ends = ["parent", "child"].map(|end| self.end(joint, model, end));
         let [Some(i), Some(j)] = ends else { return };
         let Some(frame) = self.frames.get(&format!("{scope}joint {name}")).map(|f| f.pose) else { return };
-        let called = Called { kind: "joint", name: &full, at };
+        let called = JointSource { kind: "joint", name: &full, at };
         let kind = joint.attribute("type").unwrap_or_default().trim();
         let type_name = match kind {
             "revolute" | "continuous" => "revolute",
@@ -211,7 +211,7 @@ impl<'d> Reader<'d, '_> {
                 ),
             }
         }
-        let joined = Joined { number, kind: type_name, markers: [i, j] };
+        let joined = MarkerJoint { number, kind: type_name, markers: [i, j] };
         self.dynamics(joint, text, &full, only_coordinate(&joined));
         self.joints.insert(full, joined);
     }
@@ -228,7 +228,7 @@ impl<'d> Reader<'d, '_> {
                     let [x] = found.unwrap_or_default();
                     x
                 });
-            let called = Called { kind: "spring", name, at };
+            let called = JointSource { kind: "spring", name, at };
             robot::joint_spring(&mut self.m, self.notes, called, coordinate, [stiffness, damping, free]);
             robot::friction(self.notes, name, at, friction);
         }
@@ -303,7 +303,7 @@ impl<'d> Reader<'d, '_> {
                     (Coordinate { joint: b, name: "angle" }, v),
                     (Coordinate { joint: a, name: "angle" }, ratio * u),
                 ];
-                let note = Called { kind: "joint", name, at }.note(self.notes);
+                let note = JointSource { kind: "joint", name, at }.note(self.notes);
                 self.m.coupler(name, note, terms);
                 self.notes.taken("gearbox", &full, at);
             }
@@ -396,7 +396,7 @@ impl<'d> Reader<'d, '_> {
             });
             let [Some(i), Some(j)] = ends else { continue };
             let name = format!("{}ball_constraint_{}", model.scope, k + 1);
-            let called = Called { kind: "ball_constraint", name: &name, at };
+            let called = JointSource { kind: "ball_constraint", name: &name, at };
             join(&mut self.m, self.notes, called, "spherical", [i, j]);
         }
         for node in named(model.node, "linear_bushing_rpy") {
@@ -406,7 +406,7 @@ impl<'d> Reader<'d, '_> {
     }
 }
 
-fn only_coordinate(joint: &Joined) -> Option<Coordinate> {
+fn only_coordinate(joint: &MarkerJoint) -> Option<Coordinate> {
     let name = match joint.kind {
         "revolute" | "screw" => "angle",
         "translational" => "displacement",

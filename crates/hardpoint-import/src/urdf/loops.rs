@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use hardpoint::space::{Mat3, Pose, Vec3};
 use roxmltree::Node;
 
-use super::{IRRELEVANT_IN_GAZEBO, Mimic, Reader, WITHOUT_AXIS, Written, pose, value_as_drawn};
-use crate::markers::Called;
+use super::{IRRELEVANT_IN_GAZEBO, Mimic, Reader, WITHOUT_AXIS, JointDeclaration, pose, value_as_drawn};
+use crate::markers::JointSource;
 use crate::mechanism::Mechanism;
 use crate::robot::{self, Follower};
 use crate::turn::{Z, home, roll_pitch_yaw};
@@ -24,7 +24,7 @@ const LIGHT: f64 = 1e-6;
 
 impl<'a, 'i> Reader<'a, 'i, '_> {
     /// Reads joints that follow others by plugins of Gazebo and `ros2_control`.
-    pub(super) fn followers(&mut self, robot: Node<'a, 'i>, joints: &mut [Written<'a, 'i>]) {
+    pub(super) fn followers(&mut self, robot: Node<'a, 'i>, joints: &mut [JointDeclaration<'a, 'i>]) {
         let mut found = Vec::new();
         for node in named(robot, "gazebo").flat_map(|g| named(g, "plugin")).chain(named(robot, "plugin")) {
             found.extend(robot::mimic_plugin(0, node, self.notes));
@@ -50,7 +50,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     }
 
     /// Springs and dampers of joints, their own and those of extensions for Gazebo.
-    pub(super) fn springs(&mut self, robot: Node<'a, 'i>, joints: &[Written<'a, 'i>]) {
+    pub(super) fn springs(&mut self, robot: Node<'a, 'i>, joints: &[JointDeclaration<'a, 'i>]) {
         for (k, j) in joints.iter().enumerate() {
             let [mut stiffness, damping, mut free] = j.spring;
             let mut at = child(j.node, "dynamics").and_then(|d| xml::at(0, d));
@@ -66,7 +66,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             }
             // Coordinates count from the drawing.
             let free = free - value_as_drawn(joints, k, 0);
-            let called = Called { kind: "spring", name: &j.name, at };
+            let called = JointSource { kind: "spring", name: &j.name, at };
             let coordinate = self.joints.get(&j.name).copied();
             robot::joint_spring(&mut self.m, self.notes, called, coordinate, [stiffness, damping, free]);
         }
@@ -91,7 +91,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let [xx, yy, zz, xy, xz, yz] =
                 ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"].map(|k| one(self, matrix, k));
             let matrix = Mat3 { cols: [[xx, xy, xz].into(), [xy, yy, yz].into(), [xz, yz, zz].into()] };
-            let called = Called { kind: "inertial", name: &name, at: xml::at(0, inertial) };
+            let called = JointSource { kind: "inertial", name: &name, at: xml::at(0, inertial) };
             robot::mass(&mut self.m, self.notes, called, body, frame, mass, Some(matrix));
         }
         robot::standard_gravity(&mut self.m, self.notes, "URDF");
@@ -162,7 +162,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     }
 
     /// The frames of all links.
-    pub(super) fn frames(&mut self, joints: &[Written<'a, 'i>]) {
+    pub(super) fn frames(&mut self, joints: &[JointDeclaration<'a, 'i>]) {
         let parents: BTreeSet<&str> = joints.iter().map(|j| j.parent.as_str()).collect();
         for (name, (body, pose)) in &self.poses {
             let shaped = self.links.get(name).is_none_or(|l| {
@@ -175,13 +175,13 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    pub(super) fn mimics(&mut self, joints: &[Written<'a, 'i>]) {
+    pub(super) fn mimics(&mut self, joints: &[JointDeclaration<'a, 'i>]) {
         for j in joints {
             let Some(mimic) = &j.mimic else { continue };
             let at = attribute_at(0, mimic.node, "joint").or_else(|| xml::at(0, mimic.node));
             match (self.joints.get(&j.name).copied(), self.joints.get(&mimic.joint).copied()) {
                 (Some(own), Some(master)) if own != master => {
-                    let note = Called { kind: "mimic of", name: &mimic.joint, at }.note(self.notes);
+                    let note = JointSource { kind: "mimic of", name: &mimic.joint, at }.note(self.notes);
                     let terms = vec![(own, 1.0), (master, -mimic.factor)];
                     self.m.coupler(&format!("{}_mimic", j.name), note, terms);
                     self.notes.taken("mimic", &j.name, at);
@@ -281,7 +281,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             }
             let why = "nothing holds its six freedoms in the source: it is fixed in the design configuration";
             self.notes.approximated("joint", &name, at, why);
-            let note = Called { kind: "joint", name: &name, at }.note(self.notes);
+            let note = JointSource { kind: "joint", name: &name, at }.note(self.notes);
             self.m.joint(crate::mechanism::Joint::new(&name, note, "fixed", bodies, place));
         }
     }

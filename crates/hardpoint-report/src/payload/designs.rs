@@ -23,7 +23,7 @@ const SAME: f64 = 1e-9;
 
 /// A design beside today's, solved over the same output times.
 #[derive(Clone, Debug)]
-pub struct Changed<'a> {
+pub struct ChangedDesign<'a> {
     /// What it is called on the page.
     pub name: String,
     /// How it came about and whether the mechanism follows, in a sentence; may be empty.
@@ -38,7 +38,7 @@ pub struct Changed<'a> {
     pub foreseen: Option<&'a WhatIf>,
 }
 
-impl<'a> Changed<'a> {
+impl<'a> ChangedDesign<'a> {
     /// The design of a what-if, solved and predicted.
     pub fn of(model: &Model, what_if: &'a WhatIf) -> Self {
         Self {
@@ -83,7 +83,7 @@ impl Compose<'_> {
     /// and `values` are today's.
     pub(super) fn designs(
         &self,
-        changed: &Changed<'_>,
+        changed: &ChangedDesign<'_>,
         stride: usize,
         bodies: &[BodyTrack],
         values: &[Value],
@@ -100,7 +100,7 @@ impl Compose<'_> {
     /// The changed design, solved.
     pub(super) fn exact(
         &self,
-        changed: &Changed<'_>,
+        changed: &ChangedDesign<'_>,
         stride: usize,
         bodies: &[BodyTrack],
         values: &[Value],
@@ -116,7 +116,7 @@ fn same_or_other(round_off: f64, today: f64, other: f64) -> f64 {
 
 struct Beside<'a> {
     today: &'a Compose<'a>,
-    changed: &'a Changed<'a>,
+    changed: &'a ChangedDesign<'a>,
     /// Of that many output times that were solved, today's solution keeps one.
     stride: usize,
 }

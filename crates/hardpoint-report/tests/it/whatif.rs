@@ -11,7 +11,7 @@ use hardpoint_file::{ModelFile, Units};
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
 use hardpoint_report::page::{Curve, Design, DesignKind, Payload, Table, html};
-use hardpoint_report::payload::{Changed as Beside, Request, payload};
+use hardpoint_report::payload::{ChangedDesign as Beside, Request, payload};
 use hardpoint_report::summary::Summary;
 use hardpoint_report::whatif::WhatIfFacts;
 
@@ -30,14 +30,14 @@ fn change(file: &ModelFile, of: &[(&str, f64)]) -> Vec<f64> {
 }
 
 /// The page as the command makes it, and what it is made of.
-struct Changed<'f> {
+struct ChangedDesign<'f> {
     analysis: Analysis<'f>,
     found: WhatIf,
     facts: WhatIfFacts,
     page: Payload,
 }
 
-fn changed<'f>(file: &'f ModelFile, of: &[(&str, f64)]) -> Changed<'f> {
+fn changed<'f>(file: &'f ModelFile, of: &[(&str, f64)]) -> ChangedDesign<'f> {
     let analysis = Analysis::new(&file.model).unwrap();
     let today = analysis.run();
     let course = Course::of(&file.model, &today);
@@ -47,7 +47,7 @@ fn changed<'f>(file: &'f ModelFile, of: &[(&str, f64)]) -> Changed<'f> {
     let facts = facts.changed(file, analysis.topology(), &found);
     let beside = Some(Beside::of(&file.model, &found));
     let page = payload(&Request { changed: beside, ..Request::of(file, &analysis, &course, &summary) });
-    Changed { analysis, found, facts, page }
+    ChangedDesign { analysis, found, facts, page }
 }
 
 /// All digits that the page holds of a curve.
@@ -87,7 +87,7 @@ fn expected(
 fn curves_of_the_changed_design_are_those_of_the_solver() {
     let file = gallery("macpherson.toml");
     let (model, units) = (&file.model, file.units);
-    let Changed { analysis, found, page, .. } =
+    let ChangedDesign { analysis, found, page, .. } =
         changed(&file, &[("tie_rod_inner_z", 20.0), ("lca_tilt", -0.5)]);
     let today: &Solution = &found.today;
     let exact = analysis.solve(Run::new().at(&found.change).without_sensitivities());
@@ -141,7 +141,7 @@ fn curves_of_the_changed_design_are_those_of_the_solver() {
 #[test]
 fn what_a_change_leaves_alone_has_todays_numbers() {
     let file = gallery("macpherson.toml");
-    let Changed { page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0)]);
+    let ChangedDesign { page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0)]);
     let body = |name: &str| page.bodies.iter().position(|b| b.name == name).unwrap();
     let angle = page.quantities.iter().position(|q| q.name == "lca_angle").unwrap();
     for design in &page.designs {
@@ -168,7 +168,7 @@ fn what_a_change_leaves_alone_has_todays_numbers() {
 #[test]
 fn values_of_the_changed_design_are_those_of_its_curves() {
     let file = gallery("macpherson.toml");
-    let Changed { found, page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0), ("lca_tilt", -0.5)]);
+    let ChangedDesign { found, page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0), ("lca_tilt", -0.5)]);
     assert!(page.designs.iter().all(|d| d.values.len() == page.values.len()));
     let exact = design(&page, DesignKind::Exact);
     for (value, found_value) in page.values.iter().zip(&exact.values).skip(file.model.metrics.len()) {
@@ -196,7 +196,7 @@ fn nothing_is_foreseen_of_what_cannot_be_followed() {
         file
     };
     let tilt = file.model.variables.iter().map(|v| v.name.clone()).find(|v| v.ends_with(".tilt_x")).unwrap();
-    let Changed { found, page, .. } = changed(&file, &[(&tilt, 1.0)]);
+    let ChangedDesign { found, page, .. } = changed(&file, &[(&tilt, 1.0)]);
     let foreseen = page.designs.iter().filter(|d| d.kind != DesignKind::Exact).count();
     assert_eq!(foreseen == 0, !found.cannot_follow.is_empty(), "{tilt}");
 }
@@ -205,7 +205,7 @@ fn nothing_is_foreseen_of_what_cannot_be_followed() {
 fn the_page_opens_on_what_is_asked_for_and_ranks_each_variable_once() {
     let mut file = gallery("macpherson.toml");
     add_coordinates(&mut file.model);
-    let Changed { facts, page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0)]);
+    let ChangedDesign { facts, page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0)]);
     let asked = ["camber", "toe"].map(String::from);
     let page = facts.page(page, &asked, Some("wheel_travel"), &|name| asked.iter().any(|a| a == name));
     let quantity = |name: &str| page.quantities.iter().position(|q| q.name == name);
@@ -271,7 +271,7 @@ fn known(curve: &Curve, parts: usize) -> Vec<bool> {
 fn a_changed_design_that_locks_has_gaps_and_the_page_says_why() {
     let file = four_bar_with_metrics();
     // With its pivots 250 mm apart, the crank no longer turns round.
-    let Changed { found, facts, page, .. } = changed(&file, &[("D_x", -150.0)]);
+    let ChangedDesign { found, facts, page, .. } = changed(&file, &[("D_x", -150.0)]);
     let (solved, all) = (found.exact.motion.len(), found.today.motion.len());
     assert!(0 < solved && solved < all && page.times.values().len() == all, "{solved} of {all}");
     let there: Vec<bool> = (0..all).map(|k| k < solved).collect();
@@ -311,7 +311,7 @@ fn a_changed_design_that_locks_has_gaps_and_the_page_says_why() {
 #[test]
 fn of_a_changed_design_that_cannot_be_assembled_the_page_has_nothing_but_the_reason() {
     let file = gallery("double_wishbone.toml");
-    let Changed { found, facts, page, .. } = changed(&file, &[("tie_rod_outer_y_fixed_length", 1000.0)]);
+    let ChangedDesign { found, facts, page, .. } = changed(&file, &[("tie_rod_outer_y_fixed_length", 1000.0)]);
     assert!(found.exact.motion.is_empty() && found.is_empty());
     let [exact] = &page.designs[..] else { panic!("nothing is predicted of what is not there") };
     let nothing = |curve: &Curve, parts: usize| !known(curve, parts).contains(&true);

@@ -4,7 +4,7 @@ use hardpoint_tape::{
     Call, Instruction, Interpreter, Lanes, Number, Operand, Options, Program, Recording, record,
 };
 
-use crate::real::{Bounded, Real};
+use crate::real::{BoundedNumber, Real};
 
 /// Sebastiano Vigna's splitmix64.
 pub struct Random(pub u64);
@@ -192,7 +192,7 @@ fn fusing_changes_results_by_rounding_only() {
             let [inputs, uniforms]: [Vec<f64>; 2] =
                 [formula.inputs, formula.uniforms].map(|n| (0..n).map(|_| random.number()).collect());
             program.evaluate(&inputs, &uniforms, &mut values, &mut outputs);
-            let bounded = |x: &[f64]| x.iter().map(|x| Bounded::constant(*x)).collect::<Vec<_>>();
+            let bounded = |x: &[f64]| x.iter().map(|x| BoundedNumber::constant(*x)).collect::<Vec<_>>();
             let numbers = formula.evaluate(&bounded(&inputs), &bounded(&uniforms));
             if !formula.is_plain(&numbers.iter().map(|n| n.x).collect::<Vec<_>>()) {
                 continue;

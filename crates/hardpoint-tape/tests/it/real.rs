@@ -82,12 +82,12 @@ impl Real for Number {
 
 /// A number, and how far any order of rounding may have moved it: infinite where there is no bound.
 #[derive(Clone, Copy, Debug)]
-pub struct Bounded {
+pub struct BoundedNumber {
     pub x: f64,
     pub error: f64,
 }
 
-impl Bounded {
+impl BoundedNumber {
     /// Rounded once or not at all, an error that comes from the operands added.
     fn rounded(x: f64, error: f64) -> Self {
         let error = if error.is_nan() { f64::INFINITY } else { error };
@@ -95,26 +95,26 @@ impl Bounded {
     }
 }
 
-impl Add for Bounded {
+impl Add for BoundedNumber {
     type Output = Self;
     fn add(self, o: Self) -> Self {
         Self::rounded(self.x + o.x, self.error + o.error)
     }
 }
-impl Sub for Bounded {
+impl Sub for BoundedNumber {
     type Output = Self;
     fn sub(self, o: Self) -> Self {
         Self::rounded(self.x - o.x, self.error + o.error)
     }
 }
-impl Mul for Bounded {
+impl Mul for BoundedNumber {
     type Output = Self;
     fn mul(self, o: Self) -> Self {
         let error = self.x.abs() * o.error + o.x.abs() * self.error + self.error * o.error;
         Self::rounded(self.x * o.x, error)
     }
 }
-impl Div for Bounded {
+impl Div for BoundedNumber {
     type Output = Self;
     fn div(self, o: Self) -> Self {
         let q = self.x / o.x;
@@ -123,13 +123,13 @@ impl Div for Bounded {
         Self::rounded(q, error)
     }
 }
-impl Neg for Bounded {
+impl Neg for BoundedNumber {
     type Output = Self;
     fn neg(self) -> Self {
         Self { x: -self.x, ..self }
     }
 }
-impl Real for Bounded {
+impl Real for BoundedNumber {
     fn constant(x: f64) -> Self {
         Self { x, error: 0.0 }
     }

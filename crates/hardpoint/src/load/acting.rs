@@ -13,7 +13,7 @@ use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 
 /// A body as it moves.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moving<T> {
+pub(crate) struct MovingBody<T> {
     /// Where it is.
     pub pose: Pose<T>,
     /// Twist V.
@@ -22,7 +22,7 @@ pub(crate) struct Moving<T> {
     pub a: Twist<T>,
 }
 
-impl<T: Real> Moving<T> {
+impl<T: Real> MovingBody<T> {
     /// One that is.
     pub fn still() -> Self {
         Self { pose: Pose::IDENTITY.spread(), v: Twist::zero(), a: Twist::zero() }
@@ -41,11 +41,11 @@ impl<T: Real> Moving<T> {
 
 /// All that acts at an instant.
 #[derive(Clone, Copy)]
-pub(crate) struct Acting<'a, T> {
+pub(crate) struct AppliedLoads<'a, T> {
     pub model: &'a Model,
     pub geometry: &'a Geometry<T>,
     /// Per body.
-    pub bodies: &'a [Moving<T>],
+    pub bodies: &'a [MovingBody<T>],
     /// Per element: the value of its law.
     pub laws: &'a [T],
     /// Per element: about what the coordinate is that it acts on, to count angles through whole turns.
@@ -81,7 +81,7 @@ impl<T: Real> Spread<T> {
     }
 }
 
-impl<T: Real> Acting<'_, T> {
+impl<T: Real> AppliedLoads<'_, T> {
     /// Per body, ground included: F = f - g, what joints have to put on it.
     pub fn needed(&self, out: &mut [Wrench<T>]) {
         out.fill(Wrench::zero());

@@ -16,7 +16,7 @@ use crate::sensitivity::{Differentiated, PlanVelocity, Transmission, Transposed,
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::{ClosureId, CoordinateId, LinkId, RowId, RowTerm, Topology};
 
-use super::acting::{Acting, Moving};
+use super::acting::{AppliedLoads, MovingBody};
 use super::inertia::{Changed, SpatialInertia};
 use super::measures::Instant;
 
@@ -66,8 +66,8 @@ pub(super) struct Stress<T> {
 }
 
 /// A position with all that acts there, over plain numbers or with the derivative by a variable.
-pub(super) struct Scene<T> {
-    pub bodies: Vec<Moving<T>>,
+pub(super) struct LoadedPosition<T> {
+    pub bodies: Vec<MovingBody<T>>,
     /// Per element: the value of its law.
     pub laws: Vec<T>,
     /// Per element: the coordinate that it acts on, counted through its turns.
@@ -78,11 +78,11 @@ pub(super) struct Scene<T> {
     pub found: Carried<T>,
 }
 
-impl<T: Real> Scene<T> {
+impl<T: Real> LoadedPosition<T> {
     fn new(model: &Model) -> Self {
         let elements = model.elements.len();
         Self {
-            bodies: vec![Moving::still(); model.bodies.len()],
+            bodies: vec![MovingBody::still(); model.bodies.len()],
             laws: vec![T::one(); elements],
             near: vec![T::zero(); elements],
             friction: vec![T::zero(); elements],
@@ -91,17 +91,17 @@ impl<T: Real> Scene<T> {
         }
     }
 
-    pub fn acting<'s>(&'s self, model: &'s Model, geometry: &'s Geometry<T>) -> Acting<'s, T> {
+    pub fn acting<'s>(&'s self, model: &'s Model, geometry: &'s Geometry<T>) -> AppliedLoads<'s, T> {
         let Self { bodies, laws, near, friction, .. } = self;
-        Acting { model, geometry, bodies, laws, near, friction }
+        AppliedLoads { model, geometry, bodies, laws, near, friction }
     }
 }
 
 /// The balance of all bodies at a position.
 pub(super) struct Equilibrium<T> {
     pub places: Places,
-    pub now: Scene<T>,
-    pub along: Scene<Dual<T>>,
+    pub now: LoadedPosition<T>,
+    pub along: LoadedPosition<Dual<T>>,
     pub transmission: Transmission<T>,
     /// What some wrenches alone make.
     alone: Transmission<T>,
@@ -110,7 +110,7 @@ pub(super) struct Equilibrium<T> {
     /// Per body: the inertia of its masses, what of F' they need, and the body as it moves, whatever the design.
     pub inertia: Vec<SpatialInertia<T>>,
     inertial: Vec<Wrench<T>>,
-    pub still: Vec<Moving<Dual<T>>>,
+    pub still: Vec<MovingBody<Dual<T>>>,
 }
 
 impl<T: Real> Equilibrium<T> {
@@ -121,15 +121,15 @@ impl<T: Real> Equilibrium<T> {
                 joints: (0..model.joints.len()).map(|j| joint_at(topology, JointId(j))).collect(),
                 way: Way::of_all(topology),
             },
-            now: Scene::new(model),
-            along: Scene::new(model),
+            now: LoadedPosition::new(model),
+            along: LoadedPosition::new(model),
             transmission: Transmission::new(model, topology),
             alone: Transmission::new(model, topology),
             x: vec![Twist::zero(); topology.coordinates.len()],
             l: vec![Wrench::zero(); topology.rows.len()],
             inertia: vec![SpatialInertia::zero(); model.bodies.len()],
             inertial: vec![Wrench::zero(); model.bodies.len()],
-            still: vec![Moving::still(); model.bodies.len()],
+            still: vec![MovingBody::still(); model.bodies.len()],
         }
     }
 
@@ -137,7 +137,7 @@ impl<T: Real> Equilibrium<T> {
     pub fn stand(&mut self, state: &State<T>, speed: impl Fn(usize) -> T) {
         let [v, a, _] = &state.motion.twists;
         for b in 1..self.now.bodies.len() {
-            self.now.bodies[b] = Moving { pose: state.pose[b], v: v[b], a: a[b] };
+            self.now.bodies[b] = MovingBody { pose: state.pose[b], v: v[b], a: a[b] };
         }
         self.now.found.speeds.iter_mut().enumerate().for_each(|(d, to)| *to = speed(d));
     }
@@ -219,7 +219,7 @@ impl<T: Real> Equilibrium<T> {
         let forces = (0..model.elements.len()).filter(|e| !model.elements[*e].kind.has_mass());
         forces.for_each(|e| acting.add(ElementId(e), &mut needed));
         // Masses that change need something else of the motion as it is; all of them of how that changes.
-        let standing = Acting { bodies: still, ..acting };
+        let standing = AppliedLoads { bodies: still, ..acting };
         masses.iter().for_each(|e| standing.add(*e, &mut needed));
         along.needed = needed;
     }
@@ -308,7 +308,7 @@ impl<T: Real> Equilibrium<T> {
 
 /// How much redundant constraints that pull by themselves make of a measure, at most: above zero it is not known. Only reactions can be
 /// theirs.
-pub(super) fn excess<T: Real>(kind: &MeasureKind, acting: &Acting<'_, T>, stresses: &[Stress<T>]) -> T {
+pub(super) fn excess<T: Real>(kind: &MeasureKind, acting: &AppliedLoads<'_, T>, stresses: &[Stress<T>]) -> T {
     let none = T::constant(-1.0);
     if !matches!(kind, MeasureKind::Reaction { .. }) {
         return none;
@@ -318,7 +318,7 @@ pub(super) fn excess<T: Real>(kind: &MeasureKind, acting: &Acting<'_, T>, stress
 }
 
 /// True if they leave it alone.
-pub(super) fn is_known(kind: &MeasureKind, acting: &Acting<'_, f64>, stresses: &[Stress<f64>]) -> bool {
+pub(super) fn is_known(kind: &MeasureKind, acting: &AppliedLoads<'_, f64>, stresses: &[Stress<f64>]) -> bool {
     // Written so that NaN is not known.
     excess(kind, acting, stresses) <= 0.0
 }
@@ -441,11 +441,11 @@ fn both<T: Real>(v: Vec3<T>, d: Vec3<T>) -> Vec3<Dual<T>> {
 
 /// A body's motion with its derivative, from its design twist and that's first two rates:
 /// `A' = W_w x A, r' = W at r` and (14) for V' and A'.
-pub(super) fn changed<T: Real>(body: &Moving<T>, [w0, w1, w2]: [Twist<T>; 3]) -> Moving<Dual<T>> {
+pub(super) fn changed<T: Real>(body: &MovingBody<T>, [w0, w1, w2]: [Twist<T>; 3]) -> MovingBody<Dual<T>> {
     let twist = |t: Twist<T>, d: Twist<T>| Twist { w: both(t.w, d.w), v: both(t.v, d.v) };
-    let Moving { pose, v, a } = *body;
+    let MovingBody { pose, v, a } = *body;
     let cols = pose.rot.cols.map(|c| both(c, w0.w.cross(c)));
-    Moving {
+    MovingBody {
         pose: Pose { rot: Mat3 { cols }, r: both(pose.r, w0.at(pose.r)) },
         v: twist(v, w1 + w0.ad(v)),
         a: twist(a, w2 + w1.ad(v) + w0.ad(a)),

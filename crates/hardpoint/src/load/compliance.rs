@@ -16,7 +16,7 @@ use crate::sensitivity::{PairDirection, Seconds};
 use crate::space::{Mat3, Pose, Twist, Vec3};
 use crate::topology::{RowId, Topology};
 
-use super::acting::{Acting, Moving};
+use super::acting::{AppliedLoads, MovingBody};
 
 /// A number with its derivative along a way (the outer one) and by a variable (the inner one).
 type Number = Dual<Dual>;
@@ -50,7 +50,7 @@ pub(crate) struct Compliances<'a> {
     resistance: Vec<Vec<(RowId, f64)>>,
     /// Per way.
     poses: Vec<Vec<Pose<Number>>>,
-    moving: Vec<Moving<Number>>,
+    moving: Vec<MovingBody<Number>>,
     laws: Vec<Number>,
     near: Vec<Number>,
     friction: Vec<Number>,
@@ -115,7 +115,7 @@ impl<'a> Compliances<'a> {
             seconds: Seconds::new(design_map, topology, values, &directions, &pairs),
             changed: (0..variables).chain([usize::MAX]).map(changed).collect(),
             poses: vec![vec![Pose::IDENTITY.spread(); model.bodies.len()]; ways.len()],
-            moving: vec![Moving::still(); model.bodies.len()],
+            moving: vec![MovingBody::still(); model.bodies.len()],
             laws: vec![Dual::one(); model.elements.len()],
             near: Vec::new(),
             friction: vec![Dual::zero(); model.elements.len()],
@@ -158,10 +158,10 @@ impl<'a> Compliances<'a> {
         let mut given: Vec<Vec<(Dual, Dual)>> = Vec::new();
         for poses in &self.poses {
             for &b in &self.bodies {
-                self.moving[b] = Moving { pose: poses[b], v: Twist::zero(), a: Twist::zero() };
+                self.moving[b] = MovingBody { pose: poses[b], v: Twist::zero(), a: Twist::zero() };
             }
             let (bodies, laws, near, friction) = (&self.moving, &self.laws, &self.near, &self.friction);
-            let acting = Acting { model, geometry, bodies, laws, near, friction };
+            let acting = AppliedLoads { model, geometry, bodies, laws, near, friction };
             let mut list = Vec::new();
             for e in (0..model.elements.len()).map(ElementId) {
                 acting.deflections(e, |way, stiffness| list.push((way.d, stiffness.v)));
@@ -234,10 +234,10 @@ impl Compliances<'_> {
         let now = |x: Number| Dual::constant(x.v);
         let held =
             |p: &Pose<Number>| Pose { rot: Mat3 { cols: p.rot.cols.map(|c| c.map(now)) }, r: p.r.map(now) };
-        let mut bodies = vec![Moving::still(); poses.len()];
+        let mut bodies = vec![MovingBody::still(); poses.len()];
         bodies[body].pose = held(&poses[body]);
         let (laws, near, friction) = (&self.laws, &self.near, &self.friction);
-        let acting = Acting { model: self.model, geometry, bodies: &bodies, laws, near, friction };
+        let acting = AppliedLoads { model: self.model, geometry, bodies: &bodies, laws, near, friction };
         let contact = acting.wheel(wheel).contact();
         poses[body].point(bodies[body].pose.inverse().point(contact))
     }

@@ -9,7 +9,7 @@ use crate::model::{ElementId, ElementKind, JointId, Model};
 use crate::number::Dual;
 use crate::space::{Real, Vec3, Wrench};
 
-use super::acting::{Acting, pressing};
+use super::acting::{AppliedLoads, pressing};
 use super::carry::{Carried, Stress};
 use super::measures::Instant;
 use super::solver::LoadSolver;
@@ -25,7 +25,7 @@ const ANOTHER: f64 = 1e-6;
 
 /// The joints that rub.
 pub(super) struct Friction {
-    rubs: Vec<Rub>,
+    rubs: Vec<FrictionElement>,
     /// `1 + diag(c) dN/dM` where it was solved.
     matrix: Elimination<f64>,
     /// Per joint that has friction: the moment or force, and its derivative by a variable.
@@ -33,7 +33,7 @@ pub(super) struct Friction {
     changes: Vec<f64>,
 }
 
-struct Rub {
+struct FrictionElement {
     element: ElementId,
     joint: JointId,
     /// Grip c, what is viscous, and what presses without friction.
@@ -48,7 +48,7 @@ struct Rub {
     is_ambiguous: bool,
 }
 
-impl Rub {
+impl FrictionElement {
     fn of(model: &Model, element: ElementId) -> Option<Self> {
         let (ElementKind::Friction { joint, .. } | ElementKind::SlideFriction { joint, .. }) =
             model.elements[element.0].kind
@@ -72,7 +72,7 @@ impl Rub {
 impl Friction {
     pub fn new(model: &Model) -> Self {
         let elements = (0..model.elements.len()).map(ElementId);
-        let rubs: Vec<Rub> = elements.filter_map(|e| Rub::of(model, e)).collect();
+        let rubs: Vec<FrictionElement> = elements.filter_map(|e| FrictionElement::of(model, e)).collect();
         let n = rubs.len();
         Self { rubs, matrix: Elimination::new(n), moments: vec![0.0; n], changes: vec![0.0; n] }
     }
@@ -82,7 +82,7 @@ impl Friction {
     }
 
     /// Takes what joints carry without friction; `responses` say what all of them carry of a unit moment in each that has friction.
-    pub fn set(&mut self, acting: &Acting<'_, f64>, carried: &Carried<f64>, responses: &[Vec<Wrench>]) {
+    pub fn set(&mut self, acting: &AppliedLoads<'_, f64>, carried: &Carried<f64>, responses: &[Vec<Wrench>]) {
         for rub in &mut self.rubs {
             [rub.grip, rub.viscous] = acting.grip(rub.element);
             rub.presses = acting.presses(rub.element, carried.joints[rub.joint.0]);
@@ -93,7 +93,7 @@ impl Friction {
     }
 
     /// Finds the moments; they are no numbers where joints jam, or where redundant constraints, each pulling by itself, change what presses.
-    pub fn solve(&mut self, acting: &Acting<'_, f64>, stresses: &[Stress<f64>]) {
+    pub fn solve(&mut self, acting: &AppliedLoads<'_, f64>, stresses: &[Stress<f64>]) {
         self.moments.fill(0.0);
         for rub in &mut self.rubs {
             let leaves = |Stress { carried, most }: &Stress<f64>| {
@@ -114,7 +114,7 @@ impl Friction {
     /// `M -> -c N(T_0 + B M) - d` contracts where the sum of `abs(c B)` is below 1 in every row, and has one solution then. Elsewhere
     /// Newton starts far out, where normal forces are as large as friction alone makes them.
     fn look_for_others(&mut self) -> bool {
-        let gain = |rub: &Rub| {
+        let gain = |rub: &FrictionElement| {
             let (_, count) = rub.presses;
             let all = rub.per_moment.iter().map(|b| b.iter().take(count).map(|f| f.norm()).sum::<f64>());
             rub.grip.abs() * all.sum::<f64>()
@@ -123,7 +123,7 @@ impl Friction {
             return false;
         }
         let (found, n) = (self.moments.clone(), self.rubs.len());
-        let size = |rub: &Rub| rub.presses.0.iter().map(|f| f.norm()).sum::<f64>() * rub.grip.abs();
+        let size = |rub: &FrictionElement| rub.presses.0.iter().map(|f| f.norm()).sum::<f64>() * rub.grip.abs();
         let scale = self.rubs.iter().map(size).chain(found.iter().map(|m| m.abs())).fold(0.0, f64::max);
         let (mut others, far) = (false, FAR * scale);
         // One far out either way, the others as they are; then all.
@@ -181,7 +181,7 @@ impl Friction {
     }
 
     /// How the moments change, from what joints carry while these stand.
-    pub fn differentiate(&mut self, acting: &Acting<'_, Dual>, carried: &Carried<Dual>) {
+    pub fn differentiate(&mut self, acting: &AppliedLoads<'_, Dual>, carried: &Carried<Dual>) {
         for (change, rub) in self.changes.iter_mut().zip(&self.rubs) {
             // (1 + diag(c) dN/dM) M' = -(c' N + c N' + d')
             *change = -resistance(acting, rub, carried).d;
@@ -216,8 +216,8 @@ impl Friction {
     }
 
     /// By how much the equations miss, each as much as it counts.
-    pub fn misses(&self, acting: &Acting<'_, Dual>, carried: &Carried<Dual>, counts: &[f64]) -> Dual {
-        let of = |(rub, counts): (&Rub, &f64)| {
+    pub fn misses(&self, acting: &AppliedLoads<'_, Dual>, carried: &Carried<Dual>, counts: &[f64]) -> Dual {
+        let of = |(rub, counts): (&FrictionElement, &f64)| {
             // M + c N + d
             (acting.friction[rub.element.0] + resistance(acting, rub, carried)) * *counts
         };
@@ -249,7 +249,7 @@ impl LoadSolver<'_> {
 }
 
 /// `c N + d`.
-fn resistance<T: Real>(acting: &Acting<'_, T>, rub: &Rub, carried: &Carried<T>) -> T {
+fn resistance<T: Real>(acting: &AppliedLoads<'_, T>, rub: &FrictionElement, carried: &Carried<T>) -> T {
     let [grip, viscous] = acting.grip(rub.element);
     let (presses, count) = acting.presses(rub.element, carried.joints[rub.joint.0]);
     presses.into_iter().take(count).fold(viscous, |sum, force| sum + grip * pressing(force))

@@ -19,8 +19,8 @@ use crate::sensitivity::{Adjoint, Load, Support};
 use crate::space::{Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
 
-use super::acting::{Acting, Moving};
-use super::carry::{Carried, Equilibrium, Scene, changed};
+use super::acting::{AppliedLoads, MovingBody};
+use super::carry::{Carried, Equilibrium, LoadedPosition, changed};
 use super::measures::Instant;
 use super::solver::LoadSolver;
 use super::virtual_motion::{VirtualMotion, Weights, set, unit_twist};
@@ -30,7 +30,7 @@ pub(crate) struct LoadGradients {
     /// Y, and what turns.
     virtual_motion: VirtualMotion<f64>,
     /// What acts, with derivatives.
-    bodies: Vec<Moving<Dual>>,
+    bodies: Vec<MovingBody<Dual>>,
     laws: Vec<Dual>,
     near: Vec<Dual>,
     friction: Vec<Dual>,
@@ -62,7 +62,7 @@ impl LoadGradients {
         let moving: Vec<usize> = (1..bodies).collect();
         Self {
             virtual_motion: VirtualMotion::new(topology, bodies),
-            bodies: vec![Moving::still(); bodies],
+            bodies: vec![MovingBody::still(); bodies],
             laws: Vec::new(),
             near: Vec::new(),
             friction: Vec::new(),
@@ -153,7 +153,7 @@ impl LoadGradients {
         for b in 1..self.bodies.len() {
             self.bodies[b] = changed(&solver.bodies.now.bodies[b], [Twist::ZERO; 3]);
         }
-        let Scene { laws, near, friction, found, .. } = &solver.bodies.now;
+        let LoadedPosition { laws, near, friction, found, .. } = &solver.bodies.now;
         let constant = |x: &Vec<f64>| x.iter().map(|x| Dual::constant(*x)).collect();
         (self.laws, self.near, self.friction) = (constant(laws), constant(near), constant(friction));
         (self.carried.drivers, self.carried.speeds) = (constant(&found.drivers), constant(&found.speeds));
@@ -175,9 +175,9 @@ impl LoadGradients {
         load.d + solver.friction.misses(&acting, carried, &self.rubs).d
     }
 
-    fn acting<'s>(&'s self, solver: &'s LoadSolver<'_>, geometry: &'s Geometry<Dual>) -> Acting<'s, Dual> {
+    fn acting<'s>(&'s self, solver: &'s LoadSolver<'_>, geometry: &'s Geometry<Dual>) -> AppliedLoads<'s, Dual> {
         let Self { bodies, laws, near, friction, .. } = self;
-        Acting { model: solver.model, geometry, bodies, laws, near, friction }
+        AppliedLoads { model: solver.model, geometry, bodies, laws, near, friction }
     }
 
     /// How the load goes with what has been set, by itself and by what the bodies need, on Y: of forces that feel a body, or of all elements.

@@ -8,7 +8,7 @@ use crate::model::{ElementId, LoadMode, Model};
 use crate::number::{Dual, Real};
 use crate::space::{Mat3, Twist, Vec3, Wrench};
 
-use super::acting::{Acting, Moving, Solid};
+use super::acting::{AppliedLoads, MovingBody, Solid};
 
 /// The spatial inertia M of a body: its mass, and the first and second moments of that about the world origin.
 #[derive(Clone, Copy)]
@@ -27,7 +27,7 @@ impl<T: Real> SpatialInertia<T> {
     }
 
     /// Those of all bodies, as they stand.
-    pub fn all(acting: &Acting<'_, T>, out: &mut [Self]) {
+    pub fn all(acting: &AppliedLoads<'_, T>, out: &mut [Self]) {
         out.fill(Self::zero());
         for element in &acting.model.elements {
             if let Some(solid) = acting.solid(&element.kind) {
@@ -62,8 +62,8 @@ impl<T: Real> SpatialInertia<T> {
     /// ```
     ///
     /// Static loads leave P0 only, with the weight alone as f.
-    pub fn weights(&self, model: &Model, body: &Moving<T>, y: Twist<T>) -> [Wrench<T>; 3] {
-        let Moving { v, .. } = *body;
+    pub fn weights(&self, model: &Model, body: &MovingBody<T>, y: Twist<T>) -> [Wrench<T>; 3] {
+        let MovingBody { v, .. } = *body;
         let moved = self.on(y);
         let mut p0 = y.ad_transposed(self.needed(model, body));
         p0 += Wrench::moment(model.gravity.spread().cross(moved.f));
@@ -78,7 +78,7 @@ impl<T: Real> SpatialInertia<T> {
 
     /// f = M (A - [0; g0]) + ad*(V) M V,    ad*(X) l = -ad(X)^T l;    of static loads  f = -M [0; g0]
     #[inline]
-    fn needed(&self, model: &Model, Moving { v, a, .. }: &Moving<T>) -> Wrench<T> {
+    fn needed(&self, model: &Model, MovingBody { v, a, .. }: &MovingBody<T>) -> Wrench<T> {
         let gravity: Vec3<T> = model.gravity.spread();
         match model.load_mode {
             LoadMode::Static => self.on(Twist { w: Vec3::zero(), v: -gravity }),
@@ -94,8 +94,8 @@ impl<T: Real> SpatialInertia<T> {
     ///
     /// which is what somebody who turns with the body sees, whose V changes by W. and whose A by W.. + ad(W.) V, and that turned (14).
     /// V, W. and W.. have no part in static loads.
-    pub fn changed(&self, model: &Model, body: &Moving<T>, [w0, w1, w2]: [Twist<T>; 3]) -> Wrench<T> {
-        let Moving { v, .. } = *body;
+    pub fn changed(&self, model: &Model, body: &MovingBody<T>, [w0, w1, w2]: [Twist<T>; 3]) -> Wrench<T> {
+        let MovingBody { v, .. } = *body;
         let needed = self.needed(model, body);
         let turned = Twist { w: Vec3::zero(), v: w0.w.cross(model.gravity.spread()) };
         let seen = match model.load_mode {
@@ -118,11 +118,11 @@ pub(super) struct Changed<T> {
 
 impl<T: Real> Changed<T> {
     pub fn new(model: &Model, geometry: Geometry<Dual<T>>) -> Self {
-        let drawn = model.bodies.iter().map(|b| Moving { pose: b.frame.spread(), ..Moving::still() });
-        let bodies: Vec<Moving<Dual<T>>> = drawn.collect();
+        let drawn = model.bodies.iter().map(|b| MovingBody { pose: b.frame.spread(), ..MovingBody::still() });
+        let bodies: Vec<MovingBody<Dual<T>>> = drawn.collect();
         let none: &[Dual<T>] = &[];
         let acting =
-            Acting { model, geometry: &geometry, bodies: &bodies, laws: none, near: none, friction: none };
+            AppliedLoads { model, geometry: &geometry, bodies: &bodies, laws: none, near: none, friction: none };
         let moves = |e: &ElementId| {
             let solid = acting.solid(&model.elements[e.0].kind);
             solid.is_some_and(|Solid { mass, centre, inertia, .. }| {

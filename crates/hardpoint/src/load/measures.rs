@@ -3,12 +3,12 @@
 use crate::model::{Axes, BodyId, ElementId, JointId, MeasureKind, ReactionPart};
 use crate::space::{Mat3, Real, Vec3, Wrench};
 
-use super::acting::Acting;
+use super::acting::AppliedLoads;
 use super::carry::Carried;
 
 /// Loads at an instant.
 pub(super) struct Instant<'a, T> {
-    pub acting: &'a Acting<'a, T>,
+    pub acting: &'a AppliedLoads<'a, T>,
     pub carried: &'a Carried<T>,
 }
 
@@ -36,7 +36,7 @@ impl<T: Real> Instant<'_, T> {
 
     /// Where a joint is on its body j, and the force and the moment about there that it puts on it.
     pub fn wrench(&self, joint: JointId) -> [Vec3<T>; 3] {
-        let Acting { model, geometry, bodies, .. } = *self.acting;
+        let AppliedLoads { model, geometry, bodies, .. } = *self.acting;
         let body = model.joints[joint.0].bodies[1];
         let place = bodies[body.0].pose.point(geometry.markers[joint.0][1].r);
         let Wrench { m, f } = self.carried.joints[joint.0];
@@ -45,7 +45,7 @@ impl<T: Real> Instant<'_, T> {
 
     /// What a joint puts on one of its bodies.
     fn reaction(&self, joint: JointId, part: ReactionPart, on: Option<BodyId>, axes: Axes) -> T {
-        let Acting { model, geometry, bodies, .. } = *self.acting;
+        let AppliedLoads { model, geometry, bodies, .. } = *self.acting;
         let [i, j] = model.joints[joint.0].bodies;
         let end = usize::from(on.is_none_or(|on| on == j));
         let wrench = self.carried.joints[joint.0];

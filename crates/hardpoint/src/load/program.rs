@@ -14,7 +14,7 @@ use crate::sensitivity::{Differentiated, Turning};
 use crate::space::{Twist, Wrench};
 use crate::topology::Topology;
 
-use super::acting::Acting;
+use super::acting::AppliedLoads;
 use super::carry::{Carried, Equilibrium, excess};
 use super::inertia::Changed;
 use super::measures::Instant;
@@ -113,7 +113,7 @@ impl<'a> RecordedLoads<'a> {
         let Self { model, bodies, changed, .. } = self;
         let (constant, count) = (&changed[changed.len() - 1].geometry, model.bodies.len());
         let mut carried = bodies.along.found.clone();
-        let acting = Acting { bodies: &bodies.still, ..bodies.along.acting(model, constant) };
+        let acting = AppliedLoads { bodies: &bodies.still, ..bodies.along.acting(model, constant) };
         let objective =
             |carried: &Carried<Dual<Number>>| Instant { acting: &acting, carried }.measure(kind).d;
         let weights = Weights::of(kind, std::iter::empty(), &mut carried, objective);

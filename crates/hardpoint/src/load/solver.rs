@@ -13,7 +13,7 @@ use crate::sensitivity::Differentiated;
 use crate::space::{Vec3, Wrench};
 use crate::topology::Topology;
 
-use super::acting::Acting;
+use super::acting::AppliedLoads;
 use super::carry::{Carried, Equilibrium, Stress, is_known};
 use super::friction::Friction;
 use super::inertia::Changed;
@@ -116,7 +116,7 @@ impl<'a> LoadSolver<'a> {
         self.values = values;
     }
 
-    fn acting(&self) -> Acting<'_, f64> {
+    fn acting(&self) -> AppliedLoads<'_, f64> {
         self.bodies.now.acting(self.model, &self.geometry)
     }
 

@@ -10,7 +10,7 @@ use crate::model::ChangePointPolicy;
 use crate::topology::BlockId;
 
 use super::forecast::Channel;
-use super::stepper::{AcceptedPosition, Lookahead, Refusal, Stepper};
+use super::stepper::{AcceptedPosition, Lookahead, StepRejection, Stepper};
 use super::walk::Path;
 use super::{Stop, StopKind};
 
@@ -141,7 +141,7 @@ impl Stepper<'_> {
     }
 
     /// Solves where it is once more: near a singular position what Newton leaves, a square, is magnified.
-    fn polish(&mut self) -> Result<(), Refusal> {
+    fn polish(&mut self) -> Result<(), StepRejection> {
         self.solve_within(f64::INFINITY)
     }
 
@@ -167,7 +167,7 @@ impl Stepper<'_> {
         Some(stood.map_err(|refusal| self.stop(path, t, refusal, true)))
     }
 
-    fn stand_between(&mut self, crossing: &Crossing, t: f64) -> Result<(), Refusal> {
+    fn stand_between(&mut self, crossing: &Crossing, t: f64) -> Result<(), StepRejection> {
         let [from, to] = crossing.times;
         self.drive(crossing.path, t)?;
         let h = to - from;

@@ -11,7 +11,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use hardpoint_code::{Code, Unsupported, Width};
+use hardpoint_code::{Code, UnsupportedProgram, Width};
 use hardpoint_tape::{Number, Operand, Options, Program, record};
 
 use crate::design::DesignMap;
@@ -187,7 +187,7 @@ pub(crate) struct Outputs {
 
 /// What a run is judged by, in this order.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Judged {
+pub(super) enum StepCheck {
     /// Positive where the pivots, or what was decided while recording, do not fit.
     Unfit,
     /// The largest first correction of all blocks, rad or sizes.
@@ -383,7 +383,7 @@ fn moves(topology: &Topology, channels: &[Channel], state: &State<Number>) -> Ve
     out
 }
 
-/// What the steps are judged by, up to [`Judged::Last`], in blocks that are recorded so; none of the limits may be positive.
+/// What the steps are judged by, up to [`StepCheck::Last`], in blocks that are recorded so; none of the limits may be positive.
 fn judged(
     one: &Stepper<'_>,
     state: &State<Number>,
@@ -477,7 +477,7 @@ pub(crate) struct Programs {
     steps: Cache<Purpose, StepProgram>,
     laws: Cache<bool, Runnable>,
     /// The registers of machine code, or why there is none.
-    machine: OnceLock<Result<Width, Unsupported>>,
+    machine: OnceLock<Result<Width, UnsupportedProgram>>,
 }
 
 impl Programs {

@@ -179,7 +179,7 @@ pub(super) struct AcceptedPosition {
 }
 
 /// Why a step was refused.
-pub(super) enum Refusal {
+pub(super) enum StepRejection {
     Position(PositionFailure),
     /// The determinant changed its sign, or a turn cannot be reported.
     Branch {
@@ -413,7 +413,7 @@ impl<'m> Stepper<'m> {
 
     /// Sets the drivers for the path at t.
     #[inline(always)]
-    pub(super) fn drive(&mut self, path: Path, t: f64) -> Result<(), Refusal> {
+    pub(super) fn drive(&mut self, path: Path, t: f64) -> Result<(), StepRejection> {
         // phi = (1 - s) phi_0: what is left of every gap, and its rate by s
         self.state.gap_left = if path == Path::Assembly { [1.0 - t, -1.0] } else { [0.0; 2] };
         for k in 0..self.drivers.len() {
@@ -430,7 +430,7 @@ impl<'m> Stepper<'m> {
             };
             // A sum that is too large is none that a motion can follow either.
             if !(law[0].abs() + law[1].abs() + law[2].abs()).is_finite() {
-                return Err(Refusal::Law { driver: k });
+                return Err(StepRejection::Law { driver: k });
             }
             self.drivers[k] = law;
         }
@@ -438,7 +438,7 @@ impl<'m> Stepper<'m> {
     }
 
     /// Solves the position at t on a path, from the saved one, which is about there.
-    pub(super) fn attempt(&mut self, path: Path, t: f64) -> Result<(), Refusal> {
+    pub(super) fn attempt(&mut self, path: Path, t: f64) -> Result<(), StepRejection> {
         self.drive(path, t)?;
         self.restore();
         self.solve_within(f64::INFINITY)?;
@@ -446,8 +446,8 @@ impl<'m> Stepper<'m> {
     }
 
     /// Solves from the prediction at hand; the first correction must be within `trust`.
-    pub(super) fn solve_within(&mut self, trust: f64) -> Result<(), Refusal> {
-        self.state.solve(&self.topology, &self.parts, &self.drivers, trust).map_err(Refusal::Position)
+    pub(super) fn solve_within(&mut self, trust: f64) -> Result<(), StepRejection> {
+        self.state.solve(&self.topology, &self.parts, &self.drivers, trust).map_err(StepRejection::Position)
     }
 
     /// The first position of all decides which branch it is.
@@ -459,15 +459,15 @@ impl<'m> Stepper<'m> {
     }
 
     /// True if the position just solved is on the branch, in the turn that was expected, and closed.
-    pub(super) fn examine_position(&mut self) -> Result<(), Refusal> {
+    pub(super) fn examine_position(&mut self) -> Result<(), StepRejection> {
         for (b, &(_, positive)) in BlockId::each(&self.state.pivots) {
             // sign(det J) is that of the branch: between two positions of opposite sign lies a singular one.
             if positive != self.branch[b.0].0 {
-                return Err(Refusal::Branch { block: b });
+                return Err(StepRejection::Branch { block: b });
             }
         }
         if let Some(block) = self.uncertain_turn() {
-            return Err(Refusal::Branch { block });
+            return Err(StepRejection::Branch { block });
         }
         self.residuals = self.state.residuals(&self.topology, &self.parts, &self.drivers);
         // On the way to being closed, redundant constraints need not agree yet.
@@ -475,7 +475,7 @@ impl<'m> Stepper<'m> {
         // abs(phi) <= 1e-5 of the loop's size, of rows left out as well: else redundant constraints contradict each other here.
         if !half_open && !(self.residuals.scaled <= LOCKED) {
             let (row, residual) = self.state.worst_row(&self.topology, &self.parts, &self.drivers);
-            return Err(Refusal::Locked { row, residual });
+            return Err(StepRejection::Locked { row, residual });
         }
         self.reselect()
     }
@@ -595,7 +595,7 @@ impl<'m> Stepper<'m> {
     }
 
     /// Chooses other independent rows for blocks whose present ones have become nearly dependent.
-    pub(super) fn reselect(&mut self) -> Result<(), Refusal> {
+    pub(super) fn reselect(&mut self) -> Result<(), StepRejection> {
         for b in self.topology.block_ids() {
             let ratio = self.state.pivots[b.0].0;
             // min / max of the pivots against a tenth of what it was when these rows were chosen
@@ -631,7 +631,7 @@ impl<'m> Stepper<'m> {
             // The same position, seen through other rows: new factors, and a new sign to stay with.
             self.state
                 .solve(&self.topology, &self.parts, &self.drivers, f64::INFINITY)
-                .map_err(Refusal::Position)?;
+                .map_err(StepRejection::Position)?;
             let (ratio, positive) = self.state.pivots[b.0];
             self.branch[b.0] = (positive, ratio);
             self.try_others[b.0] = RESELECT * ratio;

@@ -11,7 +11,7 @@ use crate::topology::{CoordinateId, RowId, SetBy, Topology};
 use super::execution::ProgramMemory;
 use super::forecast::{Channel, ORDERS};
 use super::kinematics::Residuals;
-use super::step_program::{CONDITIONS, Inputs, Judged, Outputs, PER_BLOCK, Purpose, StepProgram};
+use super::step_program::{CONDITIONS, Inputs, StepCheck, Outputs, PER_BLOCK, Purpose, StepProgram};
 use super::stepper::{LOCKED, smooth};
 
 /// What is not solved after that many runs is left to the kernel.
@@ -23,7 +23,7 @@ const TRIAL: usize = 8;
 
 /// A step that the program does not fit: the kernel solves it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Refused;
+pub(crate) struct ProgramMismatch;
 
 /// A program at work, with what it works in: one design in all lanes, or one in each.
 pub(crate) struct Tape {
@@ -168,7 +168,7 @@ impl Tape {
         &mut self,
         mut trust: f64,
         [states, derivatives]: [&mut [Lanes]; 2],
-    ) -> Result<SolveQuality, Refused> {
+    ) -> Result<SolveQuality, ProgramMismatch> {
         self.tried += 1;
         self.refused += 1;
         self.runs = 0;
@@ -178,33 +178,33 @@ impl Tape {
             self.room.run(&self.program.program.step, inputs, &self.uniforms, outputs);
             self.runs += 1;
             // All comparisons are written so that NaN is refused.
-            if !all_within(self.judged(Judged::First), trust) {
-                return Err(Refused);
+            if !all_within(self.judged(StepCheck::First), trust) {
+                return Err(ProgramMismatch);
             }
             if self.runs == 1 {
-                self.missed = largest(self.judged(Judged::First));
+                self.missed = largest(self.judged(StepCheck::First));
             }
-            if all_within(self.judged(Judged::Last), 0.0) {
+            if all_within(self.judged(StepCheck::Last), 0.0) {
                 break;
             }
             if self.runs == MOST_RUNS {
-                return Err(Refused);
+                return Err(ProgramMismatch);
             }
             // As in (26): the next first correction must be at most half of this one.
-            trust = CONTRACTS * largest(self.judged(Judged::First));
+            trust = CONTRACTS * largest(self.judged(StepCheck::First));
             self.go_on_from_here();
         }
         // min / max of the pivots = 1 / (max abs(pivot) max abs(1 / pivot)), of the worst block and lane
-        let pivot_ratio = 1.0 / largest(self.judged(Judged::Pivots));
-        let fits = all_within(self.judged(Judged::Unfit), 0.0)
-            && all_within(self.judged(Judged::ScaledResidual), LOCKED)
+        let pivot_ratio = 1.0 / largest(self.judged(StepCheck::Pivots));
+        let fits = all_within(self.judged(StepCheck::Unfit), 0.0)
+            && all_within(self.judged(StepCheck::ScaledResidual), LOCKED)
             && pivot_ratio > 0.0;
         if !fits {
-            return Err(Refused);
+            return Err(ProgramMismatch);
         }
         self.refused -= 1;
         self.repeated += usize::from(self.runs > 1);
-        let residuals = [Judged::Residual, Judged::ScaledResidual].map(|which| largest(self.judged(which)));
+        let residuals = [StepCheck::Residual, StepCheck::ScaledResidual].map(|which| largest(self.judged(which)));
         Ok(SolveQuality { residuals: Residuals { largest: residuals[0], scaled: residuals[1] }, pivot_ratio })
     }
 
@@ -223,7 +223,7 @@ impl Tape {
     }
 
     #[inline(always)]
-    fn judged(&self, which: Judged) -> &Lanes {
+    fn judged(&self, which: StepCheck) -> &Lanes {
         &self.outputs[self.program.outputs.judged + which as usize].0
     }
 
@@ -279,7 +279,7 @@ impl Tape {
     /// True if the speeds are those of the same branch as at the newest position, with so fast a driver.
     #[inline(always)]
     pub fn speeds_are_smooth(&self, fastest_driver: f64) -> bool {
-        let [apart, fastest] = [Judged::Apart, Judged::Fastest].map(|which| self.judged(which));
+        let [apart, fastest] = [StepCheck::Apart, StepCheck::Fastest].map(|which| self.judged(which));
         // NaN of any lane is refused.
         all_within(apart, f64::MAX) && smooth(largest(apart), largest(fastest), fastest_driver)
     }

@@ -10,7 +10,7 @@ use crate::space::Real;
 
 use super::kinematics::PositionFailure;
 use super::singularity::Workspace;
-use super::stepper::{LOCKED, Lookahead, Refusal, Stepper, TRUST, TRUST_FLOOR};
+use super::stepper::{LOCKED, Lookahead, StepRejection, Stepper, TRUST, TRUST_FLOOR};
 use super::turns::{FINEST, TURN_TRUST};
 use super::{SingularPosition, Stop, StopKind};
 
@@ -136,7 +136,7 @@ impl Stepper<'_> {
             let allowed = self.travelled() * PART_OF_WAY / self.around.part_of_way(&self.travel);
             // Where it is below 1e-6 rad, or sizes, round-off decides nearer by.
             if h < rest && allowed < NEAREST && self.is_singular_ahead(path) && self.reaches(path, target) {
-                return Err(self.stop(path, self.time + h, Refusal::TooNear, true));
+                return Err(self.stop(path, self.time + h, StepRejection::TooNear, true));
             }
             loop {
                 let last = h >= rest;
@@ -164,7 +164,7 @@ impl Stepper<'_> {
             } else if walked > LONGEST {
                 (steps, walked) = (0, 0.0);
             } else if steps > MOST_STEPS {
-                return Err(self.stop(path, self.time, Refusal::TooNear, true));
+                return Err(self.stop(path, self.time, StepRejection::TooNear, true));
             }
             if self.time < target {
                 self.effort.substeps += 1;
@@ -174,10 +174,10 @@ impl Stepper<'_> {
     }
 
     /// The driver that goes furthest.
-    fn too_far(&self) -> Refusal {
+    fn too_far(&self) -> StepRejection {
         let travel = |d: &usize| self.travel[*d] / self.driver_units[*d];
         let driver = (0..self.drivers.len()).max_by(|a, b| travel(a).total_cmp(&travel(b))).unwrap_or(0);
-        Refusal::TooFar { driver }
+        StepRejection::TooFar { driver }
     }
 
     /// Ends the walk to an output time at once if a law has a pole on the way there.
@@ -200,14 +200,14 @@ impl Stepper<'_> {
             let (near, usual) = (size(from).max(size(to)), size(self.time).max(size(target)));
             // Written so that NaN is a pole: the law has no value there.
             if !(near <= POLE[1] * usual.max(self.driver_units[driver])) {
-                return Err(self.stop(Path::Laws, to, Refusal::Law { driver }, true));
+                return Err(self.stop(Path::Laws, to, StepRejection::Law { driver }, true));
             }
         }
         Ok(())
     }
 
     /// Solves the saved position once more, so that factors and rates are at hand.
-    fn stand(&mut self, path: Path) -> Result<(), Refusal> {
+    fn stand(&mut self, path: Path) -> Result<(), StepRejection> {
         self.drive(path, self.time)?;
         self.restore();
         self.solve_within(f64::INFINITY)
@@ -319,7 +319,7 @@ impl Stepper<'_> {
     }
 
     /// Goes a step h along a path, to t, if it is a safe one.
-    fn step_to(&mut self, path: Path, t: f64, h: f64) -> Result<(), Refusal> {
+    fn step_to(&mut self, path: Path, t: f64, h: f64) -> Result<(), StepRejection> {
         // What disagrees in the middle of a step may agree again at its end.
         if self.saved.residual > SUSPECT * LOCKED && path == Path::Laws {
             self.solve_at(path, self.time + 0.5 * h, 0.5 * h)?;
@@ -330,10 +330,10 @@ impl Stepper<'_> {
         self.examine(path);
         // sum Du_d / rho_d <= 1.67 with rho_d of the far end
         if selections == self.selections && !(self.beyond.part_of_way(&self.travel) <= PART_FROM_FAR_END) {
-            return Err(Refusal::TooNear);
+            return Err(StepRejection::TooNear);
         }
         if path != Path::Assembly && !self.follow_turns(path, h) {
-            return Err(Refusal::TooNear);
+            return Err(StepRejection::TooNear);
         }
         std::mem::swap(&mut self.around, &mut self.beyond);
         self.save(t, h);
@@ -368,7 +368,7 @@ impl Stepper<'_> {
     }
 
     /// Solves the position at t on a path, a step h beyond the saved one, from a prediction along the drivers.
-    pub(super) fn solve_at(&mut self, path: Path, t: f64, h: f64) -> Result<(), Refusal> {
+    pub(super) fn solve_at(&mut self, path: Path, t: f64, h: f64) -> Result<(), StepRejection> {
         self.drive(path, t)?;
         let moved = self.predict_along(path, h);
         self.solve_within((TRUST * moved).max(TRUST_FLOOR))?;
@@ -377,7 +377,7 @@ impl Stepper<'_> {
     }
 
     /// Returns whether curves are touched about where it was predicted.
-    fn examine_contacts(&self) -> Result<(), Refusal> {
+    fn examine_contacts(&self) -> Result<(), StepRejection> {
         for (c, k) in self.topology.contacts() {
             let ([predicted, moved], curve) = (self.touching[k], &self.parts.curves[k]);
             let (before, now) = (self.saved.contacts[k].u, self.state.contacts[k].u);
@@ -386,7 +386,7 @@ impl Stepper<'_> {
             if !(near && curve.bend(before, now) <= MOST_BEND)
                 && let Some(block) = self.topology[c].block
             {
-                return Err(Refusal::Position(PositionFailure::NoConvergence { block }));
+                return Err(StepRejection::Position(PositionFailure::NoConvergence { block }));
             }
         }
         Ok(())
@@ -532,13 +532,13 @@ impl Stepper<'_> {
     }
 
     /// Why the path ends at the saved position; the step to t was refused.
-    pub(super) fn stop(&mut self, path: Path, t: f64, refusal: Refusal, moved: bool) -> Box<Stop> {
+    pub(super) fn stop(&mut self, path: Path, t: f64, refusal: StepRejection, moved: bool) -> Box<Stop> {
         let mut failed = t;
         let (kind, block) = match refusal {
-            Refusal::Position(
+            StepRejection::Position(
                 PositionFailure::Singular { block } | PositionFailure::NoConvergence { block },
             ) if !moved => (StopKind::Limit, Some(block)),
-            Refusal::Position(_) | Refusal::Branch { .. } | Refusal::TooNear => {
+            StepRejection::Position(_) | StepRejection::Branch { .. } | StepRejection::TooNear => {
                 let ahead = self.ahead(path);
                 // The step that failed is no longer than a part of the way.
                 // (23) indicates of a place only where it is about as near as the step that failed there.
@@ -551,22 +551,22 @@ impl Stepper<'_> {
                         (if limit { StopKind::Limit } else { StopKind::BranchChange }, Some(a.block))
                     }
                     None => match refusal {
-                        Refusal::Position(
+                        StepRejection::Position(
                             PositionFailure::Singular { block } | PositionFailure::NoConvergence { block },
                         ) => (StopKind::Limit, Some(block)),
-                        Refusal::Branch { block } => (StopKind::BranchChange, Some(block)),
+                        StepRejection::Branch { block } => (StopKind::BranchChange, Some(block)),
                         _ => (StopKind::BranchChange, ahead.map(|a| a.block)),
                     },
                 }
             }
             // What is left of a row that was not solved with: the constraints agreed in the design configuration and do not here.
-            Refusal::Locked { row, residual } => {
+            StepRejection::Locked { row, residual } => {
                 let closure = self.topology.closure_of(row);
                 let quantity = self.topology.constraint(row).into();
                 (StopKind::Locked { joint: closure.joint, residual, quantity }, closure.block)
             }
-            Refusal::Law { driver } => (StopKind::LawNotFinite { driver: DriverId(driver) }, None),
-            Refusal::TooFar { driver } => (StopKind::TooFar { driver: DriverId(driver) }, None),
+            StepRejection::Law { driver } => (StopKind::LawNotFinite { driver: DriverId(driver) }, None),
+            StepRejection::TooFar { driver } => (StopKind::TooFar { driver: DriverId(driver) }, None),
         };
         let (last_time, failed_time) = match path {
             Path::Assembly => (None, 0.0),

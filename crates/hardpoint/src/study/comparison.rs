@@ -69,7 +69,7 @@ impl Comparison {
     /// the design hardly matters, to what one natural step would have to change for one part in a thousand of
     /// the motion itself.
     pub fn of(model: &Model, solution: &Solution, d: &Difference) -> Self {
-        Self::where_decided(model, solution, d, &Undecided::default())
+        Self::where_decided(model, solution, d, &UndecidedOutputs::default())
     }
 
     /// The same but for outputs at times at which differences decide nothing.
@@ -77,7 +77,7 @@ impl Comparison {
         model: &Model,
         solution: &Solution,
         d: &Difference,
-        undecided: &Undecided,
+        undecided: &UndecidedOutputs,
     ) -> Self {
         let mut comparing = Comparing::new(model, solution, d);
         if !solution.motion.is_empty() {
@@ -119,7 +119,7 @@ impl Comparison {
         model: &Model,
         solution: &Solution,
         differences: &[Difference],
-        undecided: &Undecided,
+        undecided: &UndecidedOutputs,
         tolerance: f64,
     ) {
         let Some(finest) = differences.last() else { return };
@@ -176,7 +176,7 @@ impl Comparison {
 
 /// Outputs at times at which differences decide nothing about their derivatives, whatever these are.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Undecided {
+pub(super) struct UndecidedOutputs {
     /// `[k * columns + m]`; empty where all are decided.
     places: Vec<bool>,
     columns: usize,
@@ -185,7 +185,7 @@ pub(super) struct Undecided {
 /// A second difference above this part of a magnitude itself has the zero of its vector about as near as the step.
 const KINK: f64 = 1e-4;
 
-impl Undecided {
+impl UndecidedOutputs {
     /// Decides by the difference with the finest step: undecided are magnitudes that reach zero within the step, where `abs(v)` has a kink and no derivative
     /// at v = 0; and outputs that the moved designs have no number for. `None` where nothing was solved.
     pub fn by(model: &Model, solution: &Solution, finest: Option<&Difference>) -> Self {
@@ -268,7 +268,7 @@ impl<'a> Comparing<'a> {
         }
     }
 
-    fn outputs(&mut self, undecided: &Undecided) {
+    fn outputs(&mut self, undecided: &UndecidedOutputs) {
         let (measured, d) = (&self.solution.measured, self.d);
         let columns = measured.outputs.len();
         for (m, output) in measured.outputs.iter().enumerate() {

@@ -8,7 +8,7 @@ use crate::model::VariableId;
 use crate::run::{Analysis, Solution};
 use crate::sensitivity::Admissibility;
 
-use super::comparison::{Comparison, StepError, Undecided};
+use super::comparison::{Comparison, StepError, UndecidedOutputs};
 use super::difference::{DifferenceScheme, finite_differences};
 
 /// A quantity passes if central differences agree to this at some step of the sweep, relative to the largest sensitivity of its
@@ -154,7 +154,7 @@ fn check_variable(
         return None;
     }
     let differences: Vec<_> = differences.into_iter().flatten().collect();
-    let undecided = Undecided::by(model, solution, differences.last());
+    let undecided = UndecidedOutputs::by(model, solution, differences.last());
     for d in &differences {
         let comparison = Comparison::where_decided(model, solution, d, &undecided);
         sweep.push(comparison.worst().cloned().unwrap_or_else(|| StepError {

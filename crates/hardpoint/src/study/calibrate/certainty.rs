@@ -1,6 +1,6 @@
 //! How well readings tell the variables: covariance, and what cannot be distinguished.
 
-use super::fit::{Bench, SearchResult, weighed};
+use super::fit::{FitWorkspace, SearchResult, weighed};
 
 /// A direction whose standard deviation is more natural steps than this, about the mechanism's size, is not reported.
 const VAGUE: f64 = 1.0;
@@ -50,7 +50,7 @@ impl Known {
     }
 }
 
-impl Bench<'_> {
+impl FitWorkspace<'_> {
     /// What is known of each direction where a search ended.
     pub(super) fn known(&self, search: &SearchResult) -> Known {
         let (found, told) = weighed(&search.at.d, &search.weights, self.variables.len());

@@ -27,7 +27,7 @@ const SETTLED: f64 = 1e-12;
 const MEDIAN_OF_NORMAL: f64 = 0.6745;
 
 /// What is needed again and again.
-pub(super) struct Bench<'b> {
+pub(super) struct FitWorkspace<'b> {
     pub model: &'b Model,
     pub analyses: &'b [Analysis<'b>],
     pub asked: &'b CalibrationRequest<'b>,
@@ -67,7 +67,7 @@ pub(super) struct Rows {
     pub d: Vec<Vec<f64>>,
 }
 
-impl<'b> Bench<'b> {
+impl<'b> FitWorkspace<'b> {
     pub fn new(model: &'b Model, analyses: &'b [Analysis<'b>], asked: &'b CalibrationRequest<'b>) -> Self {
         Self {
             model,

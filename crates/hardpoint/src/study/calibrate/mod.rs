@@ -181,7 +181,7 @@ pub fn calibrate(
 ) -> Result<Calibration, CalibrationError> {
     let models: Vec<Model> = asked.measured.postures.iter().map(|p| posture::standing(model, p)).collect();
     let analyses = posture::planned(&models, asked.formulation).map_err(CalibrationError::Topology)?;
-    let mut bench = fit::Bench::new(model, &analyses, asked);
+    let mut bench = fit::FitWorkspace::new(model, &analyses, asked);
     bench.look_at_drawing()?;
     let search = bench.search(progress, more);
     let known = bench.known(&search);

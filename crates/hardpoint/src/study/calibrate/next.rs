@@ -6,7 +6,7 @@ use crate::run::{Analysis, Run};
 
 use super::Certainty;
 use super::certainty::Known;
-use super::fit::{Bench, SearchResult};
+use super::fit::{FitWorkspace, SearchResult};
 use super::posture::derivative;
 
 /// Number of readings are proposed.
@@ -50,7 +50,7 @@ struct Candidate {
     g: Vec<f64>,
 }
 
-impl Bench<'_> {
+impl FitWorkspace<'_> {
     /// The best reading of each output, the best first.
     pub(super) fn next(
         &self,
