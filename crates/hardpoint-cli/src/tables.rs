@@ -168,10 +168,10 @@ fn parquet(
 
 /// A table under way.
 enum Table<'m> {
-    Motion(Box<MotionCsv<'m, Writing>>),
+    Motion(Box<MotionCsv<'m, PendingFile>>),
     MotionNpy(Columns<'m>, Npy<PendingFile>),
     MotionParquet(Columns<'m>, Box<TableWriter<PendingFile>>),
-    Sensitivity(Box<SensitivityCsv<'m, Writing>>),
+    Sensitivity(Box<SensitivityCsv<'m, PendingFile>>),
     SensitivityNpy(Columns<'m>, Npy<PendingFile>),
     SensitivityParquet(Columns<'m>, Box<TableWriter<PendingFile>>),
 }

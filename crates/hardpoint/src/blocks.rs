@@ -26,14 +26,14 @@ pub(crate) struct ResultBlock<'b> {
     pub derivatives: &'b [[f64; 8]],
 }
 
-/// Number of numbers per output time.
+/// Storage of a fixed number of values per output time.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blocks {
     width: usize,
     place: BlockLayout,
 }
 
-/// Where the numbers are.
+/// Layout of the storage.
 #[derive(Clone, Debug)]
 enum BlockLayout {
     /// Output times 8n to 8n + 7 stand side by side, the first numbers of all eight first.
@@ -54,8 +54,8 @@ impl Blocks {
         Self { width, place: BlockLayout::Designs { lines, lane } }
     }
 
-    /// Room for that many numbers at each of that many output times, in the memory that there is; what is in it means nothing, but zeros
-    /// where nothing was written since it had another width.
+    /// Resizes to `width` values at each of `steps` output times, within the memory at hand. The contents are
+    /// undefined, except for zeros that were never overwritten since the width changed.
     pub fn shape(&mut self, width: usize, steps: usize) {
         if self.width != width {
             self.place = BlockLayout::default();
@@ -88,7 +88,7 @@ impl Blocks {
         ResultRow { lines: &lines[line * self.width..][..self.width], lane }
     }
 
-    /// Of the eight output times that k is one of.
+    /// Values of the block of eight output times that contains k.
     #[inline(always)]
     pub fn block_mut(&mut self, k: usize) -> &mut [Lanes] {
         let (width, first) = (self.width, k / LANES * self.width);
@@ -139,7 +139,7 @@ impl Blocks {
         self.set(k, 0, from.row(j).all());
     }
 
-    /// Of that many output times, every second is dropped.
+    /// Drops every second of these output times.
     pub fn thin(&mut self, steps: usize) {
         for k in 0..steps.div_ceil(2) {
             for column in 0..self.width {

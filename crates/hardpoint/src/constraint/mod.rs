@@ -113,7 +113,7 @@ impl Row {
         matches!(self, Self::Distance | Self::Course | Self::Cosine | Self::Offset | Self::Contact)
     }
 
-    /// What it measures: the residual against a target of zero; angles unwrapped to within half a turn of `near`.
+    /// Value of the row against a target of zero; angles are unwrapped to within half a turn of `near`.
     #[inline(never)]
     pub fn value<T: Real>(self, ends: &MarkerPair<T>, near: T) -> T {
         match self {
@@ -238,7 +238,7 @@ impl Row {
         )
     }
 
-    /// What it asks for, in words.
+    /// Description of the row in words.
     pub fn describe(self) -> String {
         const AXIS: [&str; 3] = ["x", "y", "z"];
         match self {

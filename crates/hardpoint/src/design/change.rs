@@ -1,11 +1,11 @@
-//! What each kind of change does to a design, over any number.
+//! Effects of the kinds of changes on a design, over any number type.
 
 use crate::model::change::{self, Change, changes};
 use crate::model::{DriverId, HardpointId, JointId, Model, ParameterId};
 use crate::number::Real;
 use crate::space::{Mat3, Pose, Vec3, rotation_from_euler_313};
 
-/// What a kind of change does to the design with b of its variable. Whatever a kind says nothing of stays as it is.
+/// Effect of a kind of change on the design, for a value b of its variable. The default methods change nothing.
 pub(crate) trait Effect {
     /// The hardpoint that moves, and its global velocity V, m per unit.
     fn hardpoint(&self) -> Option<(HardpointId, Vec3)> {

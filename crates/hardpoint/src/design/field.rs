@@ -25,7 +25,7 @@ pub struct DesignVelocity<T = f64> {
 /// The design velocity of one marker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarkerVelocity<T = f64> {
-    /// Which joint.
+    /// Joint of the marker.
     pub joint: JointId,
     /// 0 for the marker on body i, 1 for that on body j.
     pub end: usize,

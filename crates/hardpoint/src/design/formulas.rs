@@ -1,17 +1,17 @@
-//! How formulas follow the variables and each other.
+//! Dependencies of formulas on variables and on each other.
 
 use crate::model::{Change, Model, Source, Target, VariableId};
 
 use super::change::Effect;
 
-/// How formulas follow the variables and each other.
+/// Dependencies of formulas on variables and on each other.
 #[derive(Clone, Debug)]
 pub(super) struct Formulas {
     /// Per parameter: the variables that change it, and its rate by each.
     ///
     /// `p = p_o + sum_k rate_k b_k`.
     pub rates: Vec<Vec<(usize, f64)>>,
-    /// Which formula gives a parameter, the coordinates of a hardpoint, the length of a joint.
+    /// Formula that defines a parameter, the coordinates of a hardpoint, the length of a joint.
     pub of_parameter: Vec<Option<usize>>,
     pub of_hardpoint: Vec<[Option<usize>; 3]>,
     pub of_length: Vec<Option<usize>>,

@@ -28,7 +28,7 @@ pub struct Geometry<T = f64> {
     pub size: f64,
 }
 
-/// What measures depend on, fixed in the bodies.
+/// Body-fixed data that measures use.
 #[derive(Clone, Debug)]
 pub(crate) struct BodyFixed<T> {
     /// Per point of the model, its position in its body's frame, m.
@@ -54,7 +54,7 @@ impl<T: Copy> BodyFixed<T> {
     }
 }
 
-/// What a joint can keep of its design configuration, or the rate at which a design variable changes it.
+/// Constants that a joint keeps from the design configuration, or their rates of change by a design variable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointConstants<T = f64> {
     /// Distance between its markers, m: the length of a rod.
@@ -70,7 +70,7 @@ pub struct JointConstants<T = f64> {
 }
 
 impl<T: Real> JointConstants<T> {
-    /// What this constraint keeps; 0 for those that keep nothing.
+    /// Constant of this row; 0 for rows without one.
     pub fn by(&self, row: Row) -> T {
         match row {
             Row::Distance => self.distance,

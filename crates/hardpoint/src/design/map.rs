@@ -1,4 +1,4 @@
-//! What design variables do: the geometry of any design, and its derivative by each variable.
+//! Effects of design variables: the geometry of any design, and its derivative by each variable.
 //!
 //! The geometry is written once, over any [`Real`]; its derivatives are the same lines run on [`Dual`]s, at whatever design.
 //!
@@ -26,7 +26,7 @@ use crate::space::{Mat3, Pose, Twist, Vec3};
 use super::change::Effect;
 use super::formulas::Formulas;
 
-/// What the variables of a model change, by what they change: found once for many designs.
+/// Entries of a model that its variables change, grouped by kind; found once for many designs.
 #[derive(Clone, Debug)]
 pub(crate) struct DesignMap<'m> {
     held: SharedModel<'m>,
@@ -37,7 +37,7 @@ pub(crate) struct DesignMap<'m> {
     /// Per hardpoint: the joints and points that follow it.
     joints: Vec<Vec<usize>>,
     points: Vec<Vec<usize>>,
-    /// What formulas do; none in a model without.
+    /// Formulas of the model; `None` without any.
     formulas: Option<Formulas>,
 }
 
@@ -95,13 +95,13 @@ impl<'m> DesignMap<'m> {
         }
     }
 
-    /// Where the hardpoints of the designs whose values these are stand, global.
+    /// Positions of the hardpoints for these values of the variables, global.
     pub fn places<T: Real>(&self, values: &[T]) -> Vec<Vec3<T>> {
         let design = PlacedDesign::new(self, values.to_vec());
         (0..self.model().hardpoints.len()).map(|h| design.place(HardpointId(h), &design.values)).collect()
     }
 
-    /// What the measures of these designs depend on.
+    /// Body-fixed data of the measures for these values of the variables.
     pub fn fixed<T: Real>(&self, values: &[T]) -> BodyFixed<T> {
         let (model, design) = (self.model(), PlacedDesign::new(self, values.to_vec()));
         let markers = |m: &Measure| match m.kind {
@@ -116,12 +116,12 @@ impl<'m> DesignMap<'m> {
         }
     }
 
-    /// How one variable changes the designs whose values these are.
+    /// Design velocity of one variable at these values.
     pub fn field<T: Real>(&self, variable: VariableId, values: &[T]) -> DesignVelocity<T> {
         self.field_along(&[(variable, 1.0)], values)
     }
 
-    /// How the designs whose values these are change along a direction, some variables at once.
+    /// Design velocity along a direction in the space of several variables, at these values.
     ///
     /// Paper Eqs. 3.1 to 3.10 and 5.5; `docs/theory.md` (8).
     pub fn field_along<T: Real>(&self, along: &[(VariableId, f64)], values: &[T]) -> DesignVelocity<T> {
@@ -161,7 +161,7 @@ impl<'m> DesignMap<'m> {
         DesignVelocity { markers: vec![MarkerVelocity { joint, end: 0, twist }], ..DesignVelocity::default() }
     }
 
-    /// What may change along a direction, some variables at once.
+    /// Entries that may change along a direction in the space of several variables.
     pub(super) fn affected(&self, along: &[(VariableId, f64)]) -> Affected {
         let mut affected = Affected::default();
         for (variable, by) in along {
@@ -243,7 +243,7 @@ impl<'m> DesignMap<'m> {
         laws
     }
 
-    /// How every variable changes the designs whose values these are.
+    /// Design velocities of all variables at these values.
     pub fn fields<T: Real>(&self, values: &[T]) -> Vec<DesignVelocity<T>> {
         (0..values.len()).map(|k| self.field(VariableId(k), values)).collect()
     }
@@ -253,8 +253,8 @@ fn is_null<T: Real>(v: Vec3<T>) -> bool {
     v.x.vanishes() && v.y.vanishes() && v.z.vanishes()
 }
 
-/// What may change along a direction: hardpoints, joints, points, parameters of laws at a rate, formulas of such, and numbers of masses
-/// and forces.
+/// Entries that may change along a direction: hardpoints, joints, points, parameters of laws at a rate, formulas of
+/// these, numbers of masses and forces.
 #[derive(Default)]
 pub(super) struct Affected {
     pub hardpoints: Vec<usize>,
@@ -265,7 +265,7 @@ pub(super) struct Affected {
     pub numbers: Vec<NumberId>,
 }
 
-/// Where everything is with the variables at these values.
+/// Positions and directions of all entries at these values of the variables.
 struct PlacedDesign<'e, T> {
     design_map: &'e DesignMap<'e>,
     values: Values<T>,
@@ -321,7 +321,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         }
     }
 
-    /// What all formulas give, one after the other.
+    /// Results of all formulas, in order.
     fn solved(&self, formulas: &Formulas, variables: &[T]) -> Vec<T> {
         let model = self.design_map.model();
         let mut results: Vec<T> = Vec::with_capacity(model.formulas.len());
@@ -432,7 +432,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         rot
     }
 
-    /// What joint j keeps.
+    /// Constants of joint j.
     fn kept(&self, j: usize) -> JointConstants<T> {
         let (joint, zero) = (&self.design_map.model().joints[j], T::zero());
         let [m_i, m_j] = [0, 1].map(|e| self.marker_in_world(j, e, &self.for_lengths));

@@ -30,7 +30,7 @@ impl Model {
         DesignMap::of(self).geometry(&self.whole(design))
     }
 
-    /// Where the hardpoints of such a design are in the design configuration, m, global.
+    /// Positions of the hardpoints of such a design in the design configuration, m, global.
     pub fn hardpoint_places(&self, design: &[f64]) -> Vec<Vec3> {
         DesignMap::of(self).places(&self.whole(design))
     }

@@ -4,7 +4,7 @@
 use crate::linalg::least_squares;
 use crate::space::Vec3;
 
-/// How every point of a body moves per unit of a design variable.
+/// Velocity field of a body's points per unit of a design variable.
 #[derive(Clone, Debug)]
 pub(crate) enum ShapeField {
     /// All points the same way: m per m.
@@ -69,7 +69,7 @@ pub(crate) struct Interpolation {
     linear: [Vec3; 4],
 }
 
-/// How well given velocities must be met, as a part of the largest.
+/// Tolerance of given velocities, relative to the largest.
 const MET: f64 = 1e-9;
 
 impl Interpolation {

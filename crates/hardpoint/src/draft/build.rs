@@ -9,8 +9,8 @@ use crate::draft::{
 use crate::law::Law;
 use crate::space::Vec3;
 
-/// What a mechanism is made of, entry by entry. Names may be used before they are given;
-/// [`Model::from_draft`](crate::model::Model::from_draft) checks them all.
+/// Builder methods, one per kind of entry. Names may be used before they are declared;
+/// [`Model::from_draft`](crate::model::Model::from_draft) checks all of them.
 impl Draft {
     /// An empty draft of that name.
     pub fn new(name: impl Into<String>) -> Self {
@@ -151,12 +151,12 @@ impl JointDraft {
         self
     }
 
-    /// Where the markers' z axis points.
+    /// Direction of the markers' z axis.
     pub fn axis(self, axis: impl Into<DirectionDraft>) -> Self {
         Self { axis: Some(axis.into()), ..self }
     }
 
-    /// Where the markers' x axis points.
+    /// Direction of the markers' x axis.
     pub fn axis2(self, axis: impl Into<DirectionDraft>) -> Self {
         Self { axis2: Some(axis.into()), ..self }
     }

@@ -7,7 +7,7 @@ use crate::model::End;
 use crate::model::change::changes;
 use crate::space::Vec3;
 
-/// How changes are written.
+/// Changes as written, with names as references.
 macro_rules! in_drafts {
     ($(
         $(#[doc = $doc:literal])* $kind:ident {
@@ -29,13 +29,13 @@ macro_rules! in_drafts {
             Shape {
                 /// The names of the bodies.
                 bodies: Vec<String>,
-                /// How their points move.
+                /// Velocity field of the body's points.
                 field: ShapeDraft,
             },
         }
 
         impl ChangeDraft {
-            /// What a variable measures that makes this change.
+            /// Quantity of a variable that makes this change.
             fn quantity(&self, known: &Known<'_, '_>) -> Quantity {
                 match self {
                     $(#[allow(unused_variables, reason = "what it measures follows from some of its fields")]
@@ -51,8 +51,8 @@ macro_rules! in_drafts {
 changes!(in_drafts);
 
 impl ChangeDraft {
-    /// What a variable measures that makes these changes, for what a parameter is and for what a driver prescribes by which law; a
-    /// plain number where they measure different things.
+    /// Quantity of a variable that makes these changes, given the quantities of parameters and drivers; a plain number
+    /// if the changes differ.
     pub fn quantity_of<'l>(
         changes: &[Self],
         parameter: impl Fn(&str) -> Option<Quantity>,
@@ -65,7 +65,7 @@ impl ChangeDraft {
     }
 }
 
-/// What a parameter measures, and what a driver prescribes by which law, as far as that is known.
+/// Quantities of parameters, and drivers with their laws, as far as they are known.
 struct Known<'k, 'l> {
     parameter: &'k dyn Fn(&str) -> Option<Quantity>,
     driver: &'k dyn Fn(&str) -> Option<(&'l Law, Quantity)>,

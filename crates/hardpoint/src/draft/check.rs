@@ -30,7 +30,7 @@ use crate::model::{
 };
 use crate::space::{Mat3, Pose, Vec3};
 
-/// How far `axis2` may be from perpendicular to `axis`, as a cosine: typed unit vectors are good to this.
+/// Tolerance of the right angle between `axis2` and `axis`, as a cosine: typed unit vectors satisfy it.
 const SQUARE_TOLERANCE: f64 = 1e-6;
 /// Points closer than this part of the mechanism's size are the same point.
 const SAME_POINT: f64 = 1e-9;
@@ -110,18 +110,18 @@ struct Checker<'a> {
     draft: &'a Draft,
     model: Model,
     faults: Vec<DraftError>,
-    /// Which drafted joint became which joint; `None` for those that are faulty.
+    /// Model joint of every joint of the draft; `None` for faulty ones.
     joint_ids: Vec<Option<JointId>>,
     /// The same for wheels, and for axles.
     wheel_ids: Vec<Option<WheelId>>,
     axle_ids: Vec<Option<AxleId>>,
-    /// Which drafted metric became which one of the model.
+    /// Model metric of every metric of the draft.
     metric_ids: Vec<Option<usize>>,
     /// The hardpoints that curves pass through.
     curve_points: Vec<HardpointId>,
     /// The formulas that are read so far, each after those whose results it uses.
     written: Vec<formulas::Written>,
-    /// What is not known of parameters and hardpoints: unread, or given by a faulty formula.
+    /// Parameters and hardpoints without a known value: unread, or given by a faulty formula.
     spoilt: BTreeSet<Source>,
     /// The expressions for the length of joints, and for the parameters of drivers' laws, by name.
     length_formulas: HashMap<&'a str, &'a Expression>,
@@ -130,9 +130,9 @@ struct Checker<'a> {
     case_formulas: HashMap<(&'a str, &'a str), Vec<(&'a str, &'a Expression)>>,
     /// By kind of entry: which number a name has. Only looked up, never walked.
     numbers: HashMap<&'static str, HashMap<&'a str, usize>>,
-    /// Which driver prescribes a coordinate of a joint. Only looked up, never walked.
+    /// Driver of a joint coordinate. Only used for lookups, never iterated.
     driver_of: HashMap<(JointId, usize), DriverId>,
-    /// What the drivers whose laws count from zero have in the design configuration.
+    /// Values in the design configuration of the drivers whose laws count from zero.
     zeros: HashMap<DriverId, driven::AsDrawn>,
     /// Comparisons of names that guesses may still take.
     comparisons: usize,
@@ -410,7 +410,7 @@ impl<'a> Checker<'a> {
         None
     }
 
-    /// What to write where a hardpoint is named in place of a point.
+    /// Suggests text for a point if a hardpoint was named in its place.
     fn point_at(&self, hardpoint: &str) -> Option<String> {
         self.draft.hardpoints.iter().find(|h| h.name == hardpoint)?;
         let is_there =
@@ -461,12 +461,12 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Where a hardpoint is, if that is known.
+    /// Position of a hardpoint, if it is known.
     fn position(&self, h: HardpointId) -> Option<Vec3> {
         is_known(h, &self.spoilt).then(|| self.model.hardpoints[h.0].position)
     }
 
-    /// How far it is from one hardpoint to another, if that is known; none where they are at the same place.
+    /// Vector from one hardpoint to another, if it is known; `Some(None)` if they coincide.
     fn apart(&self, a: HardpointId, b: HardpointId) -> Option<Option<Vec3>> {
         let d = self.position(b)? - self.position(a)?;
         Some((d.norm() > SAME_POINT * self.extent.size()).then_some(d))
@@ -673,7 +673,7 @@ fn degrees_between(a: Vec3, b: Vec3) -> f64 {
     a.dot(b).clamp(-1.0, 1.0).acos().to_degrees()
 }
 
-/// Which number each name has; of equal names, the first.
+/// Index of each name; of equal names, the first.
 fn numbered<'a>(names: impl Iterator<Item = &'a str>) -> HashMap<&'a str, usize> {
     let mut numbers = HashMap::new();
     for (k, name) in names.enumerate() {

@@ -18,9 +18,9 @@ use super::measure::Field;
 pub struct NumberDraft {
     /// Value, SI; of no account where an expression gives it.
     pub value: f64,
-    /// What gives it.
+    /// Expression that defines the number.
     pub expression: Option<Expression>,
-    /// Number of the text's units make one SI unit.
+    /// Number of units of the text per SI unit.
     pub per_unit: f64,
 }
 
@@ -35,7 +35,7 @@ impl From<f64> for NumberDraft {
 pub struct ElementDraft {
     /// Name.
     pub name: String,
-    /// What it is.
+    /// Kind of the element.
     pub kind: ElementKindDraft,
 }
 
@@ -51,22 +51,22 @@ impl ElementDraft {
 pub struct ElementType {
     /// Name.
     pub name: &'static str,
-    /// What it is, in a sentence.
+    /// Description in one sentence.
     pub summary: &'static str,
     /// The table of model files that it is in: `masses` or `forces`.
     pub table: &'static str,
-    /// What is to be said of it.
+    /// Fields of the type.
     pub fields: &'static [MeasureField],
 }
 
-/// How a type of element is written, and what of the model it means.
+/// Element types as written, and their resolution to the model.
 macro_rules! in_drafts {
     ($(
         $(#[doc = $doc:literal])* $variant:ident $name:literal $table:ident {
             $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
         }
     )*) => {
-        /// What an element is, as written; see [`ElementKind`].
+        /// Kind of an element as written; see [`ElementKind`].
         #[derive(Clone, Debug)]
         pub enum ElementKindDraft {
             /// It could not be read.
@@ -101,7 +101,7 @@ macro_rules! in_drafts {
         }
 
         impl ElementKindDraft {
-            /// What it means in a model.
+            /// Resolves the element to its form in a model.
             pub(super) fn resolve(&self, check: &mut MeasureCheck<'_, '_>) -> Option<ElementKind> {
                 match self {
                     $(Self::$variant { $($field),* } => {

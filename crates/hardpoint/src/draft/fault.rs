@@ -8,13 +8,13 @@ use std::fmt;
 pub struct DraftError {
     /// Stable code, `HP02..`; documented in `docs/diagnostics.md`.
     pub code: &'static str,
-    /// Where in the draft.
+    /// Location in the draft.
     pub at: DraftLocation,
     /// The headline, enough alone.
     pub message: String,
     /// Facts, with units.
     pub notes: Vec<String>,
-    /// What to do.
+    /// Instruction that corrects the error.
     pub help: Option<String>,
 }
 
@@ -94,13 +94,13 @@ pub enum Section {
 /// A place in a draft.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct DraftLocation {
-    /// Which list.
+    /// List that contains the entry.
     pub section: Section,
-    /// Which entry of it.
+    /// Index of the entry.
     pub index: usize,
-    /// Which of the entry's fields, by its name in model files (`axis`, `bodies`, `name`, ...).
+    /// Field of the entry, by its name in model files (`axis`, `bodies`, `name`, ...).
     pub key: &'static str,
-    /// Which element of the field, where it is a list (`at`, `bodies`, `changes`, `through`).
+    /// Element of the field, if it is a list (`at`, `bodies`, `changes`, `through`).
     pub item: Option<usize>,
 }
 

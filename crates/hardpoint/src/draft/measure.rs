@@ -17,9 +17,9 @@ use super::check::MeasureCheck;
 pub struct MeasureType {
     /// Name.
     pub name: &'static str,
-    /// What it measures, in a sentence.
+    /// Description of the measure in one sentence.
     pub summary: &'static str,
-    /// What is to be said of it.
+    /// Fields of the type.
     pub fields: &'static [MeasureField],
 }
 
@@ -28,15 +28,15 @@ pub struct MeasureType {
 pub struct MeasureField {
     /// Name in model files.
     pub key: &'static str,
-    /// What it is.
+    /// Kind of the field.
     pub kind: FieldKind,
     /// True if it must be given.
     pub required: bool,
-    /// What it means.
+    /// Meaning of the field.
     pub summary: &'static str,
 }
 
-/// What a field of a measure may be.
+/// Kind of value that a field of a measure holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldKind {
     /// The name of a joint.
@@ -94,7 +94,7 @@ pub enum FieldDraft {
     Ray(RayDraft),
     /// One of the angles that say how a body is turned.
     Angle(OrientationAngle),
-    /// What of a joint's reaction is measured.
+    /// Component of a joint's reaction.
     Part(ReactionPart),
     /// Along which axes something is given.
     Axes(Axes),
@@ -104,48 +104,48 @@ pub enum FieldDraft {
     Law(Law),
     /// Points of a table, SI.
     Table(Vec<[f64; 2]>),
-    /// What a closed surface bounds.
+    /// Solid that a closed surface encloses.
     Solid(Solid),
     /// An expression.
     Expression(Expression),
 }
 
-/// What is written as a `Draft` and means this in a model. The fields of a measure are of such types.
+/// A value that is written as a `Draft` and resolved to this type in a model. The fields of measures have such types.
 pub(super) trait Field: Sized {
     type Draft;
     const KIND: FieldKind;
     const REQUIRED: bool = true;
     /// As written, if it is; `None` where it is something else, or missing.
     fn draft(written: Option<FieldDraft>) -> Option<Self::Draft>;
-    /// What it means; `None`, and a fault, where that is not known.
+    /// Resolves the value; `None`, with an error, if it is not known.
     fn resolve(draft: &Self::Draft, key: &'static str, check: &mut MeasureCheck<'_, '_>) -> Option<Self>;
 }
 
-/// How a type of measure is written, and what of the model it means.
+/// Measure types as written, and their resolution to the model.
 macro_rules! in_drafts {
     ($(
         $(#[doc = $doc:literal])* $variant:ident $name:literal {
             $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
         } |$model:pat_param, $words:pat_param| $dimension:expr, $known:expr, $says:expr;
     )*) => {
-        /// What a measure measures, as written; see [`MeasureKind`].
+        /// Kind of a measure as written; see [`MeasureKind`].
         #[derive(Clone, Debug)]
         pub enum MeasureKindDraft {
             /// It could not be read.
             Unread,
             $($(#[doc = $doc])* $variant { $($(#[doc = $field_doc])* $field: $draft,)* },)*
-            /// Something about a wheel.
+            /// A measure of a wheel.
             Wheel {
                 /// The wheel's name.
                 wheel: String,
-                /// What about it.
+                /// Measured quantity.
                 what: WheelMeasure,
             },
-            /// Something about both wheels of an axle.
+            /// A measure of both wheels of an axle.
             Axle {
                 /// The axle's name.
                 axle: String,
-                /// What about it.
+                /// Measured quantity.
                 what: AxleMeasure,
             },
         }
@@ -176,7 +176,7 @@ macro_rules! in_drafts {
         }
 
         impl MeasureKindDraft {
-            /// What it means in a model; of wheels and axles the check says it.
+            /// Resolves the measure to its form in a model; the check resolves those of wheels and axles.
             pub(super) fn resolve(&self, check: &mut MeasureCheck<'_, '_>) -> Option<MeasureKind> {
                 match self {
                     $(Self::$variant { $($field),* } => {

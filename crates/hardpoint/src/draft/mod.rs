@@ -62,7 +62,7 @@ pub struct Draft {
     pub masses: Vec<ElementDraft>,
     /// Forces.
     pub forces: Vec<ElementDraft>,
-    /// What everything falls with, m/s^2, global.
+    /// Acceleration of gravity, m/s^2, global.
     pub gravity: Vec3,
     /// Loads with or without inertia.
     pub load_mode: LoadMode,
@@ -78,18 +78,18 @@ pub struct Draft {
     pub cases: Vec<CaseDraft>,
     /// Cases that sweep two drivers over a grid.
     pub grids: Vec<GridDraft>,
-    /// What the design is to be optimised for.
+    /// Settings of the optimisation.
     pub optimization: Option<OptimizationSettingsDraft>,
-    /// How far off the design may be made.
+    /// Settings of the tolerance study.
     pub tolerancing: Option<ToleranceSettingsDraft>,
-    /// Which designs are swept over, if the file says that.
+    /// Settings of the sweep, if the file has them.
     pub sweeping: Option<SweepSettingsDraft>,
-    /// What of all this could not be read.
+    /// Entries that could not be read.
     pub unread: UnreadEntries,
 }
 
-/// What of a draft could not be read from the text that it was made from. Whatever the draft holds in its place counts for nothing: the
-/// check says nothing of it, nor of what would follow from it, and makes no model.
+/// Entries of a draft that could not be read from its text. The check ignores the placeholders in the draft, with all
+/// errors that would follow from them, and makes no model.
 #[derive(Clone, Debug, Default)]
 pub struct UnreadEntries(BTreeMap<(Section, usize), Vec<&'static str>>);
 
@@ -133,16 +133,16 @@ pub struct ParameterDraft {
     pub name: String,
     /// Value, m, rad or a plain number; of no account where a formula gives it.
     pub value: f64,
-    /// What it measures.
+    /// Quantity of the value.
     pub quantity: Quantity,
 }
 
 /// A number of the model that an expression gives.
 #[derive(Clone, Debug)]
 pub struct FormulaDraft {
-    /// Which number.
+    /// Number that the formula defines.
     pub of: FormulaOf,
-    /// What gives it.
+    /// Expression that defines it.
     pub expression: Expression,
 }
 
@@ -170,7 +170,7 @@ pub struct HardpointDraft {
     pub position: Vec3,
 }
 
-/// Where something is: at a named hardpoint, or at coordinates.
+/// Location: a named hardpoint, or coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LocationDraft {
     /// A hardpoint's name.
@@ -181,7 +181,7 @@ pub enum LocationDraft {
     Formula(Box<[Expression; 3]>),
 }
 
-/// Where an axis points.
+/// Direction of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DirectionDraft {
     /// Along a global vector of any length.
@@ -199,7 +199,7 @@ pub struct BodyDraft {
     pub frame: FrameDraft,
 }
 
-/// How a body's reference frame is given.
+/// Definition of a body's reference frame.
 #[derive(Clone, Debug, Default)]
 pub enum FrameDraft {
     /// Origin at the mean of the body's joint hardpoints, axes parallel to the global ones.
@@ -255,20 +255,20 @@ pub struct CurveDraft {
 pub struct CouplerDraft {
     /// Name.
     pub name: String,
-    /// What couples what.
+    /// Relation of the coupler.
     pub kind: CouplerKindDraft,
     /// Value of the sum of its terms; zero for gears, racks and belts.
     pub constant: f64,
 }
 
-/// What a coupler is made of. Angles and displacements count along their joints' own axes, of body j relative to body i.
+/// Relation of a coupler. Angles and displacements count along the axes of their joints, body j relative to body i.
 #[derive(Clone, Debug)]
 pub enum CouplerKindDraft {
     /// `sum of coefficient x coordinate = constant`.
     Linear(Vec<TermDraft>),
     /// Two joints, each with the coordinate that the transmission couples.
     Pair {
-        /// What couples them.
+        /// Transmission between the two coordinates.
         by: Transmission,
         /// The joints' names.
         joints: [String; 2],
@@ -291,15 +291,15 @@ pub struct TermDraft {
 pub struct DriverDraft {
     /// Name.
     pub name: String,
-    /// What it prescribes.
+    /// Quantity that the driver prescribes.
     pub drives: DrivenDraft,
     /// True if its laws count from zero, as those of measures do; else they count from the design configuration.
     pub from_zero: bool,
-    /// What it prescribes over time, m or rad.
+    /// Law of the prescribed quantity, m or rad.
     pub law: Law,
 }
 
-/// What a driver prescribes.
+/// Quantity that a driver prescribes.
 #[derive(Clone, Debug)]
 pub enum DrivenDraft {
     /// It could not be read.
@@ -348,7 +348,7 @@ fn quantity_at_wheel(what: WheelMeasure) -> Option<Quantity> {
 }
 
 impl DrivenDraft {
-    /// What the driver's values are, as far as that is known; `type_of` gives the type of a joint.
+    /// Quantity of the driver's values, if it is known; `type_of` returns the type of a joint.
     pub fn quantity(
         &self,
         measures: &[MeasureDraft],
@@ -382,13 +382,13 @@ impl DrivenDraft {
 pub struct VariableDraft {
     /// Name.
     pub name: String,
-    /// What changes with it.
+    /// Changes of the design per unit of the variable.
     pub changes: Vec<ChangeDraft>,
     /// True if rods keep their lengths.
     pub fixed_length: bool,
     /// Between which values it may lie, m, rad or a plain number; it is 0 in the model in the design configuration.
     pub bounds: Option<[f64; 2]>,
-    /// How large a change of it is usual, for comparing variables.
+    /// Typical size of a change, used to compare variables.
     pub typical: Option<f64>,
     /// By how much it may be off when it is made, either way.
     pub tolerance: Option<f64>,
@@ -401,7 +401,7 @@ pub struct PointDraft {
     pub name: String,
     /// The name of the body that carries it.
     pub body: String,
-    /// Where it is in the design configuration.
+    /// Location in the design configuration.
     pub at: LocationDraft,
 }
 
@@ -428,7 +428,7 @@ pub struct WheelDraft {
     pub body: String,
     /// Centre in the design configuration.
     pub centre: LocationDraft,
-    /// How it is in the design configuration.
+    /// Orientation in the design configuration.
     pub spin: WheelSpinDraft,
     /// From the centre to the ground in the wheel's plane, m.
     pub radius: f64,
@@ -465,7 +465,7 @@ pub struct AxleDraft {
     pub right: String,
 }
 
-/// How a wheel is in the design configuration.
+/// Orientation of a wheel in the design configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WheelSpinDraft {
     /// With this spin axis, pointing outboard.
@@ -484,7 +484,7 @@ pub enum WheelSpinDraft {
 pub struct MeasureDraft {
     /// Name.
     pub name: String,
-    /// What it measures.
+    /// Kind of the measure.
     pub kind: MeasureKindDraft,
 }
 
@@ -498,15 +498,15 @@ pub struct MetricDraft {
     pub of: String,
     /// The same of the abscissa; time where it is left out.
     pub over: Option<String>,
-    /// What is taken.
+    /// Reduction of the curve.
     pub take: Reduction,
     /// The part of the curve that counts.
     pub window: Option<[f64; 2]>,
     /// The name of the case whose motion it sums up; each where it is left out.
     pub case: Option<String>,
-    /// Number of units of length make a metre.
+    /// Number of user units of length per metre.
     pub per_metre: f64,
-    /// Number of units of angle make a radian.
+    /// Number of user units of angle per radian.
     pub per_radian: f64,
 }
 
@@ -519,7 +519,7 @@ pub enum RayDraft {
     Fixed {
         /// The body's name.
         body: String,
-        /// Where it points in the design configuration.
+        /// Direction in the design configuration.
         axis: DirectionDraft,
     },
 }
@@ -531,7 +531,7 @@ pub struct CaseDraft {
     pub name: String,
     /// The names of drivers, and the laws that they follow in it, in m or rad.
     pub laws: Vec<(String, Law)>,
-    /// What all others do.
+    /// Motion of all other drivers.
     pub rest: OtherDrivers,
     /// Output times, s; those of the draft where they are left out.
     pub times: Option<Vec<f64>>,
@@ -548,7 +548,7 @@ pub struct GridDraft {
     pub sweeps: Vec<(String, Vec<f64>)>,
 }
 
-/// What the drivers do that a case does not name.
+/// Motion of the drivers that a case does not name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OtherDrivers {
     /// They are fixed in the design configuration.
@@ -558,16 +558,16 @@ pub enum OtherDrivers {
     AsAbove,
 }
 
-/// What a design is to be optimised for; see [`OptimizationSettings`](crate::model::Optimization).
+/// Settings of an optimisation; see [`OptimizationSettings`](crate::model::OptimizationSettings).
 #[derive(Clone, Debug)]
 pub struct OptimizationSettingsDraft {
     /// The names of the design variables that may change; all that have bounds where they are left out.
     pub variables: Option<Vec<String>>,
-    /// What is made as small as possible.
+    /// Goals; their sum is minimised.
     pub goals: Vec<GoalDraft>,
-    /// What must hold.
+    /// Conditions that the design must satisfy.
     pub limits: Vec<LimitDraft>,
-    /// How far every motion stays away from singular positions, between 0 and 1.
+    /// Minimum margin of every motion from singular positions, between 0 and 1.
     pub margin: Option<f64>,
     /// From how many designs the search starts.
     pub starts: usize,
@@ -590,13 +590,13 @@ pub struct GoalDraft {
     pub name: String,
     /// The name of the metric.
     pub metric: String,
-    /// How much one unit of it counts.
+    /// Weight of one unit of the metric.
     pub weight: f64,
-    /// What it is to be.
+    /// Target value.
     pub target: Option<f64>,
-    /// Number of units of length make a metre.
+    /// Number of user units of length per metre.
     pub per_metre: f64,
-    /// Number of units of angle make a radian.
+    /// Number of user units of angle per radian.
     pub per_radian: f64,
 }
 
@@ -605,19 +605,19 @@ pub struct GoalDraft {
 pub struct LimitDraft {
     /// Name.
     pub name: String,
-    /// What it is put on.
+    /// Limited quantity.
     pub of: LimitTargetDraft,
     /// It must not be less than this; equal to `most` where it must have one value.
     pub least: Option<f64>,
     /// It must not be more than this.
     pub most: Option<f64>,
-    /// Number of units of length make a metre.
+    /// Number of user units of length per metre.
     pub per_metre: f64,
-    /// Number of units of angle make a radian.
+    /// Number of user units of angle per radian.
     pub per_radian: f64,
 }
 
-/// What a limit is put on; see [`LimitTarget`](crate::model::Limited). References are names.
+/// Quantity that a limit applies to; see [`LimitTarget`](crate::model::LimitTarget). References are names.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LimitTargetDraft {
     /// It could not be read.
@@ -632,27 +632,27 @@ pub enum LimitTargetDraft {
     Length(String),
 }
 
-/// How far off a design may be made; see [`ToleranceSettings`](crate::model::Tolerancing).
+/// Settings of a tolerance study; see [`ToleranceSettings`](crate::model::ToleranceSettings).
 #[derive(Clone, Debug)]
 pub struct ToleranceSettingsDraft {
-    /// What is said of single variables, by their names or by that of the entry that makes them. All others that have a
-    /// [tolerance](VariableDraft::tolerance) join them.
+    /// Tolerances of single variables, by their names or by the name of the entry that defines them. All other
+    /// variables with a [tolerance](VariableDraft::tolerance) are added.
     pub tolerances: Vec<ToleranceDraft>,
-    /// Which variables go together.
+    /// Correlations of the variables.
     pub correlations: Vec<CorrelationDraft>,
-    /// What must hold of metrics.
+    /// Limits of metrics.
     pub limits: Vec<LimitDraft>,
     /// The names of the metrics; all of them where they are left out.
     pub metrics: Option<Vec<String>>,
     /// The names of the measures; all of them where they are left out.
     pub curves: Option<Vec<String>>,
-    /// How deviations scatter where a variable says nothing else.
+    /// Default distribution of deviations.
     pub scatter: ScatterDraft,
-    /// Number of designs are drawn.
+    /// Number of Monte Carlo designs.
     pub samples: usize,
     /// From this number.
     pub seed: u64,
-    /// How the loosest tolerances are sought, if they are.
+    /// Rule of the allocation of the loosest tolerances, if requested.
     pub allocation: Option<AllocationRule>,
 }
 
@@ -672,12 +672,12 @@ impl Default for ToleranceSettingsDraft {
     }
 }
 
-/// How deviations scatter, as far as that is said; see [`Scatter`](crate::model::Scatter).
+/// Distribution of deviations, as far as it is given; see [`Scatter`](crate::model::Scatter).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ScatterDraft {
     /// Place in [`Scatter::NAMES`](crate::model::Scatter::NAMES).
     pub kind: Option<usize>,
-    /// Number of standard deviations the tolerance is.
+    /// Number of standard deviations in the tolerance.
     pub sigmas: Option<f64>,
 }
 
@@ -688,13 +688,13 @@ pub struct ToleranceDraft {
     pub name: String,
     /// By how much it may be off; the variable's own tolerance where it is left out.
     pub reach: Option<f64>,
-    /// How it scatters.
+    /// Distribution of the deviations.
     pub scatter: ScatterDraft,
-    /// What it costs to hold it.
+    /// Relative cost of the tolerance.
     pub cost: Option<f64>,
-    /// Number of units of length make a metre.
+    /// Number of user units of length per metre.
     pub per_metre: f64,
-    /// Number of units of angle make a radian.
+    /// Number of user units of angle per radian.
     pub per_radian: f64,
 }
 
@@ -709,12 +709,12 @@ pub struct CorrelationDraft {
     pub coefficient: f64,
 }
 
-/// Which designs are swept over; see [`SweepSettings`].
+/// Settings of a sweep; see [`SweepSettings`].
 #[derive(Clone, Debug)]
 pub struct SweepSettingsDraft {
-    /// How designs are chosen, where that is said.
+    /// Method that chooses the designs, if given.
     pub method: Option<SweepMethod>,
-    /// How far variables go; all that have bounds, within these, where it is left out.
+    /// Ranges of the variables; if left out, all variables that have bounds, within these.
     pub ranges: Option<Vec<SweepRangeDraft>>,
     /// The designs of a list, in place of all that.
     pub designs: Option<DesignListDraft>,
@@ -751,15 +751,15 @@ impl Default for SweepSettingsDraft {
 pub struct SweepRangeDraft {
     /// The variable's name.
     pub name: String,
-    /// Where it begins; at the variable's lower bound where it is left out.
+    /// Lower end; the variable's lower bound if left out.
     pub low: Option<f64>,
-    /// Where it ends; at the upper bound where it is left out.
+    /// Upper end; the variable's upper bound if left out.
     pub high: Option<f64>,
     /// In a factorial, that many values.
     pub levels: Option<usize>,
-    /// Number of units of length make a metre.
+    /// Number of user units of length per metre.
     pub per_metre: f64,
-    /// Number of units of angle make a radian.
+    /// Number of user units of angle per radian.
     pub per_radian: f64,
 }
 
@@ -772,8 +772,8 @@ pub struct DesignListDraft {
     pub names: Vec<String>,
     /// Per design, its values.
     pub rows: Vec<Vec<f64>>,
-    /// Number of units of length make a metre.
+    /// Number of user units of length per metre.
     pub per_metre: f64,
-    /// Number of units of angle make a radian.
+    /// Number of user units of angle per radian.
     pub per_radian: f64,
 }

@@ -75,12 +75,12 @@ impl Expression {
         Self { per_metre, ..self }
     }
 
-    /// Number of its unit of length make a metre.
+    /// Number of its units of length per metre.
     pub fn per_metre(&self) -> f64 {
         self.per_metre
     }
 
-    /// What was written.
+    /// Text of the expression.
     pub fn text(&self) -> &str {
         &self.text
     }

@@ -29,34 +29,35 @@ use crate::number::Function;
 use super::program::{MAX_WAITING, Operation, Program};
 use super::term::{Binary, Relation};
 
-/// What is wrong with the text of a law.
+/// Error in the text of a law or expression.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct ExpressionError {
-    /// Where, as a range of bytes of the expression's text; on character boundaries.
+    /// Position of the error, as a range of bytes of the expression's text; on character boundaries.
     pub span: Range<usize>,
-    /// What, in words that stand alone.
+    /// Description of the error, as a complete phrase.
     pub message: String,
-    /// What to write instead, where that can be said.
+    /// Instruction that corrects the error, if there is one.
     pub help: Option<String>,
 }
 
 /// The most parentheses, calls and exponents that may be open at once.
 const MAX_NESTING: usize = 64;
 
-/// How a name that is followed by arguments becomes an operation.
+/// Rule that turns a name with arguments into an operation.
 #[derive(Clone, Copy)]
 enum Call {
     One(Function),
     Two(Binary),
-    /// Of two or more arguments, taken two at a time.
+    /// A function of two or more arguments, applied to two at a time.
     Fold(Binary),
     Power,
     Step,
     If,
 }
 
-/// What is called with more than one argument: the function of one that it follows in lists, its name, and the way to call it.
+/// Functions with more than one argument: the function of one argument that precedes it in lists, its name, and its
+/// call.
 const OF_MORE: [(Function, &str, &str, Call); 7] = [
     (Function::Atan, "atan2", "atan2(y, x)", Call::Two(Binary::Atan2)),
     (Function::Sqrt, "pow", "pow(x, p)", Call::Power),
@@ -135,12 +136,12 @@ pub(crate) fn names(text: &str) -> Vec<&str> {
 #[derive(Default)]
 struct Free<'a> {
     names: Vec<&'a str>,
-    /// Which number each has. Only looked up, never walked.
+    /// Index of each name. Only used for lookups, never iterated.
     numbers: HashMap<&'a str, usize>,
 }
 
 impl<'a> Free<'a> {
-    /// Which number a name has; the next one if it is new.
+    /// Index of a name; the next free one if it is new.
     fn number(&mut self, name: &'a str) -> usize {
         let next = self.names.len();
         let number = *self.numbers.entry(name).or_insert(next);
@@ -439,7 +440,7 @@ impl<'a> Descent<'a> {
         Ok(comparison)
     }
 
-    /// Where the ends of a step are plain numbers, wrong order is an error here and not a NaN later.
+    /// Checks the order of a step's ends if they are plain numbers: an error here avoids a NaN later.
     fn check_step_order(&self, arguments: &[(usize, Range<usize>)]) -> Result<(), ExpressionError> {
         let [_, x0, h0, x1, h1] = arguments else {
             return Ok(());

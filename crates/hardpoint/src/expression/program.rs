@@ -12,10 +12,10 @@ use super::term::{Binary, ExpressionValue, Relation};
 /// The most operands that may wait for their operation.
 pub(crate) const MAX_WAITING: usize = 256;
 
-/// What suffices for most expressions; clearing more of the stack would cost more than evaluating them.
+/// Stack size that suffices for most expressions; clearing a larger one would cost more than the evaluation.
 const FEW_WAITING: usize = 4;
 
-/// What suffices for nearly every expression.
+/// Stack size that suffices for nearly every expression.
 const USUALLY_WAITING: usize = 12;
 
 /// One operation: takes its operands from the stack, the last on top, and leaves one result.
@@ -32,7 +32,7 @@ pub(crate) enum Operation {
     Powf(f64),
     /// x, x0, h0, x1, h1
     Step,
-    /// Of a, b, x, y: x where the comparison of a with b holds, else y.
+    /// Of a, b, x, y: x if the comparison of a with b holds, else y.
     Select(Relation),
     /// The value alone, of what depends on parameters only.
     Settle,
@@ -65,7 +65,7 @@ impl Operation {
         }
     }
 
-    /// Which of its sides an operation with sides takes for these operands. Sides that join smoothly may be distinguished.
+    /// Side that a piecewise operation takes for these operands. Sides that join smoothly may be distinguished.
     fn side(self, operands: &[Jet]) -> Option<u8> {
         let sign = |order: Option<Ordering>| order.map_or(9, |order| order as u8);
         let zero = Jet::constant(0.0);

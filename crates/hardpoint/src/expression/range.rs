@@ -41,7 +41,7 @@ impl Range {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// What both hold; by rounding they may miss each other by a hair.
+    /// Intersection of two ranges; after rounding they may be disjoint by a small amount.
     fn and(self, other: Self) -> Self {
         let (low, high) = (self.low.max(other.low), self.high.min(other.high));
         Self { low: low.min(high), high: high.max(low) }
@@ -56,7 +56,7 @@ impl Range {
         self.low <= x && x <= self.high
     }
 
-    /// How far it reaches from a number, at most.
+    /// Maximum distance of the range from a number.
     pub fn reach_from(self, x: f64) -> f64 {
         let reach = f64::max(self.high - x, x - self.low);
         if reach.is_nan() { f64::INFINITY } else { reach.max(0.0) }
@@ -178,9 +178,9 @@ impl Div for Range {
 /// The range of a quantity over a stretch of time, and that of its rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
-    /// Of the quantity.
+    /// Range of the quantity.
     pub value: Range,
-    /// Of its rate, per s.
+    /// Range of its rate, per s.
     pub rate: Range,
 }
 
@@ -196,7 +196,7 @@ impl Stretch {
         Self { value: Range::exactly(x), rate: Range::exactly(0.0) }
     }
 
-    /// What both forms leave, for a quantity that is `middle` in the middle of a stretch of this length.
+    /// Intersection of both forms, for a quantity that is `middle` in the middle of an interval of this length.
     pub(crate) fn settled(self, middle: f64, length: f64) -> Self {
         let half = 0.5 * length;
         // Of what is not defined all along, the middle says nothing.
@@ -206,7 +206,7 @@ impl Stretch {
         Self { value: if known && mean.is_bounded() { self.value.and(mean) } else { self.value }, ..self }
     }
 
-    /// Of c0 + c1 x + c2 x^2 + ... for x from one number to another.
+    /// Range of c0 + c1 x + c2 x^2 + ... for x from one number to another.
     pub(crate) fn of_polynomial(coefficients: &[f64], from: f64, to: f64) -> Self {
         let n = coefficients.len();
         if n > HIGHEST_DEGREE + 1 {
@@ -288,7 +288,8 @@ impl ExpressionValue for Stretch {
         self.chain(power(exponent), Range::exactly(exponent) * power(exponent - 1.0))
     }
 
-    /// Of a positive base: of others it is undefined for all but whole exponents, which do not vary.
+    /// Range of a power with a positive base: with other bases it is undefined for all but integer exponents, which are
+    /// constant.
     fn to(self, exponent: Self) -> Self {
         (exponent * self.function(Function::Ln)).function(Function::Exp)
     }
@@ -363,7 +364,7 @@ impl ExpressionValue for Stretch {
         }
     }
 
-    /// What depends on parameters only does not change.
+    /// Returns the value itself: what depends on parameters alone is constant.
     fn settled(self) -> Self {
         self
     }

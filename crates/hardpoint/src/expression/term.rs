@@ -1,4 +1,4 @@
-//! What expressions are evaluated in, and the operations of two and more operands there.
+//! Number types of expressions, and their operations with two and more operands.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -7,8 +7,8 @@ use crate::number::{Function, Real};
 
 use super::range::Range;
 
-/// What an expression is evaluated in: a number with whatever derivatives it carries; or
-/// [bounds](super::range::Stretch) of one.
+/// Type in which an expression is evaluated: a number with its derivatives, or [bounds](super::range::Stretch) of a
+/// number.
 pub(crate) trait ExpressionValue:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
@@ -34,11 +34,11 @@ pub(crate) trait ExpressionValue:
     fn step(self, x0: Self, h0: Self, x1: Self, h1: Self) -> Self;
     /// `x` where the comparison of `self` with `b` holds, else `y`; not a number if either is not.
     fn choose(self, comparison: Relation, b: Self, x: Self, y: Self) -> Self;
-    /// What depends on constants only.
+    /// Value of a term that depends on constants alone.
     fn settled(self) -> Self;
 }
 
-/// Of two sides, that which is active just after the instant.
+/// Of two sides, the one that is active just after the instant.
 impl<T: Real> ExpressionValue for T {
     #[inline(always)]
     fn number(x: f64) -> Self {
@@ -111,7 +111,7 @@ impl<T: Real> ExpressionValue for T {
     }
 }
 
-/// What has no value, and no derivative either.
+/// A number without value and derivatives: NaN.
 #[inline(always)]
 fn undefined<T: Real>(like: T) -> T {
     T::constant(f64::NAN) * like

@@ -68,7 +68,7 @@ joints! {
     heading HEADING
 }
 
-/// What a joint type is: its geometry, its freedoms as a tree joint, its constraints as a cut joint.
+/// A joint type: its geometry, its freedoms as a tree joint, its constraints as a cut joint.
 ///
 /// Both markers have their z axis along the joint's `axis` and their x axis along `axis2` (or any
 /// direction perpendicular to `axis`, the same for both), and coincide in orientation at the design
@@ -81,7 +81,7 @@ pub struct JointType {
     pub aliases: &'static [&'static str],
     /// One line for documentation and editors.
     pub summary: &'static str,
-    /// Number of hardpoints place it: 1 shared by both bodies, 2, one on each, or 0 where only directions matter.
+    /// Number of hardpoints of the joint: 1 shared by both bodies, 2, one on each, or 0 if only directions matter.
     pub places: usize,
     /// True if it needs an axis.
     pub axis: Need,
@@ -156,7 +156,7 @@ pub enum Freedom {
 }
 
 impl Freedom {
-    /// Number of coordinates it has.
+    /// Number of coordinates of the freedom.
     pub const fn coordinates(self) -> usize {
         match self {
             Self::Turn(_) | Self::Slide(_) => 1,
@@ -170,9 +170,9 @@ impl Freedom {
 pub struct CoordinateType {
     /// The name in model files: `angle`, `displacement`, `length`, ...
     pub name: &'static str,
-    /// What it measures, hence its unit.
+    /// Quantity of the coordinate, hence its unit.
     pub quantity: Quantity,
-    /// Which freedom of the tree joint it is, if the joint has freedoms.
+    /// Freedom of the tree joint that it is, if the joint has freedoms.
     pub freedom: Option<usize>,
     /// The constraint that a driver on a cut joint adds.
     pub row: Row,
@@ -216,7 +216,7 @@ pub(crate) const fn displacement_along(name: &'static str, axis: usize, freedom:
 pub(crate) const LENGTH: CoordinateType =
     CoordinateType { name: "length", quantity: Quantity::Length, freedom: None, row: Row::Distance };
 
-/// What a number measures; the user's units follow from it.
+/// Quantity of a number; the user's units follow from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Quantity {
     /// Metres inside.
@@ -227,7 +227,7 @@ pub enum Quantity {
     Number,
 }
 
-/// What the residual of a constraint is; cosines count as angles.
+/// Quantity of a constraint's residual; cosines count as angles.
 impl From<Row> for Quantity {
     fn from(row: Row) -> Self {
         if row.is_length() { Self::Length } else { Self::Angle }
@@ -245,7 +245,7 @@ impl JointType {
         self.coordinates.iter().enumerate().find(|(_, c)| c.name == name)
     }
 
-    /// What the coordinate of that name measures, or, where none is named, the first one.
+    /// Quantity of the coordinate with this name, or of the first one without a name.
     pub fn quantity_of(&self, coordinate: Option<&str>) -> Option<Quantity> {
         let coordinate = match coordinate {
             Some(name) => self.coordinate(name).map(|c| c.1),
@@ -296,7 +296,7 @@ impl JointType {
         std::ptr::eq(self, &SCREW)
     }
 
-    /// Number of coordinates the joint has in the tree; `None` if it is always cut.
+    /// Number of coordinates of the joint in the tree; `None` if it is always cut.
     pub fn freedom_count(&self) -> Option<usize> {
         self.freedoms.map(|f| f.iter().map(|f| f.coordinates()).sum())
     }

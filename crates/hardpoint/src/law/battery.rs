@@ -1,4 +1,4 @@
-//! What holds for laws of every kind: derivatives, change of unit, jumps.
+//! Properties of all kinds of laws: derivatives, change of unit, jumps.
 
 use super::*;
 

@@ -1,15 +1,15 @@
-//! What can be wrong with the numbers of a law.
+//! Errors in the numbers of a law.
 
 use super::kind::LawKind;
 use super::parameter::Parameter;
 
-/// What is wrong with the numbers of a law; for a law's text see [`ExpressionError`](super::ExpressionError).
+/// Error in the numbers of a law; for a law's text see [`ExpressionError`](super::ExpressionError).
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct LawError {
-    /// What, in words that stand alone.
+    /// Description of the error, as a complete phrase.
     pub message: String,
-    /// What to write instead, where that can be said.
+    /// Instruction that corrects the error, if there is one.
     pub help: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Where a law is not smooth.
+//! Times at which a law is not smooth.
 
 use crate::expression::Program;
 use crate::number::Jet;
@@ -12,7 +12,7 @@ use super::sequence::backwards;
 pub struct Jump {
     /// When, in s.
     pub time: f64,
-    /// What jumps: 0 for the value, 1 for the speed, 2 for the acceleration. The lowest that does.
+    /// Order of the jump: 0 for the value, 1 for the speed, 2 for the acceleration; the lowest one that jumps.
     pub order: usize,
     /// By how much, from before to after, in the driver's unit per s to the order.
     pub size: f64,

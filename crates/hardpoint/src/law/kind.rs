@@ -1,4 +1,4 @@
-//! What every kind of law offers; one file each.
+//! Interface of a kind of law; one file per kind.
 
 use std::fmt;
 
@@ -22,7 +22,7 @@ pub(super) trait LawKind: fmt::Display {
     /// The number of parameters.
     fn parameter_count(&self) -> usize;
 
-    /// What a parameter measures; equal to what [`parameters`](Self::parameters) says, without the list.
+    /// Kind of a parameter; the same as in [`parameters`](Self::parameters), without making the list.
     fn parameter_kind(&self, parameter: usize) -> ParameterKind;
 
     /// Changes the value of a parameter, as written.

@@ -83,7 +83,8 @@ pub type TimeJet<T = f64> = Jet<T, 4>;
 pub struct Law {
     kind: AnyLaw,
     factor: f64,
-    /// What is prescribed has this value in the design configuration, in the driver's own unit, and the text counts from zero.
+    /// Value of the prescribed quantity in the design configuration, in the driver's own unit, if the text counts from
+    /// zero.
     as_drawn: Option<f64>,
 }
 
@@ -166,8 +167,9 @@ impl Law {
         self
     }
 
-    /// This law for what has the value `as_drawn` in the drawing, from which drivers count: the text gives the whole value. What it is as
-    /// drawn becomes the last of the [parameters](Self::parameters).
+    /// This law for a quantity that has the value `as_drawn` in the design configuration, from which drivers count: the
+    /// text gives the whole value. The value in the design configuration becomes the last of the
+    /// [parameters](Self::parameters).
     ///
     /// ```
     /// use hardpoint::law::Law;
@@ -302,8 +304,8 @@ impl Law {
         self.kind.over(from, to).fastest() * self.factor.abs()
     }
 
-    /// Where between `from` and `to`, both included, the value, the speed or the acceleration jumps, in the order of time.
-    /// A jump is counted if it is more than 1e-9 of the largest such value, speed or acceleration there.
+    /// Times between `from` and `to`, both included, at which the value, the speed or the acceleration jumps, in order.
+    /// A jump counts if it exceeds 1e-9 of the largest such value, speed or acceleration there.
     ///
     /// For expressions the time is cut into 4096 parts: an `abs`, `atan2`, `min`, `max`, `step` or `if` that switches there
     /// and back within one of them may be missed. Where the law has no finite value it does not jump.

@@ -9,11 +9,12 @@ pub struct Parameter {
     pub name: String,
     /// Value in the unit that [`kind`](Self::kind) says.
     pub value: f64,
-    /// What it measures, and therefore its unit.
+    /// Kind of the parameter, and hence its unit.
     pub kind: ParameterKind,
 }
 
-/// What a parameter of a law measures. The first two are in the driver's own unit and follow [`Law::scaled`](super::Law::scaled).
+/// Kind of a law's parameter. The first two are in the driver's own unit and follow
+/// [`Law::scaled`](super::Law::scaled).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParameterKind {
     /// A value of the driver, in the driver's unit.

@@ -15,7 +15,7 @@ use super::table::ROUNDING_OF_TIME;
 /// A piece of a [sequence](Law::sequence).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// How long it lasts, in s; for ever if `None`, which only the last piece may be.
+    /// Duration, s; unlimited if `None`, which only the last piece may be.
     pub duration: Option<f64>,
     /// Law, whose time starts at 0 when the piece does.
     pub law: Law,
@@ -49,7 +49,7 @@ pub(super) struct Sequence {
     pieces: Vec<Piece>,
     /// When each piece starts, and the end of the last.
     starts: Vec<f64>,
-    /// What is added to each piece's law.
+    /// Offsets that are added to the pieces' laws.
     offsets: Vec<f64>,
     /// The index of each piece's first parameter: its duration, if it has one, and then those of its law. Then their number.
     first_parameters: Vec<usize>,

@@ -29,9 +29,9 @@ pub struct SmoothStep {
     pub from: f64,
     /// The value after, in the driver's unit.
     pub to: f64,
-    /// Where it begins, in s.
+    /// Start time, s.
     pub start: f64,
-    /// Where it ends, in s; after `start`.
+    /// End time, s; after `start`.
     pub end: f64,
     /// The degree of the polynomial: 3, 5 or 7.
     pub degree: u32,

@@ -27,13 +27,13 @@ pub struct Table {
     pub times: Vec<f64>,
     /// The values at these times, in the driver's unit.
     pub values: Vec<f64>,
-    /// How smooth the curve is.
+    /// Degree of the spline.
     pub degree: SplineDegree,
-    /// What is known at the ends.
+    /// Boundary conditions at the ends.
     pub ends: SplineEnds,
 }
 
-/// How smooth the spline of a [`Table`] is.
+/// Degree of the spline of a [`Table`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SplineDegree {
     /// Degree 3: the acceleration is continuous, and piecewise linear.
@@ -43,7 +43,7 @@ pub enum SplineDegree {
     Quintic,
 }
 
-/// What is known at the ends of a [`Table`].
+/// Boundary conditions at the ends of a [`Table`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SplineEnds {
     /// Nothing: the curve ends as a thin beam does. The acceleration of a cubic is zero there; of a quintic the jerk and its
@@ -123,7 +123,7 @@ impl Spline {
         self.times.len() - usize::from(self.is_periodic)
     }
 
-    /// Number of coefficients a segment has that may differ from zero.
+    /// Number of coefficients of a segment that may differ from zero.
     fn order(&self) -> usize {
         if self.degree == SplineDegree::Cubic { 4 } else { 6 }
     }

@@ -22,11 +22,11 @@ pub struct Trapezoid {
     pub from: f64,
     /// The value after, in the driver's unit.
     pub to: f64,
-    /// Where it begins, in s.
+    /// Start time, s.
     pub start: f64,
-    /// Where it ends, in s; after `start`.
+    /// End time, s; after `start`.
     pub end: f64,
-    /// How long it speeds up, and slows down, in s; positive, and at most half of the time from start to end.
+    /// Duration of acceleration and of deceleration, s; positive, at most half of the time from start to end.
     pub ramp: f64,
 }
 

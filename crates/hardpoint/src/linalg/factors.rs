@@ -20,7 +20,7 @@ pub(crate) enum Factors<T> {
 }
 
 impl<T: Real> Factors<T> {
-    /// Of the n x n matrix whose row k may have entries in the columns `row(k)`.
+    /// Factors of the n x n matrix whose row k may have entries in the columns `row(k)`.
     pub fn new(n: usize, row: impl Fn(usize) -> Vec<usize>, largest_dense: usize) -> Self {
         if n <= largest_dense {
             return Self::Dense(Elimination::new(n));
@@ -54,7 +54,7 @@ impl<T: Real> Factors<T> {
         }
     }
 
-    /// Number of multiplications a sparse factorisation takes in the present order; 0 of dense factors, which are small.
+    /// Number of multiplications of a sparse factorisation in the present order; 0 for dense factors, which are small.
     pub fn multiplications(&self) -> usize {
         match self {
             Self::Dense(_) => 0,

@@ -74,7 +74,7 @@ pub(crate) fn folded_rows(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 struct Triangular {
     /// Meaningless below the diagonal.
     columns: Vec<Vec<f64>>,
-    /// Which column came where.
+    /// Permutation of the columns.
     order: Vec<usize>,
     /// Unit normals of the mirrors, without the zeros at their beginning; as many as there are independent columns.
     reflections: Vec<Vec<f64>>,
@@ -153,7 +153,7 @@ mod tests {
         a.iter().flatten().map(|x| x.abs()).fold(0.0, f64::max)
     }
 
-    /// How far from fulfilling Penrose's four conditions, each as a part of what it compares.
+    /// Violation of Penrose's four conditions, each relative to the compared quantities.
     fn failure(a: &Matrix, n: usize) -> f64 {
         let x = inverse(a, n);
         let (ax, xa) = (product(a, &x), product(&x, a));

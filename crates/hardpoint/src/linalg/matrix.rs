@@ -25,7 +25,7 @@ pub(crate) struct Elimination<T> {
     scratch: Vec<T>,
 }
 
-/// What a factorisation found.
+/// Result of a factorisation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Factored<T> {
     /// Smallest pivot over the largest; 0 where singular or not finite.
@@ -34,11 +34,11 @@ pub(crate) struct Factored<T> {
     pub positive: bool,
     /// The size of the determinant; of a sparse matrix its logarithm.
     pub determinant: T,
-    /// What that depends on.
+    /// Pivots that the result depends on.
     pub watched: Watched<T>,
 }
 
-/// What is watched of an elimination in an order that was chosen before.
+/// Monitored quantities of an elimination in an order that was chosen before.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Watched<T> {
     /// The product of the pivots; of a sparse matrix its sign alone.

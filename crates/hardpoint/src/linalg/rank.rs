@@ -1,4 +1,4 @@
-//! Number of rows of a matrix are independent, and which: for the set-up, where redundancy is normal.
+//! Independent rows of a matrix: for set-up, when redundancy is normal.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -17,8 +17,8 @@ const THRESHOLD: f64 = 0.1;
 /// without this, rows are chosen whose least singular value is 4e-9 (with a third of it still 5e-7), with it 3e-3; all rows
 /// together have 1e-2.
 const CHOICE: f64 = 0.9;
-/// What elimination leaves below this part of the tolerance is taken for zero, so that rounded redundancy does
-/// not fill the rows with dust.
+/// Remainders of the elimination below this part of the tolerance are set to zero, so that rounded redundancy does not
+/// fill the rows.
 const DUST: f64 = 1e-4;
 
 /// Elimination of an m x n matrix for its rank: an independent set of its rows, and the motions it leaves free.

@@ -14,7 +14,8 @@ const IN_COLUMN: f64 = 0.5;
 const IN_ROW: f64 = 0.1;
 /// A pivot is looked for in that many of the shortest rows and columns; more find hardly less fill, and take longer.
 const LOOKED_AT: usize = 4;
-/// Number of pivots are multiplied before the logarithm is taken: each may change by a factor of 2^30 since the order was chosen.
+/// Number of pivots that are multiplied before the logarithm is taken: each may change by a factor of 2^30 since the
+/// order was chosen.
 const MULTIPLIED: usize = 32;
 /// No row, or no column.
 const NONE: u32 = u32::MAX;
@@ -94,7 +95,7 @@ impl Lists {
         Self { starts, items }
     }
 
-    /// Where list k is.
+    /// Range of list k.
     #[inline(always)]
     fn range(&self, k: usize) -> Range<usize> {
         self.starts[k]..self.starts[k + 1]
@@ -154,7 +155,7 @@ impl<T: Real> SparseLu<T> {
         Factored { pivot_ratio: 0.0, positive: true, determinant, watched: Watched::zero() }
     }
 
-    /// Number of multiplications a factorisation takes in the present order.
+    /// Number of multiplications of a factorisation in the present order.
     pub fn multiplications(&self) -> usize {
         let Order { lower, upper, .. } = &self.order;
         lower.items.iter().map(|&k| upper.range(k as usize).len()).sum()
@@ -312,7 +313,7 @@ fn index(k: usize) -> u32 {
     u32::try_from(k).expect("a block has fewer unknowns than 2^32")
 }
 
-/// Where each item of a permutation is.
+/// Inverse of a permutation.
 fn inverse(permutation: &[u32]) -> Vec<u32> {
     let mut inverse = vec![0; permutation.len()];
     for (k, &item) in permutation.iter().enumerate() {
@@ -340,9 +341,9 @@ fn is_odd(permutation: &[u32]) -> bool {
 /// The choice of an order: elimination in which each pivot is one that brings little fill (Markowitz' rule: few other entries in its row
 /// times few in its column) among those that are large enough in both.
 ///
-/// Entries that happen to be zero stay what they are, places where others may come to stand.
+/// Entries that happen to be zero remain entries of the pattern, places where others may appear.
 struct Choice {
-    /// Of the rows that are left: column and value of their entries.
+    /// Remaining rows: column and value of their entries.
     rows: Vec<Vec<(u32, f64)>>,
     /// By column: the rows that have an entry there.
     columns: Vec<Vec<u32>>,
@@ -351,7 +352,7 @@ struct Choice {
     short_columns: ByLength,
     /// By column: the largest entry, negative where that is to be found out.
     largest: Vec<f64>,
-    /// Where the entries of the row at hand are, by column; out of date everywhere else.
+    /// Positions of the entries of the current row, by column; out of date for all other columns.
     places: Vec<u32>,
     pivots: Vec<Pivot>,
     /// By pivot: the rows below it that have an entry in its column, and the other columns of its row.
@@ -587,8 +588,8 @@ mod tests {
         lu
     }
 
-    /// How far from solving it x is: of all equations, as a part of what equations of this size may add up to; and of any one, as a part of
-    /// what that adds up.
+    /// Relative residuals of x: over all equations, relative to the possible sum of an equation of this size; and of
+    /// the worst equation, relative to its own terms.
     fn residual(rows: &Rows, x: &[f64], b: &[f64]) -> [f64; 2] {
         let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.map(f64::abs).fold(0.0, Real::larger);
         let terms = |row: &Vec<(usize, f64)>| row.iter().map(|&(c, a)| a * x[c]).collect::<Vec<_>>();

@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 /// The coefficients between two knots: of 1, s, s², ... with s the time since the first of the two.
 pub(crate) type Segment = [f64; 6];
 
-/// What is known at the ends.
+/// Kind of boundary condition at the ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum EndKind {
     Natural,
@@ -33,7 +33,7 @@ const QUINTIC: [[f64; 6]; 6] = [
     [-60.0, -24.0, -3.0, 60.0, -36.0, 9.0],
 ];
 
-/// Where the value or a derivative at a knot comes from.
+/// Source of the value or of a derivative at a knot.
 enum Datum {
     /// From the data that the spline is made for.
     Data(usize),
@@ -46,7 +46,7 @@ enum Datum {
 #[derive(Debug)]
 pub(crate) struct Basis {
     times: Vec<f64>,
-    /// Number of derivatives belong to a knot: 1 for cubics, 2 for quintics.
+    /// Number of derivatives per knot: 1 for cubics, 2 for quintics.
     rates: usize,
     ends: EndKind,
     /// The Cholesky factor L: of every row, the columns from its first that is not zero to the diagonal.

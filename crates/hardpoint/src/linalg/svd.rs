@@ -13,7 +13,7 @@ pub(crate) struct Singular {
     pub directions: Vec<Vec<f64>>,
 }
 
-/// Of a matrix given by its rows, each of n numbers.
+/// Singular values of a matrix given by its rows, each of n numbers.
 pub(crate) fn singular(rows: &[Vec<f64>], n: usize) -> Singular {
     let mut columns: Vec<Vec<f64>> = (0..n).map(|j| rows.iter().map(|row| row[j]).collect()).collect();
     let mut v: Vec<Vec<f64>> =

@@ -11,7 +11,7 @@ pub struct Case {
     pub name: String,
     /// Per driver, the law that it follows in this case; where there is none, that of the driver itself.
     pub laws: Vec<Option<Law>>,
-    /// What of these laws follows the design variables.
+    /// Formulas that express numbers of these laws by the design variables.
     pub formulas: Vec<Formula>,
     /// Output times, s, increasing.
     pub times: Vec<f64>,
@@ -30,8 +30,8 @@ pub enum LoadMode {
     Static,
 }
 
-/// A case of two drivers, each of which is wherever the other does: toe over wheel travel and steer. All other drivers are held as
-/// drawn.
+/// A case of two drivers over a grid, every position of one with every position of the other: toe over wheel travel and
+/// steer. All other drivers are fixed in the design configuration.
 ///
 /// It is no motion but positions, and none of the [motions](Model::motions) of the mechanism.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,7 @@ pub struct Grid {
     pub name: String,
     /// The two drivers.
     pub drivers: [DriverId; 2],
-    /// Where each of them is, m or rad, increasing; counted as its laws are.
+    /// Positions of each driver, m or rad, increasing; measured like the values of its law.
     pub values: [Vec<f64>; 2],
 }
 
@@ -84,7 +84,8 @@ impl Model {
         model
     }
 
-    /// Where a driver is in the design configuration, m or rad: zero, or the whole value of what it prescribes where its laws count from zero.
+    /// Position of a driver in the design configuration, m or rad: zero, or the whole value of the driven quantity if
+    /// the driver's laws count from zero.
     pub fn as_drawn(&self, driver: DriverId) -> f64 {
         self.drivers[driver.0].law.as_drawn().map_or(0.0, |(_, value)| value)
     }

@@ -3,7 +3,7 @@
 use crate::model::{BodyId, DriverId, HardpointId, JointId, Model, ParameterId};
 use crate::space::Vec3;
 
-/// Which marker of a joint.
+/// One of the two markers of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// Marker on body i.
@@ -32,7 +32,7 @@ macro_rules! changes {
     ($declare:ident) => { $declare! {
     /// A hardpoint moves; markers, axes and points on it follow.
     Move {
-        /// Which hardpoint.
+        /// Hardpoint that moves.
         hardpoint: String => HardpointId,
         /// Global velocity, m per unit.
         velocity: Vec3 => Vec3,
@@ -41,9 +41,9 @@ macro_rules! changes {
 
     /// Markers of a joint move and turn by themselves.
     Marker {
-        /// Which joint.
+        /// Joint whose markers rotate.
         joint: String => JointId,
-        /// Which markers.
+        /// Markers that rotate.
         end: End => End,
         /// Global velocity of the marker's origin, m per unit.
         position: Vec3 => Vec3,
@@ -71,7 +71,7 @@ macro_rules! changes {
 
     /// The length of a rod that is given by itself grows.
     Length {
-        /// Which joint.
+        /// Joint whose length changes.
         joint: String => JointId,
         /// m per unit.
         rate: f64 => f64,
@@ -92,7 +92,7 @@ macro_rules! changes {
 
     /// A parameter of the model grows, and all that formulas make of it follows.
     Parameter {
-        /// Which parameter.
+        /// Parameter that changes.
         parameter: String => ParameterId,
         /// In the parameter's unit, per unit.
         rate: f64 => f64,
@@ -101,9 +101,9 @@ macro_rules! changes {
 
     /// A parameter of a driver's law grows, like its amplitude.
     Law {
-        /// Which driver.
+        /// Driver whose law changes.
         driver: String => DriverId,
-        /// Which of its law's parameters.
+        /// Parameter of its law that changes.
         parameter: String => usize,
         /// In the parameter's own unit, per unit.
         rate: f64 => f64,
@@ -117,7 +117,7 @@ macro_rules! changes {
     /// The paper's design velocity of one marker: V of its place and U of its 3-1-3 Euler angles, both in its own body's frame
     /// (Eqs. 3.2, 3.3).
     Field {
-        /// Which joint.
+        /// Joint whose marker moves.
         joint: String => JointId,
         /// The body whose marker it is.
         body: String => BodyId,
@@ -134,7 +134,7 @@ macro_rules! changes {
 }
 pub(crate) use changes;
 
-/// What changes mean in a model.
+/// Changes with references resolved to ids.
 macro_rules! in_models {
     ($(
         $(#[doc = $doc:literal])* $kind:ident {
@@ -174,18 +174,18 @@ macro_rules! in_models {
 
 changes!(in_models);
 
-/// What changes do to some parts of a model: `moves` `a` and `b` ` along x`.
+/// Description of what changes do to some parts of a model: `moves` `a` and `b` ` along x`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChangeText {
-    /// What is done.
+    /// Verb of the change.
     pub verb: String,
     /// The names of those that it is done to.
     pub names: Vec<String>,
-    /// How; empty, or with a space before.
+    /// Manner of the change; empty, or with a leading space.
     pub how: String,
 }
 
-/// What changes do, in words.
+/// Builder of the descriptions of changes.
 struct ChangeWords<'a> {
     model: &'a Model,
     direction: &'a dyn Fn(Vec3) -> String,
@@ -194,7 +194,7 @@ struct ChangeWords<'a> {
 }
 
 impl<'a> ChangeWords<'a> {
-    /// What is done in the same way is said once.
+    /// Adds a description; parts with the same verb and manner share one.
     fn say(&mut self, verb: &str, name: &str, how: String) {
         match self.said.iter_mut().find(|d| d.verb == verb && d.how == how) {
             Some(text) => text.names.push(name.to_owned()),
@@ -212,8 +212,8 @@ fn raises(rate: f64) -> &'static str {
 }
 
 impl Model {
-    /// What changes do, in words; `direction` says a global direction, `number` a number (SI, or without unit). Parts of which the same
-    /// is said come as one.
+    /// Describes changes in words. `direction` formats a global direction, `number` a number (SI, or without unit).
+    /// Parts with the same description share one text.
     pub fn describe_changes(
         &self,
         changes: &[Change],

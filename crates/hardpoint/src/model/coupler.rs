@@ -8,7 +8,7 @@ use super::JointId;
 pub struct Coupler {
     /// Name; that of the joint for a screw.
     pub name: String,
-    /// What makes the relation; none where it is given by its coefficients.
+    /// Transmission that defines the relation; none if coefficients define it.
     pub transmission: Option<Transmission>,
     /// Terms; no coefficient is zero. A change of the design leaves them alone.
     pub terms: Vec<CouplerTerm>,
@@ -19,15 +19,15 @@ pub struct Coupler {
 /// A joint coordinate times a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplerTerm {
-    /// Which joint.
+    /// Joint of the term.
     pub joint: JointId,
-    /// Which of its type's coordinates.
+    /// Index of the coordinate in the joint's type.
     pub coordinate: usize,
     /// The factor, per m or per rad of the coordinate.
     pub coefficient: f64,
 }
 
-/// What couples two joint coordinates, with the sizes that the relation follows from.
+/// Transmission between two joint coordinates, with the dimensions that define the relation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Transmission {
     /// Two gears: `teeth_1 angle_1 + teeth_2 angle_2 = 0`, or minus for an internal gear.

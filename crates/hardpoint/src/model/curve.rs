@@ -9,7 +9,7 @@ const MAX_STEPS: usize = 50;
 const CONVERGED: f64 = 1e-15;
 /// ... and the last step, where round-off keeps steps above that, may be this part: its square is round-off.
 const WANDERS: f64 = 1e-9;
-/// Number of places between two points of the curve are tried for the start of the search.
+/// Number of samples between two points of the curve from which the search for the contact starts.
 const TRIED: usize = 8;
 
 /// Tangents that are compared between two points of the curve, whose splines bend between them once or twice at most; and of a long way.
@@ -30,7 +30,7 @@ pub struct Curve {
     start: f64,
 }
 
-/// Where a curve is touched, in the frame of the marker that carries it.
+/// Point of contact with a curve, in the frame of the marker that carries the curve.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact<T = f64> {
     /// The parameter.
@@ -134,7 +134,7 @@ impl Curve {
         self.closed
     }
 
-    /// Where the parameter ends, which begins at 0, m: the length of the chords between its points.
+    /// Upper end of the curve parameter, m (the lower end is 0): the sum of the chord lengths.
     pub fn length(&self) -> f64 {
         self.length
     }

@@ -1,16 +1,16 @@
-//! What a mechanism's loads come from: masses, springs, given forces.
+//! Sources of a mechanism's loads: masses, springs, given forces.
 
 use crate::joint::Quantity;
 use crate::law::Law;
 use crate::model::{BodyId, Dimension, JointId, Model, PointId, Solid, SpringTable, WheelId};
 use crate::space::Vec3;
 
-/// Something that has mass, or that pushes bodies.
+/// A mass or an applied force.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Element {
     /// Name.
     pub name: String,
-    /// What it is.
+    /// Kind of the element.
     pub kind: ElementKind,
 }
 
@@ -31,7 +31,7 @@ pub struct ElementNumber {
     pub key: &'static str,
     /// Value in the nominal design, SI.
     pub value: f64,
-    /// Number of the text's units make one SI unit of it.
+    /// Number of units of the text per SI unit.
     pub(crate) per_unit: f64,
 }
 
@@ -64,7 +64,7 @@ impl Axes {
 /// Declares the kinds of numbers that elements have.
 macro_rules! numbers {
     ($($(#[doc = $doc:literal])* $name:ident)*) => {
-        /// What a number of an element is.
+        /// Unit of a number of an element.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum ElementUnit { $($(#[doc = $doc])* $name,)* }
 
@@ -194,7 +194,7 @@ macro_rules! elements {
             compression: Option<Vec<[f64; 2]>> => Option<SpringTable>,
             /// The same of how far it is longer, and how hard it pulls.
             extension: Option<Vec<[f64; 2]>> => Option<SpringTable>,
-            /// What the forces of the table are multiplied by. Default: 1.
+            /// Factor of the forces in the table. Default: 1.
             scale: Option<NumberDraft> => Option<Plain>,
             /// The length that its deflection counts from, at which a spring without a table has no force. Default: that of the drawing, or
             /// what `preload` makes it.
@@ -209,7 +209,7 @@ macro_rules! elements {
         JointSpring "joint_spring" forces {
             /// The joint.
             joint: String => JointId,
-            /// Which of its coordinates; may be left out where it has only one.
+            /// Coordinate of the joint; may be left out if it has only one.
             coordinate: Option<String> => usize,
             /// Stiffness.
             stiffness: NumberDraft => Stiffness,
@@ -223,7 +223,7 @@ macro_rules! elements {
         TorsionSpring "torsion_spring" forces {
             /// The joint.
             joint: String => JointId,
-            /// Which of its angles; may be left out where it has only one.
+            /// Angle of the joint; may be left out if it has only one.
             coordinate: Option<String> => usize,
             /// Stiffness.
             stiffness: NumberDraft => TorsionalStiffness,
@@ -241,8 +241,8 @@ macro_rules! elements {
             coefficient: NumberDraft => Plain,
             /// The radius of its pin or ball.
             radius: NumberDraft => Length,
-            /// The length of its bearing, about the joint's place on its second body: then the moment across the axis presses its ends as
-            /// well. Default: the force alone counts.
+            /// Length of the bearing, centred at the joint's point on its second body. The moment across the axis then
+            /// adds normal forces at both ends. Default: only the force counts.
             length: Option<NumberDraft> => Option<Length>,
             /// A further moment against the motion in proportion to its speed.
             viscous: Option<NumberDraft> => Option<TorsionalDamping>,
@@ -256,11 +256,11 @@ macro_rules! elements {
             joint: String => JointId,
             /// The coefficient of friction.
             coefficient: NumberDraft => Plain,
-            /// The length of its guide, about the joint's place on its second body: then the moment across the axis presses its ends as
-            /// well. Default: the force alone counts.
+            /// Length of the guide, centred at the joint's point on its second body. The moment across the axis then
+            /// adds normal forces at both ends. Default: only the force counts.
             length: Option<NumberDraft> => Option<Length>,
-            /// A direction across it in which nothing presses, in the design configuration: forces along it and moments about others do not count. Default, in a
-            /// planar model: perpendicular to the plane; else all count.
+            /// Direction across the axis, in the design configuration, in which normal forces are ignored, with the
+            /// moments about the other directions. Default: in a planar model the normal of the plane; otherwise none.
             normal: Option<Vec3> => Option<Vec3>,
             /// A further force against the motion in proportion to its speed.
             viscous: Option<NumberDraft> => Option<Damping>,
@@ -274,11 +274,11 @@ macro_rules! elements {
             at: PointRef => PointId,
             /// Size; below zero it pushes the other way.
             force: NumberDraft => Force,
-            /// Where it pushes, of any length.
+            /// Direction of the force, of any length.
             along: Vec3 => Vec3,
             /// True if that direction turns with the body.
             axes: Option<Axes> => Option<Axes>,
-            /// What it is multiplied by over time.
+            /// Factor over time.
             law: Option<Law> => Option<Law>,
         }
 
@@ -292,7 +292,7 @@ macro_rules! elements {
             forward: Option<NumberDraft> => Option<Force>,
             /// Along z: the wheel load.
             up: Option<NumberDraft> => Option<Force>,
-            /// What all three are multiplied by over time.
+            /// Factor of all three components over time.
             law: Option<Law> => Option<Law>,
         }
 
@@ -306,7 +306,7 @@ macro_rules! elements {
             about: Vec3 => Vec3,
             /// True if that direction turns with the body.
             axes: Option<Axes> => Option<Axes>,
-            /// What it is multiplied by over time.
+            /// Factor over time.
             law: Option<Law> => Option<Law>,
         }
 
@@ -355,14 +355,14 @@ macro_rules! elements {
 }
 pub(crate) use elements;
 
-/// What a type of element is in a model.
+/// Element types with references resolved to ids.
 macro_rules! in_models {
     ($(
         $(#[doc = $doc:literal])* $variant:ident $name:literal $table:ident {
             $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
         }
     )*) => {
-        /// What an element is. Its formulas are in `docs/loads.md`.
+        /// Kind of an element. The formulas are in `docs/loads.md`.
         #[derive(Clone, Debug, PartialEq)]
         pub enum ElementKind {
             $($(#[doc = $doc])* $variant { $($(#[doc = $field_doc])* $field: $type,)* },)*
@@ -441,7 +441,7 @@ impl ElementKind {
         }
     }
 
-    /// What the size of a force is.
+    /// Dimension of the element's force.
     pub(crate) fn dimension(&self) -> Dimension {
         match self {
             Self::TorsionSpring { .. } | Self::BodyMoment { .. } | Self::Friction { .. } => Dimension::MOMENT,
@@ -468,7 +468,7 @@ impl ElementKind {
 }
 
 impl ElementKind {
-    /// How hard it pushes in the design configuration, N, as far as it says: a given force, a preload.
+    /// Magnitude of the force in the design configuration, N, if the element defines one: a given force or a preload.
     pub(crate) fn push(&self, model: &Model) -> f64 {
         let of = |n: NumberId| model.numbers[n.0].value.abs();
         match self {
@@ -489,7 +489,7 @@ impl ElementKind {
 }
 
 impl Model {
-    /// Where forces act on points: of each spring, bushing and given force its points, of what a wheel is on its centre.
+    /// Points at which forces act: both ends of a spring or bushing, the point of a given force, the centre of a wheel.
     pub fn pushed(&self) -> Vec<(ElementId, PointId)> {
         let points = |kind: &ElementKind| match kind {
             ElementKind::Spring { from, to, .. } | ElementKind::Bushing { from, to, .. } => vec![*from, *to],

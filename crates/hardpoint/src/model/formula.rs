@@ -13,7 +13,7 @@ pub struct NamedNumber {
     pub name: String,
     /// Value in the nominal design, m, rad or a plain number.
     pub value: f64,
-    /// What it measures.
+    /// Quantity of the value.
     pub quantity: Quantity,
 }
 
@@ -47,22 +47,22 @@ pub enum Target {
 /// A number of the model that follows others.
 #[derive(Clone, Debug)]
 pub struct Formula {
-    /// What it gives.
+    /// Number that the formula defines.
     pub of: Target,
     pub(crate) expression: Expression,
-    /// What the expression's names mean, and how many of the text's units make one SI unit of it.
+    /// Sources of the names in the expression, each with the number of units of the text per SI unit.
     pub(crate) inputs: Vec<(Source, f64)>,
-    /// Number of the text's units make one SI unit of the result.
+    /// Number of units of the text per SI unit of the result.
     pub(crate) per_unit: f64,
 }
 
 impl Formula {
-    /// What it was written as.
+    /// Text of the expression.
     pub fn text(&self) -> &str {
         self.expression.text()
     }
 
-    /// What it follows.
+    /// Numbers that the formula uses.
     pub fn sources(&self) -> impl Iterator<Item = Source> {
         self.inputs.iter().map(|i| i.0)
     }

@@ -13,11 +13,11 @@ use crate::space::{Angles, Real, Vec3};
 pub struct Measure {
     /// Name.
     pub name: String,
-    /// What is measured.
+    /// Kind of the measure.
     pub kind: MeasureKind,
 }
 
-/// Where an output comes from.
+/// Source of an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OutputSource {
     /// A measure of the model.
@@ -35,7 +35,7 @@ macro_rules! measures {
     Coordinate "coordinate" {
         /// The joint's name.
         joint: String => JointId,
-        /// Which of its coordinates; may be left out where it has only one.
+        /// Coordinate of the joint; may be left out if it has only one.
         coordinate: Option<String> => usize,
     } |m, MeasureWords { model, .. }|
         m.joints[joint.0].kind.coordinates[*coordinate].quantity.into(),
@@ -80,11 +80,11 @@ macro_rules! measures {
             Some(n) => format!("angle from {} to {} about {}", w.ray(from), w.ray(to), (w.direction)(*n)),
         };
 
-    /// How a body is turned, as one of the angles that say it.
+    /// Orientation of a body, as one of three angles.
     Orientation "orientation" {
         /// The body's name.
         body: String => BodyId,
-        /// Which angle.
+        /// The angle.
         angle: OrientationAngle => OrientationAngle,
         /// The body whose frame it is turned against. Default: the global axes.
         relative_to: Option<String> => Option<BodyId>,
@@ -151,9 +151,9 @@ macro_rules! measures {
         moving(m.known(*of).orders.saturating_sub(1)),
         format!("rate of {}", w.output(*of));
 
-    /// How much one measure changes per change of another while one driver alone moves, like a motion ratio.
+    /// Derivative of one measure by another while one driver alone moves, such as a motion ratio.
     Slope "slope" {
-        /// Of this measure, or `POINT.x`.
+        /// The measure, or `POINT.x`, that changes.
         of: String => OutputSource,
         /// Over this one.
         over: String => OutputSource,
@@ -211,7 +211,7 @@ macro_rules! measures {
     Reaction "reaction" {
         /// The joint.
         joint: String => JointId,
-        /// What of it.
+        /// Component of the reaction.
         part: ReactionPart => ReactionPart,
         /// The body that it pushes. Default: the second of the joint.
         on: Option<String> => Option<BodyId>,
@@ -257,7 +257,8 @@ macro_rules! measures {
         along: Option<Vec3> => Option<Vec3>,
     } |_, w| Dimension::MOMENT, moving(1), format!("moment on ground about {}", w.point(*about));
 
-    /// How much a measure changes per force on a point, by what elastic joints, springs and bushings give: linear about every position.
+    /// Derivative of a measure by a force on a point, from the compliance of elastic joints, springs and bushings,
+    /// linearised at every position.
     Compliance "compliance" {
         /// The measure, or `POINT.x`.
         of: String => OutputSource,
@@ -281,35 +282,35 @@ macro_rules! measures {
 }
 pub(crate) use measures;
 
-/// What a type of measure is in a model.
+/// Measure types with references resolved to ids.
 macro_rules! in_models {
     ($(
         $(#[doc = $doc:literal])* $variant:ident $name:literal {
             $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
         } |$model:pat_param, $words:pat_param| $dimension:expr, $known:expr, $says:expr;
     )*) => {
-        /// What a measure measures. Formulas and signs are in `docs/measures.md`.
+        /// Kind of a measure. Formulas and signs are in `docs/measures.md`.
         #[derive(Clone, Debug, PartialEq)]
         pub enum MeasureKind {
             $($(#[doc = $doc])* $variant { $($(#[doc = $field_doc])* $field: $type,)* },)*
-            /// Something about a wheel.
+            /// A measure of a wheel.
             Wheel {
-                /// Which wheel.
+                /// The wheel.
                 wheel: WheelId,
-                /// What about it.
+                /// Measured quantity.
                 what: WheelMeasure,
             },
-            /// Something about both wheels of an axle.
+            /// A measure of both wheels of an axle.
             Axle {
-                /// Which axle.
+                /// The axle.
                 axle: AxleId,
-                /// What about it.
+                /// Measured quantity.
                 what: AxleMeasure,
             },
         }
 
         impl Model {
-            /// What an output's value is.
+            /// Dimension of an output's value.
             pub fn dimension(&self, output: OutputSource) -> Dimension {
                 let OutputSource::Measure(k) = output else { return Dimension::LENGTH };
                 match &self.measures[k].kind {
@@ -320,7 +321,7 @@ macro_rules! in_models {
                 }
             }
 
-            /// How much can be known of an output: the motion ends at accelerations.
+            /// Time derivatives that are known of an output: the motion ends at accelerations.
             pub fn known(&self, output: OutputSource) -> KnownOrders {
                 let OutputSource::Measure(k) = output else { return POSITIONS };
                 match &self.measures[k].kind {
@@ -340,7 +341,7 @@ macro_rules! in_models {
                 }
             }
 
-            /// What a measure is, in words; `direction` says a global direction.
+            /// Describes a measure in words; `direction` formats a global direction.
             pub fn describe(&self, measure: &Measure, direction: &dyn Fn(Vec3) -> String) -> String {
                 let words = MeasureWords { model: self, direction };
                 match &measure.kind {
@@ -434,12 +435,12 @@ impl OnBodies for Combination {}
 /// All of an output that follows from positions is known.
 const POSITIONS: KnownOrders = KnownOrders { orders: 3, by_position: true };
 
-/// Of what moves, that many of value, rate and acceleration.
+/// Known orders of a quantity that moves: the first `orders` of value, rate and acceleration.
 fn moving(orders: usize) -> KnownOrders {
     KnownOrders { orders, by_position: false }
 }
 
-/// What measures depend on, in words.
+/// Builder of the descriptions of measures.
 #[derive(Clone, Copy)]
 struct MeasureWords<'a> {
     model: &'a Model,
@@ -512,7 +513,7 @@ pub enum Ray {
     Fixed {
         /// The body; ground for a global direction.
         body: BodyId,
-        /// Where it points.
+        /// Direction of the ray.
         axis: Direction,
     },
 }
@@ -611,7 +612,7 @@ impl MeasureKind {
     }
 }
 
-/// What of a joint's reaction is measured.
+/// Measured component of a joint's reaction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReactionPart {
     /// The size of its force.
@@ -686,9 +687,9 @@ impl ReactionPart {
 /// One of the angles that say how a body is turned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OrientationAngle {
-    /// Of which three it is one.
+    /// Sequence of the three angles.
     pub angles: Angles,
-    /// Which of them, 0 to 2.
+    /// Index of the angle in the sequence, 0 to 2.
     pub place: usize,
 }
 
@@ -741,15 +742,15 @@ impl OrientationAngle {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Combination {
     pub(crate) expression: Expression,
-    /// What its names mean, and how many of the text's units make one SI unit of each.
+    /// Sources of the names, each with the number of units of the text per SI unit.
     pub(crate) inputs: Vec<(OutputSource, f64)>,
-    /// Number of the text's units make one SI unit of the result.
+    /// Number of units of the text per SI unit of the result.
     pub(crate) per_unit: f64,
     pub(crate) dimension: Dimension,
 }
 
 impl Combination {
-    /// What it was written as.
+    /// Text of the expression.
     pub fn text(&self) -> &str {
         self.expression.text()
     }
@@ -769,7 +770,7 @@ impl Combination {
     }
 }
 
-/// What a number measures, as powers of length, angle, time and force; the user's units follow from it.
+/// Dimension of a number as powers of length, angle, time and force. The user's units follow from it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Dimension {
     /// Power of length.
@@ -835,10 +836,10 @@ impl From<Quantity> for Dimension {
     }
 }
 
-/// How much can be known of an output.
+/// Time derivatives that are known of an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KnownOrders {
-    /// Number of value, rate and acceleration.
+    /// Number of known derivatives, among value, rate and acceleration.
     pub orders: usize,
     /// True if it follows from positions alone: then it has second design derivatives, and slopes.
     pub by_position: bool,
@@ -869,7 +870,7 @@ impl Model {
         self.goes_by_driver(measure) || kind.is_load() || matches!(kind, MeasureKind::Compliance { .. })
     }
 
-    /// What the force of a driver is: that times what it drives is work.
+    /// Dimension of a driver's force: its product with the driven quantity is work.
     pub fn force_on(&self, driver: &Driver) -> Dimension {
         match self.driven(driver).quantity {
             Quantity::Angle => Dimension::MOMENT,

@@ -9,19 +9,19 @@ use super::{CaseId, Dimension, Model, OutputSource};
 pub struct Metric {
     /// Name.
     pub name: String,
-    /// Of which output.
+    /// Output that the metric reduces.
     pub of: OutputSource,
     /// Over which output; over time where there is none.
     pub over: Option<OutputSource>,
-    /// What is taken.
+    /// Reduction.
     pub take: Reduction,
     /// The part of the curve that counts: from where to where its abscissa goes, in SI; all of it where there is none.
     pub window: Option<[f64; 2]>,
-    /// Of which motion; of each where there is none.
+    /// Case whose motion is reduced; `None` for each of them.
     pub case: Option<CaseId>,
 }
 
-/// What of a curve a metric takes. Formulas: `docs/measures.md`.
+/// Reduction of a curve to one number. Formulas: `docs/measures.md`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reduction {
     /// The least value.
@@ -108,12 +108,12 @@ pub(crate) fn on_target<T: Real>(target: &[[f64; 2]], at: T) -> T {
 }
 
 impl Model {
-    /// What a metric's abscissa measures.
+    /// Dimension of a metric's abscissa.
     pub fn abscissa(&self, metric: &Metric) -> Dimension {
         metric.over.map_or(Dimension::NUMBER.rate(-1), |over| self.dimension(over))
     }
 
-    /// What a metric's value is.
+    /// Dimension of a metric's value.
     pub fn metric_dimension(&self, metric: &Metric) -> Dimension {
         let of = self.dimension(metric.of);
         match metric.take {

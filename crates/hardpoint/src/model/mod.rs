@@ -100,7 +100,7 @@ pub struct Model {
     pub name: String,
     /// Named numbers for formulas, in the order of the file.
     pub parameters: Vec<NamedNumber>,
-    /// What follows the design variables by formulas, each after those whose results it uses.
+    /// Formulas over the design variables, each after those whose results it uses.
     pub formulas: Vec<Formula>,
     /// Named points of the design configuration, then the unnamed ones that joints and points gave.
     pub hardpoints: Vec<Hardpoint>,
@@ -126,7 +126,7 @@ pub struct Model {
     pub elements: Vec<Element>,
     /// The numbers that these are given.
     pub numbers: Vec<ElementNumber>,
-    /// What everything falls with, m/s^2, global.
+    /// Acceleration of gravity, m/s^2, global.
     pub gravity: Vec3,
     /// Loads with or without inertia.
     pub load_mode: LoadMode,
@@ -144,11 +144,11 @@ pub struct Model {
     pub cases: Vec<Case>,
     /// Cases that sweep two drivers over a grid, in the order of the file.
     pub grids: Vec<Grid>,
-    /// What the design is to be optimised for, if that is known.
+    /// Settings of the optimisation, if the file has them.
     pub optimization: Option<OptimizationSettings>,
-    /// How far off the design may be made, if the file says more of it than its variables.
+    /// Settings of the tolerance study, if the file has more than the tolerances of its variables.
     pub tolerancing: Option<ToleranceSettings>,
-    /// Which designs are swept over, if the file says that.
+    /// Settings of the sweep, if the file has them.
     pub sweeping: Option<SweepSettings>,
 }
 
@@ -172,7 +172,7 @@ pub struct Body {
     pub frame: Pose,
 }
 
-/// Where an axis points.
+/// Direction of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Direction {
     /// A fixed direction, unit length.
@@ -216,7 +216,7 @@ pub struct Driver {
     pub name: String,
     /// The joint that it drives.
     pub joint: JointId,
-    /// Which of the joint type's coordinates.
+    /// Index of the coordinate in the joint's type.
     pub coordinate: usize,
     /// The coordinate over time, m or rad.
     pub law: Law,
@@ -227,15 +227,15 @@ pub struct Driver {
 pub struct DesignVariable {
     /// Name.
     pub name: String,
-    /// What b measures: m, rad, or a plain number.
+    /// Quantity of b: m, rad, or a plain number.
     pub quantity: Quantity,
-    /// What changes with it.
+    /// Changes of the design per unit of b.
     pub changes: Vec<Change>,
     /// True if rods keep their lengths while it moves their ends.
     pub fixed_length: bool,
     /// Between which values b may lie, in the unit of b; 0 lies between them.
     pub bounds: Option<[f64; 2]>,
-    /// How large a change of b is usual, in its unit; positive.
+    /// Typical size of a change of b, in its unit; positive.
     pub typical: Option<f64>,
     /// By how much b may be off when it is made, either way, in its unit; positive.
     pub tolerance: Option<f64>,
@@ -260,7 +260,7 @@ pub struct BodyPoint {
     pub name: String,
     /// The body that carries it.
     pub body: BodyId,
-    /// Where it is in the design configuration; a named hardpoint takes it along when it moves.
+    /// Location in the design configuration; the point follows a named hardpoint.
     pub at: HardpointId,
     /// True if it was only written inside one of those.
     pub unnamed: bool,
@@ -285,7 +285,7 @@ impl ChangePointPolicy {
 }
 
 impl Model {
-    /// Where a hardpoint is in the nominal design, m.
+    /// Position of a hardpoint in the nominal design, m.
     pub(crate) fn position(&self, h: HardpointId) -> Vec3 {
         self.hardpoints[h.0].position
     }
@@ -369,7 +369,7 @@ impl Model {
         shortest
     }
 
-    /// How far the nearest joint is from the global origin, m; 0 where there is none.
+    /// Distance of the nearest joint from the global origin, m; 0 without joints.
     pub fn distance_from_origin(&self) -> f64 {
         let joints = self.joints.iter().flat_map(|j| j.at.map(|m| self.position(m).norm()));
         let nearest = joints.fold(f64::INFINITY, f64::min);

@@ -1,4 +1,4 @@
-//! What a design is to be optimised for, and within which limits.
+//! Settings of an optimisation: goals, limits and search options.
 
 use super::{HardpointId, JointId, VariableId};
 
@@ -7,9 +7,9 @@ use super::{HardpointId, JointId, VariableId};
 pub struct OptimizationSettings {
     /// The variables that may change, each within its bounds.
     pub variables: Vec<VariableId>,
-    /// What is made as small as possible: the sum of all of them.
+    /// Goals; their sum is minimised.
     pub goals: Vec<Goal>,
-    /// What must hold.
+    /// Conditions that the design must satisfy.
     pub limits: Vec<Limit>,
     /// No motion may come nearer to a singular position than this [`Margin`](crate::motion::Margin).
     pub margin: Option<f64>,
@@ -26,19 +26,19 @@ pub struct Goal {
     pub name: String,
     /// The metric, by its place in [`Model::metrics`](super::Model::metrics). One that names no case counts in each of them.
     pub metric: usize,
-    /// What it is to be, in SI; as small as possible where there is none.
+    /// Target value, in SI; `None` to minimise the metric.
     pub target: Option<f64>,
-    /// How much one SI unit of it counts: the goal is `weight x value`, or `(weight x (value - target))^2`. Of an `rms` it is the square
-    /// as well, so that curves are fitted by least squares.
+    /// Weight of one SI unit of the metric: the goal is `weight x value`, or `(weight x (value - target))^2`. The goal
+    /// of an `rms` is squared as well, so that curves are fitted by least squares.
     pub weight: f64,
 }
 
-/// Something that must stay between two values.
+/// A quantity that must stay between two values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
     /// Name.
     pub name: String,
-    /// What.
+    /// Limited quantity.
     pub of: LimitTarget,
     /// It must not be less than this, m, rad or a plain number; equal to `most` where it must have one value.
     pub least: Option<f64>,
@@ -46,7 +46,7 @@ pub struct Limit {
     pub most: Option<f64>,
 }
 
-/// What a limit is put on.
+/// Quantity that a limit applies to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitTarget {
     /// A metric, by its place in [`Model::metrics`](super::Model::metrics). One that names no case is limited in each of them.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::number::Real;
 use crate::space::Vec3;
 
-/// What a body of even density comes to, per unit of density.
+/// Mass properties of a homogeneous body, per unit of density.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solid {
     /// Volume, m^3.
@@ -18,10 +18,10 @@ pub struct Solid {
     pub in_body: bool,
 }
 
-/// Why a surface bounds no solid.
+/// Reason why a surface does not enclose a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OpenSurface {
-    /// Number of edges have triangles on one side only, or such that go round the other way; and the ends of one of them.
+    /// Number of edges with triangles on one side only or with opposite orientations, and the ends of one of them.
     Edges(usize, [Vec3; 2]),
     /// It encloses nothing.
     Flat,
@@ -31,8 +31,8 @@ pub enum OpenSurface {
 const NOTHING: f64 = 1e-12;
 
 impl Solid {
-    /// Of a closed surface: of all edges as many triangles go along one way as the other. Whether they go round outwards or inwards is of no
-    /// account; a shell within another one that goes round the other way is a hollow.
+    /// Checks that a surface is closed: at every edge the number of triangles in both directions is the same. Outward
+    /// or inward orientation does not matter; a shell within another one with the opposite orientation is a cavity.
     ///
     /// # Errors
     /// Why it bounds nothing.

@@ -1,19 +1,19 @@
-//! Which designs are swept over, and what is kept of them.
+//! Settings of a sweep: the designs, and the results that are stored.
 
 use super::{Change, Model, VariableId};
 
 /// Many designs at once, and what is kept of each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepSettings {
-    /// How designs are chosen within the ranges.
+    /// Method that chooses designs within the ranges.
     pub method: SweepMethod,
     /// The variables that change, and how far. All others stay in the design configuration. Of a list, the variables that it has.
     pub ranges: Vec<SweepRange>,
     /// The designs of a list: per design, the values of the variables of `ranges`, as changes.
     pub listed: Vec<Vec<f64>>,
-    /// Number of designs are chosen; for indices that many pairs of them. Grids and lists know their number.
+    /// Number of designs; for Sobol indices the number of pairs of designs. Grids and lists define their own number.
     pub samples: usize,
-    /// What they are drawn from: the same number gives the same designs.
+    /// Seed of the random numbers; the same seed gives the same designs.
     pub seed: u64,
     /// The metrics that are kept, by their places in [`Model::metrics`]. One that names no case counts in each of them.
     pub metrics: Vec<usize>,
@@ -21,7 +21,7 @@ pub struct SweepSettings {
     pub curves: Vec<usize>,
 }
 
-/// How designs are chosen.
+/// Method that chooses the designs of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SweepMethod {
     /// Every combination of evenly spaced values.
@@ -37,10 +37,10 @@ pub enum SweepMethod {
     Listed,
 }
 
-/// How far a variable is swept.
+/// Range of a variable in a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweepRange {
-    /// Which.
+    /// The variable.
     pub variable: VariableId,
     /// From this change of it, in its unit.
     pub low: f64,
@@ -64,16 +64,16 @@ impl SweepMethod {
 }
 
 impl SweepSettings {
-    /// Number of designs are chosen where nothing else is said.
+    /// Default number of designs.
     pub const SAMPLES: usize = 1000;
-    /// What they are drawn from where nothing else is said.
+    /// Default seed.
     pub const SEED: u64 = 1;
     /// A factorial has that many values of a variable where nothing else is said.
     pub const LEVELS: usize = 3;
     /// More designs than these are surely a slip.
     pub const MOST: usize = 1_000_000_000;
 
-    /// What is asked where the file says nothing: evenly spread designs of all variables that have bounds, and every metric.
+    /// Default settings: Sobol designs of all variables that have bounds, and every metric.
     pub fn of_bounds(model: &Model) -> Self {
         let ranges = model.variables.iter().enumerate().filter_map(|(k, variable)| {
             let [low, high] = variable.bounds?;
@@ -90,7 +90,7 @@ impl SweepSettings {
         }
     }
 
-    /// What the columns of a list of designs span.
+    /// Ranges that the columns of a list of designs span.
     pub fn spanned(variables: &[VariableId], rows: &[Vec<f64>]) -> Vec<SweepRange> {
         let of = |(k, variable): (usize, &VariableId)| {
             let column = || rows.iter().map(move |row| row[k]);
@@ -101,7 +101,7 @@ impl SweepSettings {
         variables.iter().enumerate().map(of).collect()
     }
 
-    /// Number of designs that are; `None` where there are more than [`MOST`](Self::MOST).
+    /// Number of designs; `None` above [`MOST`](Self::MOST).
     pub fn count(&self) -> Option<usize> {
         let count = match self.method {
             SweepMethod::Factorial => self.ranges.iter().try_fold(1_usize, |n, r| n.checked_mul(r.levels)),
@@ -114,8 +114,8 @@ impl SweepSettings {
 }
 
 impl Model {
-    /// What the value of a variable is called in the design configuration, in its unit: a parameter's own value, and 0 for all that is only reported by how much it
-    /// changes. Its bounds and ranges are written so.
+    /// Value of a variable in the nominal design, in its unit, from which its bounds and ranges count: a parameter's
+    /// own value, and 0 for all variables that describe a change.
     pub fn drawn_value(&self, variable: VariableId) -> f64 {
         let variable = &self.variables[variable.0];
         let own = variable.changes.iter().find_map(|change| match change {

@@ -1,25 +1,25 @@
-//! How far off a design may be made, and what that must keep.
+//! Settings of a tolerance study: deviations of the design, and limits that it must keep.
 
 use super::{Limit, Model, VariableId};
 
-/// What is asked of the tolerances of a design.
+/// Settings of a tolerance study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ToleranceSettings {
-    /// What may be off, and by how much.
+    /// Tolerances of the variables.
     pub tolerances: Vec<Tolerance>,
-    /// Which of these go together.
+    /// Correlations of the variables.
     pub correlations: Vec<Correlation>,
     /// The metrics that are looked at, by their places in [`Model::metrics`]. One that names no case counts in each of them.
     pub metrics: Vec<usize>,
     /// The measures whose whole curves are looked at, by their places in [`Model::measures`].
     pub curves: Vec<usize>,
-    /// What must hold of metrics.
+    /// Limits of metrics.
     pub limits: Vec<Limit>,
-    /// Number of designs are drawn and solved exactly; none where it is 0.
+    /// Number of Monte Carlo designs that are solved exactly; 0 for none.
     pub samples: usize,
-    /// What they are drawn from: the same number gives the same designs.
+    /// Seed of the random numbers; the same seed gives the same designs.
     pub seed: u64,
-    /// How the loosest tolerances that keep the limits are sought, if they are.
+    /// Settings of the allocation of the loosest tolerances, if requested.
     pub allocation: Option<AllocationSettings>,
 }
 
@@ -30,27 +30,27 @@ pub struct Tolerance {
     pub name: String,
     /// One variable, or the coordinates of one point, whose deviation as a whole stays within the reach: in a disc or a sphere.
     pub variables: Vec<VariableId>,
-    /// What is written after `±`, in the variables' unit; positive.
+    /// Half width of the tolerance, `±`, in the variables' unit; positive.
     pub reach: f64,
-    /// How deviations scatter within it.
+    /// Distribution of the deviations within it.
     pub scatter: Scatter,
-    /// What it costs to hold it, relative to others: `cost / reach`. Those without a cost stay as they are.
+    /// Relative cost of the tolerance: `cost / reach`. Tolerances without a cost are not changed.
     pub cost: Option<f64>,
 }
 
-/// How deviations scatter.
+/// Distribution of deviations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scatter {
     /// Evenly within the reach, and never beyond: all that is known of a part that passed its inspection.
     Uniform,
     /// By a normal distribution whose reach is that many standard deviations (of each coordinate); some go beyond it.
     Normal {
-        /// How many.
+        /// Number of standard deviations within the tolerance.
         sigmas: f64,
     },
     /// By the same, without what goes beyond: an inspected process.
     Truncated {
-        /// Number of standard deviations of the distribution before it was cut off.
+        /// Number of standard deviations of the distribution before truncation.
         sigmas: f64,
     },
 }
@@ -69,7 +69,7 @@ impl Scatter {
     }
 }
 
-/// How two normally scattered variables go together.
+/// Correlation of two normally distributed variables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Correlation {
     /// Name.
@@ -80,19 +80,19 @@ pub struct Correlation {
     pub coefficient: f64,
 }
 
-/// How the loosest tolerances are sought.
+/// Settings of the search for the loosest tolerances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AllocationSettings {
-    /// What is to stay within the limits.
+    /// Deviations that must stay within the limits.
     pub rule: AllocationRule,
 }
 
-/// What of the deviations has to stay within the limits.
+/// Rule for the deviations that must stay within the limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AllocationRule {
-    /// That many standard deviations, added by their squares.
+    /// A number of standard deviations, from the root sum of squares.
     Rss {
-        /// How many.
+        /// Number of standard deviations.
         sigmas: f64,
     },
     /// All of them at once, each at its worst.
@@ -105,15 +105,15 @@ impl AllocationRule {
 }
 
 impl ToleranceSettings {
-    /// Number of designs are drawn where nothing else is said: the standard deviation is then known to 1 %.
+    /// Default number of designs: the standard deviation is then known to 1 %.
     pub const SAMPLES: usize = 10_000;
-    /// What they are drawn from where nothing else is said.
+    /// Default seed.
     pub const SEED: u64 = 1;
     /// A tolerance is that many standard deviations where nothing else is said: 0.27 % of the parts are beyond it.
     pub const SIGMAS: f64 = 3.0;
 
-    /// What is asked where only the variables say something: normal scatter of all that have a tolerance, every metric, every measure.
-    /// `None` where no variable has one.
+    /// Default settings if only variables have tolerances: normal distributions, every metric, every measure. `None` if
+    /// no variable has one.
     pub fn of_variables(model: &Model) -> Option<Self> {
         let one = |(k, variable): (usize, &super::DesignVariable)| {
             Some(Tolerance {

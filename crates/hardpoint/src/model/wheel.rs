@@ -59,9 +59,9 @@ impl Wheel {
 /// The plane in which an arm lets its outer joint go, as textbooks construct instant centres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArmPlane {
-    /// Of an arm: through its two pivots and its ball joint.
+    /// Plane of an arm: through its two pivots and its ball joint.
     Through([PointId; 3]),
-    /// Of a strut: through its top mount, the first point, perpendicular to the way to the second one.
+    /// Plane of a strut: through its top mount, the first point, and perpendicular to the line to the second one.
     Square([PointId; 2]),
 }
 
@@ -84,7 +84,7 @@ pub struct Axle {
     pub wheels: [WheelId; 2],
 }
 
-/// What is to be known of the vehicle besides its suspension.
+/// Vehicle data besides the suspension.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Vehicle {
     /// Distance of the axles, m.
@@ -107,7 +107,7 @@ impl Vehicle {
         }
     }
 
-    /// What a measure of a wheel needs to know of the vehicle and model files do not say, by their keys.
+    /// Keys of the vehicle data that a measure of a wheel needs and the model lacks.
     pub fn lacks(&self, need: WheelRequirement) -> impl Iterator<Item = &'static str> {
         let share = self.front_share(need);
         let of_pitching =
@@ -120,9 +120,9 @@ impl Vehicle {
 /// An end of the vehicle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VehicleEnd {
-    /// Where x grows.
+    /// The end in the direction of +x.
     Front,
-    /// Where x falls.
+    /// The end in the direction of -x.
     Rear,
 }
 
@@ -139,7 +139,7 @@ impl VehicleEnd {
     }
 }
 
-/// What a measure of a wheel needs besides the wheel.
+/// Data that a measure of a wheel needs besides the wheel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WheelRequirement {
     /// Nothing.
@@ -178,9 +178,9 @@ impl WheelRequirement {
 /// A side of the vehicle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Where y grows.
+    /// The side in the direction of +y.
     Left,
-    /// Where y falls.
+    /// The side in the direction of -y.
     Right,
 }
 
@@ -219,17 +219,17 @@ macro_rules! wheel_measures {
                 match self { $(Self::$variant => $text),* }
             }
 
-            /// What it is, in a sentence.
+            /// Description in one sentence.
             pub fn summary(self) -> &'static str {
                 match self { $(Self::$variant => $summary.trim_ascii()),* }
             }
 
-            /// What its value is.
+            /// Dimension of the value.
             pub fn dimension(self) -> Dimension {
                 match self { $(Self::$variant => $dimension),* }
             }
 
-            /// What it needs besides.
+            /// Data that it needs besides.
             pub fn $need(self) -> $of {
                 match self { $(Self::$variant => $what),* }
             }
@@ -248,7 +248,7 @@ const ANGLE: Dimension = Dimension::ANGLE;
 const ANGLE_PER_LENGTH: Dimension = ANGLE.over(LENGTH);
 
 wheel_measures! {
-    /// What can be measured at a wheel. Formulas and signs are in `docs/measures.md`.
+    /// Measures of a wheel. Formulas and signs are in `docs/measures.md`.
     WheelMeasure, needs: WheelRequirement;
     /// Heading of the wheel's plane; positive where its front is inboard.
     Toe "toe" ANGLE WheelRequirement::Nothing;
@@ -262,15 +262,15 @@ wheel_measures! {
     Caster "caster" ANGLE WheelRequirement::Kingpin;
     /// Lean of the kingpin in front view; positive where its top is inboard.
     KingpinInclination "kingpin_inclination" ANGLE WheelRequirement::Kingpin;
-    /// How far outboard of the kingpin the contact point is, on the ground.
+    /// Distance of the contact point outboard of the kingpin, on the ground.
     ScrubRadius "scrub_radius" LENGTH WheelRequirement::Kingpin;
-    /// How far outboard of the kingpin the wheel centre is, at its height.
+    /// Distance of the wheel centre outboard of the kingpin, at the height of the centre.
     SpindleOffset "spindle_offset" LENGTH WheelRequirement::Kingpin;
-    /// How far behind the kingpin the contact point is, on the ground.
+    /// Distance of the contact point behind the kingpin, on the ground.
     CasterTrail "caster_trail" LENGTH WheelRequirement::Kingpin;
     /// The same perpendicular to the kingpin, in the wheel's side view.
     MechanicalTrail "mechanical_trail" LENGTH WheelRequirement::Kingpin;
-    /// How far in front of the kingpin the wheel centre is, at its height.
+    /// Distance of the wheel centre in front of the kingpin, at the height of the centre.
     HubTrail "hub_trail" LENGTH WheelRequirement::Kingpin;
     /// Rise of the wheel centre since the design configuration.
     WheelTravel "wheel_travel" LENGTH WheelRequirement::Nothing;
@@ -312,11 +312,11 @@ wheel_measures! {
     InstantAxisY "instant_axis_y" NUMBER WheelRequirement::Bump;
     /// z component of the unit vector along the instant axis of the wheel carrier, about which a left wheel rises and a right one falls.
     InstantAxisZ "instant_axis_z" NUMBER WheelRequirement::Bump;
-    /// How far inboard of the contact point the instant centre in front view is.
+    /// Distance of the instant centre in front view inboard of the contact point.
     SwingArmFront "swing_arm_front" LENGTH WheelRequirement::Bump;
-    /// How far in front of the contact point the instant centre in side view is.
+    /// Distance of the instant centre in side view in front of the contact point.
     SwingArmSide "swing_arm_side" LENGTH WheelRequirement::Bump;
-    /// How much shorter the spring gets per wheel travel.
+    /// Shortening of the spring per wheel travel.
     MotionRatio "motion_ratio" NUMBER WheelRequirement::Spring;
     /// Global y of where the planes of both arms meet in front view, at the contact point's x.
     PlaneCentreFrontY "plane_centre_front_y" LENGTH WheelRequirement::Planes;
@@ -332,15 +332,15 @@ wheel_measures! {
     VirtualCaster "virtual_caster" ANGLE WheelRequirement::Steer;
     /// Lean of the virtual steering axis in front view; positive where its top is inboard.
     VirtualKingpinInclination "virtual_kingpin_inclination" ANGLE WheelRequirement::Steer;
-    /// How far outboard of the virtual steering axis the contact point is, on the ground.
+    /// Distance of the contact point outboard of the virtual steering axis, on the ground.
     VirtualScrubRadius "virtual_scrub_radius" LENGTH WheelRequirement::Steer;
-    /// How far outboard of the virtual steering axis the wheel centre is, at its height.
+    /// Distance of the wheel centre outboard of the virtual steering axis, at the height of the centre.
     VirtualSpindleOffset "virtual_spindle_offset" LENGTH WheelRequirement::Steer;
-    /// How far behind the virtual steering axis the contact point is, on the ground.
+    /// Distance of the contact point behind the virtual steering axis, on the ground.
     VirtualCasterTrail "virtual_caster_trail" LENGTH WheelRequirement::Steer;
     /// The same perpendicular to the virtual steering axis, in the wheel's side view.
     VirtualMechanicalTrail "virtual_mechanical_trail" LENGTH WheelRequirement::Steer;
-    /// How far in front of the virtual steering axis the wheel centre is, at its height.
+    /// Distance of the wheel centre in front of the virtual steering axis, at the height of the centre.
     VirtualHubTrail "virtual_hub_trail" LENGTH WheelRequirement::Steer;
     /// Part of the braking dive that the front suspension's geometry takes, 1 for all of it.
     AntiDive "anti_dive" NUMBER WheelRequirement::Braking(VehicleEnd::Front);
@@ -353,7 +353,7 @@ wheel_measures! {
 }
 
 wheel_measures! {
-    /// What can be measured at an axle. Formulas and signs are in `docs/measures.md`.
+    /// Measures of an axle. Formulas and signs are in `docs/measures.md`.
     AxleMeasure, goes_by_driver: bool;
     /// Distance of the contact points across the vehicle.
     Track "track" LENGTH false;
@@ -377,7 +377,7 @@ impl WheelMeasure {
         self.needs() == WheelRequirement::Kingpin
     }
 
-    /// Of a virtual steering axis, what the same is of a kingpin.
+    /// Measure of the kingpin that corresponds to this one of the virtual steering axis.
     pub(crate) fn of_kingpin(self) -> Option<Self> {
         Some(match self {
             Self::VirtualCaster => Self::Caster,

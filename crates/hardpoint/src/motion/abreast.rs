@@ -36,7 +36,7 @@ pub(crate) type ProgramOf<'p> = Box<dyn Fn(usize) -> Option<Arc<StepProgram>> + 
 
 /// Takes up to eight steps of a stepper at once.
 pub(crate) struct TimeBatch<'p> {
-    /// Where a tape may come from.
+    /// Source of programs.
     programs: Option<ProgramOf<'p>>,
     /// The values of the design's variables.
     design: Vec<f64>,
@@ -76,7 +76,7 @@ impl<'p> TimeBatch<'p> {
         }
     }
 
-    /// What was solved last.
+    /// Result of the last solution.
     ///
     /// # Panics
     /// Where nothing was.
@@ -90,9 +90,10 @@ impl<'p> TimeBatch<'p> {
         self.is_own.then_some(ResultBlock { states, derivatives })
     }
 
-    /// Output time k comes next: moves on from where the stepper is to as many of the next output times as can be solved at once;
-    /// returns how many, 0 where they are to be walked. Output times 8n to 8n + 7 lie side by side, so that these end with such a
-    /// group; those of it that are before k are solved once more, for nothing. Results go to the room that there is, or are kept here.
+    /// Advances from the stepper's position to as many of the next output times, from output time k on, as a program
+    /// can solve at once. Returns their number; 0 if the kernel has to solve them one by one. Output times 8n to 8n + 7
+    /// are stored together, so a batch ends with such a group; those of the group before k are solved again and
+    /// ignored. Results go to `room` if there is one; otherwise they are stored here.
     #[inline]
     pub fn advance<'r>(
         &mut self,
@@ -168,7 +169,7 @@ impl<'p> TimeBatch<'p> {
         for (channel, known) in tape.known_of_times_mut().iter_mut().enumerate() {
             known.copy_from_slice(one.forecast.known_of(channel).as_flattened());
         }
-        // What was found before stays, whatever these come to.
+        // Earlier results are not overwritten, even if these steps are rejected.
         let room = room.filter(|room| first == 0 && room.each_ref().map(|part| part.len()) == tape.sizes());
         self.is_own = room.is_none();
         let [states, derivatives] = room.unwrap_or_else(|| {
@@ -326,7 +327,7 @@ fn determinants_are_even(
 }
 
 impl Stepper<'_> {
-    /// Is where a tape has come to in lane `last`, having passed all before it from lane `first` on.
+    /// Moves the stepper to the position of the program in lane `last`, after all lanes from `first` on.
     #[inline(always)]
     fn continue_from(
         &mut self,

@@ -40,30 +40,30 @@ const DIRECTIONS: usize = 3;
 /// A search solves dense systems: larger ones are not tried, so that a failure is reported within seconds.
 const LARGEST_SEARCH: usize = 150;
 
-/// How a mechanism that did not close in the design configuration was closed.
+/// Assembly of a mechanism that was open in the design configuration.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Assembly {
-    /// What was open in the drawing, largest gaps first.
+    /// Open constraints of the design configuration, largest gaps first.
     pub gaps: Vec<Gap>,
     /// The bodies that moved, as far as they did.
     pub moved: Vec<AssemblyShift>,
-    /// Number of assemblies found around the drawing, where the path from it leads to none; the nearest was taken. 0 where the path
-    /// closed the mechanism.
+    /// Number of assemblies found around the design configuration if the path from it leads to none; the nearest was
+    /// chosen. 0 if the path closed the mechanism.
     pub found_nearby: usize,
 }
 
 /// A constraint that is open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
-    /// What is open.
+    /// Open constraint.
     pub of: Closing,
     /// By how much, m or as a cosine.
     pub size: f64,
-    /// What that is.
+    /// Quantity of the gap.
     pub quantity: Quantity,
 }
 
-/// What keeps a mechanism together.
+/// A constraint that closes a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Closing {
     /// A joint.
@@ -74,10 +74,10 @@ pub enum Closing {
     Coupler(usize),
 }
 
-/// How far the assembly moved a body from where it was drawn.
+/// Displacement of a body by the assembly, relative to the design configuration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AssemblyShift {
-    /// Which body.
+    /// The body.
     pub body: BodyId,
     /// By how much its frame's origin moved, m.
     pub distance: f64,
@@ -337,7 +337,7 @@ impl Stepper<'_> {
         gaps.into_iter().map(|(gap, _)| gap).collect()
     }
 
-    /// How far the bodies are from where they were drawn.
+    /// Displacements of the bodies relative to the design configuration.
     fn moved(&self, least: f64) -> Vec<AssemblyShift> {
         let bodies = self.model.bodies.iter().enumerate().skip(1);
         let moved = bodies.map(|(b, body)| {
@@ -354,8 +354,8 @@ impl Stepper<'_> {
 }
 
 impl Stepper<'_> {
-    /// How near the joints can come: least squares over the residuals of all rows of the block that
-    /// could not be closed, from where the path ended; of a singular drawing also from positions around it.
+    /// Smallest gaps that the joints can reach: least squares over the residuals of all rows of the block that could
+    /// not be closed, from the end of the path; for a singular design configuration also from positions around it.
     pub fn least_gaps(&mut self, block: BlockId) -> Vec<Gap> {
         self.state.gap_left = [0.0; 2];
         self.restore();

@@ -140,7 +140,8 @@ impl Stepper<'_> {
         Some(Crossing { times: [from, to], at, path, blocks, ends, values })
     }
 
-    /// Solves where it is once more: near a singular position what Newton leaves, a square, is magnified.
+    /// Solves the current position again: near a singular position the remainder of Newton's method, a square, is
+    /// magnified.
     fn polish(&mut self) -> Result<(), StepRejection> {
         self.solve_within(f64::INFINITY)
     }

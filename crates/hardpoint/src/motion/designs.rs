@@ -23,7 +23,7 @@ use super::{Motion, SolverStatistics};
 /// A forecast that was so good at the last step will be good enough for one correction at the next one.
 const GOOD: f64 = 0.1 * QUADRATIC;
 
-/// What the drivers do up to an output time: the same for all designs.
+/// Values of the drivers up to an output time: the same for all designs.
 #[derive(Clone, Debug)]
 struct Drive {
     /// Since the output time before.
@@ -34,16 +34,16 @@ struct Drive {
 
 /// Designs on their way through time.
 pub(crate) struct DesignBatch<'m> {
-    /// Of the nominal design, at the first output time.
+    /// Stepper of the nominal design, at the first output time.
     nominal: Stepper<'m>,
-    /// What the drivers do at every output time, up to the first where they do not go there evenly.
+    /// Values of the drivers at every output time, up to the first interval in which they do not move smoothly.
     course: Vec<Drive>,
     drivers: Vec<[f64; ORDERS]>,
-    /// Where tapes come from.
+    /// Source of programs.
     programs: ProgramOf<'m>,
     /// With one correction and two; and whether they know the present designs.
     tapes: [Option<(Tape, bool)>; MOST_CORRECTIONS],
-    /// Which of them has solved the last step, and by how much the forecast missed then.
+    /// Index of the program that solved the last step, and the error of its prediction.
     by: usize,
     missed: f64,
     designs: Vec<Vec<f64>>,
@@ -64,7 +64,7 @@ pub(crate) struct DesignBatch<'m> {
     keeps: bool,
 }
 
-/// What was found at an output time.
+/// Results at an output time.
 pub(crate) struct BatchResults<'f> {
     pub tape: &'f Tape,
     /// The numbers of all bodies but ground, and their derivatives.
@@ -118,13 +118,13 @@ impl<'m> DesignBatch<'m> {
         motion.coordinates = of_design(&self.coordinates, self.nominal.topology.coordinates.len());
     }
 
-    /// What has solved the last step.
+    /// Program that solved the last step.
     fn tape(&self) -> &Tape {
         let (tape, _) = self.tapes[self.by].as_ref().expect("the tape that is at work");
         tape
     }
 
-    /// Which variable moves which body, in the order of the derivatives.
+    /// Pairs of a variable and a body that it moves, in the order of the derivatives.
     pub fn moved(&self) -> Vec<(VariableId, BodyId)> {
         self.tape().moved().to_vec()
     }
@@ -174,7 +174,7 @@ impl<'m> DesignBatch<'m> {
         Some(effort)
     }
 
-    /// Where the numbers of all bodies at output time k stand.
+    /// Range of the values of all bodies at output time k.
     fn states_at(&self, k: usize) -> Range<usize> {
         let width = self.tape().sizes()[0];
         let first = if self.keeps { width * k } else { 0 };
@@ -285,8 +285,8 @@ impl<'m> DesignBatch<'m> {
     }
 }
 
-/// What the drivers do, as long as nothing else happens between two output times than these show, and as long as no singular position
-/// is known to be near where they begin; value, speed and acceleration of each at every output time.
+/// Values of the drivers, as long as they show all that happens between two output times and no singular position is
+/// known to be near the start; value, speed and acceleration of each driver at every output time.
 fn course(nominal: &mut Stepper<'_>) -> (Vec<Drive>, Vec<[f64; ORDERS]>) {
     let (mut course, mut drivers) = (Vec::new(), Vec::new());
     for (k, &t) in nominal.model.times.iter().enumerate() {

@@ -14,7 +14,7 @@ const LONG: usize = 10_000;
 /// ... if that makes it shorter by this factor.
 const SHORTER: usize = 2;
 
-/// What even steps are solved by: the kernel, which walks the plan, or a straight-line program that was recorded of it.
+/// Solver of smooth steps: the kernel, which traverses the plan, or a straight-line program recorded from it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Execution {
     /// By what pays: programs where there are steps enough, as machine code where there can be any.
@@ -29,7 +29,7 @@ pub enum Execution {
 }
 
 impl Execution {
-    /// What `HARDPOINT_PATH` calls it: `scalar`, `tape` or `code`.
+    /// Execution by its name in `HARDPOINT_PATH`: `scalar`, `tape` or `code`.
     pub fn named(name: &str) -> Option<Self> {
         match name {
             "scalar" => Some(Self::Kernel),
@@ -40,7 +40,7 @@ impl Execution {
     }
 }
 
-/// How the even steps of a motion are solved, eight output times at once or one by one.
+/// Method that solves the smooth steps of a motion, eight output times at once or one by one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum StepMethod {
     /// By programs as machine code.
@@ -161,12 +161,12 @@ impl Runnable {
         Self { inputs, sizes, form }
     }
 
-    /// Number of numbers it is given.
+    /// Number of inputs.
     pub fn inputs(&self) -> usize {
         self.inputs
     }
 
-    /// Number of numbers it gives, in every part.
+    /// Number of outputs in every part.
     pub fn sizes(&self) -> [usize; PARTS] {
         self.sizes
     }
@@ -203,13 +203,13 @@ impl Staged {
     }
 }
 
-/// What a program works in.
+/// Working memory of a program.
 #[derive(Debug, Default)]
 pub(crate) struct ProgramMemory {
     scratch: Scratch,
     /// One for every program.
     interpreters: Vec<Option<Interpreter>>,
-    /// What they give.
+    /// Outputs of the program.
     outputs: Vec<Lanes>,
     pieces: PiecesRoom,
 }

@@ -1,4 +1,4 @@
-//! Where the mechanism will be next, from where it has been.
+//! Prediction of the next positions from the previous ones.
 //!
 //! The last three accepted positions, each with its speeds and accelerations, are nine conditions on a polynomial of degree
 //! eight per coordinate (Hermite's interpolation, in Newton's form). Newton's method then starts so near to the solution that
@@ -29,7 +29,7 @@ const FARTHEST: f64 = 8.5;
 /// Polynomials through the last accepted positions.
 #[derive(Clone)]
 pub(super) struct Predictor {
-    /// What is predicted: unknown coordinates, and quaternions of unknown balls.
+    /// Predicted quantities: unknown coordinates, and quaternions of unknown ball joints.
     channels: Vec<Channel>,
     /// Times of the positions, the newest first; how many there are.
     times: [f64; NODES],
@@ -41,7 +41,7 @@ pub(super) struct Predictor {
     differences: Vec<[f64; NODES * ORDERS]>,
 }
 
-/// What is predicted.
+/// A predicted quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Channel {
     Coordinate(CoordinateId),
@@ -65,7 +65,7 @@ impl Channel {
         channels
     }
 
-    /// Where a state is: value, first and second derivative.
+    /// Value, first and second derivative of the channel in a state.
     #[inline(always)]
     pub fn of<T: Real>(self, state: &State<T>) -> [T; ORDERS] {
         let [speeds, accelerations, _] = &state.motion.speeds;
@@ -92,7 +92,7 @@ impl Channel {
         }
     }
 
-    /// What is in a saved position.
+    /// Value of the channel in a saved position.
     pub fn saved(self, q: &[f64], balls: &[Quat<f64>]) -> f64 {
         match self {
             Self::Coordinate(c) => q[c.0],
@@ -131,7 +131,7 @@ impl Predictor {
         self.count = 0;
     }
 
-    /// Number of positions it depends on.
+    /// Number of positions that the prediction uses.
     pub fn known(&self) -> usize {
         self.count
     }
@@ -164,13 +164,13 @@ impl Predictor {
         self.count = usize::min(self.count + 1, NODES);
     }
 
-    /// How long before the newest position each of those was that count `h` beyond it.
+    /// Times of the nodes before the newest position, for a prediction `h` beyond it.
     #[inline(always)]
     pub fn nodes(&self, h: f64) -> ([f64; NODES], usize) {
         (self.times.map(|t| t - self.times[0]), self.counting(h))
     }
 
-    /// What is known of a channel, position by position, the newest first.
+    /// Values of a channel at the nodes, the newest first.
     #[inline(always)]
     pub fn known_of(&self, channel: usize) -> [[f64; ORDERS]; NODES] {
         std::array::from_fn(|n| self.values[n][channel])
@@ -239,7 +239,7 @@ impl Predictor {
 /// Output times may be apart by this part of a step less or more: the forecast is corrected anyway.
 const AS_FAR: f64 = 1e-9;
 
-/// What every position that is known counts for at eight times ahead: at equal steps always the same.
+/// Weights of the nodes at eight times ahead: constant for equal steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Weights {
     nodes: [f64; NODES],

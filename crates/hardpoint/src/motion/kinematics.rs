@@ -48,8 +48,8 @@ pub(crate) struct State<T> {
     /// Per body: pose.
     /// X = (A, r), the paper's x'-y'-z' frame: `X_p M_p J(q) M_c^-1` (4).
     pub pose: Vec<Pose<T>>,
-    /// Of orders 0, 1, 2: speeds of the coordinates and twists V of the bodies, their accelerations, and their jerks.
-    /// In theory q. and V, q.. and A = dV/dt, q... and B = dA/dt: (9), (10), (21).
+    /// Motion at orders 0, 1, 2: speeds of the coordinates and twists V of the bodies, their accelerations, and their
+    /// jerks. In theory q' and V, q'' and A = dV/dt, q''' and B = dA/dt: (9), (10), (21).
     pub motion: Flow<T>,
     /// Per order and coordinate: world unit twist x, and its first two time derivatives.
     /// `[n][a]`: x_a(n), a column of the Jacobian; rad, and m at the world origin, per unit of the coordinate.
@@ -90,7 +90,7 @@ pub(crate) struct State<T> {
     pub iterations: usize,
 }
 
-/// Number of corrections are distinguished.
+/// Number of corrections whose sizes are recorded separately.
 pub(super) const CORRECTIONS: usize = 3;
 
 /// By how much the constraints fail.
@@ -102,7 +102,7 @@ pub(crate) struct Residuals {
     pub scaled: f64,
 }
 
-/// Why a position was not found.
+/// Reason why a position was not found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum PositionFailure {
     /// The Jacobian of this block is singular.
@@ -332,7 +332,7 @@ impl<T: Real> State<T> {
         sum
     }
 
-    /// What the constraint of a row measures.
+    /// Value of the coordinate that a row constrains.
     #[inline(always)]
     fn value(&self, topology: &Topology, r: RowId) -> T {
         topology.constraint(r).value(&self.ends[topology[r].closure.0], self.near[r.0])
@@ -638,14 +638,15 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// What the equations of this position have in common.
+    /// Linear equations of this position.
     #[inline(always)]
     pub fn linear(&mut self) -> Linear<'_, T> {
         let Self { x, l, factors, rhs, .. } = self;
         Linear { x, l, factors, rhs }
     }
 
-    /// What only sensitivities need: second derivatives of twists and wrenches, and all of the rows left out.
+    /// Computes what only sensitivities need: second derivatives of twists and wrenches, and the rates of all redundant
+    /// rows.
     pub fn finish_rates(&mut self, topology: &Topology) {
         self.finish_wrenches(topology);
         self.rates_of_twists::<2>(topology, topology.link_ids());

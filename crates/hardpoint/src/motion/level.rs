@@ -15,10 +15,11 @@ use crate::linalg::Factors;
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, ClosureId, Link, LinkId, LinkStep, RowId, RowTerm, Topology};
 
-/// How often the product of an m-th and an (n - m)-th derivative is in the n-th of a product: `C(n, m)`.
+/// Binomial coefficient `C(n, m)`: the factor of the product of an m-th and an (n - m)-th derivative in the n-th
+/// derivative of a product.
 pub(crate) const BINOMIAL: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 2.0, 1.0]];
 
-/// What the equations of a position have in common, whatever they are solved for.
+/// Linear equations of a position, common to all quantities that are solved for: unit twists, wrenches, factors.
 pub(crate) struct Linear<'s, T> {
     /// Per order and coordinate: world unit twists x and their time derivatives.
     pub x: &'s [Vec<Twist<T>>; 3],
@@ -30,7 +31,7 @@ pub(crate) struct Linear<'s, T> {
     pub rhs: &'s mut [T],
 }
 
-/// What the equation is solved for, order by order: a motion, or how it changes.
+/// Unknowns of the equation of order n: a motion, or its derivative by a design variable.
 #[derive(Clone, Debug)]
 pub(crate) struct Flow<T> {
     /// Per order and coordinate: u. Those of driven coordinates are given.
@@ -57,7 +58,7 @@ pub(crate) struct Flow<T> {
 }
 
 impl<T: Real> Flow<T> {
-    /// Of that many bodies that stand.
+    /// Zero flow of this number of bodies.
     pub fn new(topology: &Topology, bodies: usize, drives: bool) -> Self {
         let none = Twist::zero();
         Self {
@@ -105,7 +106,7 @@ impl<T: Real> Flow<T> {
         }
     }
 
-    /// What these links have of lower orders: `z_p(n) - z_c(n) + sum_{m=1..n} C(n,m) sum_a x_a(m) u_a(n-m)`.
+    /// Adds the lower-order terms of these links: `z_p(n) - z_c(n) + sum_{m=1..n} C(n,m) sum_a x_a(m) u_a(n-m)`.
     #[inline(always)]
     fn turn_axes<const N: usize>(
         &mut self,
@@ -134,8 +135,9 @@ impl<T: Real> Flow<T> {
         }
     }
 
-    /// What the rows of block b have left to ask: `f(n) - sum_{m=1..n} C(n,m) l(m) . (D_j(n-m) - D_i(n-m)) - l . (z_j(n) - z_i(n))`,
-    /// summed over the terms of couplers.
+    /// Adds the lower-order terms of the rows of block b:
+    /// `f(n) - sum_{m=1..n} C(n,m) l(m) . (D_j(n-m) - D_i(n-m)) - l . (z_j(n) - z_i(n))`, summed over the terms of
+    /// couplers.
     #[inline(always)]
     fn turn_wrenches<const N: usize>(&mut self, topology: &Topology, b: BlockId, l: &[Vec<Wrench<T>>; 3]) {
         for &c in topology[b].closures.iter().filter(|_| N > 0) {
@@ -196,8 +198,8 @@ impl<T: Real> Flow<T> {
         self.carry::<N>(topology, links, &x[0], |_| true);
     }
 
-    /// Solves the equation of order n in block b: (24), where `demand` and `moves` say what is asked. With the orders below known, what
-    /// is left of it is one linear problem, `J u(n) = rhs`.
+    /// Solves the equation of order n in block b: (24), with the right-hand sides in `demand` and `moves`. With the
+    /// lower orders known it is one linear problem, `J u(n) = rhs`.
     #[inline(always)]
     pub fn solve<const N: usize>(&mut self, topology: &Topology, b: BlockId, linear: Linear<'_, T>) {
         let (block, Linear { x, l, factors, rhs }) = (&topology[b], linear);

@@ -1,4 +1,4 @@
-//! How far from a singular position: the conditioning of the Jacobian over time.
+//! Distance from singular positions: the conditioning of the Jacobian over time.
 
 use crate::constraint::{MarkerPair, Row};
 use crate::joint::Freedom;
@@ -11,7 +11,7 @@ use super::kinematics::State;
 /// Blocks with more unknowns than this are judged by their pivots alone.
 const MOST_UNKNOWNS: usize = 200;
 
-/// How far from singular the Jacobian is.
+/// Distance of the Jacobian from singularity.
 ///
 /// Every constraint is measured by the most that it could resist in any coordinate of its loop if that coordinate's axis
 /// pointed as it should: a force by its lever arm, a moment by itself, a slide by the force. The margin is the least change

@@ -35,8 +35,7 @@ use crate::blocks::{Blocks, ResultRow};
 use crate::model::{BodyId, JointId, Model};
 use crate::space::{Mat3, Quat, Real, Vec3};
 
-/// How a body is and moves, in global components; position, velocity and acceleration are those of
-/// its frame's origin.
+/// State of a body in global components; position, velocity and acceleration are those of the origin of its frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyState {
     /// Position, m.
@@ -63,7 +62,7 @@ impl BodyState {
         a: Vec3::ZERO,
         alpha: Vec3::ZERO,
     };
-    /// Number of numbers it is.
+    /// Number of values.
     pub(crate) const NUMBERS: usize = 24;
 
     /// r, the columns of A, v, omega, a and alpha, one after the other.
@@ -86,7 +85,7 @@ impl BodyState {
         Quat::from_rotation(self.rotation).to_array()
     }
 
-    /// Of body b, where a state is.
+    /// State of body b.
     #[inline(always)]
     pub(crate) fn of<T: Real>(state: &State<T>, b: usize) -> Self {
         let numbers = Self::numbers_of(state, b);
@@ -106,7 +105,7 @@ impl BodyState {
         (1..state.pose.len()).flat_map(|b| Self::numbers_of(state, b)).collect()
     }
 
-    /// Of body b: r, the columns of A, v, omega, a and alpha, one after the other.
+    /// Values of body b: r, the columns of A, v, omega, a and alpha, one after the other.
     #[inline(always)]
     fn numbers_of<T: Real>(state: &State<T>, b: usize) -> [T; Self::NUMBERS] {
         let [v, a, _] = &state.motion.twists;
@@ -128,23 +127,23 @@ impl BodyState {
 pub struct Motion {
     /// Output times that were solved, s.
     pub times: Vec<f64>,
-    /// Number of bodies there are, ground included.
+    /// Number of bodies, ground included.
     pub bodies: usize,
-    /// Of all bodies but ground, one after the other.
+    /// States of all bodies but ground, one after the other.
     pub(crate) states: Blocks,
-    /// Of the tree.
+    /// Coordinates of the tree.
     pub(crate) coordinates: Blocks,
     /// Per output time, how far from a singular position; empty where only the bodies were requested.
     pub margins: Vec<Margin>,
-    /// How it was closed before it moved, if it was open in the design configuration.
+    /// Assembly before the motion, if the mechanism was open in the design configuration.
     pub assembly: Option<Assembly>,
     /// The singular position next after its end, if one is near.
     pub beyond: Option<SingularPosition>,
     /// Per output time, the angles that are counted along the path, with all turns, rad; empty where the path was not followed.
     pub(crate) counted: Vec<f64>,
-    /// What it took.
+    /// Statistics of the solver.
     pub effort: SolverStatistics,
-    /// What solved the steps that are even.
+    /// Method that solved the smooth steps.
     pub solved_by: Option<StepMethod>,
 }
 
@@ -177,9 +176,9 @@ impl<'m> States<'m> {
 /// A singular position ahead of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SingularPosition {
-    /// How long after the last output time, s.
+    /// Time after the last output time, s.
     pub after: f64,
-    /// How far each driver moves until then, m or rad.
+    /// Travel of each driver until then, m or rad.
     pub travel: Vec<f64>,
     /// [`StopKind::Limit`], or [`StopKind::BranchChange`] where two motions meet.
     pub kind: StopKind,
@@ -187,7 +186,7 @@ pub struct SingularPosition {
     pub joints: Vec<JointId>,
 }
 
-/// What a solution took, and how well the constraints hold.
+/// Effort of a solution, and the residuals of the constraints.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolverStatistics {
     /// Output steps solved.
@@ -245,7 +244,7 @@ impl Motion {
         self.coordinates.row(k).all()
     }
 
-    /// Number of output times were solved.
+    /// Number of solved output times.
     pub fn len(&self) -> usize {
         self.times.len()
     }

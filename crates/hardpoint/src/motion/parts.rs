@@ -85,7 +85,7 @@ impl PlanGeometry<f64> {
         &self.laws[d]
     }
 
-    /// How far driver d gets from a value, at most, from one time to another.
+    /// Maximum distance of driver d from a value, between two times.
     pub fn travel(&self, d: usize, from: f64, to: f64, value: f64) -> f64 {
         self.laws[d].over(from, to).value.reach_from(value)
     }

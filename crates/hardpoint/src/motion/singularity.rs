@@ -1,4 +1,4 @@
-//! How far ahead the nearest singular position lies, whatever the laws of the drivers do on the way.
+//! Distance to the nearest singular position ahead, independent of the drivers' laws.
 //!
 //! Near a singular position the response of a loop to a load, `s = J^-1 r` with r a fixed disturbance of its rows, grows like
 //! `(u* - u)^-m` along the motion: m = 1/2 at a limit, where the loop cannot be closed beyond, and m = 1 where two motions meet.
@@ -25,7 +25,7 @@ use super::turns::TurnCounter;
 /// Loads on the rows. One could miss what is singular; two have not (270 hard cases in the plane and in space).
 const LOADS: usize = 2;
 
-/// What is known about the surroundings of a position.
+/// Neighbourhood of a position: the response of the mechanism to its drivers.
 #[derive(Clone, Debug)]
 pub(super) struct Surroundings {
     /// Per direction and block: the inverse distance to the nearest singular position, per unit of the direction.
@@ -42,7 +42,7 @@ pub(super) struct Surroundings {
     pub sliding: Vec<Vec<[f64; 2]>>,
     /// Per direction: the fastest unknown coordinate, in its unit; of curves the parameter, in lengths between their points.
     pub fastest: Vec<f64>,
-    /// Number of the directions are known.
+    /// Number of known directions.
     known: usize,
 }
 
@@ -51,7 +51,7 @@ pub(super) struct Surroundings {
 pub(super) struct SingularityAhead {
     /// The block that becomes singular.
     pub block: BlockId,
-    /// How far ahead, in units of the direction; negative where it lies behind.
+    /// Distance ahead, in units of the direction; negative if the position is behind.
     pub distance: f64,
     /// m of (22) and (23): the response goes like distance^-m, with m about 1/2 at a limit, 1 where two motions meet.
     pub power: f64,
@@ -107,7 +107,8 @@ impl Surroundings {
         self.fastest.resize(directions, zero);
     }
 
-    /// What part of the distance to the nearest singular position a step may be that moves each direction by so much at most.
+    /// Admissible step as a fraction of the distance to the nearest singular position, if each direction moves by at
+    /// most `travel`.
     pub fn part_of_way(&self, travel: &[f64]) -> f64 {
         let mut most = 0.0;
         for b in 0..self.nearness.first().map_or(0, Vec::len) {
@@ -122,7 +123,7 @@ impl Surroundings {
         most
     }
 
-    /// How far the fastest coordinate goes, in its unit, when each direction moves by so much at most.
+    /// Displacement of the fastest coordinate, in its unit, if each direction moves by at most `travel`.
     pub fn move_of_fastest(&self, travel: &[f64]) -> f64 {
         travel[..self.known].iter().zip(&self.fastest).map(|(du, speed)| part(*du, *speed)).sum()
     }
@@ -236,8 +237,8 @@ impl Workspace {
         self.swap(state);
     }
 
-    /// The singular position that the motion comes to first as it goes, by the rates that the drivers have: that of the block with
-    /// the strongest response.
+    /// First singular position that the motion reaches at the present speeds of the drivers: that of the block with the
+    /// strongest response.
     pub fn ahead(
         &mut self,
         topology: &Topology,
@@ -310,8 +311,8 @@ impl Workspace {
         (c1 / c0).larger((c2 * 0.5 / c0).sqrt())
     }
 
-    /// Where the response would be infinite. With s ~ (u* - u)^-m it is `s'/s = m / (u* - u)` and `s''/s = m (m + 1) / (u* - u)^2`,
-    /// read off the unknown that responds most.
+    /// Extrapolates to the position where the response is infinite. With s ~ (u* - u)^-m, `s'/s = m / (u* - u)` and
+    /// `s''/s = m (m + 1) / (u* - u)^2`, taken from the unknown that responds most.
     fn extrapolate(&self, topology: &Topology, b: BlockId) -> Option<SingularityAhead> {
         let size = |k: CoordinateId| (self.response.speeds[0][k.0] * topology[k].per_unit).abs();
         let unknowns = topology[b].unknowns.iter().copied();

@@ -34,16 +34,16 @@ use super::stepper::{AcceptedPosition, Stepper};
 /// Newton's first correction while recording, in units of each coordinate, for programs with one correction and with two: the last
 /// of them leaves round-off.
 const OFFSET: [f64; MOST_CORRECTIONS] = [1e-9, 1e-5];
-/// What needs more corrections is solved by running a program again from where it came to.
+/// Maximum number of corrections of a program; if more are needed, it runs again from its result.
 pub(super) const MOST_CORRECTIONS: usize = 2;
 /// Mechanisms with more links than this are not recorded: what is recorded of each takes some kilobytes until it is a program.
 const MOST_LINKS: usize = 4000;
 /// Nor are those whose sparse factors take more multiplications together.
 const MOST_MULTIPLICATIONS: usize = 70_000;
-/// What a channel is predicted by.
+/// Number of values that predict a channel.
 pub(super) const CONDITIONS: usize = NODES * ORDERS;
 
-/// What a program is for.
+/// Purpose of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Purpose {
     /// True if its lanes are output times, of one design; else they are designs, at one output time.
@@ -60,17 +60,17 @@ pub(crate) struct Purpose {
     pub loads: bool,
 }
 
-/// What was recorded besides the motion.
+/// Results that were recorded besides the motion.
 #[derive(Default)]
 pub(crate) struct RecordedExtras {
-    /// Where any of these is positive, the results do not count.
+    /// Conditions: if any of these is positive, the results are invalid.
     pub limits: Vec<Number>,
     pub results: Vec<Number>,
-    /// Of each row that a variable could fail: the size of the defect, and what of it may be round-off.
+    /// Defect of each row that a variable could open, and the part of it that may be round-off.
     pub judged: Vec<Number>,
-    /// Which variable moves which body, in the order of the results.
+    /// Pairs of a variable and a body that it moves, in the order of the results.
     pub moved: Vec<(VariableId, BodyId)>,
-    /// Which variable could fail which row of the constraints.
+    /// Pairs of a variable and a row that it could open.
     pub defects: Vec<(VariableId, RowId)>,
     /// Measures of loads, and their derivatives.
     pub loads: Vec<Number>,
@@ -84,7 +84,7 @@ pub(crate) struct RecordedStep<'r> {
     pub values: &'r [Number],
     /// Value, speed and acceleration of every driver.
     pub drivers: &'r [[Number; 3]],
-    /// What forces that depend on laws are multiplied by, in the order of the elements, where loads are requested.
+    /// Factors of forces that depend on laws, in the order of the elements, if loads are requested.
     pub laws: &'r [Number],
 }
 
@@ -99,12 +99,12 @@ pub(crate) struct StepProgram {
     pub inputs: Inputs,
     pub outputs: Outputs,
     pub variables: usize,
-    /// Which variable moves which body, in the order of their derivatives.
+    /// Pairs of a variable and a body that it moves, in the order of their derivatives.
     pub moved: Vec<(VariableId, BodyId)>,
     pub defects: Vec<(VariableId, RowId)>,
 }
 
-/// How a block was recorded.
+/// Recorded form of a block.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BlockProgram {
     /// The largest factor in the order of the pivots.
@@ -114,13 +114,13 @@ pub(crate) struct BlockProgram {
     positive_product: bool,
     /// Newton's passes.
     pub passes: usize,
-    /// Which correction says that it has converged, and how small it is then.
+    /// Index of the correction that proves convergence, and its bound.
     last: usize,
     limit: f64,
 }
 
 impl BlockProgram {
-    /// Of block b, as it was just solved; none where more corrections were needed than are distinguished.
+    /// Form of block b as it was just solved; `None` if it needed more corrections than are recorded separately.
     fn of(state: &State<Number>, b: usize) -> Option<Self> {
         let (watched, (corrections, passes)) = (&state.watched[b], &state.corrections[b]);
         let corrected = passes.checked_sub(2).and_then(|k| corrections.get(k));
@@ -149,14 +149,14 @@ pub(crate) struct Unknown {
     pub speed: usize,
 }
 
-/// Where the inputs of a program begin: weights, what is known of every channel, drivers and the laws of forces, how far ahead of the newest
-/// position it is, variables of the design, and what depends on them alone.
+/// Positions of a program's inputs: weights, node values of every channel, drivers and the laws of forces, time ahead
+/// of the newest position, design variables, and what depends on these alone.
 ///
 /// Known are, of designs, the last positions of every channel, the newest first; of output times these are uniforms, and the input is
 /// what is added to the forecast: nothing, or all there is where the position was found by a run before.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inputs {
-    /// Number of are known of each channel.
+    /// Number of node values of each channel.
     pub known: usize,
     pub drivers: usize,
     pub ahead: usize,
@@ -172,8 +172,8 @@ impl Inputs {
     }
 }
 
-/// Where the outputs of a program begin: value, first and second derivative of every channel, speeds and accelerations of balls,
-/// and then these.
+/// Positions of a program's outputs: value, first and second derivative of every channel, speeds and accelerations of
+/// ball joints, and then these.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outputs {
     pub judged: usize,
@@ -185,7 +185,7 @@ pub(crate) struct Outputs {
     derivatives: usize,
 }
 
-/// What a run is judged by, in this order.
+/// Quantities that a run is checked by, in this order.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum StepCheck {
     /// Positive where the pivots, or what was decided while recording, do not fit.
@@ -208,7 +208,7 @@ pub(super) enum StepCheck {
 pub(super) const PER_BLOCK: usize = 2;
 
 impl StepProgram {
-    /// Why the steps of a plan are not recorded, with margins or without, if they are not.
+    /// Reason why the steps of a plan cannot be recorded, with or without margins; `None` if they can.
     pub fn hindrance(topology: &Topology, margins: bool) -> Option<&'static str> {
         if !topology.coupled_rows.is_empty() {
             Some("couplers count angles by the turn that is expected")
@@ -339,7 +339,7 @@ impl StepProgram {
     }
 }
 
-/// Which piece of a program a channel belongs to: one for every block.
+/// Index of the program piece of each channel: one piece per block.
 fn pieces(topology: &Topology, channels: &[Channel]) -> Vec<usize> {
     let mut piece_of = vec![0; topology.coordinates.len()];
     for (b, block) in BlockId::each(&topology.blocks) {
@@ -383,7 +383,8 @@ fn moves(topology: &Topology, channels: &[Channel], state: &State<Number>) -> Ve
     out
 }
 
-/// What the steps are judged by, up to [`StepCheck::Last`], in blocks that are recorded so; none of the limits may be positive.
+/// Quantities that the steps are checked by, up to [`StepCheck::Last`], for blocks that are recorded so; none of the
+/// limits may be positive.
 fn judged(
     one: &Stepper<'_>,
     state: &State<Number>,
@@ -486,12 +487,12 @@ impl Programs {
         Self { execution, steps: Cache::default(), laws: Cache::default(), machine: OnceLock::new() }
     }
 
-    /// What they are run by.
+    /// Execution of the programs.
     pub fn execution(&self) -> Execution {
         self.execution
     }
 
-    /// How that many steps are solved, if they can be recorded.
+    /// Method for this number of steps, if they can be recorded.
     pub fn solved_by(&self, steps: usize) -> StepMethod {
         let asked = || "it was requested".to_owned();
         match self.execution {

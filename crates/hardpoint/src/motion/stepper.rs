@@ -53,7 +53,7 @@ pub(crate) const LOCKED: f64 = 1e-5;
 /// When the pivot ratio has fallen to this part of its first value, other rows may serve better: redundant ones agree to the
 /// digits of the drawing only, and a weak selection magnifies what they lack.
 const RESELECT: f64 = 0.1;
-/// Where others did not serve better, they are tried again when the ratio has fallen by this factor once more.
+/// If no other rows served better, they are tried again when the ratio has fallen by this factor once more.
 const LOOK_AGAIN: f64 = 0.3;
 
 /// A mechanism on its way through time.
@@ -69,7 +69,7 @@ pub(crate) struct Stepper<'m> {
     pub(super) saved: AcceptedPosition,
     pub(super) forecast: Predictor,
     pub(super) time: f64,
-    /// What drivers follow on a straight path: from where to where each goes.
+    /// Start and end of each driver on a straight path.
     pub(super) line: Vec<[f64; 2]>,
     /// Per block: sign of the determinant on this branch, and the first pivot ratio.
     /// sign(det J): it keeps it as long as no singular position is passed.
@@ -78,7 +78,7 @@ pub(crate) struct Stepper<'m> {
     pub(super) try_others: Vec<f64>,
     /// Per driver: 1 rad, or the size of its loop.
     pub(super) driver_units: Vec<f64>,
-    /// What is known of the way ahead, and what it is known by.
+    /// Knowledge of the path ahead.
     pub(super) ahead: Lookahead,
     pub(super) around: Surroundings,
     pub(super) beyond: Surroundings,
@@ -108,9 +108,9 @@ pub(crate) struct Stepper<'m> {
     /// By how much the constraints fail at the position tried last.
     pub(super) residuals: Residuals,
     pub effort: SolverStatistics,
-    /// How often other rows were chosen.
+    /// Number of times that other rows were selected.
     pub(super) selections: usize,
-    /// How the mechanism was closed, if it was open in the design configuration.
+    /// Assembly of the mechanism, if it was open in the design configuration.
     pub assembly: Option<Assembly>,
     /// Counts the angles whose turns only the path indicates; `None` where there are none.
     pub turns: Option<TurnCounter<'m>>,
@@ -123,7 +123,7 @@ pub(crate) struct Stepper<'m> {
     pub(super) moves_ahead: Vec<f64>,
 }
 
-/// How fast a driver is at most over a stretch of time.
+/// Maximum speed of a driver over an interval of time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DriverSpeedBound {
     from: f64,
@@ -132,7 +132,8 @@ pub(super) struct DriverSpeedBound {
 }
 
 impl DriverSpeedBound {
-    /// How fast driver d is at most between two times: as it is known over a longer stretch, up to `ahead`, if that is `enough`.
+    /// Maximum speed of driver d between two times: the bound known for a longer interval, up to `ahead`, if that is
+    /// `enough`.
     #[inline(always)]
     pub fn fastest(
         &mut self,
@@ -148,12 +149,12 @@ impl DriverSpeedBound {
     }
 }
 
-/// What is known of the way ahead of the saved position.
+/// Knowledge of the path ahead of the saved position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Lookahead {
     /// Nothing.
     Unknown,
-    /// How far singular positions are, by [`Stepper::around`].
+    /// Distances of singular positions are known, in [`Stepper::around`].
     Examined,
     /// That the last step was one of an even walk.
     Even,
@@ -178,7 +179,7 @@ pub(super) struct AcceptedPosition {
     pub residual: f64,
 }
 
-/// Why a step was refused.
+/// Reason why a step was rejected.
 pub(super) enum StepRejection {
     Position(PositionFailure),
     /// The determinant changed its sign, or a turn cannot be reported.
@@ -355,7 +356,7 @@ impl<'m> Stepper<'m> {
         true
     }
 
-    /// How far each driver has moved from the saved position.
+    /// Records the travel of each driver from the saved position.
     #[inline(always)]
     pub(super) fn note_moves(&mut self) {
         for (d, moved) in self.moves.iter_mut().enumerate() {

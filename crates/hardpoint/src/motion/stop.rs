@@ -1,4 +1,4 @@
-//! Why a motion ended before its last output time.
+//! Reason why a motion ended before its last output time.
 
 use super::assembly::SINGULAR_DRAWING;
 use crate::joint::Quantity;
@@ -10,7 +10,7 @@ use super::assembly::{Closing, Gap};
 /// A run that could not go on. What was solved before is kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stop {
-    /// What happened.
+    /// Event that ended the run.
     pub kind: StopKind,
     /// The last time that was solved, s; `None` if not even the start was reached.
     pub last_time: Option<f64>,
@@ -24,13 +24,13 @@ pub struct Stop {
     pub pivot_ratio: f64,
     /// The joints of that loop.
     pub joints: Vec<JointId>,
-    /// Where the mechanism does not assemble: what stays open at best, largest first.
+    /// Smallest remaining gaps, largest first, if the mechanism does not assemble.
     pub remains: Vec<Gap>,
-    /// Where the mechanism was being assembled: the part of its gaps that could be closed together, 0 to 1.
+    /// Fraction of the gaps that could be closed together during the assembly, 0 to 1.
     pub closed: Option<f64>,
 }
 
-/// What ended a run.
+/// Event that ended a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StopKind {
     /// The drivers ask for a position that the mechanism cannot reach (HP0401).
@@ -45,17 +45,17 @@ pub enum StopKind {
         joint: JointId,
         /// By how much, m or as a cosine.
         residual: f64,
-        /// What that is.
+        /// Quantity of the value.
         quantity: Quantity,
     },
     /// A driver's law has no finite value (HP0404).
     LawNotFinite {
-        /// Which driver.
+        /// The driver.
         driver: crate::model::DriverId,
     },
     /// A driver moves further between two output times than can be followed (HP0408).
     TooFar {
-        /// Which driver.
+        /// The driver.
         driver: crate::model::DriverId,
     },
     /// The caller asked to stop (HP0405).
@@ -117,7 +117,7 @@ impl Stop {
         }
     }
 
-    /// What happened, without when: where time means nothing.
+    /// Description without the time, for events that are not at a time.
     pub fn happened(&self, model: &Model) -> String {
         match self.kind {
             StopKind::Limit => "the mechanism reaches a limit position".into(),
@@ -142,7 +142,7 @@ impl Stop {
         self.closed.is_some_and(|part| part <= SINGULAR_DRAWING)
     }
 
-    /// What to do.
+    /// Instruction that helps, if there is one.
     pub fn help(&self) -> Option<&'static str> {
         Some(match self.kind {
             StopKind::Limit => {

@@ -14,7 +14,7 @@ use super::kinematics::Residuals;
 use super::step_program::{CONDITIONS, Inputs, StepCheck, Outputs, PER_BLOCK, Purpose, StepProgram};
 use super::stepper::{LOCKED, smooth};
 
-/// What is not solved after that many runs is left to the kernel.
+/// Maximum number of runs; the kernel solves what has not converged then.
 const MOST_RUNS: usize = 4;
 /// From one run to the next the first correction must become smaller by this factor, as Newton's corrections must.
 const CONTRACTS: f64 = 0.5;
@@ -30,19 +30,19 @@ pub(crate) struct Tape {
     program: Arc<StepProgram>,
     room: ProgramMemory,
     inputs: Vec<AlignedLanes>,
-    /// What is known of the channels, where lanes are output times.
+    /// Node values of the channels, if lanes are output times.
     uniforms: Vec<f64>,
     outputs: Vec<AlignedLanes>,
     /// Groups of steps that were tried, those that were refused, and those that took more than one run.
     tried: usize,
     refused: usize,
     repeated: usize,
-    /// Of the last one: its runs, and the largest first correction of the first run, rad or sizes.
+    /// Number of runs of the last solution, and the largest first correction of its first run, rad or sizes.
     runs: usize,
     missed: f64,
 }
 
-/// How well steps were solved.
+/// Quality of a solution.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SolveQuality {
     pub residuals: Residuals,
@@ -94,7 +94,7 @@ impl Tape {
         self.program.blocks.iter().zip(branch).all(|(block, (positive, _))| block.positive == *positive)
     }
 
-    /// Which variable moves which body, in the order of their derivatives.
+    /// Pairs of a variable and a body that it moves, in the order of their derivatives.
     pub fn moved(&self) -> &[(VariableId, BodyId)] {
         &self.program.moved
     }
@@ -115,7 +115,7 @@ impl Tape {
         }
     }
 
-    /// What it is for.
+    /// Purpose of the program.
     pub fn purpose(&self) -> Purpose {
         self.program.purpose
     }
@@ -136,13 +136,13 @@ impl Tape {
         inputs[at] = *ahead;
     }
 
-    /// What is known of a channel at one output time, design by design, ordered like the weights.
+    /// Node values of a channel at one output time, per design, ordered like the weights.
     #[inline(always)]
     pub fn known_mut(&mut self, channel: usize) -> &mut [Lanes] {
         &mut lanes_of(&mut self.inputs)[CONDITIONS * (1 + channel)..][..CONDITIONS]
     }
 
-    /// What is known of every channel of one design, each ordered like the weights.
+    /// Node values of every channel of one design, ordered like the weights.
     #[inline(always)]
     pub fn known_of_times_mut(&mut self) -> &mut [[f64; CONDITIONS]] {
         self.uniforms.as_chunks_mut().0
@@ -161,8 +161,9 @@ impl Tape {
         &self.inputs[self.program.inputs.drivers + ORDERS * d + order].0
     }
 
-    /// Solves the steps that were given, and judges each; `trust` bounds the first correction (rad, or sizes). The numbers of all
-    /// bodies but ground and their derivatives go to the two lists, where they mean nothing if the steps are refused.
+    /// Solves the given steps and checks each; `trust` bounds the first correction (rad, or sizes). The values of all
+    /// bodies but ground and their derivatives are written to the two lists; they are invalid if the steps are
+    /// rejected.
     #[inline(always)]
     pub fn solve(
         &mut self,
@@ -296,13 +297,13 @@ impl Tape {
         &self.outputs[loads..states]
     }
 
-    /// Number of numbers all bodies but ground have, and how many their derivatives.
+    /// Number of values of all bodies but ground, and of their derivatives.
     pub fn sizes(&self) -> [usize; 2] {
         let [_, states, derivatives] = self.program.program.step.sizes();
         [states, derivatives]
     }
 
-    /// Which variable fails which row, by how much, and what of it may be round-off; variable by variable.
+    /// Defects of all pairs of a variable and a row, with the part that may be round-off; variable by variable.
     pub fn defects(&self) -> impl Iterator<Item = (VariableId, RowId, &[Lanes; 2])> {
         let Outputs { defects, loads, .. } = self.program.outputs;
         let found: &[Lanes] = bytemuck::cast_slice(&self.outputs[defects..loads]);

@@ -61,7 +61,7 @@ const CONTACT_FLOOR: f64 = 0.1;
 /// A curve may bend by this much over a step, rad: a groove that turns back within a step would be crossed unseen.
 pub(super) const MOST_BEND: f64 = 0.4;
 
-/// What the drivers follow.
+/// Path of the drivers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Path {
     /// From the configuration in the design configuration, where joints may be open, to the closed one, all drivers at zero; the
@@ -78,7 +78,7 @@ pub(super) enum Path {
 }
 
 impl Path {
-    /// How the part of every gap that is left changes along it.
+    /// Rate of the remaining fraction of every gap along the path.
     fn gap_rate(self) -> f64 {
         if self == Self::Assembly { -1.0 } else { 0.0 }
     }
@@ -206,7 +206,7 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    /// Solves the saved position once more, so that factors and rates are at hand.
+    /// Solves the saved position again, so that factors and rates are available.
     fn stand(&mut self, path: Path) -> Result<(), StepRejection> {
         self.drive(path, self.time)?;
         self.restore();
@@ -244,7 +244,7 @@ impl Stepper<'_> {
         workspace.examine(topology, parts, state, path.gap_rate(), (directions, speed), turns, beyond);
     }
 
-    /// How far each direction goes at most over a step h of the path.
+    /// Measures the maximum travel of each direction over a step h of the path.
     fn measure_travel(&mut self, path: Path, h: f64) {
         match path {
             Path::Assembly | Path::Line { .. } => self.travel[0] = h,
@@ -456,15 +456,15 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    /// Where the motion becomes singular as it goes on, seen from the saved position; the state must stand there.
+    /// Singular position ahead on the path, seen from the saved position; the state must be there.
     fn ahead(&mut self, path: Path) -> Option<super::singularity::SingularityAhead> {
         let Self { workspace, topology, parts, state, drivers, .. } = self;
         let workspace = workspace.as_mut()?;
         workspace.ahead(topology, parts, state, path.gap_rate(), drivers)
     }
 
-    /// The singular position that the motion would come to if it went on as it does at the last output time; `None` where none is near
-    /// enough to be reported from its surroundings.
+    /// Singular position that the motion would reach if it continued as at the last output time; `None` if none is near
+    /// enough to be predicted.
     pub fn beyond(&mut self) -> Option<SingularPosition> {
         self.stand(Path::Laws).ok()?;
         let ahead = self.ahead(Path::Laws)?;
@@ -531,7 +531,7 @@ impl Stepper<'_> {
         false
     }
 
-    /// Why the path ends at the saved position; the step to t was refused.
+    /// Reason why the path ends at the saved position; the step to t was rejected.
     pub(super) fn stop(&mut self, path: Path, t: f64, refusal: StepRejection, moved: bool) -> Box<Stop> {
         let mut failed = t;
         let (kind, block) = match refusal {

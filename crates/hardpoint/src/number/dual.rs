@@ -16,13 +16,13 @@ pub struct Dual<T = f64> {
 }
 
 impl<T: Real> Dual<T> {
-    /// What the derivative is taken by, at this value.
+    /// The variable of differentiation at this value.
     #[inline(always)]
     pub fn variable(v: T) -> Self {
         Self { v, d: T::one() }
     }
 
-    /// What does not depend on it.
+    /// A constant: its derivative is zero.
     #[inline(always)]
     pub fn constant(v: T) -> Self {
         Self { v, d: T::zero() }
@@ -109,7 +109,7 @@ impl<T: Real> SubAssign for Dual<T> {
     }
 }
 
-/// Whatever only looks at a number sees the value.
+/// Comparisons and tests of a number use its value.
 impl<T: Real> Real for Dual<T> {
     #[inline(always)]
     fn operation<R>(operation: impl FnOnce() -> R) -> R {

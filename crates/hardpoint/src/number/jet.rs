@@ -82,7 +82,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
         self.0.iter().all(|x| x.value().is_finite())
     }
 
-    /// What has no value.
+    /// A jet without a value: NaN.
     #[inline(always)]
     pub(crate) fn undefined() -> Self {
         Self([T::constant(f64::NAN); N])
@@ -309,7 +309,7 @@ impl<T: Real, const N: usize> SubAssign for Jet<T, N> {
     }
 }
 
-/// Whatever only looks at a number sees the value.
+/// Comparisons and tests of a number use its value.
 impl<T: Real, const N: usize> Real for Jet<T, N> {
     #[inline(always)]
     fn operation<R>(operation: impl FnOnce() -> R) -> R {

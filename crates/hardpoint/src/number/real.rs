@@ -90,8 +90,8 @@ pub trait Real:
     /// True if it is zero, derivatives that it may carry included.
     fn is_zero(self) -> bool;
 
-    /// How this value compares with another; just after the instant, of numbers that carry time derivatives: ties are decided by the
-    /// first of them that differs.
+    /// Ordering of this value and another just after the instant: for numbers with time derivatives, the first
+    /// derivative that differs decides ties.
     #[inline(always)]
     fn order(self, o: Self) -> Option<Ordering> {
         self.value().partial_cmp(&o.value())

@@ -30,7 +30,7 @@ pub(crate) fn strictly<R>(f: impl FnOnce() -> R) -> R {
     result
 }
 
-/// What has come up since [`begin`], and must not be positive where the program is run.
+/// Conditions recorded since [`begin`], which must not be positive when the program runs.
 pub(crate) fn limits() -> Vec<Number> {
     LIMITS.take()
 }

@@ -46,10 +46,11 @@ impl<T: Real> Turning<T> {
     }
 }
 
-/// What loads on some bodies are felt by: the way from there to ground, and the variables that change something on it.
+/// Support of loads on some bodies: the bodies from there to ground, and the variables that change something on the
+/// way.
 #[derive(Clone, Debug)]
 pub(crate) struct Support {
-    /// Bodies that the load comes to.
+    /// Bodies that the load reaches.
     bodies: Vec<usize>,
     /// From the load to ground.
     way: Way,
@@ -72,14 +73,14 @@ struct MarkerPlace {
     body: usize,
 }
 
-/// What transmits a wrench.
+/// A joint that transmits a wrench.
 #[derive(Clone, Copy, Debug)]
 enum Transmitter {
     Link(LinkId),
     Closure(ClosureId),
 }
 
-/// What does as a driver says.
+/// The unknown that a driver prescribes.
 #[derive(Clone, Copy, Debug)]
 enum Follower {
     Coordinate(CoordinateId),
@@ -87,7 +88,7 @@ enum Follower {
 }
 
 impl Support {
-    /// Of loads on these bodies; `fields` are those of all variables.
+    /// Support of loads on these bodies; `fields` are those of all variables.
     fn new(topology: &Topology, fields: &[PlanVelocity<f64>], loaded: &[usize]) -> Self {
         let mut pushed = vec![false; 1 + topology.links.iter().map(|l| l.child.0).max().unwrap_or(0)];
         loaded.iter().for_each(|&b| pushed[b] = true);
@@ -169,9 +170,9 @@ impl Support {
 
 /// Carries loads to ground; nothing is allocated per step.
 pub(crate) struct Adjoint {
-    /// What each variable changes.
+    /// Design velocity of each variable.
     fields: Vec<PlanVelocity<f64>>,
-    /// What is under way to ground.
+    /// Wrenches that are transmitted to ground.
     transmission: Transmission,
     /// Per marker, parent's and child's of the links and then i and j of the closures: the wrench seen from its body.
     seen: Vec<Load>,
@@ -189,7 +190,7 @@ impl Adjoint {
         }
     }
 
-    /// What loads on these bodies are felt by.
+    /// Support of loads on these bodies.
     pub fn support(&self, topology: &Topology, loaded: &[usize]) -> Support {
         Support::new(topology, &self.fields, loaded)
     }
@@ -239,7 +240,7 @@ impl Adjoint {
         }
     }
 
-    /// How fast variable v changes a driver's value, speed or acceleration, at the time that was set.
+    /// Derivative of a driver's value, speed or acceleration by variable v, at the time that was set.
     pub fn law_rate(&self, v: usize, driver: DriverId, order: usize) -> f64 {
         self.fields[v].law_rate(driver, order)
     }

@@ -12,8 +12,8 @@ use crate::space::Twist;
 pub enum Admissibility {
     /// Every joint stays closed with all bodies where they are: no re-assembly (paper, section 4).
     Admissible,
-    /// Some joints open at the design configuration, and the mechanism closes again on its branch: its
-    /// sensitivities are those of the re-assembled mechanism.
+    /// Some joints open at the design configuration, and the mechanism closes again on its branch: its sensitivities
+    /// are those of the re-assembled mechanism.
     Reassembled {
         /// The joints that open.
         joints: Vec<JointDefect>,
@@ -43,7 +43,7 @@ pub struct JointDefect {
 /// A defect below this part of the field's speed is round-off of typed velocities.
 const OPEN: f64 = 1e-7;
 
-/// What a variable does to one elementary constraint of a joint at the design configuration, while all bodies stay.
+/// Effect of a variable on one elementary constraint of a joint at the design configuration, with all bodies fixed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
     /// The joint; of a coupler its first one.

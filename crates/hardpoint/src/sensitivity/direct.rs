@@ -48,16 +48,16 @@ pub(crate) struct PlanVelocity<T> {
     /// Drivers whose values shift, and how fast.
     /// df/db, the same at all times: m or rad per unit of b.
     shifts: Vec<(DriverId, T)>,
-    /// What that adds to the driver's value, speed and acceleration at the time that was set last.
-    /// At orders n = 0, 1, 2: `sum over p of df(n)/dp dp/db`.
+    /// Contribution to the driver's value, speed and acceleration at the time that was set last. At orders n = 0, 1, 2:
+    /// `sum over p of df(n)/dp dp/db`.
     law_rates: Vec<(DriverId, [T; 3])>,
     /// Largest speed in the field: what round-off of a defect is compared with.
     pub(super) scale: T,
-    /// How far the change is felt.
+    /// Reach of the change.
     pub reach: Influence,
 }
 
-/// How far a change of the design is felt: all else stays as it is, and is not even looked at.
+/// Reach of a design change: everything else is constant and is not evaluated.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Influence {
     /// Links placed by drivers alone, whose children move.
@@ -71,7 +71,7 @@ pub(crate) struct Influence {
 }
 
 impl Influence {
-    /// Of changes at these links and closures, and of these drivers.
+    /// Reach of changes at these links and closures, and of these drivers.
     fn new(topology: &Topology, links: &[LinkId], closures: &[ClosureId], drivers: &[DriverId]) -> Self {
         let bodies = 1 + topology.links.iter().map(|l| l.child.0).max().unwrap_or(0);
         // A change spreads the way that motion does: a body moves if its parent does, if its link's marker or driver does, or if its
@@ -119,9 +119,9 @@ impl Influence {
 /// A marker that some design velocity moves.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MovingMarker<T, At> {
-    /// Which link or closure.
+    /// Link or closure of the marker.
     pub at: At,
-    /// Which marker: 0 is the parent's of a link or i of a closure, 1 the child's or j.
+    /// Index of the marker: 0 for the parent's of a link or i of a closure, 1 for the child's or j.
     pub end: usize,
     /// The body that carries it.
     pub body: usize,
@@ -201,7 +201,7 @@ impl<T: Real> PlanVelocity<T> {
         self.law_rates.iter().map(|(d, _)| *d)
     }
 
-    /// How fast the value of a driver with this law changes at time t.
+    /// Derivative of the value of a driver with this law at time t.
     pub fn law_speed(&self, driver: DriverId, law: &Law, t: f64) -> f64 {
         let of_driver = self.laws.iter().filter(|(d, ..)| *d == driver);
         of_driver.map(|(_, parameter, rate)| rate.value() * law.derivative(*parameter, t).value()).sum()
@@ -234,15 +234,15 @@ impl<T: Real> PlanVelocity<T> {
         }
     }
 
-    /// How fast what a row keeps changes.
+    /// Rate of the constant of a row.
     #[inline(always)]
     pub(super) fn kept_rate(&self, row: RowId) -> T {
         let found = self.kept.binary_search_by_key(&row, |kept| kept.0);
         found.map_or(T::zero(), |n| self.kept[n].1)
     }
 
-    /// How the unit twists of all coordinates and the wrenches of all rows change with the design, where `flow` says how bodies and
-    /// coordinates do: x' and l' of `docs/theory.md` (45).
+    /// Derivatives of the unit twists of all coordinates and the wrenches of all rows by the design, for the motion of
+    /// bodies and coordinates in `flow`: x' and l' of `docs/theory.md` (45).
     pub fn turn_axes(
         &self,
         topology: &Topology,
@@ -288,14 +288,16 @@ impl<T: Real> PlanVelocity<T> {
         }
     }
 
-    /// What loads on the frames that unit twists and wrenches turn with work on the markers that move within their bodies.
+    /// Work of loads on the frames that unit twists and wrenches rotate with, on the markers that move within their
+    /// bodies.
     pub(super) fn turning_work(&self, state: &State<T>, turning: &Turning<T>) -> T {
         let starts = self.links.iter().filter(|m| m.end == 0).map(|m| (turning.starts[m.at.0], m.body, m.e));
         let ends = self.closures.iter().map(|m| (turning.ends[m.at.0][m.end], m.body, m.e));
         starts.chain(ends).fold(T::zero(), |sum, (load, body, e)| sum + load.on(state.pose[body].carry(e)))
     }
 
-    /// What they, and loads on bodies `[n][b]` that depend on W, W. and W.., work on all that `flow` says this change makes of the motion.
+    /// Work of these loads, and of loads on bodies `[n][b]` that depend on W, W' and W'', on the motion that `flow`
+    /// gives for this change.
     pub fn work(
         &self,
         (topology, state): (&Topology, &State<T>),
@@ -327,7 +329,7 @@ impl<T: Real> PlanVelocity<T> {
         rows.filter(|&r| topology[r].is_redundant())
     }
 
-    /// What a change of its law adds to a driver's value, speed or acceleration.
+    /// Contribution of a change of its law to a driver's value, speed or acceleration.
     #[inline(always)]
     pub fn law_rate(&self, driver: DriverId, order: usize) -> T {
         let of_driver = self.law_rates.iter().find(|(d, _)| *d == driver);
@@ -335,9 +337,10 @@ impl<T: Real> PlanVelocity<T> {
     }
 }
 
-/// What the motion does with the design variables, one at a time; nothing is allocated per step.
+/// Derivatives of the motion by the design variables, one variable at a time; nothing is allocated per step.
 pub(crate) struct DirectDifferentiation<T> {
-    /// Of orders 0, 1, 2: design twists W of the bodies and speeds S of the coordinates, and their time derivatives.
+    /// Unknowns of orders 0, 1, 2: design twists W of the bodies and speeds S of the coordinates, and their time
+    /// derivatives.
     pub flow: Flow<T>,
     /// Per marker that the field moves at a closure, per order: how.
     z: Vec<[Twist<T>; 3]>,

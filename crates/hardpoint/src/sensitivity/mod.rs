@@ -38,22 +38,22 @@ use crate::space::Vec3;
 /// All are plain derivatives; in particular domega = d(dpi)/dt + dpi x omega.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodySensitivity {
-    /// Of position.
+    /// Derivative of the position.
     pub dr: Vec3,
-    /// Of orientation, as a rotation vector.
+    /// Derivative of the orientation, as a rotation vector.
     pub dpi: Vec3,
-    /// Of velocity.
+    /// Derivative of the velocity.
     pub dv: Vec3,
-    /// Of angular velocity.
+    /// Derivative of the angular velocity.
     pub domega: Vec3,
-    /// Of acceleration.
+    /// Derivative of the acceleration.
     pub da: Vec3,
-    /// Of angular acceleration.
+    /// Derivative of the angular acceleration.
     pub dalpha: Vec3,
 }
 
 impl BodySensitivity {
-    /// Number of numbers it is.
+    /// Number of values.
     pub(crate) const NUMBERS: usize = 18;
 
     /// From them, in the order of the fields.
@@ -91,13 +91,13 @@ impl BodySensitivity {
 /// Sensitivities of all bodies over a solved motion.
 #[derive(Clone, Debug, Default)]
 pub struct Sensitivities {
-    /// Number of variables there are.
+    /// Number of variables.
     pub variables: usize,
     /// Number of bodies, ground included.
     pub bodies: usize,
     /// Per variable: whether and how the mechanism follows the change.
     pub admissibility: Vec<Admissibility>,
-    /// Of every body by every variable that moves it.
+    /// Derivatives of every body by every variable that moves it.
     pub(crate) derivatives: Blocks,
     /// `places[b * bodies + i]`: where the numbers of body i by variable b begin, if b moves it.
     places: Vec<Option<usize>>,
@@ -145,7 +145,8 @@ impl Sensitivities {
         self.derivatives.copy(k, &from.derivatives, j);
     }
 
-    /// Room for that many output times, in the memory that there is. `moved` says which variable moves which body.
+    /// Resizes for this number of output times, within the memory at hand. `moved` are the pairs of a variable and a
+    /// body that it moves.
     pub(crate) fn shape(
         &mut self,
         bodies: usize,

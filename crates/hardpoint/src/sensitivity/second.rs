@@ -37,7 +37,7 @@ pub enum PairDirection {
 }
 
 impl PairDirection {
-    /// How fast the design variables go.
+    /// Rates of the design variables along the direction.
     fn speeds(&self) -> &[f64] {
         match self {
             Self::Design(speeds) => speeds,
@@ -45,7 +45,7 @@ impl PairDirection {
         }
     }
 
-    /// What it changes at the designs with these values.
+    /// Design velocity of the direction at the designs with these values.
     fn field<T: Real>(&self, design_map: &DesignMap<'_>, values: &[T]) -> DesignVelocity<T> {
         match self {
             Self::Design(speeds) => design_map.field_along(&along(speeds), values),
@@ -58,14 +58,14 @@ impl PairDirection {
 /// Second derivatives of one body's position by two directions, global components, at fixed t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyCurvature {
-    /// Of the position of its frame's origin.
+    /// Second derivative of the position of the frame's origin.
     pub d2r: Vec3,
     /// Derivative along the second direction of dpi, the rotation vector rate along the first: not symmetric, since
     /// rotations do not commute.
     pub ddpi: Vec3,
 }
 
-/// What one direction does at one position, to first order.
+/// First-order effect of one direction at one position.
 struct FirstOrder {
     field: PlanVelocity<f64>,
     /// U = W_u, u = S_u, z = z_u, f = L_u.
@@ -89,7 +89,7 @@ impl FirstOrder {
         }
     }
 
-    /// Where a state is. What the direction does not reach stays zero.
+    /// Solves at a state. Bodies that the direction does not reach stay zero.
     fn solve(&mut self, topology: &Topology, state: &mut State<f64>) {
         // W_u, S_u by (11), and z_u = Ad(X) e_u by (8)
         self.direct.solve_position(topology, state, &self.field);
@@ -111,7 +111,7 @@ impl FirstOrder {
         self.w()[topology[k].parent.0] + self.links[k.0]
     }
 
-    /// How the markers of a closure go.
+    /// Rates of the markers of a closure.
     fn ends(&self, topology: &Topology, c: ClosureId) -> MarkerPairRates<f64> {
         let ([i, j], [z_i, z_j], none) = (topology[c].bodies, self.closures[c.0], Twist::ZERO);
         // D_w = W_w + z_w, in place of V; second rates are not requested
@@ -127,11 +127,11 @@ struct Pair {
     /// Per marker that the field moves at a link, then at a closure: its body-fixed twist, and the derivative of that.
     links: Vec<[Twist; 2]>,
     closures: Vec<[Twist; 2]>,
-    /// How these markers' design twists along the first direction change along the second, links first.
+    /// Derivatives of these markers' design twists of the first direction along the second, links first.
     z: Vec<Twist>,
     /// By driver whose law changes along the first direction: its laws a little along the second, and back.
     laws: Vec<(DriverId, [Law; 2])>,
-    /// What that makes of the driver's value, at the times set last.
+    /// Contribution to the driver's value, at the times set last.
     law_rates: Vec<(DriverId, f64)>,
     /// Derivatives along the second direction of the design twists along the first.
     w: Vec<Twist>,
@@ -226,7 +226,7 @@ impl Seconds {
         }
     }
 
-    /// Number of pairs there are.
+    /// Number of pairs.
     pub fn len(&self) -> usize {
         self.pairs.len()
     }

@@ -26,7 +26,7 @@ pub(crate) struct SensitivitySolver {
     resisting: Vec<Resistance>,
 }
 
-/// What the solution for one variable leaves.
+/// Result of the solution for one variable.
 pub(crate) struct Differentiated<'s, T = f64> {
     pub variable: VariableId,
     pub topology: &'s Topology,
@@ -51,12 +51,12 @@ impl SensitivitySolver {
         }
     }
 
-    /// Room for all sensitivities over that many steps, in the memory that there is.
+    /// Reserves memory for all sensitivities over this number of steps, within the memory at hand.
     pub fn make_room(&self, sensitivities: &mut Sensitivities, steps: usize) {
         sensitivities.shape(self.bodies, self.fields.len(), self.moved(), steps);
     }
 
-    /// Which variable moves which body, wanted or not, in the order in which programs give the derivatives.
+    /// Pairs of a variable and a body that it moves, requested or not, in the order of the programs' derivatives.
     pub fn moved(&self) -> impl Iterator<Item = (VariableId, BodyId)> {
         let fields = self.fields.iter().enumerate();
         fields.flat_map(|(v, field)| field.reach.bodies.iter().map(move |b| (VariableId(v), BodyId(*b))))
@@ -99,13 +99,13 @@ impl SensitivitySolver {
         note_defects(tape, topology, (times, first), (&mut self.resisting, 0));
     }
 
-    /// What that many steps say of every variable's admissibility, given the joints that each opens in the design.
+    /// Admissibility of every variable after this number of steps, given the joints that each opens in the design.
     pub fn admissibility(&self, opens: &[Vec<JointDefect>], steps: usize) -> Vec<Admissibility> {
         admissibility(opens, self.resisting.clone(), steps)
     }
 }
 
-/// What that many steps say of every variable, given the joints that each opens in the nominal design.
+/// Admissibility of every variable after this number of steps, given the joints that each opens in the nominal design.
 pub(crate) fn admissibility(
     opens: &[Vec<JointDefect>],
     resisting: Vec<Resistance>,
@@ -140,9 +140,9 @@ pub(super) fn note(resisting: &mut Resistance, topology: &Topology, defect: Defe
     }
 }
 
-/// Of one body, from the design twists W of the bodies and their time derivatives: derivatives of r, pi, v, omega, a and alpha, one
-/// after the other. Those of r and pi are W at r and its turning; all others are plain time derivatives of these
-/// (`docs/theory.md` (14)).
+/// Derivatives of one body, from the design twists W of the bodies and their time derivatives: of r, pi, v, omega, a
+/// and alpha, one after the other. Those of r and pi are W at r and its rotation; all others are plain time derivatives
+/// of these (`docs/theory.md` (14)).
 #[inline(always)]
 fn components<T: Real>(flow: &Flow<T>, state: &State<T>, body: usize) -> [T; BodySensitivity::NUMBERS] {
     let [w0, w1, w2] = flow.twists.each_ref().map(|w| w[body]);
@@ -202,8 +202,8 @@ pub(crate) fn record_derivatives(
     Some(recorded)
 }
 
-/// Notes what resists where a tape has come to, at these times in its lanes from `first` on; what is kept in mind of one lane's
-/// variables begins `apart` after that of the lane before: 0 where all are times of one design.
+/// Records the rows that resist at the positions of a program, at these times in its lanes from `first` on; the records
+/// of one lane begin `apart` after those of the lane before: 0 if all lanes are times of one design.
 pub(crate) fn note_defects(
     tape: &Tape,
     topology: &Topology,

@@ -33,7 +33,7 @@ impl Way {
     }
 }
 
-/// What the equations of a position have in common: unit twists and wrenches with their derivatives, order by order, and factors.
+/// Transposed equations of a position: unit twists and wrenches with their derivatives, order by order, and factors.
 pub(crate) struct Transposed<'s, T = f64> {
     /// Per order and coordinate: x.
     pub x: [&'s [Twist<T>]; 3],
@@ -46,14 +46,14 @@ pub(crate) struct Transposed<'s, T = f64> {
 }
 
 impl<'s, T: Real> Transposed<'s, T> {
-    /// Of a state, with its rates in time.
+    /// Transposed equations of a state, with its time derivatives.
     pub fn of(state: &'s mut State<T>) -> Self {
         let State { x, l, factors, rhs, .. } = state;
         Self { x: x.each_ref().map(Vec::as_slice), l: l.each_ref().map(Vec::as_slice), factors, rhs }
     }
 }
 
-/// What is transmitted, and its first two derivatives; nothing is allocated per step.
+/// Transmitted wrenches and their first two derivatives; nothing is allocated per step.
 pub(crate) struct Transmission<T = f64> {
     /// Per order and body: what still has to be carried.
     pub load: [Vec<Wrench<T>>; 3],
@@ -69,7 +69,7 @@ pub(crate) struct Transmission<T = f64> {
 }
 
 impl<T: Real> Transmission<T> {
-    /// Of no load.
+    /// Transmission without loads.
     pub fn new(model: &Model, topology: &Topology) -> Self {
         let (zero, none) = (T::zero(), Wrench::zero());
         let three = |n: usize| std::array::from_fn(|_| vec![none; n]);
@@ -83,7 +83,8 @@ impl<T: Real> Transmission<T> {
         }
     }
 
-    /// What links, closures and rows transmit, to order n: the equation of order n, transposed (`docs/theory.md` (18), (25)),
+    /// Wrenches of links, closures and rows to order n: the equation of order n, transposed (`docs/theory.md` (18),
+    /// (25)),
     ///
     /// ```text
     /// sum_{m=0..n} C(n,m) T_k(m) . x_a(n-m) = 0                     for every unknown coordinate a of link k,
@@ -125,7 +126,7 @@ impl<T: Real> Transmission<T> {
                 let k = topology[a].link;
                 let mut works = below[topology[k].child.0].on(x[0][a.0]) + pulls[n][a.0];
                 for m in 0..n {
-                    // below . x_a + sum_{m<n} C(n,m) T_k(m) . x_a(n-m): what (25), third line, comes to as long as mu(n) = 0
+                    // below . x_a + sum_{m<n} C(n,m) T_k(m) . x_a(n-m): the third line of (25) as long as mu(n) = 0
                     works += links[m][k.0].on(x[n - m][a.0]) * BINOMIAL[n][m];
                 }
                 rhs[column] = works;
@@ -161,7 +162,7 @@ impl<T: Real> Transmission<T> {
     }
 }
 
-/// A link transmits what comes to its child, to its parent.
+/// A link transmits the wrench on its child to its parent.
 #[inline(always)]
 fn pass_on<T: Real>(topology: &Topology, k: LinkId, load: &mut [Wrench<T>], links: &mut [Wrench<T>]) {
     let link = &topology[k];

@@ -43,8 +43,8 @@ pub enum Angles {
     RollPitchYaw,
 }
 
-/// Where the first turn and the last one are about axes that are nearer to one line than this, as a sine, only their sum or difference
-/// is known: a thousandth of a degree moves them by a whole turn.
+/// If the first and the last rotation axis are closer to parallel than this, as a sine, only the sum or difference of
+/// their angles is known: a thousandth of a degree moves them by a whole turn.
 const SAME_AXIS: f64 = 1e-6;
 
 impl Angles {

@@ -1,4 +1,4 @@
-//! Where a frame is and how it is turned.
+//! Position and orientation of a frame.
 
 use crate::number::{Dual, Real};
 

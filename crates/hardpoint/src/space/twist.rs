@@ -18,7 +18,7 @@ pub struct Twist<T = f64> {
     pub v: Vec3<T>,
 }
 
-/// What a constraint resists with: moment about the world origin, and force.
+/// Generalised force of a constraint: moment about the world origin, and force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wrench<T = f64> {
     /// Moment about the world origin.
@@ -66,7 +66,7 @@ impl<T: Real> Twist<T> {
         Self { w: self.w.cross(o.w), v: self.w.cross_plus(o.v, self.v.cross(o.w)) }
     }
 
-    /// What the rate of a carried twist o works: `l . ad(self) o = ad_transposed(l) . o`.
+    /// Wrench that does the same work as the rate of a carried twist o: `l . ad(self) o = ad_transposed(l) . o`.
     #[inline(always)]
     pub fn ad_transposed(self, l: Wrench<T>) -> Wrench<T> {
         // ad(V)^T l = [m x V_w + f x V_v;  f x V_w], from  m . (V_w x x_w) + f . (V_w x x_v + V_v x x_w)

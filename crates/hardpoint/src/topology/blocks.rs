@@ -164,8 +164,8 @@ fn independent_groups(topology: &Topology, jacobian: &[SparseRow]) -> Option<Vec
     Some(groups)
 }
 
-/// Number of motions stay free where the mechanism is a little differently, so that nothing lines up by chance: every place is
-/// shifted by up to 3 % of the size, every axis keeps its direction.
+/// Number of free motions in a slightly perturbed mechanism without accidental alignment: every point is shifted by up
+/// to 3 % of the size, every axis keeps its direction.
 ///
 /// Fewer than in the drawing mean that the drawing is a singular position, not that a driver is missing. Planar mechanisms keep their
 /// redundancy under such a shift.
@@ -320,7 +320,7 @@ pub(super) fn columns_in_block(
     })
 }
 
-/// Sorts links by the stage at which their child's pose is known, and renumbers what refers to them.
+/// Sorts links by the stage at which their child's pose is known, and renumbers references to them.
 fn order_links(topology: &mut Topology, blocks: usize) {
     let mut stage_of_body = BTreeMap::new();
     for k in topology.link_ids() {

@@ -1,4 +1,4 @@
-//! What can be wrong with a mechanism as a whole, in the user's own names.
+//! Errors of a mechanism as a whole, in the user's names.
 
 use crate::draft::some_of;
 use crate::model::{BodyId, DriverId, JointId, Model};
@@ -12,7 +12,7 @@ pub enum TopologyError {
     /// Motions remain that no driver prescribes (HP0301).
     #[error("{}", under_driven_text(.freedom, .bodies))]
     UnderDriven {
-        /// Number of motions remain free.
+        /// Number of remaining free motions.
         freedom: usize,
         /// The joints that move in them.
         joints: Vec<JointId>,
@@ -24,7 +24,7 @@ pub enum TopologyError {
     /// The configuration in the design configuration is singular: motions are free there that are not free nearby (HP0304).
     #[error("the mechanism is drawn in a singular position ({})", dozen(.bodies))]
     Singular {
-        /// Number of motions are free in that position only.
+        /// Number of motions that are free in that position only.
         freedom: usize,
         /// The joints that move in them.
         joints: Vec<JointId>,
@@ -117,7 +117,7 @@ impl TopologyError {
         }
     }
 
-    /// What to do.
+    /// Instruction that corrects the error.
     pub fn help(&self) -> String {
         match self {
             Self::UnderDriven { freedom: 1, .. } => {

@@ -1,4 +1,4 @@
-//! Which row determines which unknown.
+//! Assignment of rows to the unknowns that they determine.
 
 /// Pairs as many columns as possible with a row that contains them; per column its row.
 ///

@@ -1,4 +1,4 @@
-//! How the mechanism is solved: which joints carry the tree, which are cut, in what order.
+//! Plan of solution: tree joints, cut joints, order of the blocks.
 //!
 //! Worked out once per model, at its design configuration. A spanning tree of joints places the bodies;
 //! every other joint is cut into elementary constraints. Unknown coordinates and constraint rows fall
@@ -25,7 +25,7 @@ use crate::joint::Freedom;
 use crate::model::{BodyId, DriverId, GROUND, JointId, Model};
 use crate::space::{Mat3, Pose, Twist};
 
-/// Which coordinates describe the mechanism.
+/// Coordinates that describe the mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Formulation {
     /// Joint coordinates of a spanning tree that leaves the fewest unknowns (paper, section 6.2).
@@ -54,7 +54,7 @@ pub struct Topology {
     pub coupled_rows: Vec<RowId>,
     /// Degrees of freedom without drivers, at the design configuration.
     pub mobility: usize,
-    /// Why each joint is in the tree or cut, by joint.
+    /// Role of each joint, tree or cut, with the reason.
     pub roles: Vec<JointRole>,
 }
 
@@ -65,14 +65,14 @@ pub enum JointRole {
     Tree {
         /// The body that it places.
         child: BodyId,
-        /// Number of unknown coordinates that leaves.
+        /// Number of unknown coordinates that remain.
         unknowns: usize,
     },
     /// It is cut into constraint rows.
     Cut(CutReason),
 }
 
-/// Why a joint is cut.
+/// Reason why a joint is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CutReason {
     /// Type has no tree form: a rod or a leg.
@@ -94,7 +94,7 @@ pub struct Link {
     pub parent: BodyId,
     /// The body that it places.
     pub child: BodyId,
-    /// Which end of the joint is on the parent: 0 (i) or 1 (j).
+    /// End of the joint that is on the parent: 0 (i) or 1 (j).
     pub parent_end: usize,
     /// Chain of freedoms from parent to child.
     pub steps: Vec<LinkStep>,
@@ -105,7 +105,7 @@ pub struct Link {
 /// One freedom of a link.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkStep {
-    /// Which motion.
+    /// Kind of motion.
     pub freedom: Freedom,
     /// -1 where the link runs from body j to body i, so that coordinates stay those of j relative to i.
     pub sign: f64,
@@ -120,26 +120,26 @@ pub struct LinkStep {
 pub struct Coordinate {
     /// Link.
     pub link: LinkId,
-    /// What sets its value.
+    /// Source of the coordinate's value.
     pub set_by: SetBy,
     /// True if it is a length (else an angle).
     pub is_length: bool,
-    /// What it is compared with: the size of the largest loop that it moves, m, if it is a length; else 1 rad.
+    /// Reference length for comparison: the size of the largest loop that it moves, m, for a length; 1 rad otherwise.
     pub unit: f64,
     /// 1 / unit.
     pub per_unit: f64,
 }
 
-/// What sets a coordinate's value.
+/// Source of a coordinate's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SetBy {
     /// A driver prescribes it.
     Driver(DriverId),
     /// It is unknown: a block is solved for it.
     Block {
-        /// Which block.
+        /// Block that solves it.
         block: BlockId,
-        /// Which of the block's unknowns.
+        /// Index among the unknowns of the block.
         column: usize,
     },
 }
@@ -172,7 +172,7 @@ pub struct Closure {
     pub solved_by_points: bool,
     /// The block that solves it; `None` if no unknown moves it.
     pub block: Option<BlockId>,
-    /// Where its rows stand in that block.
+    /// Columns of that block in which the rows have entries.
     pub entries: Vec<ClosureColumn>,
     /// All links around the loop that it closes.
     pub links: Vec<LoopLink>,
@@ -220,24 +220,24 @@ impl Closure {
     }
 }
 
-/// Where a constraint row is.
+/// Position of a constraint row in the plan.
 #[derive(Clone, Debug)]
 pub struct RowPlace {
     /// Closure.
     pub closure: ClosureId,
-    /// Which of the closure's rows.
+    /// Index of the row in its closure.
     pub index: usize,
     /// True if it is one of the independent rows that are solved with; else it is redundant and watched.
     pub selected: bool,
     /// The further terms of a coupler, which this row is the first of.
     pub terms: Vec<RowTerm>,
-    /// Of a coupler: the columns of its block where its terms stand.
+    /// For a coupler: the columns of its block in which its terms have entries.
     pub columns: Vec<CoupledColumn>,
     /// True if it is a further term of a coupler, and no constraint by itself.
     pub is_term: bool,
     /// Value of the sum of a coupler, per coefficient of its first term, at this term; zero elsewhere.
     pub constant: f64,
-    /// What its residual is compared with: the size of its loop, m, if that is a length; else 1.
+    /// Reference size of the residual: the size of its loop, m, for a length; 1 otherwise.
     pub unit: f64,
 }
 
@@ -250,7 +250,7 @@ pub struct RowTerm {
     pub factor: f64,
 }
 
-/// Where the terms of a coupler meet in a column of its block.
+/// Column of a block in which terms of a coupler have entries.
 #[derive(Clone, Debug)]
 pub struct CoupledColumn {
     /// The column.
@@ -274,7 +274,7 @@ pub struct Block {
     pub selected: Vec<RowId>,
     /// The range of [`Topology::links`] that it places.
     links: Range<usize>,
-    /// Number of multiplications its factors take in the design configuration, if they are sparse.
+    /// Number of multiplications of the block's factorisation in the design configuration, if it is sparse.
     pub multiplications: usize,
 }
 
@@ -352,7 +352,7 @@ impl Topology {
         self[place.closure].rows[place.index]
     }
 
-    /// Number of coordinates are unknown.
+    /// Number of unknown coordinates.
     pub fn unknowns(&self) -> usize {
         self.blocks.iter().map(|b| b.unknowns.len()).sum()
     }
@@ -383,7 +383,7 @@ impl Topology {
         self.coupled_rows.iter().flat_map(|&r| self.parts_of_row(r)).map(|term| term.row)
     }
 
-    /// What a row is called in messages: the joint with its constraint, the driver, or the coupler.
+    /// Name of a row in messages: the joint with its constraint, the driver, or the coupler.
     pub fn row_name(&self, model: &Model, r: RowId) -> String {
         let closure = self.closure_of(r);
         let row = match self.constraint(r) {
@@ -400,7 +400,7 @@ impl Topology {
         }
     }
 
-    /// Solves a block with these independent rows, in ascending order, from now on.
+    /// Selects these independent rows, in ascending order, for the solution of a block.
     pub(crate) fn select(&mut self, block: BlockId, selected: Vec<RowId>) {
         for r in self.rows_of_block(block) {
             self[r].selected = selected.binary_search(&r).is_ok();

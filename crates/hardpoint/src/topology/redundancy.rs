@@ -1,4 +1,4 @@
-//! Which constraints say the same: for every redundant one, those that imply it.
+//! Redundant constraints, each with the constraints that imply it.
 
 use std::collections::BTreeMap;
 

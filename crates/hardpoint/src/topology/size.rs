@@ -1,4 +1,5 @@
-//! How large every loop is: gaps, corrections and steps are judged by the loop that they are in, and by nothing else in the file.
+//! Size of every loop: gaps, corrections and steps are compared with the size of their own loop and with nothing else
+//! in the file.
 
 use std::collections::BTreeSet;
 

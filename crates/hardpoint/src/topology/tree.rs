@@ -121,7 +121,7 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Candidate {
     unknowns: usize,
-    /// Of the body that is placed already.
+    /// Depth of the body that is placed already.
     depth: usize,
     joint: usize,
     parent_end: usize,
@@ -233,7 +233,7 @@ fn add_link(
     topology.links.push(Link { joint, parent, child, parent_end, steps, stage: 0 });
 }
 
-/// What the rows of a closure belong to.
+/// Owner of the rows of a closure.
 struct Owner {
     joint: JointId,
     driver: Option<DriverId>,

@@ -72,8 +72,8 @@ impl Checker<'_> {
         }
     }
 
-    /// What a velocity field over whole bodies does to everything on them: hardpoints of joints and points move, and axes along
-    /// vectors turn; axes through hardpoints follow these.
+    /// Checks a velocity field over whole bodies: hardpoints of joints and points move, axes along vectors rotate, axes
+    /// through hardpoints follow their hardpoints.
     fn shape(
         &mut self,
         bodies: &[String],
@@ -182,7 +182,7 @@ impl Checker<'_> {
         })
     }
 
-    /// What a change means: whether what it names is there and can change so.
+    /// Resolves a change: its references must exist and must be able to change so.
     fn change(&mut self, change: &ChangeDraft, owner: &str, here: Here, k: usize) -> Option<Vec<Change>> {
         let at = here.item("changes", k);
         let change = match change {

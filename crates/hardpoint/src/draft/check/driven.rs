@@ -14,16 +14,16 @@ use crate::space::{Mat3, Vec3};
 
 use super::{Checker, Here, frame_along};
 
-/// What a driver prescribes, as the model has it.
+/// Quantity that a driver prescribes, resolved.
 #[derive(Clone, Copy)]
 pub(super) struct Driven {
     pub joint: JointId,
     pub coordinate: usize,
-    /// What it is in the design configuration, where that is what laws from zero count from.
+    /// Value in the design configuration, if the law counts from zero.
     zero: Zero,
 }
 
-/// What the coordinate of a driver is in the design configuration.
+/// Value of a driver's coordinate in the design configuration.
 #[derive(Clone, Copy)]
 enum Zero {
     /// Nothing: there is nothing else to count from, like a revolute joint's angle.
@@ -32,7 +32,7 @@ enum Zero {
     AsDrawn,
     /// Value that the joint keeps of its design configuration: the length of a rod or leg, the course of an axis.
     Kept,
-    /// Where the joint's hardpoint is along its axis.
+    /// Position of the joint's hardpoint along its axis.
     Position,
 }
 
@@ -148,7 +148,7 @@ impl Checker<'_> {
         self.driven_joint(d, &joint::LEG, [i.body, j.body], [i.at, j.at], None, Zero::Kept)
     }
 
-    /// What has the value of a measure, in whole or counted from the design configuration as the measure is.
+    /// Coordinate that has the value of a measure, in whole or relative to the design configuration like the measure.
     fn driven_measure(&mut self, d: &DriverDraft, name: &str, here: Here) -> Option<Driven> {
         let draft = self.draft;
         let at = here.key("measure");
@@ -302,7 +302,7 @@ impl Checker<'_> {
         self.driven_joint(d, &joint::COURSE, [GROUND, body], [place, place], Some(axes), zero)
     }
 
-    /// Where a direction points in the design configuration.
+    /// Direction as a vector in the design configuration.
     fn vector(&self, direction: Direction) -> Option<Vec3> {
         match direction {
             Direction::Along(v) => Some(v),
@@ -315,7 +315,8 @@ impl Checker<'_> {
         self.model.joints.iter().find(|j| j.bodies.contains(&body)).map(|j| j.at[0])
     }
 
-    /// The value of a driver's coordinate in the design configuration, if it is another than zero. HP0213 where laws count from a zero that there is not.
+    /// Value of a driver's coordinate in the design configuration, if it is not zero. HP0213 if a law counts from a
+    /// zero that does not exist.
     pub(super) fn as_drawn(&mut self, d: &DriverDraft, driven: Driven, here: Here) -> Option<AsDrawn> {
         let joint = &self.model.joints[driven.joint.0];
         let mut sources = Vec::new();

@@ -20,7 +20,7 @@ use super::{Checker, Here, LISTED_NAMES, extent_of_joints};
 pub(super) struct Written {
     formula: Formula,
     at: DraftLocation,
-    /// What it gives, as messages say it.
+    /// Name of the defined number, as it appears in messages.
     name: String,
     /// The case to whose laws it belongs.
     case: Option<CaseId>,
@@ -108,7 +108,7 @@ impl<'a> Checker<'a> {
         Some(Formula { of, expression: expression.clone(), inputs, per_unit })
     }
 
-    /// What a name in an expression means, and how many of the text's units make one SI unit of it.
+    /// Source that a name in an expression refers to, with the number of units of the text per SI unit.
     fn source(&mut self, name: &str, per_metre: f64, at: &DraftLocation) -> Option<(Source, f64)> {
         let draft = self.draft;
         if let Some((hardpoint, axis)) = name.split_once('.') {
@@ -249,7 +249,7 @@ impl<'a> Checker<'a> {
         *position = coordinates.into();
     }
 
-    /// What a faulty formula would give is not known, and nor is what follows from it.
+    /// Marks the result of a faulty formula as unknown, with all that depends on it.
     fn spoil(&mut self, of: Target) {
         match of {
             Target::Parameter(p) => drop(self.spoilt.insert(Source::Parameter(p))),
@@ -443,7 +443,7 @@ impl<'a> Checker<'a> {
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Formula {
-    /// What others may use of it.
+    /// Source that other formulas may use.
     pub(super) fn gives(&self) -> Option<Source> {
         match self.of {
             Target::Parameter(p) => Some(Source::Parameter(p)),
@@ -453,17 +453,17 @@ impl Formula {
     }
 }
 
-/// What the parameters and formulas of a draft give with all design variables at zero: for numbers that no change of the
-/// design can move.
+/// Values of the parameters and formulas of a draft with all design variables at zero, for numbers that no change of
+/// the design affects.
 #[derive(Clone, Debug, Default)]
 pub struct Nominal {
-    /// Of each hardpoint of the draft, m; null where a formula of it is faulty.
+    /// Position of each hardpoint of the draft, m; null if a formula of it is faulty.
     pub positions: Vec<Vec3>,
     /// By name: its value in SI if it has one, its quantity, and a design variable or hardpoint that it follows.
     parameters: BTreeMap<String, (Option<f64>, Quantity, Option<String>)>,
 }
 
-/// Why an expression is no constant.
+/// Reason why an expression is not a constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ConstantError {
     /// It names what is no parameter.
@@ -477,8 +477,8 @@ pub enum ConstantError {
 }
 
 impl Nominal {
-    /// What the parameters and hardpoints of a draft are with all design variables at zero. What is faulty is left out:
-    /// [`Model::from_draft`](crate::model::Model::from_draft) reports it.
+    /// Values of the parameters and hardpoints of a draft with all design variables at zero. Faulty entries are left
+    /// out; [`Model::from_draft`](crate::model::Model::from_draft) reports them.
     pub fn of(draft: &Draft) -> Self {
         let mut c = Checker::new(draft);
         c.formulas();

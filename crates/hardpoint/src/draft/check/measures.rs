@@ -416,7 +416,7 @@ impl<'c, 'd> MeasureCheck<'c, 'd> {
     }
 }
 
-/// How a type of field is drafted, and what it means in a model.
+/// Draft type and model type of each kind of field.
 macro_rules! field {
     ($type:ty, $kind:ident, $form:ident: $draft:ty, |$written:ident, $key:ident, $c:ident| $resolve:expr) => {
         impl Field for $type {
@@ -515,7 +515,7 @@ field!(Combination, Expression, Expression: Expression, |expression, key, c| {
     })
 });
 
-/// How far the look at a measure is.
+/// State of the check of a measure.
 #[derive(Clone, Copy)]
 enum Visit {
     New,
@@ -526,8 +526,8 @@ enum Visit {
 /// A power law holds to this where it holds.
 const HOMOGENEOUS: f64 = 1e-9;
 
-/// What an expression measures: the powers by which it grows when the unit of length, angle or time of all its inputs
-/// changes. Where that is no power law, as in `toe + 3`, it is a plain number in that unit.
+/// Dimension of an expression: the powers by which it grows with the units of length, angle and time of its inputs. If
+/// that is not a power law, as in `toe + 3`, the result is a plain number in that unit.
 fn dimension_of(expression: &Expression, inputs: &[Dimension]) -> Dimension {
     let value = |powers: &dyn Fn(&Dimension) -> i8, scale: f64| {
         // Any numbers will do; below 1, so that inverse sines have values.

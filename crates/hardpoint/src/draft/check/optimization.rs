@@ -14,9 +14,9 @@ use crate::model::{
 use super::formulas::AXES;
 use super::{Checker, Here, LISTED_NAMES};
 
-/// Of each thing that is limited, the highest lower and the lowest upper limit so far: what it is as written, and in which limit.
+/// Highest lower and lowest upper limit of each limited quantity: its value as written, and the name of its limit.
 type Tightest<'d> = HashMap<Key, [Option<(f64, f64, &'d str)>; 2]>;
-/// What indicates what is limited from all else.
+/// Identity of a limited quantity.
 type Key = (u8, usize, usize);
 
 impl Checker<'_> {
@@ -195,7 +195,7 @@ impl Checker<'_> {
         Some(Goal { name: g.name.clone(), metric, target, weight: g.weight * unit })
     }
 
-    /// What is limited, and to what, in SI. HP0238 where no number can be so.
+    /// Resolves a limit to its quantity and its bounds in SI. HP0238 if no number can satisfy it.
     pub(super) fn limit(&mut self, l: &LimitDraft, here: Here) -> Option<Limit> {
         let of = self.limited(l, here);
         for (key, bound) in [("min", l.least), ("max", l.most)] {
@@ -363,7 +363,7 @@ impl Checker<'_> {
     }
 }
 
-/// Where the side of a box is; of all else, the name.
+/// Field that holds the side of a box; for other limits the name.
 fn side_of(of: &LimitTargetDraft) -> &'static str {
     if let LimitTargetDraft::Coordinate(_, axis) = of { AXES[axis % 3] } else { "name" }
 }
@@ -377,12 +377,12 @@ fn key(of: LimitTarget) -> Key {
     }
 }
 
-/// Number of units make one SI unit of it.
+/// Number of user units per SI unit.
 pub(super) fn per_si(of: Dimension, per_metre: f64, per_radian: f64) -> f64 {
     per_metre.powi(of.length_in_units().into()) * per_radian.powi(of.angle.into())
 }
 
-/// How to give a variable bounds.
+/// Suggests how to give a variable bounds.
 fn bounds_of(v: &VariableDraft) -> String {
     match v.changes.as_slice() {
         [ChangeDraft::Parameter { parameter, .. }] if *parameter == v.name => format!(

@@ -161,7 +161,7 @@ impl Checker<'_> {
         Some(Tolerance { name: name.clone(), variables, reach, scatter: scatter?, cost: one.cost })
     }
 
-    /// How a tolerance scatters, given what is said of all. HP0241 where that cannot be.
+    /// Distribution of a tolerance, with the defaults of the study. HP0241 if it is invalid.
     fn scatter(&mut self, own: ScatterDraft, all: ScatterDraft, here: Here, what: &str) -> Option<Scatter> {
         if let Some(sigmas) = own.sigmas {
             let even = own.kind.or(all.kind) == Some(0) && here.section == Section::Tolerances;
@@ -309,7 +309,7 @@ const MOST_SIGMAS: f64 = 30.0;
 /// True if they can hold together takes the cube of their number.
 const MOST_CORRELATIONS: usize = 300;
 
-/// Of the variables that are correlated at all.
+/// Correlation matrix of the correlated variables.
 fn matrix(of: &[Correlation]) -> Vec<Vec<f64>> {
     let mut variables: Vec<VariableId> = of.iter().flat_map(|c| c.between).collect();
     variables.sort_unstable();

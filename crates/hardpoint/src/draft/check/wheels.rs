@@ -204,7 +204,7 @@ impl Checker<'_> {
         (self.faults.len() == faults && !self.draft.unread.any(here.section, here.index)).then_some(wheel)
     }
 
-    /// How a wheel is in the design configuration: its body, its centre, its side and its spin axis.
+    /// Wheel in the design configuration: its body, centre, side and spin axis.
     pub(super) fn wheel_as_drawn(
         &mut self,
         w: &WheelDraft,
