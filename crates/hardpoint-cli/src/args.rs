@@ -1,4 +1,4 @@
-//! What can be typed after `hardpoint`.
+//! Arguments of the command `hardpoint`.
 
 use std::num::NonZero;
 use std::path::PathBuf;
@@ -51,7 +51,7 @@ then its \"status\" is \"error\" and its \"diagnostics\" say why.";
 #[derive(Debug, Parser)]
 #[command(name = "hardpoint", version, after_help = AFTER, max_term_width = 110)]
 pub struct Arguments {
-    /// What to do.
+    /// Subcommand.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -77,7 +77,8 @@ pub enum Command {
     Compare(Compare),
     /// Search for the design that serves the goals of the model file best, within its bounds and limits
     Optimize(Optimize),
-    /// Say what the tolerances of the design variables come to: spread, yield, what contributes, the loosest that keep the limits
+    /// Analyse how tolerances of the design variables affect the results: spread, yield, contributions, loosest
+    /// tolerances
     Tolerance(Tolerance),
     /// Find the design that explains what was measured, how well it is known, and what to measure next
     Calibrate(Calibrate),
@@ -100,7 +101,7 @@ pub enum Command {
     },
 }
 
-/// What all analyses take.
+/// Arguments of all analyses.
 #[derive(Args, Debug, Default)]
 pub struct Common {
     /// The model file (TOML)
@@ -113,7 +114,7 @@ pub struct Common {
     pub json: bool,
 }
 
-/// Which motions of a model file a command is done for.
+/// Selection of the motions of a model file.
 #[derive(Args, Debug, Default)]
 pub struct Motions {
     /// Do one case of the model file only [default: all of them]
@@ -155,7 +156,7 @@ pub struct New {
     /// The name of the model, and of its file unless that ends with `.toml`
     #[arg(value_name = "NAME", required_unless_present = "list")]
     pub name: Option<PathBuf>,
-    /// What to begin from; without it, it is requested on a terminal
+    /// Template to start from; without it, the command asks on a terminal
     #[arg(short, long, value_name = "TEMPLATE")]
     pub template: Option<String>,
     /// List the templates
@@ -198,7 +199,7 @@ Examples:
   hardpoint run models/studies/strut_toe.toml --case bump
   hardpoint run models/macpherson.toml --json | jq '.sensitivities[0]'";
 
-/// How tables are written.
+/// Format of tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     /// Text: motion.csv and sensitivity.csv
@@ -210,7 +211,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// How the files' names end.
+    /// Ending of the file names.
     pub fn suffix(self) -> &'static str {
         match self {
             Self::Csv => "csv",
@@ -342,7 +343,7 @@ pub struct Verify {
     pub output: Option<PathBuf>,
 }
 
-/// Which designs `verify` compares.
+/// Designs that `verify` compares.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Differences {
     Central,
@@ -625,7 +626,7 @@ Examples:
 pub struct Calibrate {
     #[command(flatten)]
     pub common: Common,
-    /// What was measured: a CSV table of readings over where the drivers stood
+    /// Measured data: a CSV table of readings in postures of the drivers
     #[arg(value_name = "MEASURED.csv")]
     pub measured: PathBuf,
     /// Write tables, a report and summary.json into this folder
@@ -637,7 +638,7 @@ pub struct Calibrate {
     /// Standard deviation of readings whose cells have none, in their unit; may be given several times
     #[arg(long, value_name = "NAME=SIGMA")]
     pub sigma: Vec<String>,
-    /// What a residual far from the others counts
+    /// Loss function of residuals far from the others
     #[arg(long, value_enum, default_value_t = LossKind::Squares)]
     pub loss: LossKind,
     /// End after that many iterations
@@ -648,7 +649,7 @@ pub struct Calibrate {
     pub save: Option<PathBuf>,
 }
 
-/// What a residual counts.
+/// Loss function of a residual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LossKind {
     /// Square: best where errors are normal
@@ -691,7 +692,7 @@ pub struct Sweep {
     /// Write tables, a report and summary.json into this folder
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
-    /// How designs are chosen within the ranges [default: as the file says, or sobol]
+    /// Method that chooses the designs within the ranges [default: that of the file, or sobol]
     #[arg(long, value_enum)]
     pub method: Option<Method>,
     /// Choose that many designs; with indices that many pairs of them [default: as the file says, or 1000]
@@ -776,7 +777,7 @@ pub struct Site {
     pub models: Vec<PathBuf>,
 }
 
-/// How designs are chosen.
+/// Method that chooses the designs.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Method {
     /// Every combination of evenly spaced values
@@ -789,7 +790,7 @@ pub enum Method {
     Indices,
 }
 
-/// How the tables of a sweep are written.
+/// Format of the tables of a sweep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum TableForm {
     /// Text

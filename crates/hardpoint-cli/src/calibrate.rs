@@ -169,7 +169,7 @@ fn search(
     })
 }
 
-/// What is written.
+/// Results to write.
 struct Results<'a> {
     calibrated: CalibrationInputs<'a>,
     options: &'a Calibrate,

@@ -53,7 +53,7 @@ pub fn examine(session: &Session, formulation: Formulation, file: &ModelFile) ->
     Ok(summary)
 }
 
-/// How a command ends that did that.
+/// Outcome of a check with this summary.
 pub fn outcome(summary: &Summary) -> Outcome {
     match summary.status {
         RunStatus::Complete => Outcome::Done,
@@ -62,7 +62,7 @@ pub fn outcome(summary: &Summary) -> Outcome {
     }
 }
 
-/// What is known of a mechanism that cannot be driven.
+/// Text about a mechanism that cannot be driven.
 fn outline_text(file: &ModelFile) -> String {
     let mut out = heading(&file.model.name, file.description.as_deref());
     for table in outline(file) {

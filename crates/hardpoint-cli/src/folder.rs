@@ -116,7 +116,7 @@ impl Folder {
 }
 
 impl PendingFile {
-    /// That it could not be written.
+    /// Error for a file that could not be written.
     pub fn failed(&self, error: impl Into<io::Error>) -> WriteError {
         WriteError { path: self.path.clone(), error: error.into() }
     }
@@ -154,7 +154,7 @@ fn is_absent(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::NotFound
 }
 
-/// Where the results of a case go: a folder of its own name.
+/// Folder of the results of a case: one with its own name.
 pub fn of_case(whole: &Path, case: Option<&str>) -> PathBuf {
     let Some(case) = case else { return whole.to_owned() };
     whole.join(file_name(case))

@@ -130,7 +130,7 @@ fn file_name(path: &Path) -> String {
     path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// What the source has stored beside what the model does.
+/// Compares the stored motion of the source with that of the model.
 fn compared(file: &ModelFile, imported: &ImportedModel) -> Option<Difference> {
     let series = imported.series.as_ref()?;
     let analysis = Analysis::new(&file.model).ok()?;

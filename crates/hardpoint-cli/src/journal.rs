@@ -1,4 +1,4 @@
-//! What a sweep has found so far, on disk: a program that ends at any time loses the block that it was writing, and no other.
+//! Journal of a sweep on disk: a program that ends at any time loses only the block that it was writing.
 //!
 //! A journal is a head that says which sweep it is of, then blocks, each with its length and a checksum. What a killed program has left of a
 //! block does not fit to these and is cut off when the journal is opened again.
@@ -9,26 +9,26 @@ use std::path::{Path, PathBuf};
 
 use hardpoint::study::{StudyCost, SweptBlock, SweptCurves, SweptFailure};
 
-/// What a journal begins with; another format gets another number.
+/// First bytes of a journal; another format gets another number.
 const HEAD: &[u8; 16] = b"hardpoint sweep1";
 /// Before every block: its length, and its checksum.
 const FRAME: u64 = 16;
 /// Before the metrics in a block: first number, designs, motions, steps, metrics.
 const OPENING: u64 = 40;
 
-/// Which sweep a journal is of.
+/// Identity of the sweep of a journal.
 pub type Fingerprint = u128;
 
 /// A journal that is being written, or has been.
 pub struct Journal {
     file: File,
     path: Option<PathBuf>,
-    /// Where each block begins, and how many designs it has.
+    /// Start of each block, and its number of designs.
     blocks: Vec<(u64, usize)>,
     end: u64,
 }
 
-/// Why a journal cannot be resumed.
+/// Reason why a journal cannot be resumed.
 pub enum JournalError {
     /// It is of another sweep.
     Other,

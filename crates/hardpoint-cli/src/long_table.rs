@@ -24,7 +24,7 @@ const GROUP_CELLS: usize = 1 << 22;
 /// Columns of a table, by their names; the cells only say of which kind they are.
 pub type Kinds = Vec<(String, Cells)>;
 
-/// How a table is written.
+/// Format of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableFormat {
     /// Text, one row a line.
@@ -34,7 +34,7 @@ pub enum TableFormat {
 }
 
 impl TableFormat {
-    /// How the names of its files end.
+    /// Ending of its file names.
     pub fn suffix(self) -> &'static str {
         match self {
             Self::Csv => "csv",
@@ -189,7 +189,7 @@ fn read_group(group: &dyn RowGroupReader) -> parquet::errors::Result<Vec<Cells>>
     Ok(columns)
 }
 
-/// What is known at its places, and `none` elsewhere.
+/// Cells at their known positions, and `none` elsewhere.
 fn spread<T: Clone>(known: &[i16], cells: Vec<T>, none: T) -> Vec<T> {
     let mut cells = cells.into_iter();
     known.iter().map(|k| if *k > 0 { cells.next() } else { None }.unwrap_or_else(|| none.clone())).collect()

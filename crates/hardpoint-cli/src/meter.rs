@@ -1,4 +1,4 @@
-//! How far work is, shown to whoever waits for it.
+//! Progress of work, for a terminal or a page.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -7,11 +7,11 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Somebody who is no terminal and waits for work: a page.
 pub trait Listener: Send + Sync {
-    /// So much of a part of the work is done.
+    /// Reports that a fraction of a part of the work is done.
     fn progress(&self, what: &'static str, unit: &'static str, done: usize, of: usize);
     /// A line on what the work came to on its way.
     fn line(&self, line: &str);
-    /// Why there is no result: the diagnostics as a document, and as text.
+    /// Reports that there is no result: the diagnostics as a document, and as text.
     fn refused(&self, diagnostics: serde_json::Value, text: &str);
 }
 
@@ -22,7 +22,7 @@ pub struct Meter {
     started: Instant,
     bar: Option<ProgressBar>,
     listener: Option<Arc<dyn Listener>>,
-    /// So much was done before, of work whose rate is shown.
+    /// Amount done before, for work whose rate is shown.
     rate_after: Option<usize>,
 }
 

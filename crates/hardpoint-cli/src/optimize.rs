@@ -138,7 +138,7 @@ pub struct Search<'a> {
     motions: &'a Motions<'a>,
     asked: &'a OptimizationSettings,
     found: OptimizationResult,
-    /// What it comes to.
+    /// Facts of the result.
     pub facts: OptimizeFacts,
 }
 

@@ -1,8 +1,8 @@
-//! How a command ends, for scripts.
+//! Outcomes of commands, for scripts.
 
 use std::process::ExitCode;
 
-/// How a command ended; `args.rs` explains the codes to the user.
+/// Outcome of a command; `args.rs` explains the codes to the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Outcome {
@@ -25,7 +25,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Of two, that of the whole: what went worst, as exit codes go up.
+    /// Outcome of two together: the worse one, with the larger exit code.
     pub fn and(self, other: Self) -> Self {
         if other as u8 > self as u8 { other } else { self }
     }

@@ -25,7 +25,7 @@ pub trait Study {
     fn file(&self) -> &ModelFile;
     /// Motions that were.
     fn motions(&self) -> &Motions<'_>;
-    /// Of one of them, its number among all of the model.
+    /// Index among all motions of the model.
     fn number(&self, motion: usize) -> usize;
     /// The page of a motion; `None` where that does not move at all.
     fn page(&self, motion: usize) -> Option<String>;
@@ -52,7 +52,7 @@ pub trait Study {
 pub struct FoundDesign<'a> {
     /// Change of every variable, in SI.
     pub design: &'a [f64],
-    /// What it is, in a sentence.
+    /// Description in one sentence.
     pub note: &'a str,
 }
 

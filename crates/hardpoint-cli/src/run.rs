@@ -36,13 +36,12 @@ use crate::workbook::Contents;
 /// The step of the differences that the report compares with, as part of the natural step: small enough for
 /// five digits, large enough to stay clear of round-off.
 const STEP: f64 = 1e-4;
-/// Where only some output times are studied further, they must find the motion where it was: within this part of the
-/// mechanism's size.
+/// Tolerance of motions solved with fewer output times, as a fraction of the mechanism's size.
 const SAME_MOTION: f64 = 1e-6;
-/// What is said where they do not.
+/// Message if they differ.
 const NOT_THE_SAME: &str = "with the output times that are kept, the motion does not come out the same: the sensitivities were not \
     compared with re-solved designs, and how far they can be trusted is not known";
-/// What is said where sensitivities of bodies are not kept.
+/// Message if sensitivities of bodies are not stored.
 const TOO_MANY: &str = "the sensitivities were not compared with re-solved designs, because they are too many to be held; \
     `hardpoint verify` does that for fewer output times";
 /// Jerks of that many output times are held at once.
@@ -154,7 +153,7 @@ fn grid_alone(
     Ok(Some(if session.interrupted() { Outcome::Interrupted } else { Outcome::Done }))
 }
 
-/// How a case went, for the summary of all.
+/// Outcome of a case, for the summary of all.
 #[derive(Serialize)]
 struct CaseDone {
     case: String,
@@ -337,7 +336,7 @@ impl Sample {
         Self { model: (course.stride > 1).then(thinned), formulation }
     }
 
-    /// What is studied; `None` where the motion comes out differently with fewer output times.
+    /// Analysis with the stored output times; `None` if the motion differs with fewer output times.
     fn analysis<'a>(&'a self, all: &Analysis<'a>, course: &Course) -> Option<Analysis<'a>> {
         let Some(model) = &self.model else { return Some(all.clone()) };
         let analysis = Analysis::with(model, self.formulation).ok()?;
@@ -350,7 +349,7 @@ impl Sample {
     }
 }
 
-/// How far the sensitivities can be trusted, as far as the user has patience.
+/// Linear range of the sensitivities, unless the user interrupts.
 pub fn trusted(
     session: &Session,
     file: &ModelFile,

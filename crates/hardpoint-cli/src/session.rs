@@ -1,5 +1,5 @@
-//! What the commands share: reading the model, solving with progress and interruption, and telling what
-//! went wrong, as text or as JSON.
+//! Common parts of the commands: reading the model, solving with progress and interruption, reporting errors as text or
+//! JSON.
 
 use std::cell::Cell;
 use std::io::Write;
@@ -85,7 +85,7 @@ impl Session {
         Self::of(audience, interrupted, patient)
     }
 
-    /// What is done for a page, which may end it by this flag.
+    /// Session for a page, which may end it by this flag.
     pub fn for_page(listener: Arc<dyn Listener>, interrupted: Arc<AtomicBool>) -> Self {
         Self::of(Audience::Page(listener), interrupted, Arc::new(AtomicBool::new(true)))
     }
@@ -185,7 +185,7 @@ impl Session {
     /// other. `each` is reported the case where there are several.
     ///
     /// # Errors
-    /// Where nothing could be begun. What one case comes to does not keep the others from being done.
+    /// Error if nothing could be started. The outcome of one case does not prevent the others.
     pub fn for_motions(
         &self,
         path: &Path,
@@ -260,7 +260,7 @@ impl Session {
     /// The motions of a model that a command is done for, by their numbers.
     ///
     /// # Errors
-    /// Where it is to be done for a case that there is not.
+    /// Error for a case that does not exist.
     pub fn numbers_of(&self, file: &ModelFile, motions: &Motions) -> Result<Vec<usize>, Outcome> {
         match &motions.case {
             Some(name) => Ok(vec![self.case(file, name)?.0]),
@@ -285,7 +285,7 @@ impl Session {
         write_text(to, &text).map_err(|e| self.not_written(&e))
     }
 
-    /// That changes of some variables can be saved in the model's text: known before there is anything to lose.
+    /// Checks before the work that changes of some variables can be saved in the model's text.
     ///
     /// # Errors
     /// Fails where the text has no number for one of them.
@@ -341,7 +341,7 @@ impl Session {
         path.map(Folder::open).transpose().map_err(|e| self.not_written(&e))
     }
 
-    /// That a file to save to is not the model that it is made from.
+    /// Checks that a file to save to is not the model itself.
     ///
     /// # Errors
     /// Where it is.

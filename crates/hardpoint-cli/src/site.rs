@@ -14,7 +14,7 @@ use crate::outcome::Outcome;
 use crate::session::Session;
 use crate::{maps, run, text};
 
-/// Where models are, where none are named.
+/// Default folder of models.
 const MODELS: &str = "models";
 
 /// Writes the site; what cannot be shown is left out and reported.

@@ -23,7 +23,7 @@ use crate::pages::{Page, Study, page, threads};
 use crate::session::{Session, json_text};
 use crate::text;
 
-/// What a sweep that has not ended leaves in its folder.
+/// Journal that an unfinished sweep leaves in its folder.
 const JOURNAL: &str = "sweep.partial";
 /// The tables and the summary; of an earlier sweep none stays beside those of this one.
 const FILES: [&str; 5] = ["designs.csv", "designs.parquet", "curves.csv", "curves.parquet", "summary.json"];
@@ -206,7 +206,7 @@ fn no_plan(why: SweepPlanError, file: &ModelFile) -> String {
     }
 }
 
-/// What makes two sweeps the same: the model in all that it means, the designs, what is kept of them, and the program.
+/// Identity of a sweep: the meaning of the model, the designs, the stored results, and the program.
 fn fingerprint(file: &ModelFile, numbers: &[usize], asked: &SweepSettings, options: &Sweep) -> Fingerprint {
     let mut sum = Checksum::default();
     let of =
@@ -271,7 +271,7 @@ fn solve(
     }
 }
 
-/// What is written, from what the journal has.
+/// Results to write, from the journal.
 struct Results<'a> {
     swept: SweepInputs<'a>,
     journal: &'a Journal,
@@ -364,7 +364,7 @@ fn not_read(session: &Session, error: io::Error) -> Outcome {
     session.not_written(&WriteError { path: JOURNAL.into(), error })
 }
 
-/// What the pages of a sweep are made of.
+/// Contents of the pages of a sweep.
 struct Pages<'a> {
     swept: SweepInputs<'a>,
     facts: &'a SweepFacts,

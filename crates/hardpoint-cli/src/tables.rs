@@ -22,14 +22,14 @@ use crate::session::json_text;
 const MOST_BODIES: usize = 100;
 /// Sensitivities of more bodies times variables than this are written only where they are requested.
 const MOST_MOVED: usize = 200;
-/// What is larger than this is announced before the work.
+/// Size above which writing is announced before the work.
 const LARGE: u64 = 100 << 20;
 /// A number with all its digits, in CSV.
 const CSV_NUMBER: u64 = 19;
 /// The same as a double.
 const DOUBLE: u64 = 8;
 
-/// Which tables are written.
+/// Tables to write.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan<'m> {
     format: Format,
@@ -66,7 +66,7 @@ impl<'m> Plan<'m> {
         }
     }
 
-    /// What is not written, and how to have it.
+    /// Tables that are not written, and how to get them.
     pub fn left_out(&self) -> Option<String> {
         let what: Vec<&str> = self.left_out.into_iter().flatten().collect();
         (!what.is_empty()).then(|| format!("left out: {}; `--bodies` writes that", what.join(" and ")))
@@ -86,7 +86,7 @@ impl<'m> Plan<'m> {
         motion.into_iter().chain(sensitivity).collect()
     }
 
-    /// What there is to say before the work where much will be written.
+    /// Announcement before the work if much will be written.
     pub fn announcement(&self, folder: &str) -> Option<String> {
         let sizes = self.sizes();
         let all: u64 = sizes.iter().map(|(_, size)| size).sum();
@@ -240,12 +240,12 @@ pub struct Tables<'m> {
     failure: Option<(String, io::Error)>,
 }
 
-/// What was written.
+/// Tables that were written.
 #[derive(Debug)]
 pub struct TableSummary {
     /// The names of the files.
     pub names: Vec<String>,
-    /// What is not among them, and why.
+    /// Tables that were left out, with the reason.
     pub left_out: Option<String>,
 }
 
@@ -340,7 +340,7 @@ impl Tables<'_> {
     }
 }
 
-/// Why there is no table of sensitivities.
+/// Reason why there is no table of sensitivities.
 fn interrupted(name: &str) -> String {
     format!(
         "left out: `{name}`, because the run was interrupted while the rows of variables were taken out of it that the mechanism \

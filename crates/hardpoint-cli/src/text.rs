@@ -14,7 +14,7 @@ const BOLD: &str = "\x1b[1m";
 const RED: &str = "\x1b[1;91m";
 const PLAIN: &str = "\x1b[0m";
 
-/// Why stdout could not be written, the first time.
+/// First error of writing to stdout.
 static FAILED: Mutex<Option<std::io::Error>> = Mutex::new(None);
 
 /// Prints to stdout; escapes are dropped where it is no terminal. A reader that closed the pipe is no error; any other failure
@@ -26,14 +26,14 @@ pub fn print(text: &str) {
     }
 }
 
-/// That stdout could not be written.
+/// Records that stdout could not be written.
 pub fn note_failure(error: std::io::Error) {
     if error.kind() != std::io::ErrorKind::BrokenPipe {
         FAILED.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
     }
 }
 
-/// Why stdout could not be written, if it could not.
+/// Error of writing to stdout, if there was one.
 pub fn failed() -> Option<std::io::Error> {
     FAILED.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
@@ -43,8 +43,8 @@ pub fn complain(text: &str) {
     let _ = anstream::stderr().lock().write_all(printable(text).as_bytes());
 }
 
-/// What may stand on a terminal: control characters, and those that turn the direction of writing, are written as escapes.
-/// Line ends stay, and so do sequences that choose colours.
+/// Text that is safe on a terminal: control characters, and those that change the direction of writing, are escaped.
+/// Line ends and colour sequences are kept.
 fn printable(text: &str) -> Cow<'_, str> {
     if !text.chars().any(|c| c != '\n' && is_odd(c)) {
         return text.into();
@@ -111,7 +111,7 @@ pub fn pairs(rows: &[(&str, String)]) -> String {
     rows.iter().map(|(label, value)| format!("  {label:width$}  {}\n", shown(value))).collect()
 }
 
-/// What is worth knowing and no error, a line each, after an empty one.
+/// Notes that are no errors, a line each, after an empty one.
 pub fn notes(summary: &Summary) -> String {
     let ahead = summary.margin.as_ref().and_then(MarginFact::ahead);
     let lines = summary.model.all_notes().into_iter().chain(ahead).chain(summary.left_out.iter().cloned());

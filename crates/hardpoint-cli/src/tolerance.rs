@@ -19,7 +19,7 @@ use crate::pages::{Study, page, threads};
 use crate::session::{Session, json_text};
 use crate::text;
 
-/// Studies the tolerances of a model, writes, and prints what they come to.
+/// Studies the tolerances of a model, writes the results, and prints a summary.
 pub fn run(options: &Tolerance) -> Outcome {
     let session = Session::begin(options.common.json);
     tolerance_in(&session, options).unwrap_or_else(|outcome| outcome)
@@ -153,12 +153,12 @@ pub fn examine(
 pub struct Results<'a> {
     studied: ToleranceInputs<'a>,
     motions: &'a Motions<'a>,
-    /// What it comes to.
+    /// Facts of the result.
     pub facts: ToleranceFacts,
 }
 
 impl<'a> Results<'a> {
-    /// Of what was found just now.
+    /// Result of a study that has just ended.
     pub fn of(session: &Session, studied: ToleranceInputs<'a>, motions: &'a Motions<'a>) -> Self {
         let mut facts = ToleranceFacts::of(&studied);
         facts.seconds = session.seconds();

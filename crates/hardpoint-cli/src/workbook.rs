@@ -24,7 +24,7 @@ use rust_xlsxwriter::{
 const MOST_ROWS: usize = 1_048_576;
 const MOST_COLUMNS: usize = 16_384;
 const MOST_LETTERS: usize = 32_767;
-/// What is written of a sheet over time is in memory until all of it is: at most that many numbers.
+/// Maximum number of cells of a sheet over time, which is in memory until it is complete.
 const MOST_CELLS: usize = 1_000_000;
 /// Number of curves have a chart.
 const MOST_CHARTS: usize = 100;
@@ -32,7 +32,7 @@ const MOST_CHARTS: usize = 100;
 const CHART: (u32, u32) = (560, 300);
 const CHART_ROWS: u32 = 16;
 const CHART_COLUMNS: u16 = 9;
-/// That many significant digits are shown; the cells have all of them.
+/// Number of significant digits that are shown; the cells have all of them.
 const SHOWN_DIGITS: i32 = 6;
 
 /// The names of the sheets.
@@ -42,15 +42,15 @@ const LARGEST: &str = "Largest sensitivities";
 const SENSITIVITIES: &str = "Sensitivities";
 const HARDPOINTS: &str = "Hardpoints";
 
-/// What is written of a run.
+/// Contents of a workbook.
 pub struct Contents<'a> {
     /// The model.
     pub file: &'a ModelFile,
     /// Motion.
     pub course: &'a Course,
-    /// How the run went.
+    /// Summary of the run.
     pub summary: &'a Summary,
-    /// How the names of its tables end.
+    /// Ending of the names of its tables.
     pub suffix: &'a str,
 }
 
@@ -59,7 +59,7 @@ struct Sheet {
     worksheet: Worksheet,
     name: &'static str,
     about: String,
-    /// What is not in it, and where it is.
+    /// Contents that were left out, and where they are.
     left_out: Option<String>,
 }
 
@@ -99,7 +99,7 @@ impl Contents<'_> {
         Ok(told)
     }
 
-    /// What was run, and how it went.
+    /// Facts about the run.
     pub fn facts(&self) -> Vec<(&'static str, String)> {
         let summary = self.summary;
         let steps = &summary.steps;

@@ -14,7 +14,7 @@ const LONG_LINE: usize = 2000;
 /// Texts from the file are cut to this many characters inside messages.
 const SHOWN_NAME: usize = 60;
 
-/// How bad it is.
+/// Severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
@@ -31,7 +31,7 @@ pub enum Severity {
 /// Serialised for `--json` as `{severity, code, message, file, line, column, label, notes, help}`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Diagnostic {
-    /// How bad it is.
+    /// Severity.
     pub severity: Severity,
     /// Stable code; `docs/diagnostics.md` lists them.
     pub code: &'static str,
@@ -46,11 +46,11 @@ pub struct Diagnostic {
     /// Range of bytes of the text that is underlined.
     #[serde(skip)]
     pub span: Option<Range<usize>>,
-    /// What to write at the underlined place.
+    /// Text at the underlined place.
     pub label: Option<String>,
     /// Facts, with units.
     pub notes: Vec<String>,
-    /// What to do.
+    /// Instruction that corrects the problem.
     pub help: Option<String>,
 }
 
@@ -146,14 +146,14 @@ pub struct Source {
     pub file: Arc<str>,
     /// The text.
     pub text: Arc<str>,
-    /// Where each line begins.
+    /// Start of each line.
     lines: Arc<[usize]>,
     /// The names of all files, and where each begins and ends.
     files: Arc<[(String, Range<usize>)]>,
 }
 
 impl Source {
-    /// Of a name and a text.
+    /// Source of a file with this name and text.
     pub fn new(file: &str, text: &str) -> Self {
         Self::of_files(file, text, std::iter::empty())
     }
@@ -171,7 +171,7 @@ impl Source {
         Self { file: file.into(), text: all.into(), lines, files: files.into() }
     }
 
-    /// Where a file of all begins and ends; the first is the one that was requested.
+    /// Range of a file in the joint text; file 0 is the requested one.
     pub fn range(&self, file: usize) -> Range<usize> {
         self.files[file].1.clone()
     }
@@ -264,8 +264,8 @@ impl Source {
     }
 }
 
-/// What to do about an error of which nothing more particular is known; `docs/diagnostics.md` says more. Every error of a model
-/// file has one.
+/// General instruction for an error without a more specific one; `docs/diagnostics.md` has details. Every error of a
+/// model file has one.
 fn remedy(code: &str) -> Option<&'static str> {
     Some(match code {
         "HP0101" => "check the path, and that the file is a text of at most 64 MiB that you may read",

@@ -1,10 +1,10 @@
-//! How the mechanism is to be drawn: what a file says of its looks, which the model does not need to know.
+//! Appearance of the mechanism in drawings, which the model does not need.
 
 use std::collections::BTreeMap;
 
 use hardpoint::space::Vec3;
 
-/// What a file says of the looks of its mechanism, by places in the lists of the [`Model`](hardpoint::model::Model).
+/// Appearance of a mechanism, by indices in the lists of the [`Model`](hardpoint::model::Model).
 #[derive(Clone, Debug, Default)]
 pub struct Appearance {
     /// The shapes of bodies.
@@ -20,7 +20,7 @@ pub struct Appearance {
 pub struct Mesh {
     /// The file that it was read from, as the model names it.
     pub file: String,
-    /// What the vertices count from.
+    /// Frame of the vertices.
     pub frame: MeshFrame,
     /// Vertices, m.
     pub vertices: Vec<Vec3>,
@@ -28,7 +28,7 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// What the coordinates of a mesh count from.
+/// Frame of a mesh's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshFrame {
     /// The origin and axes of the hardpoints, in the design configuration.
@@ -42,13 +42,13 @@ impl MeshFrame {
     pub(crate) const ALL: [Self; 2] = [Self::World, Self::Body];
 }
 
-/// How model files write them, and what they are.
+/// Names in model files, with descriptions.
 pub(crate) const MESH_FRAMES: &[(&str, &str)] = &[
     ("world", "The origin and axes of the hardpoints, in the design configuration."),
     ("body", "The frame of its body."),
 ];
 
-/// What something that has a length is drawn as.
+/// Shape that a joint with a length is drawn as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// A damper with a spring round it.
@@ -73,7 +73,7 @@ impl Form {
     }
 }
 
-/// How model files write them, and what they are.
+/// Names in model files, with descriptions.
 pub(crate) const FORMS: &[(&str, &str)] = &[
     ("coilover", "A damper with a spring round it."),
     ("spring", "A coil spring."),

@@ -221,7 +221,7 @@ impl Edit<'_> {
         self.file.origins.names.contains_key(name)
     }
 
-    /// What is written in another file cannot be saved in this one: whether that was reported.
+    /// Returns true, with a diagnostic, if a value is written in another file and cannot be saved in this one.
     fn is_elsewhere(&mut self, variables: &str, name: &str) -> bool {
         let Some(file) = self.file.origins.included.get(name) else { return false };
         let why = format!("`{name}` is in the included file `{file}`");
@@ -664,7 +664,7 @@ fn shortest(target: f64, near: f64, to_si: impl Fn(f64) -> f64, exact: f64) -> S
     format!("{}", if found == 0.0 { 0.0 } else { found })
 }
 
-/// What differs between a changed design and the nominal design of another model, and of which thing; none where nothing does.
+/// Name of the first difference between a changed design and the nominal design of another model, if there is one.
 fn difference(model: &Model, values: &[f64], saved: &Model) -> Option<(String, String)> {
     let found = |what: &str, name: &str| Some((what.to_owned(), name.to_owned()));
     let size = model.size();

@@ -18,7 +18,7 @@ pub(crate) struct Key {
     pub need: Need,
     /// A value to show where it is missing or wrong.
     pub example: &'static str,
-    /// What it means.
+    /// Meaning of the key.
     pub doc: &'static str,
 }
 
@@ -27,7 +27,7 @@ pub(crate) struct Key {
 pub(crate) enum Need {
     Required,
     Optional,
-    /// Where it is left out, this is as if written.
+    /// Default value, as if written.
     Else(&'static str),
 }
 
@@ -61,7 +61,7 @@ pub(crate) use {keys, table};
 /// A table with keys of its own.
 #[derive(Clone, Copy)]
 pub(crate) struct Table {
-    /// Where a `type` says which table it is, that type; else what the schema calls it.
+    /// Type of the table if `type` selects it; otherwise its name in the schema.
     pub name: &'static str,
     pub doc: &'static str,
     pub keys: &'static [Key],
@@ -89,7 +89,7 @@ impl Table {
 /// A table that is one of several kinds.
 pub(crate) struct Kinds {
     pub name: &'static str,
-    /// What it is; `{keys}` represents the first keys of its kinds.
+    /// Meaning of the table; `{keys}` represents the first keys of its kinds.
     pub doc: &'static str,
     /// True if a key `type` says which kind it is; else the first key of a kind leads it.
     pub typed: bool,
@@ -98,12 +98,12 @@ pub(crate) struct Kinds {
 
 /// The key that says which kind a table is.
 const TYPE: &[Key] = keys! {
-    /// Which kind it is.
+    /// Kind of the table.
     must "type": Shape::Text, "...";
 };
 
 impl Kinds {
-    /// What it is.
+    /// Documentation of the kinds.
     pub fn doc(&self) -> String {
         let tables = (self.tables)();
         let leads: Vec<String> = tables.iter().map(|t| format!("`{}`", t.keys[0].key)).collect();
@@ -121,7 +121,7 @@ impl Kinds {
     }
 }
 
-/// What may stand as a value.
+/// Form of a value.
 #[derive(Clone, Copy)]
 pub(crate) enum Shape {
     Text,
@@ -155,7 +155,7 @@ pub(crate) enum Shape {
 }
 
 impl Shape {
-    /// That many of these.
+    /// A list of exactly `count` values of this form.
     pub const fn exactly(count: usize, of: &'static Shape) -> Self {
         Self::List(of, [count; 2])
     }
@@ -164,7 +164,7 @@ impl Shape {
         Self::List(of, [0, usize::MAX])
     }
 
-    /// How messages say what is expected.
+    /// Name of the expected value in messages.
     pub fn noun(self) -> String {
         match self {
             Self::Name(one) => format!("the name of {one}"),

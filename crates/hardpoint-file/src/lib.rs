@@ -86,17 +86,17 @@ pub struct ModelFile {
     pub model: Model,
     /// The file's units, for everything that is shown.
     pub units: Units,
-    /// What the file says about itself.
+    /// Description in the file.
     pub description: Option<String>,
-    /// What it says of how the mechanism is to be drawn.
+    /// Appearance in drawings.
     pub drawing: Appearance,
-    /// What the reader has to tell although nothing is wrong: warnings and notes, in the order of the text.
+    /// Warnings and notes of the reader, in the order of the text.
     pub remarks: Vec<Diagnostic>,
     /// The texts that the model names files of: tables of laws, curves that are wanted, lists of designs.
     pub texts: Texts,
     /// The plane of a planar model.
     pub plane: Option<Plane>,
-    /// What a mirror made from something else, by name.
+    /// Entries that a mirror made, with their originals, by name.
     origins: Origins,
     /// The case that the model was made of, where the file has cases and only one of them is meant.
     pub case: Option<String>,
@@ -215,7 +215,7 @@ impl ModelFile {
     }
 }
 
-/// Why there is no model.
+/// Reason why there is no model.
 #[derive(Debug)]
 pub enum ReadError {
     /// The file could not be opened or is not a text.
@@ -225,7 +225,7 @@ pub enum ReadError {
 }
 
 impl ReadError {
-    /// What to show.
+    /// Diagnostics to report.
     pub fn diagnostics(&self) -> &Diagnostics {
         match self {
             Self::Unreadable(d) | Self::Invalid(d) => d,
@@ -451,7 +451,7 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
     }
 }
 
-/// What is no TOML in the file that is there.
+/// Reports the syntax errors of a TOML file.
 fn syntax_errors(source: &Source, errors: &[toml::de::Error], file: &Range<usize>) -> Vec<Diagnostic> {
     let mut list: Vec<Diagnostic> = Vec::new();
     let mut last = (0, "");

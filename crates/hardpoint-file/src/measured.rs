@@ -10,7 +10,7 @@ use crate::ModelFile;
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, Source, closest, shown};
 use crate::read::measured::{Readings, readings_at};
 
-/// What a file of measurements holds.
+/// Contents of a measurement file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredData {
     /// Postures and readings, in SI.
@@ -21,18 +21,18 @@ pub struct MeasuredData {
     pub as_drawn: Vec<DriverId>,
 }
 
-/// What a column holds.
+/// Contents of a column.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Holds {
-    /// Where a driver stood.
+    /// Values of a driver.
     Driver(usize),
-    /// What was read of an output.
+    /// Readings of an output.
     Output(usize),
     /// Standard deviations of an output's readings.
     Sigma(usize),
 }
 
-/// Why measurements cannot be used.
+/// Reason why measurements cannot be used.
 struct Refusal {
     code: &'static str,
     message: String,
@@ -52,9 +52,9 @@ impl Refusal {
 }
 
 impl ModelFile {
-    /// What was measured, from a CSV file wherever it lies: its first line names drivers, outputs (measures, and points as `P.x`) and
-    /// standard deviations (`sigma toe`); each line below is a posture, in the units of the model file. `sigmas` are those of outputs whose
-    /// cells have none, in their units. Empty cells were not measured.
+    /// Reads measurements from a CSV file at any place: the first line names drivers, outputs (measures, and points as
+    /// `P.x`) and standard deviations (`sigma toe`); each line below is a posture, in the units of the model file.
+    /// `sigmas` are those of outputs without a cell for it, in their units. Empty cells were not measured.
     ///
     /// # Errors
     /// What is wrong with it.
@@ -123,7 +123,7 @@ impl ModelFile {
         Ok(found)
     }
 
-    /// What every column holds; `None` of those that begin with `#`.
+    /// Contents of every column; `None` for columns that begin with `#`.
     fn columns(&self, table: &Readings, file: &str) -> Result<Vec<Option<Holds>>, Refusal> {
         let mut found: Vec<Option<Holds>> = Vec::new();
         for (column, (name, unit)) in table.names.iter().enumerate() {
@@ -168,7 +168,7 @@ impl ModelFile {
         Ok(found)
     }
 
-    /// What a name means; the error is what may have been meant.
+    /// Contents that a name refers to; the error suggests similar names.
     fn held(&self, name: &str) -> Result<Holds, String> {
         let outputs = outputs(&self.model);
         let of = |name: &str| outputs.iter().position(|o| o.name == name);

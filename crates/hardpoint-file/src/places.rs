@@ -1,4 +1,4 @@
-//! Which text of the file became which entry of the model.
+//! Locations in the text of the entries of the model.
 
 use std::ops::Range;
 
@@ -6,14 +6,14 @@ use hardpoint::draft::{DraftLocation, Section};
 
 use crate::tree::{Fields, Value};
 
-/// Where one entry of a list is.
+/// Location of one entry of a list.
 #[derive(Clone, Debug)]
 pub(crate) struct EntryPlace {
     name: Range<usize>,
     keys: Vec<KeyPlace>,
 }
 
-/// Where the value of one key is, and its elements if it is a list.
+/// Location of a key's value, and of its elements if it is a list.
 #[derive(Clone, Debug)]
 struct KeyPlace {
     key: &'static str,

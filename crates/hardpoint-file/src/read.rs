@@ -51,7 +51,7 @@ pub(crate) const MODEL: Table = table! {
     "Hardpoint model":
     /// The mechanism's name, for headings.
     must "name": Shape::Text, "\"four-bar\"";
-    /// What it is and where its numbers come from.
+    /// Description of the mechanism, and the source of its numbers.
     may "description": Shape::Text, "\"...\"";
     /// The units of all numbers in this file. Time is always in seconds.
     must "units": Shape::Table(&UNITS), "{ length = \"mm\", angle = \"deg\" }";
@@ -73,19 +73,19 @@ pub(crate) const MODEL: Table = table! {
     may "design": Shape::Entries("a design variable", &Shape::Kinds(&design::VARIABLE)), "{}";
     /// Points of bodies to follow.
     may "points": Shape::Entries("a point", &Shape::Table(&results::POINT)), "{}";
-    /// What is known of the vehicle, for anti-dive and Ackermann.
+    /// Vehicle data, for anti-dive and Ackermann.
     may "vehicle": Shape::Table(&wheels::VEHICLE), "{ wheelbase = 2600 }";
     /// Road wheels, for what is measured at them.
     may "wheels": Shape::Entries("a wheel", &Shape::Table(&wheels::WHEEL)), "{}";
     /// Pairs of wheels, for what is measured at both.
     may "axles": Shape::Entries("an axle", &Shape::Table(&wheels::AXLE)), "{}";
-    /// Which way everything falls, and how fast.
+    /// Direction and acceleration of gravity.
     may "gravity": Shape::Table(&elements::GRAVITY), "{ along = \"-z\" }";
     /// Loads with or without the inertia of the masses.
     or("\"dynamic\"") "loads": LOADS, "\"static\"";
-    /// What has mass, for loads.
+    /// Masses, for loads.
     may "masses": Shape::Entries("a mass", &Shape::Kinds(&elements::MASS)), "{}";
-    /// What pushes: springs, dampers, friction, given forces; and what deflects.
+    /// Applied forces: springs, dampers, friction, given forces; bushings and elastic joints.
     may "forces": Shape::Entries("a force", &Shape::Kinds(&elements::FORCE)), "{}";
     /// Numbers to compute from the motion, with their sensitivities.
     may "measures": Shape::Entries("a measure", &results::MEASURE), "{}";
@@ -101,13 +101,13 @@ pub(crate) const MODEL: Table = table! {
     may "planar": planar::PLANAR, "\"xy\"";
     /// Other files, of which all is taken that this one does not say itself.
     may "include": include::INCLUDE, "[\"corner.toml\"]";
-    /// What is said of one side holds for the other side as well.
+    /// Applies the entries of one side to the other side as well.
     may "mirror": Shape::Table(&mirror::MIRROR), "{ across = \"y\", names = { left = \"right\" } }";
-    /// What the design is to be optimised for, and within which limits.
+    /// Goals and limits of the optimisation of the design.
     may "optimize": Shape::Table(&optimize::OPTIMIZE), "{ goals = { toe = { metric = \"toe_error\" } } }";
-    /// How far off the design may be made, and what that must keep.
+    /// Tolerances of the design, and the limits that it must keep.
     may "tolerance": Shape::Table(&tolerance::TOLERANCE), "{ variables = { B_x = 0.1 } }";
-    /// Which designs are swept over, and what is kept of them.
+    /// Designs of a sweep, and the results that are stored.
     may "sweep": Shape::Table(&sweep::SWEEP), "{ variables = { B_x = [-5, 5] } }";
 };
 /// The values of `loads`, in the order of [`LOAD_MODES`].
@@ -134,7 +134,7 @@ const UNITS: Table = table! {
     /// Unit of every angle.
     must "angle": Shape::Known("the symbol of a unit", AngleUnit::words), "\"deg\"";
 };
-/// What people write for a unit's symbol.
+/// Common other spellings of a unit's symbol.
 const UNIT_WORDS: [(&str, &str); 12] = [
     ("millimetre", "mm"),
     ("millimeters", "mm"),
@@ -206,9 +206,9 @@ const JOINT: Table = table! {
     must "type": JOINT_TYPE, "\"revolute\"";
     /// Names of bodies i and j. Coordinates are those of j relative to i.
     must "bodies": Shape::exactly(2, &format::BODY), "[\"ground\", \"crank\"]";
-    /// Where it is: a hardpoint's name or coordinates; or a list of two, one on each body: for rods and legs, and for other
-    /// joints that are drawn apart and have to be assembled. May be left out where the axis goes through hardpoints (then it is
-    /// the first of them), and where only directions matter.
+    /// Location: a hardpoint's name or coordinates; or a list of two, one on each body: for rods and legs, and for
+    /// other joints that are open in the design configuration and have to be assembled. May be left out if the axis
+    /// goes through hardpoints (then it is the first of them), and if only directions matter.
     may "at": Shape::Any("Places", "", &[PLACE, Shape::exactly(2, &PLACE)]), "\"A\"";
     /// The axis, in the design configuration; where the joint type has one it must be given.
     may "axis": LINE, "\"z\"";
@@ -226,10 +226,11 @@ const JOINT: Table = table! {
     may "curve": Shape::Table(&CURVE), "{ points = [\"A\", \"B\", \"C\"] }";
     /// True if loops should be cut at this joint rather than elsewhere. It changes the effort, not the results.
     or("false") "cut": Shape::Flag, "true";
-    /// What it is drawn as, for a rod, a leg, or a joint that slides along its axis. It changes no result. Default: a leg is a cylinder.
+    /// Shape in drawings, for a rod, a leg, or a joint that slides along its axis. It changes no result. Default: a leg
+    /// is a cylinder.
     may "draw": DRAW, "\"coilover\"";
 };
-/// What something that has a length is drawn as.
+/// Shape that a joint with a length is drawn as.
 pub(crate) const DRAW: Shape = Shape::Any("Draw", "", &[Shape::Words(FORMS)]);
 const CURVE: Table = table! {
     /// A smooth curve through points in the design configuration, in the plane perpendicular to the joint's axis.
@@ -321,17 +322,17 @@ pub(crate) fn tables() -> [(&'static str, Shape); 39] {
     ]
 }
 
-/// What a file says, as far as it could be read.
+/// Contents of a file, as far as they could be read.
 #[derive(Default)]
 pub(crate) struct Raw {
     pub draft: Draft,
     pub description: Option<String>,
     pub drawing: Appearance,
     pub places: Places,
-    /// Which number a hardpoint and a joint have; of equal names, the first. Only looked up, never walked.
+    /// Index of each hardpoint and joint; of equal names, the first. Only used for lookups, never iterated.
     hardpoint_numbers: HashMap<String, usize>,
     joint_numbers: HashMap<String, usize>,
-    /// What each driver of the draft prescribes.
+    /// Quantity that each driver of the draft prescribes.
     driven: Vec<Quantity>,
     /// The drivers that leave their laws to the cases, by their places in the draft.
     without_law: Vec<usize>,
@@ -489,7 +490,7 @@ impl Reader<'_> {
         fields
     }
 
-    /// Which kind a named entry is, whose `type` says so. Without a known type, nothing more is said of the entry.
+    /// Kind of a named entry, from its `type`. Without a known type, the entry is not checked further.
     fn entry_type<T>(
         &mut self,
         one: &str,
@@ -536,8 +537,8 @@ impl Reader<'_> {
         known
     }
 
-    /// Which kind the keys of a table mean: that which the first of its own keys leads, or else one that has some of them. Keys
-    /// of others are reported.
+    /// Kind of a table, from its keys: the kind led by the first of the keys, or else one that has some of them. Keys
+    /// of other kinds are reported.
     fn led_by<T>(
         &mut self,
         fields: &Fields<'_>,
@@ -630,7 +631,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What parameters and hardpoints are in the nominal design, for all that the reader wants to know at once.
+    /// Computes the nominal values of parameters and hardpoints, all at once.
     fn settle(&mut self, raw: &mut Raw) {
         if raw.draft.parameters.is_empty() && raw.draft.formulas.is_empty() {
             return;
@@ -763,12 +764,12 @@ impl Reader<'_> {
         }
     }
 
-    /// What something is drawn as.
+    /// Shape in drawings.
     fn form_of(&mut self, fields: &Fields<'_>) -> Option<Form> {
         self.word_of(fields, "draw").map(|k| Form::ALL[k])
     }
 
-    /// What a joint is drawn as; HP0107 for one that has no length.
+    /// Shape of a joint in drawings; HP0107 for a joint without a length.
     fn form_of_joint(&mut self, fields: &Fields<'_>, kind: Option<&str>) -> Option<Form> {
         if let Some(kind) = kind.and_then(joint::named) {
             let slides = kind.freedoms.is_some_and(|f| f.contains(&Freedom::Slide(ALONG_AXIS)));
@@ -864,7 +865,7 @@ impl Reader<'_> {
     }
 }
 
-/// How a table of this kind is given: for help.
+/// Example of a table of this kind, for help.
 fn way(table: &Table) -> String {
     let needed = table.keys.iter().filter(|k| k.need == Need::Required);
     let needed: Vec<String> = needed.map(|k| format!("`{} = {}`", k.key, k.example)).collect();

@@ -45,7 +45,7 @@ fn images(root: &mut Value, definitions: &mut Definitions) {
     root["required"] = json!(["name"]);
 }
 
-/// What the schema defines under a name of its own.
+/// Definitions of the schema with names of their own.
 #[derive(Default)]
 struct Definitions(BTreeMap<String, Value>);
 

@@ -23,7 +23,7 @@ pub(crate) type Value<'a> = Spanned<DeValue<'a>>;
 
 /// Names longer than this are surely not meant as names.
 const LONGEST_NAME: usize = 100;
-/// What was meant is guessed of that many problems, and among that many names.
+/// Maximum number of problems with a suggestion, and of names that it is chosen from.
 const GUESSED_PROBLEMS: usize = 50;
 const GUESSED_NAMES: usize = 5000;
 /// The most entries that a table or list may have. It bounds the time that any text can take.
@@ -33,16 +33,16 @@ pub(crate) const MOST_ENTRIES: usize = 200_000;
 #[derive(Clone, Copy)]
 pub(crate) struct Field<'a> {
     pub key: &'static str,
-    /// Where the key is.
+    /// Position of the key.
     pub at: (usize, usize),
     pub value: &'a Value<'a>,
 }
 
 /// The known keys of one table of the file.
 pub(crate) struct Fields<'a> {
-    /// What the table is, as messages say it: "joint `J1`".
+    /// Name of the table in messages: "joint `J1`".
     pub what: String,
-    /// Where its name is.
+    /// Position of its name.
     pub at: Range<usize>,
     keys: Vec<&'static Key>,
     list: Vec<Field<'a>>,
@@ -59,7 +59,7 @@ impl<'a> Fields<'a> {
         self.list.iter().copied()
     }
 
-    /// What is declared of a key.
+    /// Declaration of a key.
     pub fn key(&self, key: &str) -> &'static Key {
         self.keys.iter().find(|k| k.key == key).expect("only declared keys are read")
     }
@@ -68,7 +68,7 @@ impl<'a> Fields<'a> {
         format!("`{key} = {}`", self.key(key).example)
     }
 
-    /// How messages name the value of one key.
+    /// Name of a key's value in messages.
     pub fn subject(&self, key: &str) -> Subject {
         Subject {
             name: format!("`{key}` of {}", self.what),
@@ -105,7 +105,7 @@ pub(crate) const PLACE: Shape = Shape::Any(
     &[HARDPOINT, Shape::exactly(3, &LENGTH)],
 );
 
-/// What a value is called in messages, and how to write it.
+/// Name of a value in messages, and how to write it.
 pub(crate) struct Subject {
     pub name: String,
     pub example: String,
@@ -121,7 +121,7 @@ impl Subject {
 /// Texts of files, by the names that a model has for them.
 pub type Texts = BTreeMap<String, String>;
 
-/// Where the files are that a model names.
+/// Source of the files that a model names.
 #[derive(Clone, Copy)]
 pub(crate) enum Folder<'f> {
     /// Nowhere: the model is a mere text.
@@ -135,25 +135,25 @@ pub(crate) enum Folder<'f> {
 /// The text being read and what was found wrong with it.
 pub(crate) struct Reader<'s> {
     pub source: &'s Source,
-    /// Where the files are that it names.
+    /// Source of the files that it names.
     pub folder: Folder<'s>,
     /// The texts among these that were read, by the names that the model has for them.
     pub texts: Texts,
     pub units: Units,
-    /// What the file's parameters are, as soon as they are read.
+    /// Values of the file's parameters, once they are read.
     pub nominal: Nominal,
-    /// What is said of the shapes of bodies, by their names.
+    /// Entries of the bodies' shapes, by name.
     pub meshes: BTreeMap<String, BodyMesh>,
     /// Number of bytes of included files it has been made of.
     pub included: u64,
-    /// What was made from something else, by name.
+    /// Entries that were made from others, by name.
     pub origins: Origins,
     /// The parameters of the law that is being read which expressions give, and those expressions.
     pub law_formulas: Vec<(String, Expression)>,
     pub found: Vec<Diagnostic>,
     /// The keys of the entry that is being read that are missing or cannot be read.
     pub unread: Vec<&'static str>,
-    /// What to tell of a model that can be read.
+    /// Notes on a model that can be read.
     pub remarks: Vec<Diagnostic>,
 }
 
@@ -570,7 +570,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Where a part of a text is in the file; the whole text where escapes make that unclear.
+    /// Position in the file of a part of a text; of the whole text if escapes make that unclear.
     pub fn inside(&self, value: &Value<'_>, text: &str, part: Range<usize>) -> Range<usize> {
         let whole = value.span();
         let written = self.source.text.get(whole.clone()).unwrap_or_default();
@@ -766,7 +766,7 @@ pub(crate) fn quoted(words: &[&str]) -> String {
     words.iter().map(|w| format!("`{w}`")).collect::<Vec<_>>().join(", ")
 }
 
-/// What a value is, in words.
+/// Kind of a value, in words.
 fn kind(value: &DeValue<'_>) -> String {
     match value {
         DeValue::String(s) if s.is_empty() => "an empty text".into(),

@@ -34,7 +34,7 @@ impl LengthUnit {
         Self::ALL.map(|unit| (unit.symbol(), String::new())).into()
     }
 
-    /// How files and results write it.
+    /// Symbol in files and results.
     pub const fn symbol(self) -> &'static str {
         match self {
             Self::Millimetre => "mm",
@@ -85,7 +85,7 @@ impl AngleUnit {
         Self::ALL.map(|unit| (unit.symbol(), String::new())).into()
     }
 
-    /// How files and results write it.
+    /// Symbol in files and results.
     pub const fn symbol(self) -> &'static str {
         match self {
             Self::Degree => "deg",
@@ -113,9 +113,9 @@ impl AngleUnit {
 /// The units of a file; metres and radians unless it says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Units {
-    /// Of every length.
+    /// Unit of every length.
     pub length: LengthUnit,
-    /// Of every angle.
+    /// Unit of every angle.
     pub angle: AngleUnit,
 }
 

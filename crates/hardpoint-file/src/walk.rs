@@ -9,7 +9,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 use crate::format::{Key, Shape};
 use crate::tree::Value;
 
-/// What may stand at a place of a value.
+/// Contents of a value at a place.
 pub(crate) enum Leaf<'v, 'a> {
     /// The name of such a thing, like "a joint".
     Name(&'static str, &'v mut Cow<'a, str>),

@@ -1,8 +1,8 @@
-//! Where the axes of a table point.
+//! Directions of the axes of a table.
 
 use std::str::FromStr;
 
-/// Of each coordinate forward, to the left and up: which one of the table it is, and with which sign.
+/// Index and sign of the table's coordinate for forward, left and up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axes([(usize, f64); 3]);
 

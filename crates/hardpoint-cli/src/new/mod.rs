@@ -150,7 +150,7 @@ fn template(session: &Session, name: Option<&str>) -> Result<&'static Template, 
     })
 }
 
-/// What somebody answers on a terminal; none where nobody is there.
+/// Answer of the user on a terminal; `None` without a terminal.
 fn asked(question: &str) -> Option<String> {
     if !(std::io::stdin().is_terminal() && std::io::stderr().is_terminal()) {
         return None;

@@ -8,7 +8,7 @@ use hardpoint_file::csv_table::original;
 /// A larger file is no table of hardpoints.
 const LARGEST: u64 = 16 << 20;
 
-/// What a table says.
+/// Contents of a table.
 #[derive(Debug, PartialEq)]
 pub struct Hardpoints {
     pub rows: Vec<Row>,
@@ -198,7 +198,7 @@ fn number(cell: &str) -> Option<f64> {
     cell.trim().parse::<f64>().ok().filter(|x| x.is_finite())
 }
 
-/// What a column is called, and the unit behind it: `X [mm]` is x in mm.
+/// Title of a column, and the unit behind it: `X [mm]` is x in mm.
 fn title(cell: &str) -> (String, Option<String>) {
     let (name, rest) = cell.split_once(['[', '(']).unwrap_or((cell, ""));
     let unit = rest.trim().trim_end_matches([']', ')']).trim().to_lowercase();

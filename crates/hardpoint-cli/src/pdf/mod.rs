@@ -1,4 +1,4 @@
-//! `report.pdf`: a run on paper. What it comes to, its curves, and what moves them, without a browser.
+//! `report.pdf`: a run on paper. Facts, curves, and influences, without a browser.
 
 mod paper;
 mod plot;
@@ -17,7 +17,7 @@ use plot::Plot;
 const MOST_CURVES: usize = 200;
 /// Number of variables are ranked at each measure.
 const MOST_RANKED: usize = 12;
-/// Where the columns of tables begin.
+/// Positions of the columns of tables.
 const FACTS: [f32; 2] = [0.0, 90.0];
 const FIGURES: [f32; 3] = [0.0, 130.0, 220.0];
 const VARIABLES: [f32; 4] = [0.0, 130.0, 220.0, 400.0];
@@ -52,7 +52,7 @@ impl Contents<'_> {
         Ok(told.into_iter().map(|told| format!("not in `report.pdf`: {told}")).collect())
     }
 
-    /// What was run, and what it comes to.
+    /// Writes the name of the model and the facts of the run.
     fn head(&self, paper: &mut Paper) {
         let summary = self.summary;
         paper.paragraph(TITLE, BLACK, &summary.model.name);

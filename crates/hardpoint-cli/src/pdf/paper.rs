@@ -25,7 +25,7 @@ const WIDTHS: [u16; 95] = [
 /// The same of all other letters that it has, at most.
 const WIDEST: u16 = 722;
 
-/// How a line of text looks.
+/// Style of a line of text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face {
     pub size: f32,
@@ -51,7 +51,7 @@ impl Face {
         self.size * LEADING
     }
 
-    /// How wide a text is.
+    /// Width of a text.
     pub fn width(self, text: &str) -> f32 {
         let thousandths: u32 = bytes(text).0.into_iter().map(|b| u32::from(width_of(b))).sum();
         thousandths as f32 * 1e-3 * self.size * if self.is_bold { BOLD } else { 1.0 }
@@ -114,9 +114,9 @@ fn bytes(text: &str) -> (Vec<u8>, bool) {
 
 /// A document while it is written, from the top of its first page on.
 pub struct Paper {
-    /// What is on the pages that are full, and on the one that is not.
+    /// Contents of the full pages, and of the current one.
     pages: Vec<Content>,
-    /// How far down the last page is written.
+    /// Position on the last page, from the top.
     pub y: f32,
     /// True if all letters could be said.
     is_whole: bool,

@@ -10,7 +10,8 @@ pub const SIZE: (f32, f32) = (240.0, 146.0);
 const AROUND: [f32; 4] = [46.0, 26.0, 8.0, 16.0];
 /// Number of values at least have a mark on an axis, where these are round.
 const MARKS: f64 = 4.0;
-/// Of a curve with more points only that many stretches are drawn, each with its lowest and its highest point: no eye indicates more on paper.
+/// Maximum number of intervals of a curve, each drawn with its lowest and its highest point: more cannot be
+/// distinguished on paper.
 const STRETCHES: usize = 600;
 /// Room over and under a curve, as a part of its height.
 const ROOM: f64 = 0.05;

@@ -8,15 +8,15 @@ pub const HEADER: &str = "x-hardpoint-token";
 /// Whoever writes a token by hand writes one of at least that many letters.
 pub const SHORTEST_TOKEN: usize = 16;
 
-/// Where a server listens, and what its requests must carry.
+/// Address of a server, and the conditions for its requests.
 pub struct Address {
     port: u16,
     token: String,
-    /// What requests may call this server.
+    /// Host names that requests may use.
     hosts: Vec<String>,
 }
 
-/// How a request that may pass showed its token.
+/// Source of a request's token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TokenSource {
     /// In the address: from the terminal.
@@ -35,7 +35,7 @@ impl Address {
         Self { port, token, hosts }
     }
 
-    /// What the browser is to open.
+    /// Address to open in the browser.
     pub fn to_open(&self) -> String {
         format!("http://127.0.0.1:{}/?token={}", self.port, self.token)
     }

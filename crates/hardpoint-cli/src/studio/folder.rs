@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::folder::Folder;
 use crate::journal::checksum;
 
-/// What every model file is called in the end.
+/// Ending of all model files.
 const ENDING: &str = ".toml";
 /// No file system has longer names.
 const LONGEST_NAME: usize = 255;
@@ -32,27 +32,27 @@ pub struct Text {
     pub revision: Revision,
 }
 
-/// What indicates one text from another: a checksum of its bytes.
+/// Identity of a text: a checksum of its bytes.
 pub type Revision = String;
 
-/// What a list of models says of one.
+/// Entry of a model in a list.
 #[derive(Serialize)]
 pub struct Entry {
     /// Name of the file.
     pub file: String,
     /// The model's name; the file's where it cannot be read.
     pub title: String,
-    /// What the model says about itself.
+    /// Description in the model.
     pub description: Option<String>,
     /// The names of its cases.
     pub cases: Vec<String>,
-    /// How much is wrong with it.
+    /// Number of its problems.
     pub problems: usize,
     /// When it was changed, seconds since 1970.
     pub changed: Option<f64>,
 }
 
-/// Why a file was not read or written.
+/// Reason why a file was not read or written.
 pub enum FileError {
     /// The name is none of a model file in this folder.
     Name,
@@ -81,7 +81,7 @@ impl Models {
         &self.real
     }
 
-    /// Where a file of that name is, whether there is one or not.
+    /// Path of a file with that name, existing or not.
     fn place(&self, name: &str) -> Result<PathBuf, FileError> {
         let odd = |c: char| c.is_control() || matches!(c, '/' | '\\' | ':' | '\u{fffd}');
         let plain = name.len() <= LONGEST_NAME && name.len() > ENDING.len() && !name.starts_with('.');
@@ -120,7 +120,7 @@ impl Models {
         Ok(Text { text, revision })
     }
 
-    /// What a text of that name means.
+    /// Reads a text under that name.
     pub fn parse(&self, name: &str, text: &str) -> Result<ModelFile, Diagnostics> {
         parse_in(Some(&self.path), text, &self.path.join(name).display().to_string())
     }

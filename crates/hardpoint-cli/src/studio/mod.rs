@@ -31,9 +31,9 @@ use crate::text;
 
 pub use address::given_token;
 
-/// What a server serves.
+/// State of a server.
 struct Studio {
-    /// What indicates it from the one that was here before.
+    /// Identity of this server, to distinguish it from an earlier one at the same address.
     id: String,
     address: address::Address,
     models: folder::Models,

@@ -19,7 +19,7 @@ use super::Studio;
 use super::routes::{blocking, no_file};
 use super::server::Answer;
 
-/// What a page is informed of its server.
+/// Facts about the server for a page.
 #[derive(Serialize)]
 struct About<'a> {
     token: &'a str,
@@ -157,7 +157,7 @@ pub async fn gallery(studio: Arc<Studio>) -> Answer {
     }
 }
 
-/// Why there is no page.
+/// Reason why there is no page.
 #[derive(Default)]
 struct Heard(Mutex<(Value, String)>);
 

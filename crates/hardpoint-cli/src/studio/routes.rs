@@ -1,4 +1,4 @@
-//! What can be requested, and the answers.
+//! Requests and their answers.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -33,7 +33,7 @@ impl Query {
         self.get("file").map(Into::into).ok_or_else(|| Answer::refusal(StatusCode::BAD_REQUEST, why))
     }
 
-    /// Which page asks; what one page saves is news to the others.
+    /// Identity of the page that asks; changes by one page are reported to the others.
     fn client(&self) -> String {
         self.get("client").unwrap_or_default().into()
     }
@@ -78,7 +78,7 @@ pub async fn answer(studio: Arc<Studio>, request: Request<Incoming>) -> Answer {
     answer
 }
 
-/// The methods of an address that there is.
+/// Methods of an existing address.
 fn allowed(parts: &[&str]) -> Option<&'static str> {
     match parts {
         [""] | ["gallery"] | ["api", "models" | "events"] | ["api", "study", _, "report.html"] => Some("GET"),
@@ -162,7 +162,7 @@ async fn text_of(request: Request<Incoming>) -> Result<String, Answer> {
     String::from_utf8(bytes).map_err(|_| Answer::refusal(StatusCode::BAD_REQUEST, "the text is not UTF-8"))
 }
 
-/// That a text is a model, if that matters.
+/// Checks that a text is a model, if that matters.
 fn is_model(studio: &Studio, file: &str, text: &str, anyway: bool) -> Result<(), Answer> {
     if anyway {
         return Ok(());
@@ -206,7 +206,7 @@ fn no_model(found: &Diagnostics) -> Answer {
     Answer::json(StatusCode::UNPROCESSABLE_ENTITY, &document)
 }
 
-/// Why there is no such file, or why it is not written.
+/// Answer for a file that does not exist or was not written.
 pub fn no_file(name: &str, why: FileError) -> Answer {
     let (status, sentence): (StatusCode, Cow<'_, str>) = match why {
         FileError::Name => {

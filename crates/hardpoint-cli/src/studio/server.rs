@@ -35,7 +35,7 @@ const CONNECTIONS: usize = 256;
 const HEAD: Duration = Duration::from_secs(20);
 /// The body of a request does.
 const BODY: Duration = Duration::from_secs(60);
-/// Of a body that is not wanted, nothing more is waited for after such a pause.
+/// Time limit of reading a body that is not wanted.
 const PAUSE: Duration = Duration::from_secs(2);
 /// Whoever takes nothing of an answer for so long is gone.
 const STALLED: Duration = Duration::from_secs(60);
@@ -44,12 +44,12 @@ const HEAD_BYTES: usize = 16 << 10;
 const HEADERS: usize = 64;
 /// Around a text of the largest size: what JSON makes of it.
 const BODY_BYTES: usize = LARGEST_FILE as usize + (1 << 20);
-/// How often the server looks whether the user wants it to end.
+/// Interval of checks whether the user wants the server to end.
 const LOOK: Duration = Duration::from_millis(200);
-/// What is under way may end in this time then.
+/// Time limit of current requests at the end.
 const FAREWELL: Duration = Duration::from_secs(2);
 
-/// What a page may do: draw itself from what it holds, run its engine, and ask this server.
+/// Policy of the page: it may draw itself from its own contents, run its engine, and ask this server.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; style-src 'unsafe-inline'; \
     img-src data: blob:; font-src data:; worker-src blob:; connect-src 'self' data: blob:; base-uri 'none'; form-action 'none'; \
     frame-ancestors 'none'";
@@ -61,7 +61,7 @@ pub type Content = Either<Full<Bytes>, Channel<Bytes, Infallible>>;
 pub struct Answer(Box<Response<Content>>);
 
 impl Answer {
-    /// Of this kind.
+    /// Answer with a status and a content type.
     pub fn new(status: StatusCode, kind: &'static str, content: impl Into<Bytes>) -> Self {
         Self::of(status, kind, Either::Left(Full::new(content.into())))
     }
@@ -93,7 +93,7 @@ impl Answer {
         Self::new(status, "text/plain; charset=utf-8", format!("{sentence}\n"))
     }
 
-    /// That a request cannot be done, with a sentence why.
+    /// Answer to a request that cannot be done, with the reason.
     pub fn refusal(status: StatusCode, why: &str) -> Self {
         Self::json(status, &serde_json::json!({ "error": why }))
     }
@@ -218,7 +218,7 @@ pub async fn body(request: Request<Incoming>) -> Result<Vec<u8>, Answer> {
     })
 }
 
-/// Why there is no body.
+/// Reason why there is no body.
 enum Unread {
     TooLarge,
     TooSlow,
@@ -254,7 +254,7 @@ impl Impatient {
         Self { stream, since: None }
     }
 
-    /// What writing came to, unless it has been waiting for too long.
+    /// Result of writing, unless it has been waiting for too long.
     fn waited<X>(&mut self, written: Poll<io::Result<X>>, context: &mut Context<'_>) -> Poll<io::Result<X>> {
         if written.is_ready() {
             self.since = None;

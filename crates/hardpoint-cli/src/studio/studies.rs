@@ -26,14 +26,14 @@ use crate::{args, optimize, sweep, tolerance};
 
 /// Each of them takes all cores; another waits for its turn at the user's hand, not at ours.
 const AT_ONCE: usize = 2;
-/// That many that have ended are kept with their pages.
+/// Number of finished studies that are stored with their pages.
 const KEPT: usize = 8;
 /// Pages hear of progress no more often than this.
 const PACE: Duration = Duration::from_millis(100);
 /// A page that is behind by that many events misses some, and asks for the state.
 const EVENTS: usize = 256;
 
-/// What a page asks for.
+/// Request of a page for a study.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StudyRequest {
@@ -98,7 +98,7 @@ struct State {
     end: Option<End>,
 }
 
-/// What a study came to.
+/// Result of a study.
 struct End {
     /// `done`, `cancelled` or `failed`.
     state: &'static str,
@@ -138,7 +138,7 @@ impl Default for Studies {
 }
 
 impl Studies {
-    /// What happens to them from now on.
+    /// Receiver of all further events.
     pub fn events(&self) -> broadcast::Receiver<Arc<str>> {
         self.events.subscribe()
     }
@@ -277,7 +277,7 @@ impl Study {
     }
 }
 
-/// What a study says while it works.
+/// Reports of a study while it works.
 struct Heard {
     study: Arc<Study>,
     refusal: Mutex<Option<(Value, String)>>,

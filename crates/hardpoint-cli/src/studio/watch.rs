@@ -1,4 +1,4 @@
-//! What a page hears of without asking: its file changed on disk, a study goes on, the server is still there.
+//! Events for a page: its file changed on disk, a study made progress, the server is still there.
 
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use tokio::time::{Instant, timeout_at};
 use super::Studio;
 use super::server::Answer;
 
-/// How often a file is read: what systems say of its last change is not to be relied on everywhere, and models are small.
+/// Interval of reading a file: reported times of the last change are not reliable on all systems, and models are small.
 const POLL: Duration = Duration::from_millis(500);
 /// After that many looks the page hears that the server is there.
 const ALIVE: u32 = 4;
@@ -68,7 +68,7 @@ async fn send(to: &mut Sender<Bytes, Infallible>, name: &str, data: &str) -> Res
     to.send_data(format!("event: {name}\ndata: {data}\n\n").into()).await.map_err(drop)
 }
 
-/// What is on disk.
+/// State of the files on disk.
 #[derive(Default)]
 struct Look {
     /// None where there is no such file.

@@ -21,7 +21,7 @@ pub(crate) const CASE: Table = table! {
     "Case":
     /// The laws of the drivers that it moves, by the drivers' names; each as the `law` of a driver.
     or("{}") "laws": Shape::Entries("a driver", &law::LAW), "{ bump = \"40*sin(2*pi*t)\" }";
-    /// What all other drivers do.
+    /// Motion of all other drivers.
     or("\"held\"") "rest": REST, "\"as_above\"";
     /// Loads with or without inertia, as `loads` of the file. Default: that of the file.
     may "loads": LOADS, "\"static\"";
@@ -170,7 +170,7 @@ impl Reader<'_> {
         complete.then_some(sweeps)
     }
 
-    /// Where a driver is, in its unit.
+    /// Positions of a driver, in its unit.
     fn positions(&mut self, what: &str, subject: &Subject, value: &Value<'_>) -> Option<Vec<f64>> {
         let table = self.table(value, subject, "a table with `from`, `to` and `steps`")?;
         let fields = self.fields(what, value.span(), table, SWEEP.keys());

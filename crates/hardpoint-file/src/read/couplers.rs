@@ -97,7 +97,7 @@ pub(super) const TERM: Table = table! {
     "Term":
     /// The joint's name.
     must "joint": JOINT, "\"J1\"";
-    /// Which of its coordinates; may be left out where it has only one.
+    /// Coordinate of the joint; may be left out if it has only one.
     may "coordinate": COORDINATE, "\"angle\"";
     /// The factor, per unit of the coordinate in this file.
     must "coefficient": NUMBER, "2";

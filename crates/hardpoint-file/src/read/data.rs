@@ -22,7 +22,7 @@ pub(super) enum Column {
 /// The columns where none are named.
 pub(super) const FIRST_TWO: [Column; 2] = [Column::Number(1), Column::Number(2)];
 
-/// What is wrong with a data file.
+/// Error in a data file.
 pub(crate) struct DataError {
     pub code: &'static str,
     pub message: String,
@@ -77,38 +77,38 @@ impl Reader<'_> {
         parse(text.strip_prefix('\u{feff}').unwrap_or(text), &shown(name), columns, of)
     }
 
-    /// What is in a file that lies in the model's folder or below it, as text, which stays with the model.
+    /// Text of a file in the model's folder or below it; the model keeps it.
     pub(super) fn text_of_file(&mut self, name: &str, wanted: &Wanted<'_>) -> Result<&str, DataError> {
         let text = text_from(bytes_of(self.folder, name, wanted)?, name)?;
         Ok(self.texts.entry(name.to_owned()).insert_entry(text).into_mut())
     }
 }
 
-/// What messages say of a file that is wanted.
+/// Descriptions of a requested file, for messages.
 pub(super) struct Wanted<'a> {
-    /// What it is for.
+    /// Purpose of the file.
     pub purpose: &'a str,
-    /// What it is, with its article.
+    /// Kind of file, with its article.
     pub kind: &'a str,
-    /// How its name ends, for what else is in the folder.
+    /// Ending of its name, to suggest other files in the folder.
     pub ending: &'a str,
     /// A name as it might be.
     pub example: &'a str,
-    /// What to do where the model has no folder.
+    /// Instruction if the model has no folder.
     pub without_folder: &'a str,
-    /// What to do where it is too large.
+    /// Instruction if the file is too large.
     pub too_large: &'a str,
 }
 
-/// What messages say of a curve in a file.
+/// Descriptions of a curve in a file, for messages.
 pub(super) struct Curve {
     wanted: Wanted<'static>,
-    /// What its values are over, and several of these.
+    /// Abscissa of the curve, and its plural.
     pub abscissa: &'static str,
     abscissas: &'static str,
     /// The unit of that, after a number.
     unit: &'static str,
-    /// What to write where there is nothing.
+    /// Instruction if the file is empty.
     write: &'static str,
 }
 
@@ -156,7 +156,7 @@ pub(super) const FORCE: Curve = Curve {
     write: "write a way in the model's length unit and a force in N on each line, like `12.5, 340`",
 };
 
-/// What is in a file, as text.
+/// Text of a file.
 pub(super) fn text_from(bytes: Vec<u8>, name: &str) -> Result<String, DataError> {
     String::from_utf8(bytes).map_err(|_| {
         let message = format!("the file `{}` is not a text in UTF-8", shown(name));
@@ -164,7 +164,7 @@ pub(super) fn text_from(bytes: Vec<u8>, name: &str) -> Result<String, DataError>
     })
 }
 
-/// What is in a file that lies in the model's folder or below it.
+/// Bytes of a file in the model's folder or below it.
 pub(super) fn bytes_of(folder: Folder<'_>, name: &str, wanted: &Wanted<'_>) -> Result<Vec<u8>, DataError> {
     let path = inside(name, wanted)?;
     let known = name;
@@ -306,14 +306,14 @@ fn parse(text: &str, name: &str, columns: &[Column; 2], of: &Curve) -> Result<Ve
     Ok(points)
 }
 
-/// What is between the columns: a tab or a semicolon, if the first line has one, or a comma.
+/// Delimiter of the columns: a tab or a semicolon, if the first line has one, or a comma.
 pub(super) fn delimiter(text: &str) -> u8 {
     let mut lines = text.lines().filter(|l| !l.trim().is_empty() && !l.starts_with('#'));
     let first = lines.next().unwrap_or_default();
     *b"\t;".iter().find(|c| first.as_bytes().contains(c)).unwrap_or(&b',')
 }
 
-/// Where the columns are, from 0.
+/// Indices of the columns, from 0.
 fn found(
     columns: &[Column; 2],
     header: Option<&[String]>,

@@ -96,7 +96,7 @@ static KINDS: &[(Table, Read)] = &[
             "Shape":
             /// A body's name, or a list of names.
             must "shape": BODIES, "\"lca\"";
-            /// How their points move.
+            /// Velocity field of the points.
             must "field": Shape::Kinds(&SHAPE_FIELD), "{ scale = \"A\", along = \"x\" }";
         },
         |r, fields, name, _, place| {
@@ -147,7 +147,7 @@ const RANGE: &[Key] = keys! {
     or("false") "fixed_length": Shape::Flag, "true";
     /// The lowest and the highest value that it may have, in the variable's unit; it is 0 in the file.
     may "bounds": TWO_NUMBERS, "[-5, 5]";
-    /// How large a change of it is usual, in the variable's unit: what variables are compared by.
+    /// Typical size of a change, in the variable's unit, used to compare variables.
     may "typical": NUMBER, "2";
     /// By how much it may be off when it is made, either way, in the variable's unit; `whatif` ranks by it too.
     may "tolerance": NUMBER, "0.1";
@@ -267,11 +267,11 @@ static FIELDS: &[(Table, ReadField)] = &[
     ),
 ];
 const THROUGH: Table = table! {
-    /// How a hardpoint moves.
+    /// Motion of a hardpoint.
     "ThroughPoint":
     /// Name.
     must "at": HARDPOINT, "\"A\"";
-    /// How far, per unit of the variable; it stays where this is left out.
+    /// Displacement per unit of the variable; zero if left out.
     may "move": Shape::exactly(3, &Shape::Plain(Quantity::Number)), "[0, 0, 1]";
 };
 

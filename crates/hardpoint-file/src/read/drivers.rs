@@ -19,7 +19,7 @@ pub(crate) const DRIVER: Kinds = Kinds {
 };
 type Read = fn(&mut Reader<'_>, &Fields<'_>, &mut EntryPlace) -> Option<DrivenDraft>;
 
-/// What is driven: by a law, said as this over time.
+/// Driven quantity and its law over time.
 macro_rules! driven {
     ($over_time:literal, $counted:literal; $($table:tt)*) => {
         Table {
@@ -28,7 +28,7 @@ macro_rules! driven {
                 #[doc = $counted]
                 #[doc = " It may be left out where every case gives the driver a law or holds it."]
                 may "law": law::LAW, "\"30*sin(2*pi*t)\"";
-                /// What the laws of this driver count from.
+                /// Origin of the values of this driver's laws.
                 or("\"drawing\"") "counted_from": COUNTED, "\"zero\"";
             },
             ..table! { $($table)* }
@@ -49,7 +49,7 @@ static FORMS: &[(Table, Read)] = &[
             "DrivenCoordinate":
             /// The joint's name; not a rod, whose length is constant.
             must "joint": JOINT, "\"J1\"";
-            /// Which of its coordinates; may be left out where it has only one.
+            /// Coordinate of the joint; may be left out if it has only one.
             may "coordinate": COORDINATE, "\"angle\"";
         },
         |r, fields, _| {

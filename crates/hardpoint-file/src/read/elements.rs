@@ -1,4 +1,4 @@
-//! What loads come from: masses, forces, gravity.
+//! Sources of loads: masses, forces, gravity.
 
 use std::sync::LazyLock;
 
@@ -19,9 +19,9 @@ use super::results::key;
 const STANDARD_GRAVITY: f64 = 9.80665;
 
 pub(crate) const GRAVITY: Table = table! {
-    /// What everything falls with.
+    /// Gravity.
     "Gravity":
-    /// Which way is down.
+    /// Direction of gravity.
     must "along": DIRECTION, "\"-z\"";
     /// Acceleration, in m/s^2 whatever the unit of length.
     or("9.80665") "acceleration": NUMBER, "9.81";
@@ -175,7 +175,7 @@ impl Reader<'_> {
         Some(NumberDraft { value: self.units.to_si_of(unit, value), expression: None, per_unit })
     }
 
-    /// What a force is multiplied by over time.
+    /// Law that scales a force over time.
     pub(super) fn factor_law(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Law> {
         let law = self.law(fields, f);
         if !self.law_formulas.is_empty() {

@@ -27,7 +27,7 @@ pub(super) const INCLUDE_TABLE: Table = table! {
     "IncludeTable":
     /// A model file in this one's folder or below it.
     must "file": Shape::File, "\"corner.toml\"";
-    /// What is put before all names that the file declares.
+    /// Prefix of all names that the file declares.
     or("\"\"") "prefix": Shape::Text, "\"left_\"";
     /// Names that get no prefix: what this file has as well, or several files share.
     may "shared": Shape::list(&Shape::Name("a thing")), "[\"rack\"]";
@@ -55,7 +55,7 @@ pub(crate) struct Part {
     pub text: String,
 }
 
-/// What hinders the reading of a file, and where it is requested: in which file (0 is the first), and there.
+/// Error of an included file, and its place: the file (0 is the first), and the range there.
 pub(crate) struct IncludeError {
     pub file: usize,
     pub at: Range<usize>,
@@ -121,7 +121,7 @@ fn files_of<'t>(table: &'t DeTable<'_>) -> Vec<(&'t str, Range<usize>)> {
     list.filter_map(name).collect()
 }
 
-/// What a file calls `asked`, as the first file of the model would call it.
+/// Path of a file named `asked` in another file, relative to the first file of the model.
 fn beside(file: &str, asked: &str) -> String {
     match Path::new(file).parent().filter(|folder| !folder.as_os_str().is_empty()) {
         Some(folder) => format!("{}/{asked}", folder.display()),
@@ -467,7 +467,7 @@ pub(super) fn lay_under<'a>(
         return false;
     }
     if matches!(of, Shape::Kinds(_) | Shape::Table(_)) && !made.get_ref().is_table() {
-        // What can only be a table and is none leaves nothing to lay under: that it is none is all that there is to tell.
+        // A value that must be a table and is none has nothing to merge: the error is reported elsewhere.
         *hand = made;
         return true;
     }

@@ -103,7 +103,7 @@ static TYPES: &[(Table, Read)] = &[
             must "start": NUMBER, "0.5";
             /// When it ends, in s.
             must "end": NUMBER, "1.5";
-            /// How long it speeds up, and slows down, in s; at most half of that time.
+            /// Duration of acceleration and of deceleration, in s; at most half of that time.
             must "ramp": NUMBER, "0.2";
         },
         |r, _, fields| {
@@ -125,7 +125,7 @@ static TYPES: &[(Table, Read)] = &[
             may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
             /// The degree of the spline.
             or("\"cubic\"") "spline": Shape::Words(&[("cubic", "The acceleration is continuous."), ("quintic", "The jerk is continuous too.")]), "\"cubic\"";
-            /// What is known at the first and last point.
+            /// Boundary conditions at the first and last point.
             or("\"clamped\"") "ends": ENDS, "\"clamped\"";
             /// Speed at the first point, where the ends are clamped, in the driver's unit per s.
             or("0.0") "start_speed": NUMBER, "0";
@@ -170,7 +170,7 @@ const ENDS: Shape = Shape::Words(&[
 pub(super) const PIECE: Table = table! {
     /// A piece of a sequence.
     "Piece":
-    /// How long it lasts, in s. The last piece may leave it out, and then has no end.
+    /// Duration, in s. The last piece may leave it out, and then has no end.
     may "duration": NUMBER, "1";
     /// Law; `t` counts from the start of the piece.
     must "law": LAW, "\"10*t\"";
@@ -539,7 +539,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What is wrong with a file, at the place that names it.
+    /// Reports an error of a data file, at the place that names the file.
     pub(super) fn data_error(&mut self, at: Range<usize>, e: data::DataError) {
         let d = self.report(e.code, at, e.message);
         d.notes = e.notes;

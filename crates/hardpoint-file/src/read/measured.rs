@@ -1,4 +1,4 @@
-//! What was measured of a mechanism: a CSV file of readings over where the drivers stood.
+//! Measurements of a mechanism: a CSV file of readings in postures of the drivers.
 
 use std::path::Path;
 

@@ -29,7 +29,7 @@ pub(super) const MESH_TABLE: Table = table! {
     /// A file of triangles in the model's folder or below it: `.stl`, `.obj`, `.glb` or `.gltf`. Of a glTF file the transforms of
     /// its nodes are applied, its axes are taken as they are, and its data has to be in the file itself.
     must "file": Shape::File, "\"knuckle.stl\"";
-    /// What its coordinates count from.
+    /// Frame of its coordinates.
     or("\"world\"") "frame": Shape::Words(MESH_FRAMES), "\"body\"";
     /// The unit of its coordinates, in the model's length unit: 0.001 for a file in mm beside a model in m.
     or("1.0") "scale": NUMBER, "0.001";
@@ -144,7 +144,7 @@ pub fn triangles(name: &str, bytes: &[u8]) -> Result<Vec<[[f64; 3]; 3]>, String>
     }
 }
 
-/// What a model says of a mesh.
+/// Entry of a mesh in a model.
 #[derive(Clone)]
 pub(crate) struct MeshDraft {
     /// The name of its file, and where that is said.
@@ -156,12 +156,12 @@ pub(crate) struct MeshDraft {
     mirror: Option<usize>,
 }
 
-/// What is known of the shape of a body.
+/// Shape of a body, as far as it is known.
 #[derive(Clone)]
 pub(crate) enum BodyMesh {
     /// It has none.
     None,
-    /// What is said of it.
+    /// Entry of the mesh, not read yet.
     Said(MeshDraft),
     /// It could not be read.
     Faulty,
@@ -219,7 +219,7 @@ impl Reader<'_> {
         Some(Mesh { file: name.clone(), frame: said.frame, vertices, triangles })
     }
 
-    /// What the surface of a mass bounds: the mesh under this key, or else that of its body.
+    /// Solid enclosed by the surface of a mass: the mesh under this key, or else that of its body.
     pub(super) fn solid(&mut self, mass: &Fields<'_>, key: &'static str) -> Option<Solid> {
         let said = match mass.get(key) {
             Some(f) => self.mesh(mass, f)?,
@@ -267,7 +267,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What the surface in a file bounds, in the file's own unit and axes.
+    /// Solid enclosed by the surface in a file, in the file's own unit and axes.
     fn solid_in_file(&mut self, said: &MeshDraft) -> Result<Solid, DataError> {
         let (name, _) = &said.file;
         // Meshes do not go with a model's text, what they weigh does.

@@ -23,13 +23,13 @@ pub(crate) use origins::{Origins, told_once, with_origin};
 use side::Side;
 
 pub(crate) const MIRROR: Table = table! {
-    /// What the file says of one side is said of the other side as well.
+    /// Mirror: entries of one side apply to the other side as well.
     "Mirror":
     /// The global axis perpendicular to the mirror, a plane through the origin: `"y"` between left and right.
     or("\"y\"") "across": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
     /// Words in names, and the words that stand for them on the other side. A word ends where the name does, or at `_`, `-` or a blank.
     or("{ \"left\": \"right\" }") "names": Shape::Entries("a word", &Shape::Text), "{ left = \"right\" }";
-    /// What design variables do.
+    /// Design variables of mirrored entries.
     or("\"both\"") "variables": VARIABLES, "\"each\"";
     /// Names of things that are on one side only.
     may "except": Shape::list(&Shape::Name("a thing")), "[\"left_damper\"]";
@@ -63,11 +63,11 @@ const MOST_WORDS: usize = 20;
 /// A model's table with all that it has on both sides.
 pub(crate) struct Both<'a> {
     pub table: DeTable<'a>,
-    /// What design variables also change, by their names.
+    /// Further changes of design variables, by their names.
     pub twins: HashMap<String, Value<'a>>,
 }
 
-/// What the mirror is, and what passes it.
+/// The mirror's rule: axis, names, exceptions.
 struct Rule<'n> {
     numbers: &'n Opposites,
     across: usize,
@@ -89,7 +89,7 @@ impl<'n> Rule<'n> {
         if self.kept.contains(name) { None } else { image(name, &self.words) }
     }
 
-    /// What a name, or a measure's like `left.toe`, is on the other side.
+    /// Name on the other side of a name, or of a measure's name such as `left.toe`.
     fn said(&self, name: &str) -> Option<String> {
         let base = name.split('.').next().unwrap_or(name);
         if self.kept.contains(base) || self.kept.contains(name) { None } else { self.exchanged(name) }
@@ -151,8 +151,7 @@ fn image(name: &str, words: &[(String, String)]) -> Option<String> {
     if is_original(name, words)? { exchanged(name, words) } else { None }
 }
 
-/// What the mirror of a model calls the images of names, for those who say more of the one side before there is another. Mistakes are
-/// reported when the mirror is made.
+/// Names of the images, for entries that refer to them before they exist. Errors are reported when the mirror is made.
 pub(super) fn images(model: &DeTable<'_>) -> impl Fn(&str) -> Option<String> + use<> {
     let said = model.get("mirror").and_then(|v| v.get_ref().as_table());
     let text = |value: &Value<'_>| value.get_ref().as_str().map(str::to_owned);

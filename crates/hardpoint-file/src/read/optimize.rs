@@ -1,4 +1,4 @@
-//! What a design is to be optimised for.
+//! Settings of an optimisation.
 
 use hardpoint::draft::{GoalDraft, LimitDraft, LimitTargetDraft, OptimizationSettingsDraft, Section};
 
@@ -16,13 +16,13 @@ const MOST_ITERATIONS: u32 = 100_000;
 /// More variables by name than these are surely a slip.
 const MOST_VARIABLES: usize = 10_000;
 pub(crate) const OPTIMIZE: Table = table! {
-    /// What the design is to be optimised for, and within which limits.
+    /// Goals and limits of an optimisation.
     "Optimize":
     /// Names of the design variables that may change, each within its `bounds`. Default: all that have bounds.
     may "variables": Shape::some(&VARIABLE), "[\"tie_rod_outer_y\"]";
-    /// What is made as small as possible: the sum of all goals.
+    /// Goals; the sum of all of them is minimised.
     must "goals": Shape::Entries("a metric", &Shape::Table(&GOAL)), "{ toe = { metric = \"toe_error\" } }";
-    /// What must hold.
+    /// Conditions that the design must satisfy.
     may "limits": Shape::Entries("a metric", &Shape::Kinds(&LIMIT)), "{ rod = { length = \"tie_rod\", max = 300 } }";
     /// No motion may come nearer to a singular position than this margin, above 0 and below 1. Default: it may.
     may "margin": NUMBER, "0.02";
@@ -36,9 +36,9 @@ pub(super) const GOAL: Table = table! {
     "Goal":
     /// The metric's name. Default: the goal's own name.
     may "metric": METRIC, "\"toe_error\"";
-    /// How much one unit of the metric counts, in the file's units; above zero.
+    /// Weight of one unit of the metric, in the file's units; above zero.
     or("1.0") "weight": NUMBER, "100";
-    /// What the metric is to be, in its unit. Default: as small as possible. An `rms` has none.
+    /// Target of the metric, in its unit. Default: the metric is minimised. An `rms` has none.
     may "target": NUMBER, "0.2";
 };
 pub(super) const LIMIT: Kinds = Kinds {

@@ -23,11 +23,11 @@ pub(super) const PARAMETER_TABLE: Table = table! {
     "ParameterTable":
     /// Value; an expression makes it follow others.
     must "value": NUMBER, "60";
-    /// What it measures, and so its unit.
+    /// Quantity of the value, and so its unit.
     or("\"number\"") "unit": UNIT, "\"length\"";
     /// The lowest and the highest value that it may have in other designs.
     may "bounds": TWO_NUMBERS, "[50, 70]";
-    /// How large a change of it is usual: what variables are compared by.
+    /// Typical size of a change, used to compare variables.
     may "typical": NUMBER, "2";
     /// By how much it may be off when it is made, either way.
     may "tolerance": NUMBER, "0.1";
@@ -146,7 +146,7 @@ impl Reader<'_> {
     }
 }
 
-/// What is known of a parameter besides its value.
+/// Properties of a parameter besides its value.
 struct Parameter<'n> {
     name: &'n str,
     quantity: Quantity,

@@ -47,17 +47,18 @@ const PLANES: [Plane; 4] = [
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Plane {
-    /// That of a model.
+    /// Plane of a model.
     pub(crate) fn of(model: &DeTable<'_>) -> Option<Self> {
         Self::named(model.get("planar")?.get_ref().as_str()?)
     }
 
-    /// That of a name, like `xy`.
+    /// Plane with a name, such as `xy`.
     pub(crate) fn named(word: &str) -> Option<Self> {
         PLANES.into_iter().find(|plane| plane.word == word)
     }
 
-    /// Which of a point's two coordinates in the text is the one along this axis; none for the one out of the plane.
+    /// Index of the coordinate along this axis among a point's two coordinates in the text; `None` for the axis out of
+    /// the plane.
     pub(crate) fn coordinate(self, axis: usize) -> Option<usize> {
         self.axes.iter().position(|a| *a == axis)
     }

@@ -1,4 +1,4 @@
-//! What is wanted: points to follow, measures, output times.
+//! Requested results: points to follow, measures, output times.
 
 use std::sync::LazyLock;
 
@@ -31,8 +31,7 @@ pub(crate) const POINT: Table = table! {
     "BodyPoint":
     /// The body's name.
     must "body": BODY, "\"crank\"";
-    /// Where it is in the design configuration: a hardpoint's name (and it follows the hardpoint when the design moves that),
-    /// or coordinates.
+    /// Location in the design configuration: a hardpoint's name (the point then follows the hardpoint), or coordinates.
     must "at": PLACE, "\"A\"";
 };
 pub(crate) const POINT_REF: Shape = Shape::Any(
@@ -72,7 +71,7 @@ const FIXED_RAY: Table = table! {
     "FixedRay":
     /// The body's name.
     must "body": BODY, "\"rocker\"";
-    /// Where it points in the design configuration.
+    /// Direction in the design configuration.
     must "axis": LINE, "\"x\"";
 };
 pub(crate) const METRIC: Table = table! {
@@ -80,7 +79,7 @@ pub(crate) const METRIC: Table = table! {
     "Metric":
     /// The name of the measure, or `POINT.x`.
     must "of": OUTPUT, "\"toe\"";
-    /// What to take of its curve.
+    /// Reduction of the curve to one number.
     must "take": TAKE, "\"max\"";
     /// The abscissa: the name of a measure, or `POINT.x`. Default: time.
     may "over": OUTPUT, "\"wheel_travel\"";
@@ -153,7 +152,7 @@ const OF_WHEEL: Table = Table {
     ..table! {
         /// A measure of a wheel.
         "MeasureOfWheel":
-        /// What to measure.
+        /// Measured quantity.
         must "type": WHEEL_MEASURE, "\"caster\"";
     }
 };
@@ -162,7 +161,7 @@ const OF_AXLE: Table = Table {
     ..table! {
         /// A measure of an axle.
         "MeasureOfAxle":
-        /// What to measure.
+        /// Measured quantity.
         must "type": AXLE_MEASURE, "\"track\"";
     }
 };
@@ -177,7 +176,7 @@ const AXLE: &[Key] = keys! {
 /// The measure that may be drawn.
 const DISTANCE: &str = "distance";
 const DRAWN: &[Key] = keys! {
-    /// What it is drawn as: springs and dampers are often given so. It changes no result.
+    /// Shape in drawings: springs and dampers are often declared so. It changes no result.
     may "draw": DRAW, "\"coilover\"";
 };
 pub(super) const WHEEL_MEASURE: Shape = Shape::Any(
@@ -216,7 +215,7 @@ pub(super) const AXLE_MEASURE: Shape = Shape::Any(
     })],
 );
 
-/// What the `type` of a measure may mean: `toe` is of a wheel, or of a body with a spin axis.
+/// Meaning of the `type` of a measure: `toe` is of a wheel, or of a body with a spin axis.
 #[derive(Clone, Copy)]
 enum MeasureOf {
     Own(&'static MeasureType),
@@ -284,7 +283,7 @@ pub(super) fn key(field: &MeasureField) -> Key {
     Key { key: field.key, shape, need, example, doc: with_unit(field) }
 }
 
-/// What a field means, with the unit of its number where that is none of lengths and angles alone.
+/// Meaning of a field, with the unit of its number unless it consists of lengths and angles alone.
 fn with_unit(field: &MeasureField) -> &'static str {
     let FieldKind::Number(unit) = field.kind else { return field.summary };
     let unit = match unit {
@@ -481,7 +480,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What a metric takes, in the file's units.
+    /// Reduction of a metric, in the file's units.
     fn take(&mut self, fields: &Fields<'_>) -> Option<Reduction> {
         let word = Reduction::NAMES[self.word_of(fields, "take")?];
         if word != "rms" && word != "rms_at_points" {

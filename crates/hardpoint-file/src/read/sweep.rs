@@ -1,4 +1,4 @@
-//! Which designs are swept over.
+//! Settings of a sweep.
 
 use std::path::Path;
 
@@ -20,16 +20,17 @@ const MOST_SAMPLES: u32 = 1_000_000_000;
 /// More values of one variable than these are surely a slip.
 const MOST_LEVELS: u32 = 1_000_000;
 pub(crate) const SWEEP: Table = table! {
-    /// Which designs are swept over, and what is kept of them.
+    /// Designs of a sweep, and the results that are stored.
     "SweepStudy":
-    /// How far design variables go, by their names, in their units: of a parameter its values, of all others changes of the nominal design,
-    /// like `bounds`. All others stay in the design configuration. Default: all variables with `bounds`, within these.
+    /// Ranges of design variables, by their names, in their units: values of parameters, changes from the nominal
+    /// design for all others, like `bounds`. Variables that are not listed are constant. Default: all variables with
+    /// `bounds`, within these.
     may "variables": Shape::Entries("a design variable", &ENTRY), "{ lca_front_z = [-5, 5], radius = { from = 90, to = 110, levels = 5 } }";
-    /// How designs are chosen.
+    /// Method that chooses the designs.
     or("\"sobol\"") "method": METHOD, "\"factorial\"";
     /// Number of designs; with `method = "indices"` that many pairs of designs.
     or("1000") "samples": Shape::Count(MOST_SAMPLES), "100000";
-    /// What they are drawn from: the same number gives the same designs.
+    /// Seed of the random numbers: the same seed gives the same designs.
     or("1") "seed": Shape::Count(u32::MAX), "7";
     /// With `method = "factorial"`: that many values of every variable that says nothing else.
     or("3") "levels": Shape::Count(MOST_LEVELS), "5";
@@ -57,9 +58,9 @@ const ENTRY: Shape = Shape::Any(
 pub(super) const RANGE: Table = table! {
     /// From where to where a design variable goes.
     "SweepRange":
-    /// Where it begins, in its unit. Default: its lower bound.
+    /// Lower end, in its unit. Default: its lower bound.
     may "from": NUMBER, "-5";
-    /// Where it ends. Default: its upper bound.
+    /// Upper end. Default: its upper bound.
     may "to": NUMBER, "5";
     /// With `method = "factorial"`: that many values, both ends among them. Default: as `[sweep]` says.
     may "levels": Shape::Count(MOST_LEVELS), "5";

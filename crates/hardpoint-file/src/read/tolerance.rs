@@ -1,4 +1,4 @@
-//! How far off a design may be made.
+//! Settings of a tolerance study.
 
 use hardpoint::draft::{
     CorrelationDraft, LimitDraft, LimitTargetDraft, ScatterDraft, Section, ToleranceDraft,
@@ -19,26 +19,27 @@ const MOST_SAMPLES: u32 = 10_000_000;
 /// More names in a list than these are surely a slip.
 const MOST_NAMES: usize = 10_000;
 pub(crate) const TOLERANCE: Table = table! {
-    /// How far off the design may be made, and what that must keep. All design variables with a `tolerance` join in.
+    /// Tolerances of the design, and the limits that it must keep. All design variables with a `tolerance` are
+    /// included.
     "Tolerance":
     /// Tolerances by name of the design variable, in its unit, over those that the variables have themselves. The name of an entry of
     /// `[design]` that makes several coordinates means the point: it lies within a sphere of that radius (or a disc, of two).
     may "variables": Shape::Entries("a design variable", &ENTRY), "{ B = 0.1, C_x = { tolerance = 0.2, distribution = \"uniform\" } }";
-    /// How deviations scatter, where a variable says nothing else.
+    /// Default distribution of deviations.
     or("\"normal\"") "distribution": DISTRIBUTION, "\"uniform\"";
     /// A tolerance is that many standard deviations of the normal distribution.
     or("3.0") "sigmas": NUMBER, "2";
-    /// Which normal variables go together.
+    /// Correlations of normal variables.
     may "correlations": Shape::Entries("a correlation", &Shape::Table(&CORRELATION)), "{ jig = { between = [\"left_z\", \"right_z\"], coefficient = 0.9 } }";
     /// Names of the metrics that are looked at. Default: all.
     may "metrics": Shape::list(&METRIC), "[\"toe_range\"]";
     /// Names of the measures whose whole curves are looked at. Default: all.
     may "curves": Shape::list(&OUTPUT), "[\"toe\"]";
-    /// What must hold of metrics.
+    /// Limits of metrics.
     may "limits": Shape::Entries("a metric", &Shape::Table(&LIMIT)), "{ toe = { metric = \"toe_range\", max = 0.5 } }";
     /// Number of designs are drawn and solved exactly.
     or("10000") "samples": Shape::Count(MOST_SAMPLES), "100000";
-    /// What they are drawn from: the same number gives the same designs.
+    /// Seed of the random numbers: the same seed gives the same designs.
     or("1") "seed": Shape::Count(u32::MAX), "7";
     /// The loosest tolerances are sought that keep the limits, of variables that have a `cost`.
     may "allocate": Shape::Words(&ALLOCATE), "\"rss\"";
@@ -64,15 +65,15 @@ pub(super) const ENTRY_TABLE: Table = table! {
     "VariableToleranceTable":
     /// By how much, either way, in the variable's unit. Default: the `tolerance` of the variable itself.
     may "tolerance": NUMBER, "0.1";
-    /// How it scatters. Default: as `[tolerance]` says.
+    /// Distribution of the deviation. Default: that of `[tolerance]`.
     may "distribution": DISTRIBUTION, "\"uniform\"";
     /// The tolerance is that many standard deviations. Default: as `[tolerance]` says.
     may "sigmas": NUMBER, "2";
-    /// What it costs to hold, relative to others: `cost` over the tolerance. Without it `allocate` leaves the tolerance as it is.
+    /// Relative cost of the tolerance: `cost` over the tolerance. Without it `allocate` does not change the tolerance.
     may "cost": NUMBER, "5";
 };
 pub(super) const CORRELATION: Table = table! {
-    /// How two normal variables go together, as those do that one jig makes.
+    /// Correlation of two normal variables, such as those made with one jig.
     "Correlation":
     /// The names of two design variables.
     must "between": Shape::exactly(2, &VARIABLE), "[\"left_z\", \"right_z\"]";
@@ -80,7 +81,7 @@ pub(super) const CORRELATION: Table = table! {
     must "coefficient": NUMBER, "0.9";
 };
 pub(super) const LIMIT: Table = table! {
-    /// What must hold of a metric: at least one of `min` and `max`.
+    /// Limit of a metric: at least one of `min` and `max`.
     "ToleranceLimit":
     /// The metric's name. Default: the limit's own name.
     may "metric": METRIC, "\"toe_range\"";

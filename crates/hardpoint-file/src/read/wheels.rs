@@ -55,7 +55,7 @@ pub(crate) const WHEEL: Table = table! {
     may "drive": REACTION, "\"inboard\"";
     /// Place where its brake torque is reacted, for anti-dive and anti-lift. Default: `"outboard"`.
     may "brakes": REACTION, "\"outboard\"";
-    /// What to measure, as NAME.toe and so on: `"all"` that is possible, or a list.
+    /// Measures of the wheel, as NAME.toe and so on: `"all"` that are possible, or a list.
     may "measures": Shape::Any("WheelMeasures", "", &[ALL, Shape::list(&WHEEL_MEASURE)]), "[\"toe\", \"camber\"]";
 };
 const REACTION: Shape = Shape::Words(&[
@@ -73,7 +73,7 @@ const ARM_PLANE: Table = table! {
 };
 const ALL: Shape = Shape::Any("AllMeasures", "", &[Shape::Words(&[("all", "")])]);
 pub(crate) const VEHICLE: Table = table! {
-    /// What is known of the vehicle besides its suspension.
+    /// Vehicle data besides the suspension.
     "Vehicle":
     /// Distance of the axles, in the length unit.
     may "wheelbase": LENGTH, "2600";
@@ -91,7 +91,7 @@ pub(crate) const AXLE: Table = table! {
     must "left": Shape::Name("a wheel"), "\"front_left\"";
     /// The name of the right wheel.
     must "right": Shape::Name("a wheel"), "\"front_right\"";
-    /// What to measure, as NAME.track and so on: `"all"` that is possible, or a list.
+    /// Measures of the axle, as NAME.track and so on: `"all"` that are possible, or a list.
     may "measures": Shape::Any("AxleMeasures", "", &[ALL, Shape::list(&AXLE_MEASURE)]), "[\"track\", \"ackermann\"]";
 };
 const SIDES: [Side; 2] = [Side::Left, Side::Right];

@@ -1,4 +1,5 @@
-//! What acts on the bodies, and what they need for their motion: (43) and (44) of `docs/theory.md`, over any number.
+//! Applied loads on the bodies, and the wrenches that their motion requires: (43) and (44) of `docs/theory.md`, over
+//! any number.
 //!
 //! Signs and formulas of the elements are those of `docs/loads.md`.
 
@@ -14,7 +15,7 @@ use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 /// A body as it moves.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MovingBody<T> {
-    /// Where it is.
+    /// Pose of the body.
     pub pose: Pose<T>,
     /// Twist V.
     pub v: Twist<T>,
@@ -103,7 +104,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         self.model.points[point.0].body.0
     }
 
-    /// Where a point is: r + A s.
+    /// Position of a point: r + A s.
     pub fn point(&self, point: PointId) -> Vec3<T> {
         self.bodies[self.body(point)].pose.point(self.geometry.points[point.0])
     }
@@ -124,7 +125,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         if length.exceeds(limit) { length } else { T::constant(f64::NAN) }
     }
 
-    /// Where it is drawn, in this design.
+    /// Position of a point in the design configuration of this design.
     fn as_drawn(&self, point: PointId) -> Vec3<T> {
         let frame: Pose<T> = self.model.bodies[self.body(point)].frame.spread();
         frame.point(self.geometry.points[point.0])
@@ -274,7 +275,8 @@ impl<T: Real> AppliedLoads<'_, T> {
         Some((joint.0, ends, j.kind.coordinates[coordinate].row))
     }
 
-    /// What a force is at this instant: the tension of a spring, the generalised force of one on a coordinate, the size of a given one.
+    /// Magnitude of a force at this instant: the tension of a spring, the generalised force of a joint spring, the size
+    /// of a given force.
     pub fn size(&self, e: ElementId) -> T {
         let kind = &self.model.elements[e.0].kind;
         match kind {
@@ -313,7 +315,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         }
     }
 
-    /// What a spring's deflection makes of its tension, and how that goes with its length.
+    /// Tension of a spring from its deflection, and its derivative by the length.
     fn pull(&self, kind: &ElementKind, length: T) -> [T; 2] {
         let ElementKind::Spring { from, to, stiffness, cubic, scale, free_length, .. } = kind else {
             return [T::zero(); 2];
@@ -334,7 +336,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         [pull, slope]
     }
 
-    /// Where the road pushes a wheel, and how.
+    /// Point at which the road acts on a wheel, and the force.
     fn road(&self, e: ElementId, wheel: WheelId) -> (Vec3<T>, Vec3<T>) {
         let ElementKind::WheelForce { outboard, forward, up, .. } = &self.model.elements[e.0].kind else {
             return (Vec3::zero(), Vec3::zero());
@@ -360,7 +362,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         }
     }
 
-    /// Of friction in a ball joint the joint, and the angular velocity of its second body relative to the first.
+    /// Joint of the friction in a ball joint, and the angular velocity of its second body relative to the first.
     fn ball(&self, kind: &ElementKind) -> Option<(JointId, Vec3<T>)> {
         let ElementKind::Friction { joint, .. } = kind else { return None };
         let Joint { kind: of, bodies, .. } = &self.model.joints[joint.0];
@@ -393,8 +395,9 @@ impl<T: Real> AppliedLoads<'_, T> {
         given.0.map_or_else(|| T::constant(given.1), |n| self.number(n))
     }
 
-    /// How much friction there is per force that presses, against the motion, and how much besides: `mu r s` and `c w` of a hinge, `mu s` and
-    /// `c v` of a slide, with s from -1 to 1, 0 at rest; of a ball, whose unit has s in it, `mu r` and `c sqrt(omega^2 + w_0^2)`.
+    /// Friction coefficient per normal force, against the motion, and the viscous part: `mu r s` and `c w` of a hinge,
+    /// `mu s` and `c v` of a slide, with s from -1 to 1, 0 at rest; of a ball joint, whose unit vector contains s,
+    /// `mu r` and `c sqrt(omega^2 + w_0^2)`.
     pub fn grip(&self, e: ElementId) -> [T; 2] {
         let kind = &self.model.elements[e.0].kind;
         let (coefficient, radius, viscous) = match kind {
@@ -418,8 +421,9 @@ impl<T: Real> AppliedLoads<'_, T> {
         [grip * s, viscous * rate]
     }
 
-    /// What presses where an element has friction, of a wrench that its joint puts on its second body: the force across the axis, or both ends of a
-    /// bearing that has a length; the whole force of a ball. As many of them count.
+    /// Normal forces at a friction element, from the reaction wrench of its joint on body j: the force across the axis,
+    /// or the forces at both ends of a bearing with a length; the whole force for a ball joint. Returns them and their
+    /// number.
     pub fn presses(&self, e: ElementId, wrench: Wrench<T>) -> ([Vec3<T>; 2], usize) {
         let kind = &self.model.elements[e.0].kind;
         let (joint, length, normal) = match kind {
@@ -463,7 +467,8 @@ impl<T: Real> AppliedLoads<'_, T> {
         damping.map_or(force, |damping| force - self.number(damping) * rate)
     }
 
-    /// What of an element gives, each with its stiffness: deflections that its poses' derivatives tell.
+    /// Calls `each` with the stiffness and the deflection of every compliant direction of an element; the derivatives
+    /// of the poses give those of the deflections.
     pub fn deflections(&self, e: ElementId, mut each: impl FnMut(T, T)) {
         let kind = &self.model.elements[e.0].kind;
         match kind {
@@ -503,7 +508,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         Some([value, row.wrench(&ends).on(j - i)])
     }
 
-    /// What a bushing puts on its second body.
+    /// Wrench of a bushing on its second body.
     fn bushing(&self, kind: &ElementKind) -> Wrench<T> {
         let ElementKind::Bushing { from, to, x, y, z, about_x, about_y, about_z, damping } = kind else {
             return Wrench::zero();

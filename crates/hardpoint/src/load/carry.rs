@@ -1,5 +1,5 @@
-//! What joints and drivers put on the bodies at a position, and how that changes with the design; over plain numbers, or while it is
-//! recorded.
+//! Reactions of joints and driver loads at a position, and their derivatives by the design; over plain numbers, or
+//! while they are recorded.
 //!
 //! | here | theory | what |
 //! |---|---|---|
@@ -20,7 +20,7 @@ use super::acting::{AppliedLoads, MovingBody};
 use super::inertia::{Changed, SpatialInertia};
 use super::measures::Instant;
 
-/// Where the force of a driver shows.
+/// Unknown of the plan that carries the force of a driver.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum DriverAt {
     /// `nu = T_k . x_a` of a coordinate of the tree.
@@ -29,7 +29,7 @@ pub(super) enum DriverAt {
     Row(RowId),
 }
 
-/// Where the wrench of a joint shows: what it puts on its body j.
+/// Rows of the plan that carry the wrench of a joint on its body j.
 #[derive(Clone, Debug, Default)]
 pub(super) struct JointAt {
     /// A link, and whether it runs from body i to body j.
@@ -38,14 +38,14 @@ pub(super) struct JointAt {
     pub closures: Vec<ClosureId>,
 }
 
-/// Where joints and drivers show in the plan.
+/// Locations of the loads of joints and drivers in the plan.
 pub(super) struct Places {
     pub drivers: Vec<Option<DriverAt>>,
     pub joints: Vec<JointAt>,
     way: Way,
 }
 
-/// What loads come to at a position: over plain numbers, or with the derivative by a variable.
+/// Loads at a position: over plain numbers, or with the derivative by a variable.
 #[derive(Clone, Debug)]
 pub(crate) struct Carried<T> {
     /// Per joint: the wrench that it puts on its body j, about the world origin.
@@ -54,11 +54,11 @@ pub(crate) struct Carried<T> {
     pub drivers: Vec<T>,
     /// Per driver: the speed that it prescribes.
     pub speeds: Vec<T>,
-    /// What the mechanism puts on ground, about the world origin.
+    /// Wrench of the mechanism on ground, about the world origin.
     pub shaking: Wrench<T>,
 }
 
-/// What a redundant constraint that pulls by itself puts on the joints.
+/// Self-stress: wrenches on the joints due to a unit force of a redundant constraint.
 pub(super) struct Stress<T> {
     pub carried: Carried<T>,
     /// The largest force of a joint, moments by the size of the mechanism.
@@ -103,7 +103,7 @@ pub(super) struct Equilibrium<T> {
     pub now: LoadedPosition<T>,
     pub along: LoadedPosition<Dual<T>>,
     pub transmission: Transmission<T>,
-    /// What some wrenches alone make.
+    /// Transmission of some wrenches alone.
     alone: Transmission<T>,
     x: Vec<Twist<T>>,
     l: Vec<Wrench<T>>,
@@ -142,7 +142,7 @@ impl<T: Real> Equilibrium<T> {
         self.now.found.speeds.iter_mut().enumerate().for_each(|(d, to)| *to = speed(d));
     }
 
-    /// What joints carry of what the bodies need now: T and mu of (18) with F.
+    /// Reactions to the wrenches that the bodies require now: T and mu of (18) with F.
     pub fn carry(
         &mut self,
         topology: &Topology,
@@ -210,7 +210,7 @@ impl<T: Real> Equilibrium<T> {
         field.turn_axes(topology, state, flow, (x, l));
     }
 
-    /// How forces go along what was taken, and masses that change themselves.
+    /// Derivatives of the applied loads along the direction that was set, and of masses that change themselves.
     pub fn act(&mut self, model: &Model, geometry: &Geometry<Dual<T>>, masses: &[ElementId]) {
         let Self { along, still, .. } = self;
         let mut needed = std::mem::take(&mut along.needed);
@@ -258,7 +258,8 @@ impl<T: Real> Equilibrium<T> {
         along.needed = needed;
     }
 
-    /// What all joints carry of wrenches that are applied to some bodies, alone: `applied` as what the bodies need less.
+    /// Reactions of all joints to wrenches that are applied to some bodies, alone: `applied` reduces the required
+    /// wrenches.
     pub fn response(
         &mut self,
         topology: &Topology,
@@ -273,7 +274,7 @@ impl<T: Real> Equilibrium<T> {
         places.joints.iter().map(|at| joint_wrench(at, topology, alone, &of, |v, _| v)).collect()
     }
 
-    /// What joints carry where redundant constraints pull by themselves: per redundant row.
+    /// Self-stresses of the redundant constraints, one per redundant row.
     pub fn stresses(
         &mut self,
         topology: &Topology,
@@ -306,8 +307,8 @@ impl<T: Real> Equilibrium<T> {
     }
 }
 
-/// How much redundant constraints that pull by themselves make of a measure, at most: above zero it is not known. Only reactions can be
-/// theirs.
+/// Largest contribution of self-stresses to a measure: if it is above zero, the measure is not determined. Only
+/// reactions have one.
 pub(super) fn excess<T: Real>(kind: &MeasureKind, acting: &AppliedLoads<'_, T>, stresses: &[Stress<T>]) -> T {
     let none = T::constant(-1.0);
     if !matches!(kind, MeasureKind::Reaction { .. }) {
@@ -355,7 +356,7 @@ struct Derived<'s, T> {
     l_changed: &'s [Wrench<T>],
 }
 
-/// Where a driver's force shows.
+/// Unknown that carries a driver's force.
 fn driver_at(topology: &Topology, driver: DriverId) -> Option<DriverAt> {
     let coordinate = topology.driven_coordinates().find(|(_, d)| *d == driver);
     let closure = || topology.closures.iter().find(|c| c.driver == Some(driver));
@@ -365,7 +366,7 @@ fn driver_at(topology: &Topology, driver: DriverId) -> Option<DriverAt> {
     }
 }
 
-/// Where a joint's wrench shows. The couples of couplers between its coordinates are theirs.
+/// Rows that carry a joint's wrench. The couples of couplers between its coordinates belong to the couplers.
 fn joint_at(topology: &Topology, joint: JointId) -> JointAt {
     let link = LinkId::each(&topology.links).find(|(_, link)| link.joint == Some(joint));
     let closures =
@@ -429,7 +430,7 @@ fn driver_force<T: Real>(
     }
 }
 
-/// What the mechanism puts on ground: minus all that the bodies need, the forces that it exerts within itself cancelling.
+/// Wrench of the mechanism on ground: minus all required wrenches, since internal forces cancel.
 fn shaking<T: Real>(needed: &[Wrench<T>]) -> Wrench<T> {
     needed.iter().fold(Wrench::zero(), |sum, f| sum - *f)
 }

@@ -1,4 +1,4 @@
-//! How the mechanism deflects to a force: small deflections about the kinematic position, (47) of `docs/theory.md`.
+//! Compliance of the mechanism: small deflections about the kinematic position, (47) of `docs/theory.md`.
 //!
 //! Every direction in which an elastic joint opens is a way to go like a change of the design: a twist of its marker. What bodies do along
 //! it solves (11) with the factors at hand, and how that changes with the design is the second derivative along both (15). Stiffnesses
@@ -30,7 +30,7 @@ enum Way {
     Released(DriverId),
 }
 
-/// What depends on a variable, or by none.
+/// Quantities that depend on a variable, or on none.
 struct Changed {
     fixed: BodyFixed<Number>,
     geometry: Geometry<Number>,
@@ -227,8 +227,8 @@ impl<'a> Compliances<'a> {
 }
 
 impl Compliances<'_> {
-    /// Where a wheel is, as the point of its body that is there now goes along a way: it is that which the road pushes, while the contact
-    /// point wanders on the wheel.
+    /// Contact point of a wheel as the body point that is there now, moved along a deflection: the road acts on this
+    /// point, while the contact point itself moves over the wheel.
     fn contact(&self, poses: &[Pose<Number>], geometry: &Geometry<Number>, wheel: WheelId) -> Vec3<Number> {
         let body = self.model.wheels[wheel.0].body.0;
         let now = |x: Number| Dual::constant(x.v);

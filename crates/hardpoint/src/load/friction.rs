@@ -1,8 +1,8 @@
 //! Coulomb friction in joints: from the forces that press there, which it changes itself; (46) of `docs/theory.md`.
 //!
-//! With M the moments of all hinges, and forces of all slides, that rub, what joints carry is `T(M) = T_0 + B M`, since loads superpose; each
-//! is to be `M = -c N(T(M)) - d`, with N what presses, c its grip (`mu r s` of a hinge) and d what is viscous. That is as many equations as
-//! joints that rub, solved by Newton.
+//! With M the friction moments of hinges and friction forces of slides, the joints carry `T(M) = T_0 + B M`, since
+//! loads superpose. Each satisfies `M = -c N(T(M)) - d`, with N the normal force, c the friction coefficient (`mu r s`
+//! of a hinge) and d the viscous part. These equations, one per joint with friction, are solved by Newton's method.
 
 use crate::linalg::Elimination;
 use crate::model::{ElementId, ElementKind, JointId, Model};
@@ -36,13 +36,13 @@ pub(super) struct Friction {
 struct FrictionElement {
     element: ElementId,
     joint: JointId,
-    /// Grip c, what is viscous, and what presses without friction.
+    /// Friction coefficient c, viscous part d, and normal forces without friction.
     grip: f64,
     viscous: f64,
     presses: ([Vec3; 2], usize),
-    /// Per joint that has friction: what presses here per unit moment there.
+    /// Normal forces here per unit friction moment of every joint with friction.
     per_moment: Vec<[Vec3; 2]>,
-    /// True if redundant constraints share what presses.
+    /// True if redundant constraints share the normal force.
     is_shared: bool,
     /// True if the friction has another solution besides the one that was found.
     is_ambiguous: bool,
@@ -86,13 +86,14 @@ impl Friction {
         for rub in &mut self.rubs {
             [rub.grip, rub.viscous] = acting.grip(rub.element);
             rub.presses = acting.presses(rub.element, carried.joints[rub.joint.0]);
-            // What presses is linear in what the joint carries.
+            // Normal forces are linear in the joint's wrench.
             let per = |all: &Vec<Wrench>| acting.presses(rub.element, all[rub.joint.0]).0;
             rub.per_moment = responses.iter().map(per).collect();
         }
     }
 
-    /// Finds the moments; they are no numbers where joints jam, or where redundant constraints, each pulling by itself, change what presses.
+    /// Solves for the friction moments. They are NaN if joints jam, or if self-stresses of redundant constraints change
+    /// the normal forces.
     pub fn solve(&mut self, acting: &AppliedLoads<'_, f64>, stresses: &[Stress<f64>]) {
         self.moments.fill(0.0);
         for rub in &mut self.rubs {
@@ -180,7 +181,7 @@ impl Friction {
         false
     }
 
-    /// How the moments change, from what joints carry while these stand.
+    /// Derivatives of the friction moments, from the joint wrenches at constant moments.
     pub fn differentiate(&mut self, acting: &AppliedLoads<'_, Dual>, carried: &Carried<Dual>) {
         for (change, rub) in self.changes.iter_mut().zip(&self.rubs) {
             // (1 + diag(c) dN/dM) M' = -(c' N + c N' + d')
@@ -189,7 +190,7 @@ impl Friction {
         self.matrix.solve(&mut self.changes);
     }
 
-    /// Those whose forces nobody knows, because redundant constraints share what presses.
+    /// Elements whose friction is not determined, because redundant constraints share the normal force.
     pub fn shared(&self) -> impl Iterator<Item = ElementId> {
         self.rubs.iter().filter(|rub| rub.is_shared).map(|rub| rub.element)
     }
@@ -237,7 +238,8 @@ impl Friction {
 }
 
 impl LoadSolver<'_> {
-    /// Friction that nobody knows at the step that was solved, because redundant constraints share what presses there.
+    /// Friction that is not determined at the step that was solved, because redundant constraints share the normal
+    /// force.
     pub fn shared_friction(&self) -> impl Iterator<Item = ElementId> {
         self.friction.shared()
     }

@@ -1,4 +1,4 @@
-//! How one load changes with all variables: loads of their own on the bodies, carried to ground once.
+//! Gradient of one load by all variables: its own loads on the bodies, carried to ground once.
 //!
 //! Every load is `y = sum F . Y`, with Y what opening its joint, or moving its driver alone, makes of the bodies. So
 //! `y' = sum F' . Y + sum F . Y'` is linear in the design twists W, W., W.. and in what the frames of joints do, and its coefficients are
@@ -29,7 +29,7 @@ use super::virtual_motion::{VirtualMotion, Weights, set, unit_twist};
 pub(crate) struct LoadGradients {
     /// Y, and what turns.
     virtual_motion: VirtualMotion<f64>,
-    /// What acts, with derivatives.
+    /// Motion of the bodies with derivatives.
     bodies: Vec<MovingBody<Dual>>,
     laws: Vec<Dual>,
     near: Vec<Dual>,
@@ -180,7 +180,8 @@ impl LoadGradients {
         AppliedLoads { model: solver.model, geometry, bodies, laws, near, friction }
     }
 
-    /// How the load goes with what has been set, by itself and by what the bodies need, on Y: of forces that feel a body, or of all elements.
+    /// Derivative of the load along the direction that was set, by itself and through the required wrenches, on Y: of
+    /// forces that act on a body, or of all elements.
     fn goes(
         &mut self,
         solver: &LoadSolver<'_>,

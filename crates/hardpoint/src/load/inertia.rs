@@ -1,4 +1,4 @@
-//! What a body's masses need of its motion, as one matrix; and how that changes where the body goes another way.
+//! Wrench that the motion of a body's masses requires, as one matrix, and its derivative by the motion.
 //!
 //! `f = M (A - [0; g0]) + ad*(V) M V` of `docs/theory.md` (43) in twists, M the spatial inertia in the world. Masses that stay where they are
 //! in their body turn with it, `M' = ad*(W) M - M ad(W)`, so that their part of F' is a few products of each body's (49), whatever they are made of.
@@ -21,7 +21,7 @@ pub(super) struct SpatialInertia<T> {
 }
 
 impl<T: Real> SpatialInertia<T> {
-    /// That of nothing.
+    /// Inertia of no mass.
     pub fn zero() -> Self {
         Self { mass: T::zero(), first: Vec3::zero(), second: Mat3 { cols: [Vec3::zero(); 3] } }
     }
@@ -55,7 +55,8 @@ impl<T: Real> SpatialInertia<T> {
         }
     }
 
-    /// How `f' . Y` goes with W, W. and W.. of a body with this Y: what [`SpatialInertia::changed`] comes to on Y, term by term.
+    /// Derivatives of `f' . Y` by W, W' and W'' of a body with this Y: the result of [`SpatialInertia::changed`] on Y,
+    /// term by term.
     ///
     /// ```text
     /// P2  =  M Y,    P1  =  ad(Y)^T M V - ad(V)^T M Y - M ad(V) Y,    P0  =  ad(Y)^T f + [g0 x (M Y)_f; 0]
@@ -109,7 +110,7 @@ impl<T: Real> SpatialInertia<T> {
     }
 }
 
-/// What is fixed in the bodies as it goes with a variable.
+/// Body-fixed data with the derivative by a variable.
 pub(super) struct Changed<T> {
     pub geometry: Geometry<Dual<T>>,
     /// The masses that change, or move within their bodies.

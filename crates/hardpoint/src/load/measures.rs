@@ -34,7 +34,7 @@ impl<T: Real> Instant<'_, T> {
         }
     }
 
-    /// Where a joint is on its body j, and the force and the moment about there that it puts on it.
+    /// Location of a joint on its body j, and the force and the moment about that point that it applies to body j.
     pub fn wrench(&self, joint: JointId) -> [Vec3<T>; 3] {
         let AppliedLoads { model, geometry, bodies, .. } = *self.acting;
         let body = model.joints[joint.0].bodies[1];
@@ -43,7 +43,7 @@ impl<T: Real> Instant<'_, T> {
         [place, f, m - place.cross(f)]
     }
 
-    /// What a joint puts on one of its bodies.
+    /// Reaction of a joint on one of its bodies.
     fn reaction(&self, joint: JointId, part: ReactionPart, on: Option<BodyId>, axes: Axes) -> T {
         let AppliedLoads { model, geometry, bodies, .. } = *self.acting;
         let [i, j] = model.joints[joint.0].bodies;
@@ -78,8 +78,8 @@ impl<T: Real> Instant<'_, T> {
 const KNOWN: f64 = 1e-8;
 
 impl<T: Real> Instant<'_, T> {
-    /// How much of that reaction there is in loads that a redundant constraint exerts by itself, the largest of which is `most`; not above
-    /// zero where it is nothing but round-off.
+    /// Contribution to that reaction of the self-stress of a redundant constraint, whose largest reaction is `most`;
+    /// not above zero if it is only round-off.
     pub fn excess(&self, kind: &MeasureKind, most: T) -> T {
         let size = self.acting.model.size();
         let scale = match kind {
@@ -101,7 +101,7 @@ impl<T: Real> Instant<'_, T> {
 }
 
 impl Instant<'_, f64> {
-    /// True if there is nothing of what presses where an element has friction.
+    /// True if a friction element has no normal force.
     pub fn presses_nothing(&self, e: ElementId, joint: JointId, most: f64) -> bool {
         let (presses, count) = self.acting.presses(e, self.carried.joints[joint.0]);
         presses.iter().take(count).all(|force| force.norm() <= KNOWN * most)

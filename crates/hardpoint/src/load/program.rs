@@ -22,10 +22,11 @@ use super::solver::{asked, asks_for_reactions, geometry_along};
 use super::turns::Turns;
 use super::virtual_motion::{VirtualMotion, Weights};
 
-/// Of more bodies and elements, times variables, no loads are recorded: each takes some hundred operations.
+/// Maximum number of pairs of a body or element with a variable for which loads are recorded: each takes some hundred
+/// operations.
 const MOST_PAIRS: usize = 10_000;
 
-/// Why the loads of a model are not recorded, if they are not.
+/// Reason why the loads of a model are not recorded, if they are not.
 pub(crate) fn hindrance(model: &Model, topology: &Topology) -> Option<&'static str> {
     if (model.bodies.len() + model.elements.len()) * (1 + model.variables.len()) > MOST_PAIRS {
         return Some("the program of its loads would be too long");
@@ -68,7 +69,7 @@ struct RecordedLoad<'a> {
 }
 
 impl<'a> RecordedLoads<'a> {
-    /// Where a step has come to; with derivatives by all variables, if they are wanted.
+    /// Loads at a recorded step; with derivatives by all variables, if requested.
     pub fn new(design_map: &'a DesignMap<'_>, step: &mut RecordedStep<'_>, sensitivities: bool) -> Self {
         let RecordedStep { topology, state, values, drivers, laws } = step;
         let model = design_map.model();
@@ -103,7 +104,7 @@ impl<'a> RecordedLoads<'a> {
         recorded
     }
 
-    /// How a load goes with all that a variable may change.
+    /// Derivative of a load by all that a variable may change.
     fn load(
         &mut self,
         kind: &'a MeasureKind,

@@ -75,7 +75,7 @@ impl<'a> LoadSolver<'a> {
         Self { judges: true, ..self }
     }
 
-    /// What was found at the output time: joints and drivers.
+    /// Loads at the output time: joints and drivers.
     pub fn found(&self) -> &Carried<f64> {
         &self.bodies.now.found
     }
@@ -139,7 +139,7 @@ impl<'a> LoadSolver<'a> {
         bodies.carry(topology, state, (model, geometry));
     }
 
-    /// Where a joint is on its body j.
+    /// Location of a joint on its body j.
     pub fn place(&self, joint: JointId) -> Vec3 {
         let [place, ..] = Instant { acting: &self.acting(), carried: self.found() }.wrench(joint);
         place
@@ -158,8 +158,8 @@ impl<'a> LoadSolver<'a> {
         })
     }
 
-    /// What is known of the force that a joint puts on its body j, global, and along how many directions it is: what redundant constraints
-    /// that pull by themselves can change is left out.
+    /// Determined part of the force that a joint applies to its body j, global, and the number of its directions: the
+    /// part that self-stresses can change is left out.
     pub fn known_force(&self, joint: JointId) -> (Vec3, usize) {
         let acting = self.acting();
         let force_of = |carried| Instant { acting: &acting, carried }.wrench(joint)[1];
@@ -179,7 +179,7 @@ impl<'a> LoadSolver<'a> {
         (across(force_of(self.found()), &open), 3 - open.len())
     }
 
-    /// What a force puts on the body of one of its points, global: what a spring, a bushing or a given force does there.
+    /// Force on the body of one of its points, global: of a spring, a bushing or a given force.
     pub fn push(&self, element: ElementId, at: PointId) -> Vec3 {
         let mut needed = vec![Wrench::zero(); self.model.bodies.len()];
         self.acting().add(element, &mut needed);
@@ -249,7 +249,7 @@ pub(super) fn asks_for_reactions(model: &Model) -> bool {
     model.measures.iter().any(|m| matches!(m.kind, MeasureKind::Reaction { .. }))
 }
 
-/// What is fixed in the bodies as it goes with a variable, or with none.
+/// Body-fixed data with the derivative by a variable, or by none.
 pub(super) fn geometry_along<T: Real>(
     design_map: &DesignMap<'_>,
     values: &[T],
@@ -263,7 +263,7 @@ pub(super) fn geometry_along<T: Real>(
 /// Two directions are one where no more than this part of one is across the other.
 const PARALLEL: f64 = 1e-7;
 
-/// What of a vector is across these unit vectors, which are across one another.
+/// Component of a vector perpendicular to these unit vectors, which are perpendicular to each other.
 fn across(v: Vec3, directions: &[Vec3]) -> Vec3 {
     directions.iter().fold(v, |v, u| v - *u * u.dot(v))
 }

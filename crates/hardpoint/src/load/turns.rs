@@ -4,7 +4,7 @@ use crate::measure::is_counted_of_element;
 use crate::model::{ElementId, Model};
 use crate::topology::{CoordinateId, Topology};
 
-/// What counts the turns of the coordinate that an element acts on.
+/// Source of the number of turns of an element's coordinate.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Turns {
     /// It acts on none.

@@ -1,5 +1,5 @@
-//! What a load moves: every load is `y = sum F . Y`, Y being the twists that opening its joint, or moving its driver alone, makes of the
-//! bodies (`docs/theory.md`, section 14); over any number.
+//! Virtual motion of a load: every load is `y = sum F . Y`, with Y the twists of the bodies when its joint opens, or
+//! its driver alone moves (`docs/theory.md`, section 14); over any number.
 
 use crate::constraint::{MarkerPairRates, Row};
 use crate::model::{BodyId, DriverId, GROUND, JointId, MeasureKind};
@@ -12,7 +12,7 @@ use crate::topology::{ClosureId, LinkId, RowId, Topology};
 
 use super::carry::{Carried, DriverAt, Places};
 
-/// How a load goes with what is carried.
+/// Derivatives of a load by the transmitted wrenches.
 #[derive(Debug)]
 pub(super) struct Weights<T> {
     /// By the wrenches that joints put on their bodies j.
@@ -24,7 +24,8 @@ pub(super) struct Weights<T> {
 }
 
 impl<T: Real> Weights<T> {
-    /// Of a measure that is `objective` of what is carried, one number after the other; the wrenches of some joints count `besides`.
+    /// Weights of a measure that is `objective` of the transmitted wrenches, one number after the other; the wrenches
+    /// of some joints count `besides`.
     pub fn of(
         kind: &MeasureKind,
         besides: impl Iterator<Item = JointId>,
@@ -55,7 +56,7 @@ impl<T: Real> Weights<T> {
     }
 }
 
-/// How `objective` goes with the numbers of one wrench.
+/// Derivatives of `objective` by the components of one wrench.
 fn slopes<T: Real>(
     carried: &mut Carried<Dual<T>>,
     wrench: impl Fn(&mut Carried<Dual<T>>) -> &mut Wrench<Dual<T>>,

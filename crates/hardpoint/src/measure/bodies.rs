@@ -1,4 +1,4 @@
-//! Where bodies are, as numbers with derivatives.
+//! Poses of bodies as numbers with derivatives.
 
 use crate::motion::BodyState;
 use crate::number::{Dual, Jet, Rates, Real};

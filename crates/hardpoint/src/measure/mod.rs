@@ -48,16 +48,16 @@ use crate::topology::{CoordinateId, Topology};
 pub struct Output {
     /// `toe` for a measure, `wheel_centre.z` for a point's component.
     pub name: String,
-    /// What its value measures.
+    /// Dimension of the value.
     pub dimension: Dimension,
-    /// How much of it can be known.
+    /// Known time derivatives.
     pub known: KnownOrders,
-    /// Where it comes from.
+    /// Source of the output.
     pub source: OutputSource,
 }
 
 impl Output {
-    /// What its time derivative of order 0, 1 or 2 is called: `toe`, `toe rate`, `toe acceleration`; of a point's component
+    /// Name of the time derivative of order 0, 1 or 2: `toe`, `toe rate`, `toe acceleration`; for a point's component
     /// `tip.x`, `tip.vx`, `tip.ax`.
     pub fn order_name(&self, order: usize) -> String {
         match (self.source, self.name.rsplit_once('.')) {
@@ -142,14 +142,14 @@ impl MeasureResults {
         self.len() == 0
     }
 
-    /// Of all outputs at all output times, how many no program has evaluated, but the formulas one by one: round-off apart, the numbers
-    /// are the same.
+    /// Number of values, over all outputs and output times, that formulas evaluated one by one and not a program:
+    /// round-off apart, the numbers are the same.
     pub fn by_formula(&self) -> usize {
         self.by_formula
     }
 
-    /// Room for these outputs at that many times, in the memory that there is; `layout` says where the derivatives stand, and how many
-    /// numbers they are.
+    /// Resizes for these outputs at this number of times, within the memory at hand; `layout` gives the positions and
+    /// the number of the derivatives.
     fn shape(
         &mut self,
         outputs: Vec<Output>,
@@ -169,7 +169,7 @@ impl MeasureResults {
         self.values.set(k, 3 * m, numbers);
     }
 
-    /// Where it has a place.
+    /// Stores derivatives, if they have a position.
     pub(crate) fn set_d(&mut self, k: usize, b: VariableId, m: usize, numbers: [f64; 3]) {
         if let Some(place) = self.places[b.0 * self.outputs.len() + m] {
             self.d.set(k, place, numbers);
@@ -439,9 +439,9 @@ impl<'a> FormulaEvaluator<'a> {
     }
 }
 
-/// What outputs may ask for besides the motion.
+/// Inputs of outputs besides the motion.
 pub(crate) struct Context<'a> {
-    /// Of the measures that depend on a driver.
+    /// Values of the measures that depend on a driver.
     pub slopes: &'a StepValues,
     /// By time and measure: the whole turns of its angle, rad; empty where no formula asks for them.
     pub whole_turns: &'a [f64],
@@ -506,12 +506,12 @@ pub(crate) fn derivatives(
     }
 }
 
-/// Where a formula has a pole, there is no number.
+/// NaN at the pole of a formula; otherwise the number.
 pub(crate) fn finite(x: f64) -> f64 {
     if x.is_finite() { x } else { f64::NAN }
 }
 
-/// What indicates how many whole turns a joint's angle has made.
+/// Source of the number of whole turns of a joint's angle.
 enum Turns {
     /// The driver's law.
     Driver(DriverId),
@@ -654,7 +654,7 @@ pub(crate) struct Instant<'a, T> {
 }
 
 impl<'a, T: Real> Instant<'a, T> {
-    /// Of bodies at these poses.
+    /// Outputs of bodies at these poses.
     pub fn new(model: &'a Model, fixed: &'a BodyFixed<T>, poses: &'a [Pose<T>]) -> Self {
         Self { model, fixed, poses, slopes: &[], whole_turns: &[] }
     }

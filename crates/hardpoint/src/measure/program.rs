@@ -35,8 +35,8 @@ use crate::space::{Mat3, Pose, Vec3};
 use super::bodies::{moving, pair};
 use super::{Instant, MeasureResults, Output, bodies_asked_for};
 
-/// Of more sums of products - one for each output, variable, and body that both have to do with - no program is recorded: it would take
-/// more memory than its results.
+/// Maximum number of sums of products, one for each combination of output, variable and body, for which a program is
+/// recorded: a larger one would take more memory than its results.
 const MOST_SUMS: usize = 20_000;
 
 /// Ways in which a body can go: slides along x, y and z, then turns about them.
@@ -45,14 +45,14 @@ const WAYS: usize = 6;
 /// A number while it is recorded, with its rates.
 type RecordedRates = Rates<Number>;
 
-/// What a program is for.
+/// Purpose of a program.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct ProgramKey {
     /// True if the design is an input; else it is the nominal one.
     any_design: bool,
     /// Derivatives by that many variables.
     variables: usize,
-    /// Which variable moves which body, of those that outputs are measured on.
+    /// Pairs of a variable and a body that it moves, among the bodies that outputs use.
     moved: Vec<(usize, usize)>,
 }
 
@@ -77,7 +77,7 @@ pub(crate) struct MeasureProgram {
     moved: Vec<(usize, usize)>,
     /// Measures whose whole turns are requested.
     turning: Vec<usize>,
-    /// Where the values of the design begin among the inputs.
+    /// Index of the design values among the inputs.
     design_at: usize,
     outputs: usize,
     /// By variable and output: where its derivatives begin; none where they are all zero.
@@ -200,8 +200,8 @@ fn vector(numbers: &[Number]) -> Vec3<Number> {
     Vec3::new(numbers[0], numbers[1], numbers[2])
 }
 
-/// How a body goes each way, with the first two time derivatives of that, from its sensitivity; it turns with this velocity and
-/// acceleration.
+/// Derivative of a body's motion in each direction, with its first two time derivatives, from its sensitivity; the body
+/// rotates with this velocity and acceleration.
 fn ways_of(
     [dr, dpi, dv, domega, da, dalpha]: [Vec3<Number>; 6],
     [omega, alpha]: [Vec3<Number>; 2],
@@ -228,7 +228,7 @@ fn gone(pose: Pose<RecordedRates>, way: usize, amount: RecordedRates) -> Pose<Du
     Pose { rot: Mat3 { cols }, r: pair(pose.r, d.r) }
 }
 
-/// What is fixed in the bodies, and the same as it goes with each variable that moves some of it.
+/// Body-fixed data, and their derivatives by each variable that changes some of them.
 struct RecordedGeometry {
     still: BodyFixed<Dual<RecordedRates>>,
     moved: Vec<Option<BodyFixed<Dual<RecordedRates>>>>,
@@ -257,12 +257,12 @@ impl RecordedGeometry {
     }
 }
 
-/// What an output came to.
+/// Result of an output.
 struct RecordedOutput {
     values: [Number; 3],
     /// By variable.
     derivatives: Vec<[Number; 3]>,
-    /// Where any of these is positive, it does not count.
+    /// Conditions: if any of these is positive, the result is invalid.
     limits: Vec<Number>,
 }
 

@@ -1,4 +1,4 @@
-//! What happens while one driver alone moves: motion ratios, bump steer, instant centres, roll centres.
+//! Measures during the motion of one driver alone: motion ratios, bump steer, instant centres, roll centres.
 //!
 //! A driver that moves by itself is a direction like a change of the design (`docs/theory.md`, section 7); how the outcome
 //! changes with the design is the second derivative along both.

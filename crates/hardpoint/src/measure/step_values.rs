@@ -11,7 +11,7 @@ use crate::model::Model;
 /// variables; eight output times side by side.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StepValues {
-    /// Which measures these are, ascending; none: there are no such numbers.
+    /// Indices of these measures, ascending; empty if there are none.
     measures: Vec<usize>,
     /// Per measure of the model: which of these it is.
     places: Vec<Option<usize>>,
@@ -40,7 +40,7 @@ impl StepValues {
         &self.measures
     }
 
-    /// Begins anew, in the memory that there is.
+    /// Clears the values and keeps the memory.
     pub fn restart(&mut self) {
         self.steps = 0;
     }
@@ -66,8 +66,8 @@ impl StepValues {
         }
     }
 
-    /// That many more output times at once, which stand in these lanes of what was found: of all measures values, then derivatives variable
-    /// by variable. A measure is not known where its `excess` is above zero.
+    /// Adds several output times at once, from these lanes of the results: values of all measures, then derivatives
+    /// variable by variable. A measure is not determined if its `excess` is above zero.
     pub fn take(&mut self, lanes: Range<usize>, excess: &[AlignedLanes], found: &[AlignedLanes]) {
         let to = self.numbers.block_mut(self.steps);
         // Written so that NaN is not known.
@@ -86,7 +86,8 @@ impl StepValues {
         self.steps += lanes.len();
     }
 
-    /// Of all measures of the model the values at time k, NaN for those that are none of these; nothing where there are none at all.
+    /// Values of all measures of the model at time k, NaN for those that are none of these; empty if there are none at
+    /// all.
     pub fn at(&self, k: usize) -> impl Iterator<Item = f64> {
         self.all_from(k, 0)
     }

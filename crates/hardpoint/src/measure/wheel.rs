@@ -26,7 +26,7 @@ pub(crate) struct WheelAt<T> {
     pub side: T,
     /// A lower and an upper point of the axis that it steers about.
     pub kingpin: Option<[Vec3<T>; 2]>,
-    /// Of the lower and the upper arm: a normal of its plane, of any length, and a point in it.
+    /// Planes of the lower and the upper arm: a normal, of any length, and a point.
     pub planes: Option<[[Vec3<T>; 2]; 2]>,
     /// Length of the spring.
     pub spring: Option<T>,
@@ -129,7 +129,8 @@ impl<T: Real> WheelAt<T> {
         }
     }
 
-    /// Where the planes of the arms meet in a view that shows z and another axis, from the contact point, in its plane.
+    /// Intersection of the planes of the arms in a view that shows z and another axis, relative to the contact point,
+    /// in its plane.
     fn planes_meet(&self, seen: impl Fn(Vec3<T>) -> T) -> Meet<T> {
         let planes = self.planes.expect("a measure that needs planes is of a wheel that has them");
         let contact = self.contact();
@@ -188,7 +189,7 @@ impl<T: Real> WheelAt<T> {
     }
 }
 
-/// Where two lines meet in a plane: `aside / by` and `z / by` from a place.
+/// Intersection of two lines in a plane: `aside / by` and `z / by` relative to a point.
 struct Meet<T> {
     aside: T,
     z: T,
@@ -337,8 +338,8 @@ fn seen<T: Real>(component: T, turn: Vec3<T>) -> T {
     }
 }
 
-/// What a wheel's rise per way rearward counts for: its end's share of the force, times wheelbase by height of the centre of
-/// gravity.
+/// Weight of a wheel's rise per rearward travel: its end's share of the force times wheelbase over height of the centre
+/// of gravity.
 fn support<T: Real>(what: WheelMeasure, vehicle: &Vehicle) -> T {
     let need = what.needs();
     let front = vehicle.front_share(need).and_then(|(_, share)| share);

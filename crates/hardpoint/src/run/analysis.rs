@@ -213,7 +213,7 @@ impl<'m> Analysis<'m> {
         })
     }
 
-    /// How the even steps of the nominal design's motion are solved, with its measures or without.
+    /// Method that solves the smooth steps of the nominal motion, with its measures or without.
     pub(super) fn solved_by(&self, measures: bool) -> StepMethod {
         let of_measures = || if measures { self.needs_kernel() } else { None };
         match StepProgram::hindrance(&self.topology, measures).or_else(of_measures) {
@@ -232,7 +232,7 @@ impl<'m> Analysis<'m> {
         self.model().measures.iter().any(|m| m.kind.is_load())
     }
 
-    /// Why measures need more of a step than programs hand out, if they do.
+    /// Reason why measures need more of a step than programs provide, if they do.
     pub(super) fn needs_kernel(&self) -> Option<&'static str> {
         let model = self.model();
         let is_compliance = |k: usize| matches!(model.measures[k].kind, MeasureKind::Compliance { .. });
@@ -242,7 +242,7 @@ impl<'m> Analysis<'m> {
         if self.asks_for_loads() { load::hindrance(model, &self.topology) } else { None }
     }
 
-    /// What evaluates these laws at many times, if they are those of the nominal design and it pays.
+    /// Program that evaluates these laws at many times, if they are those of the nominal design and it pays.
     pub(super) fn laws_program(&self, laws: &[Law], loads: bool) -> Option<Arc<Runnable>> {
         let nominal = self.model().drivers.iter().zip(laws).all(|(driver, law)| driver.law == *law);
         if nominal { self.programs.laws(self.model(), loads) } else { None }

@@ -120,7 +120,7 @@ impl<T: Real> SampledCurve<'_, T> {
         roots(&rate).into_iter().map(|s| from + s * length).collect()
     }
 
-    /// What the polynomial of interval k nowhere exceeds, times `sign`: the greatest of its coefficients in Bernstein's form.
+    /// Upper bound of the polynomial of interval k times `sign`: the largest of its Bernstein coefficients.
     pub(super) fn bound(&self, k: usize, sign: f64) -> f64 {
         // Beside a kink or a gap nothing is said.
         let Some(coefficients) = self.bernstein(k) else { return f64::INFINITY };
@@ -178,8 +178,8 @@ const CHOOSE: [[f64; 5]; 5] = [
     [1.0, 4.0, 6.0, 4.0, 1.0],
 ];
 
-/// Where a polynomial, of degree 4 at most, changes its sign between 0 and 1. Between the places where its derivative does, it
-/// does so once at most.
+/// Roots with a change of sign between 0 and 1 of a polynomial of degree 4 at most. Between consecutive roots of its
+/// derivative it has at most one.
 fn roots(c: &[f64]) -> Vec<f64> {
     let value = |s: f64| c.iter().rev().fold(0.0, |sum, c| sum * s + c);
     // In Bernstein's form the coefficients enclose the polynomial.

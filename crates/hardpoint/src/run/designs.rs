@@ -173,7 +173,7 @@ impl Analysis<'_> {
         Some((effort, resisting))
     }
 
-    /// What solves that many designs side by side, where that pays and can be done, and keeps what it finds if that is requested.
+    /// Batch solver of this number of designs, if that pays and is possible; stores results if requested.
     fn side_by_side(&self, designs: usize, sensitivities: bool, keeps: bool) -> Option<DesignBatch<'_>> {
         let pays = designs > 1 && self.programs_pay(designs);
         // All designs must have the same laws.

@@ -248,7 +248,7 @@ fn varied_curves<'s>(
     Some((varied(metric.of)?, abscissa(metric, varied)?))
 }
 
-/// What a metric is made of, each part with its derivatives: as many for every design at the same output times.
+/// Parts of a metric with their derivatives: the same number for every design at the same output times.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MetricParts {
     /// In SI.
@@ -374,8 +374,8 @@ fn time_error(y: &SampledCurve<'_, f64>, x: &Option<SampledCurve<'_, f64>>, k: u
     Some(apart(y, k, t)?[0].abs() + late * y.at(k, t)[1].abs())
 }
 
-/// How far the metric may be from that of the curve itself, because that is interpolated between output times. The curve is taken
-/// for what the polynomials through more output times ([`WidePolynomial`]) make of it.
+/// Estimates the interpolation error of the metric between output times. The reference curve is that of polynomials
+/// through more output times ([`WidePolynomial`]).
 fn interpolation_error(
     metric: &Metric,
     y: &SampledCurve<'_, f64>,
@@ -446,7 +446,7 @@ fn interpolation_error(
 /// Parts of an interval at whose ends a curve between output times is looked at.
 const PLACES: u32 = 8;
 
-/// What a metric takes, and when.
+/// Value of a metric's reduction, and its time.
 fn take<T: Real>(
     metric: &Metric,
     y: &SampledCurve<'_, T>,

@@ -1,4 +1,4 @@
-//! What a run is requested.
+//! Requests of runs.
 
 use std::fmt;
 use std::num::NonZero;
@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use super::solution::Solution;
 use super::walk::Scope;
 
-/// What to solve, and what of it to work out.
+/// Request of a run: the design, and the results to compute.
 ///
 /// Without further words it is everything, for the nominal design: the motion at all output times, its sensitivities by all design
 /// variables, and measures. Not every way to run has a use for every word; what it has no use for changes nothing.
@@ -121,7 +121,7 @@ impl fmt::Debug for Run<'_> {
     }
 }
 
-/// How far a run is.
+/// Progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
     /// Output times solved.

@@ -1,4 +1,4 @@
-//! Where results go: into a [`Solution`](crate::Solution), or wherever a caller wants them.
+//! Receivers of results: a [`Solution`](crate::Solution), or any other implementation.
 
 use std::ops::Range;
 

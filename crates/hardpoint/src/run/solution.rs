@@ -1,4 +1,4 @@
-//! What runs find.
+//! Results of runs.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use crate::model::BodyId;
 use crate::motion::{BodyState, Motion, SolverStatistics, Stop};
 use crate::sensitivity::{Admissibility, Sensitivities};
 
-/// What a run found. Everything that was solved is here, also where something stopped it.
+/// Results of a run. If something stopped the run, the results up to there are complete.
 #[derive(Clone, Debug, Default)]
 pub struct Solution {
     /// The motion, up to the last output time that was solved.
@@ -16,7 +16,7 @@ pub struct Solution {
     pub sensitivities: Sensitivities,
     /// Measures and points, with their sensitivities.
     pub measured: MeasureResults,
-    /// Why the run ended before the last output time, if it did.
+    /// Reason why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
     /// The same motion at more times, where metrics ask for these.
     pub(crate) between: Option<Arc<Solution>>,
@@ -29,15 +29,15 @@ impl Solution {
     }
 }
 
-/// What a streamed run says at its end.
+/// Summary at the end of a streamed run.
 #[derive(Clone, Debug)]
 pub struct StreamSummary {
     /// Output times solved.
     pub steps: usize,
     /// Per variable: whether and how the mechanism follows the change.
     pub admissibility: Vec<Admissibility>,
-    /// What it took.
+    /// Statistics of the solver.
     pub effort: SolverStatistics,
-    /// Why the run ended before the last output time, if it did.
+    /// Reason why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
 }

@@ -32,7 +32,7 @@ pub(crate) struct Scope {
 }
 
 impl Scope {
-    /// Of a single design, this much.
+    /// Scope of a single design.
     pub fn of_one(sensitivities: bool, measures: bool) -> Self {
         Self { sensitivities, measures, of_many: 1 }
     }
@@ -43,7 +43,7 @@ pub(crate) struct PreparedDesign {
     pub values: Vec<f64>,
     pub geometry: Geometry,
     pub laws: Vec<Law>,
-    /// How the variables change it, if that is requested, and the joints that each opens in the nominal design.
+    /// Design velocities of the variables, if requested, and the joints that each opens in the nominal design.
     pub fields: Vec<DesignVelocity>,
     pub opens: Vec<Vec<JointDefect>>,
     pub scope: Scope,
@@ -64,7 +64,7 @@ pub(crate) struct Walk<'a> {
     pub done: usize,
 }
 
-/// What has just been solved: one output time, or several by a program, in these of its lanes.
+/// Steps that were just solved: one output time, or several by a program, in these of its lanes.
 pub(crate) enum SolvedSteps<'w, 'a> {
     One(&'w mut Stepper<'a>, Option<&'w LoadSolver<'a>>),
     Abreast(&'w Tape, Range<usize>, Option<&'w LoadSolver<'a>>, Option<&'w TurnCounter<'a>>),
@@ -212,7 +212,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// That many output times from k on, as a program has found them; the lanes that they are in.
+    /// Passes on `count` output times from k on, with the lanes of the program that solved them.
     #[inline(always)]
     fn give_abreast<S: Sink>(&mut self, k: usize, count: usize, sink: &mut S) -> Range<usize> {
         let first = k % LANES;

@@ -20,7 +20,7 @@ use super::sink::Sink;
 use super::solution::Solution;
 use super::walk::{PreparedDesign, SolvedSteps, Walk};
 
-/// What the results of one output time take, in bytes.
+/// Size of the results of one output time, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Footprint {
     /// States of the bodies.
@@ -32,7 +32,7 @@ pub struct Footprint {
 }
 
 impl Footprint {
-    /// That of a model with that many outputs, with or without sensitivities.
+    /// Footprint of a model with this number of outputs, with or without sensitivities.
     pub fn of(model: &Model, sensitivities: bool) -> Self {
         let variables = if sensitivities { model.variables.len() } else { 0 };
         let (bodies, outputs) = (model.bodies.len(), measure::outputs(model).len());
@@ -48,7 +48,7 @@ impl Footprint {
         self.motion + self.sensitivities + self.measured
     }
 
-    /// What a window of about that many bytes really takes: it holds one round of the lanes at least.
+    /// Actual size of a window of about this number of bytes: it holds at least one batch.
     pub fn of_window(self, bytes: usize) -> usize {
         self.bytes() * self.rows(bytes)
     }
@@ -229,7 +229,7 @@ impl Window {
     }
 }
 
-/// What to keep of a run.
+/// Selection of the results of a run that are stored.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sampling {
     /// At most that many output times: of more, every second, then every fourth, and so on.
@@ -256,7 +256,7 @@ impl SampledResults {
         Self { keep, stride: 1, solution: Solution::default() }
     }
 
-    /// Of that many output times, each is kept.
+    /// Interval of stored output times: every `stride`-th one.
     pub fn stride(&self) -> usize {
         self.stride
     }
@@ -276,7 +276,7 @@ impl SampledResults {
         }
     }
 
-    /// What was kept, with the facts of the whole run.
+    /// Stored results, with the facts of the whole run.
     pub fn end(mut self, whole: &Solution) -> Solution {
         self.solution.motion.effort = whole.motion.effort;
         self.solution.motion.solved_by = whole.motion.solved_by.clone();
@@ -323,7 +323,7 @@ impl SampledResults {
     }
 }
 
-/// Of rows of equal length, every second is dropped.
+/// Drops every second of rows of equal length.
 pub(crate) fn thin<X: Copy>(list: &mut Vec<X>, rows: usize) {
     let n = list.len() / rows.max(1);
     for row in (0..rows).step_by(2) {

@@ -1,4 +1,4 @@
-//! What each driver does by itself: how fast every output goes with it while the others stand.
+//! Rates of all outputs by each driver alone, while the others are at rest.
 
 use crate::measure::{Instant, Output, bodies_asked_for, outputs};
 use crate::model::{DriverId, GROUND};
@@ -19,13 +19,13 @@ pub struct DriverRates {
     pub outputs: Vec<Output>,
     /// `values[(k * drivers + d) * outputs + m]`.
     values: Vec<f64>,
-    /// Why the run ended before the last output time, if it did.
+    /// Reason why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
 }
 
 impl DriverRates {
-    /// Of output m at time k by driver d of those requested, in the output's unit per m or rad; `None` of what does not follow from
-    /// positions alone.
+    /// Rate of output m at time k by driver d of those requested, in the output's unit per m or rad; `None` for outputs
+    /// that do not follow from positions alone.
     pub fn value(&self, k: usize, d: usize, m: usize) -> Option<f64> {
         let value = self.values[(k * self.drivers.len() + d) * self.outputs.len() + m];
         Some(value).filter(|_| self.outputs[m].known.by_position)
@@ -33,7 +33,7 @@ impl DriverRates {
 }
 
 impl Analysis<'_> {
-    /// What drivers do by themselves along the motion of the nominal design (`docs/theory.md`, section 7).
+    /// Rates by single drivers along the motion of the nominal design (`docs/theory.md`, section 7).
     pub fn driver_rates(&self, drivers: &[DriverId]) -> DriverRates {
         let model = self.model();
         let design = self.design(&[]);

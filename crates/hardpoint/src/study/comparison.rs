@@ -1,4 +1,4 @@
-//! How far exact sensitivities are from differences of re-solved designs, quantity by quantity.
+//! Comparison of exact sensitivities with differences of re-solved designs, quantity by quantity.
 
 use crate::model::{BodyId, Dimension, Model, OutputSource};
 use crate::run::Solution;
@@ -88,7 +88,7 @@ impl Comparison {
         Self { errors: comparing.errors, bodies: model.bodies.len() - 1, orders }
     }
 
-    /// That of every quantity.
+    /// Errors of all quantities.
     pub fn errors(&self) -> &[StepError] {
         &self.errors
     }

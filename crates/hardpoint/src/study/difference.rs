@@ -6,7 +6,7 @@ use crate::run::{Analysis, Run, Solution};
 use crate::sensitivity::BodySensitivity;
 use crate::space::Vec3;
 
-/// Which two designs a difference quotient is of.
+/// Pair of designs of a difference quotient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DifferenceScheme {
     /// Those at +h and -h: the error falls with the square of h.

@@ -1,4 +1,5 @@
-//! What every search and sweep over designs asks for: the metrics of a design in all motions of the mechanism, with their exact derivatives.
+//! Evaluation of designs for all searches and sweeps: the metrics of a design in all motions of the mechanism, with
+//! their exact derivatives.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -25,12 +26,12 @@ pub struct DesignEvaluation {
     pub metrics: Vec<Vec<MetricValue>>,
 }
 
-/// Why a design has no values: in one of its motions it does not assemble, locks, or reaches a dead point.
+/// Reason why a design has no values: in one of its motions it does not assemble, locks, or reaches a dead point.
 #[derive(Clone, Debug)]
 pub struct EvaluationError {
     /// In which motion, as [`Model::motions`] counts them.
     pub motion: usize,
-    /// What happened there.
+    /// Stop of that motion.
     pub stop: Box<Stop>,
     /// The same in one line.
     pub why: String,
@@ -42,7 +43,7 @@ impl fmt::Display for EvaluationError {
     }
 }
 
-/// What a study has cost.
+/// Cost of a study.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StudyCost {
     /// Designs that were looked at.
@@ -97,7 +98,7 @@ impl<'m> Motions<'m> {
     /// The design with variable k at `design[k]` in all motions; `more` is asked at every output time, and may end it.
     ///
     /// # Errors
-    /// The first motion that does not come to its end.
+    /// If a motion does not reach its end, the first such motion.
     pub fn evaluate(
         &self,
         design: &[f64],

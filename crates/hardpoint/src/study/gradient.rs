@@ -17,15 +17,16 @@ use crate::sensitivity::{Adjoint, Admissibility, DefectWatch, Load, Resistance, 
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
 
-/// What an output costs the adjoint way, in solutions for one variable the direct way: its load takes some evaluations of the
-/// measure besides the three solutions. 1 to 3 in small mechanisms, less in large ones (`docs/performance.md`).
+/// Cost of an output by the adjoint method, in solutions for one variable by direct differentiation: its load takes
+/// some evaluations of the measure besides the three solutions. 1 to 3 in small mechanisms, less in large ones
+/// (`docs/performance.md`).
 const OUTPUT_COST: usize = 3;
 /// Likewise a load: what it makes of the bodies has to be found first, and how it goes with each of them.
 const LOAD_COST: usize = 6;
 /// Likewise a constraint row that was left out and has to be watched: two solutions for the position alone.
 const ROW_COST: usize = 1;
 
-/// How gradients are worked out. All ways give the same numbers, to round-off.
+/// Method of gradients. All methods give the same numbers, to round-off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GradientMethod {
     /// Whichever is expected to be faster: adjoint where there are more variables than redundant rows, three times the outputs and six
@@ -47,11 +48,11 @@ pub struct Gradients {
     pub outputs: Vec<Output>,
     /// Number of design variables there are.
     pub variables: usize,
-    /// How they were worked out: direct or adjoint.
+    /// Method that was used: direct or adjoint.
     pub method: GradientMethod,
     /// Per variable: whether and how the mechanism follows the change.
     pub admissibility: Vec<Admissibility>,
-    /// Why the run ended before the last output time, if it did.
+    /// Reason why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
     /// `d[(k * outputs + m) * variables + b]`.
     d: Vec<[f64; 3]>,
@@ -191,7 +192,7 @@ impl Analysis<'_> {
     }
 }
 
-/// What the adjoint way needs besides a stepper.
+/// Data of the adjoint method besides a stepper.
 struct AdjointSolver<'a> {
     analysis: &'a Analysis<'a>,
     adjoint: Adjoint,
@@ -202,7 +203,7 @@ struct AdjointSolver<'a> {
     /// Bodies that outputs are measured on.
     bodies: Vec<usize>,
     poses: Vec<Pose<Dual<Rates>>>,
-    /// What measures depend on; and the same as it goes with each variable that moves some of it.
+    /// Body-fixed data of measures, with their derivatives by each variable that changes some of them.
     fixed: BodyFixed<Dual<Rates>>,
     moved: Vec<Option<BodyFixed<Dual<Rates>>>>,
     gradient: Vec<[f64; 3]>,
@@ -353,8 +354,8 @@ impl<'a> AdjointSolver<'a> {
         }
     }
 
-    /// How all outputs go with the design twists of bodies: their derivatives by the six unit twists of each, which stand still in the
-    /// world, so that their rates are those of the load; and by variables that move what they are measured with.
+    /// Derivatives of all outputs by the design twists of bodies (by six unit twists of each, constant in the world, so
+    /// that their rates are those of the load) and by variables that change the data of the measures.
     fn differentiate(&mut self, state: &State<f64>) {
         let Self { analysis, asked, poses, fixed, moved, bodies, .. } = self;
         let model = analysis.model();

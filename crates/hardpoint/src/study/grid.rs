@@ -16,28 +16,28 @@ use super::evaluation::StudyCost;
 pub struct GridMap {
     /// The grid.
     pub grid: Grid,
-    /// What was measured.
+    /// Measured outputs.
     pub outputs: Vec<Output>,
-    /// Which of them have numbers where nothing moves.
+    /// Outputs that have values at rest.
     still: Vec<bool>,
     /// Per position, what was found there.
     positions: Vec<Position>,
     /// Number of design variables there are.
     variables: usize,
-    /// What stopped the motions that did not come to their end.
+    /// Stops of the motions that did not reach their end.
     pub stops: Vec<GridStop>,
-    /// What it cost.
+    /// Cost of the study.
     pub cost: StudyCost,
 }
 
-/// Why positions could not be reached.
+/// Reason why positions could not be reached.
 #[derive(Clone, Debug)]
 pub struct GridStop {
     /// The row.
     pub row: usize,
-    /// What ended the motion.
+    /// Stop of the motion.
     pub stop: Stop,
-    /// Where the two drivers stood then.
+    /// Positions of the two drivers at that time.
     pub stood: [f64; 2],
 }
 
@@ -177,7 +177,7 @@ impl GridMap {
         matches!(self.positions[j * self.grid.values[0].len() + i], Position::Solved(_))
     }
 
-    /// What kept the mechanism from a position, by its place in [`stops`](Self::stops).
+    /// Index in [`stops`](Self::stops) of the reason why a position was not reached.
     pub fn why_not(&self, [i, j]: [usize; 2]) -> Option<usize> {
         match self.positions[j * self.grid.values[0].len() + i] {
             Position::NotReached(stop) => Some(stop),
@@ -202,7 +202,7 @@ impl GridMap {
     }
 }
 
-/// Where the first driver is at a time.
+/// Position of the first driver at a time.
 fn sweep(farthest: f64, time: f64) -> f64 {
     farthest * (time - STANDS[1]).max(0.0)
 }
@@ -212,7 +212,7 @@ fn time_of(place: f64, farthest: f64) -> f64 {
     STANDS[1] + if place == 0.0 { 0.0 } else { place / farthest }
 }
 
-/// Where the two drivers stand, counted from the drawing.
+/// Positions of the two drivers, relative to the design configuration.
 fn from_drawing(model: &Model, grid: &Grid) -> [Vec<f64>; 2] {
     [0, 1].map(|k| {
         let as_drawn = model.as_drawn(grid.drivers[k]);

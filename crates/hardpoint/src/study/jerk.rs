@@ -12,7 +12,7 @@ pub struct Jerks {
     pub states: Vec<BodyJerk>,
     /// Number of bodies there are, ground included.
     pub bodies: usize,
-    /// Why the run ended before the last output time, if it did.
+    /// Reason why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
 }
 

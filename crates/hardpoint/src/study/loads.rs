@@ -1,4 +1,4 @@
-//! What joints and drivers carry over a motion.
+//! Loads of joints and drivers over a motion.
 
 use crate::load::LoadSolver;
 use crate::model::{Axes, ElementId, JointId};
@@ -6,29 +6,29 @@ use crate::motion::Stop;
 use crate::run::{Analysis, Walk};
 use crate::space::Vec3;
 
-/// What a joint puts on its second body, global.
+/// Reaction of a joint on its second body, global.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointLoad {
-    /// Where the joint is on that body, m.
+    /// Location of the joint on that body, m.
     pub place: Vec3,
     /// The force, N, with that of drivers on the joint's coordinates.
     pub force: Vec3,
     /// The moment about that place, N m.
     pub moment: Vec3,
-    /// Which components of force and moment are known: where constraints say the same, some of what joints carry depends on how stiff
-    /// they are, and what is here is one of many answers.
+    /// Determined components of force and moment: with redundant constraints some of them depend on stiffness, and the
+    /// values here are one of many solutions.
     pub known: [[bool; 3]; 2],
     /// The same force and moment along the global axes in the design configuration, which have turned with the body.
     pub in_body: [Vec3; 2],
-    /// Which components of these are known.
+    /// Determined components of these.
     pub known_in_body: [[bool; 3]; 2],
-    /// What is known of the force, global, whichever way it points: it is the force less its part along directions that are not known.
+    /// Determined part of the force, global: the force without its components along undetermined directions.
     pub known_force: Vec3,
     /// Along how many directions the force is known; 3: it is known.
     pub known_directions: usize,
 }
 
-/// What a driver gives.
+/// Load of a driver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriverLoad {
     /// Force, N, or moment, N m; positive where it works while what it drives grows.
@@ -48,11 +48,12 @@ pub struct Loads {
     pub drivers: Vec<DriverLoad>,
     /// `pushes[k * n + i]` at time k of [`Model::pushed`](crate::model::Model::pushed)'s place i, of n: the force on its body there, global, N.
     pub pushes: Vec<Vec3>,
-    /// Friction that nobody knows at some time, because redundant constraints share what presses there: then no load is known.
+    /// Friction elements that are not determined at some time, because redundant constraints share their normal force:
+    /// then no load is determined.
     pub shared_friction: Vec<ElementId>,
     /// Friction that has more than one solution at some time: then no load is known either.
     pub ambiguous_friction: Vec<ElementId>,
-    /// Why the run ended before the last output time, if it did.
+    /// Reason why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
 }
 

@@ -1,10 +1,10 @@
-//! How large a motion is: what its sensitivities, and their errors, are compared with.
+//! Magnitude of a motion: the reference for its sensitivities and their errors.
 
 use crate::model::{Dimension, Model};
 use crate::motion::Motion;
 
-/// What counts as no change at all: a natural step of the design
-/// ([`natural_step`](crate::model::Model::natural_step)) would change the quantity by less than this part of the whole motion.
+/// Threshold of a zero change: a natural step of the design ([`natural_step`](crate::model::Model::natural_step)) would
+/// change the quantity by less than this part of the whole motion.
 const NOTHING: f64 = 1e-10;
 
 /// The magnitude of a motion at orders 0, 1 and 2. Of itself a mechanism has that of its size, turns of 1 rad, and no rates.
@@ -12,7 +12,7 @@ const NOTHING: f64 = 1e-10;
 pub struct Magnitude {
     /// Size of the mechanism, m.
     size: f64,
-    /// Of orders 0, 1 and 2: lengths in sizes, angles in rad, per s to the power of the order.
+    /// Magnitudes at orders 0, 1 and 2: lengths in sizes, angles in rad, per s to the power of the order.
     orders: [f64; 3],
     /// Mass, kg, and what pushes it besides, N: weights, given forces, and preloads.
     mass: f64,
@@ -20,7 +20,7 @@ pub struct Magnitude {
 }
 
 impl Magnitude {
-    /// That of a mechanism which is at rest.
+    /// Magnitude of a mechanism at rest.
     pub fn at_rest(model: &Model) -> Self {
         let mass = model.mass();
         let given: f64 = model.elements.iter().map(|e| e.kind.push(model)).sum();
@@ -28,7 +28,7 @@ impl Magnitude {
         Self { size: model.size(), orders: [1.0, 0.0, 0.0], mass, pushed }
     }
 
-    /// That of a motion, where the whole of it is there.
+    /// Magnitude of a motion that is complete.
     pub fn of_motion(model: &Model, motion: &Motion) -> Self {
         let mut magnitude = Self::at_rest(model);
         magnitude.add(motion);
@@ -58,8 +58,8 @@ impl Magnitude {
         self
     }
 
-    /// How large a quantity's time derivative of that order is in the motion, SI. Orders above 2 in all, those of the quantity itself
-    /// included, count as 2.
+    /// Magnitude of a quantity's time derivative of that order in the motion, SI. Total orders above 2, including those
+    /// of the quantity itself, count as 2.
     pub fn of(&self, quantity: Dimension, order: usize) -> f64 {
         let order = (order as i8 - quantity.time).clamp(0, 2) as usize;
         let order = self.orders[order] * self.size.powi(quantity.length.into());

@@ -70,7 +70,7 @@ pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> NearestAdm
     }
 }
 
-/// How easily a variable moves: its entry of W in (35).
+/// Mobility of a variable: its entry of W in (35).
 fn weight(model: &Model, asked: &[f64], v: usize) -> f64 {
     if asked[v] != 0.0 {
         return KEPT;

@@ -65,8 +65,8 @@ fn radial(n: usize, k: f64) -> f64 {
     }
 }
 
-/// What the design of a number is drawn from: a stream of its own for every number, so that no design depends on how many were drawn
-/// before it, nor by whom.
+/// Random stream of the design of a number: each number has its own stream, so that no design depends on the designs
+/// drawn before it, nor on the thread.
 pub fn design_stream(seed: u64, number: u64) -> ChaCha8Rng {
     let mut stream = ChaCha8Rng::seed_from_u64(seed);
     stream.set_stream(number);

@@ -18,7 +18,7 @@ use super::evaluation::Motions;
 /// Designs of one block: enough that what begins a block counts for nothing beside it, few enough that an interruption is soon heard.
 pub const BLOCK: usize = 512;
 
-/// Which designs are solved, and how.
+/// Designs to solve, and options.
 pub struct SampleRun<'w> {
     /// The numbers of the designs. They begin with a multiple of 512, or the first designs are not solved beside those that
     /// they would be beside in a longer run.
@@ -31,12 +31,12 @@ pub struct SampleRun<'w> {
     pub more: &'w (dyn Fn() -> bool + Sync),
 }
 
-/// What is gathered of a block.
+/// Results gathered over a block.
 #[derive(Clone, Debug)]
 pub struct SampleBlock<A> {
     /// The designs.
     pub numbers: Range<usize>,
-    /// What was gathered of them.
+    /// Gathered results.
     pub found: A,
 }
 

@@ -26,12 +26,13 @@ pub struct SecondDerivatives {
     /// Likewise, derivatives along the second direction of each pair.
     firsts: Vec<f64>,
     curvatures: Vec<BodyCurvature>,
-    /// Why the run ended before the last output time, if it did.
+    /// Reason why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
 }
 
 impl SecondDerivatives {
-    /// Of the value of output m at time k, along the directions of pair p; in the output's unit per unit of both.
+    /// Second derivative of the value of output m at time k, along the directions of pair p; in the output's unit per
+    /// unit of both.
     pub fn value(&self, k: usize, p: usize, m: usize) -> f64 {
         self.values[(k * self.pairs.len() + p) * self.outputs.len() + m]
     }
@@ -41,7 +42,7 @@ impl SecondDerivatives {
         self.firsts[(k * self.pairs.len() + p) * self.outputs.len() + m]
     }
 
-    /// Of a body's position.
+    /// Second derivative of a body's position.
     pub fn body(&self, k: usize, p: usize, body: BodyId) -> &BodyCurvature {
         &self.curvatures[(k * self.pairs.len() + p) * self.bodies + body.0]
     }
@@ -59,7 +60,7 @@ impl Analysis<'_> {
     /// [`Sensitivities::admissibility`](crate::sensitivity::Sensitivities::admissibility) first.
     ///
     /// # Panics
-    /// If a pair names a direction that there is not.
+    /// Panics if a pair names a direction that does not exist.
     pub fn second(&self, design: &[f64], directions: &[Vec<f64>], pairs: &[[usize; 2]]) -> SecondDerivatives {
         let design = self.design(design);
         let directions: Vec<Vec<f64>> = directions.iter().map(|d| self.model().whole(d)).collect();
@@ -82,7 +83,7 @@ impl Analysis<'_> {
     }
 }
 
-/// What second derivatives need besides a stepper.
+/// Data of second derivatives besides a stepper.
 struct SecondDerivativeSolver<'a> {
     analysis: &'a Analysis<'a>,
     seconds: Seconds,

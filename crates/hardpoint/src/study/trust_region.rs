@@ -9,12 +9,12 @@ use basin::{
     TrustRegionReflective,
 };
 
-/// So near to stationary, as a part of the gradient at the start, nothing is left to find.
+/// Gradient relative to that at the start below which a point is stationary.
 const STATIONARY: f64 = 1e-13;
 /// Number of points are kept: a line search may go back a few.
 const KEPT: usize = 16;
 
-/// What was found at the points that were looked at last.
+/// Results at the most recent points.
 pub(super) struct Recent<T>(RefCell<Vec<(Vec<f64>, T)>>);
 
 impl<T> Default for Recent<T> {
@@ -24,7 +24,7 @@ impl<T> Default for Recent<T> {
 }
 
 impl<T> Recent<T> {
-    /// What is found at a point, shown: what is known of it, or else found now.
+    /// Calls `show` with the result at a point: a stored one, or else a new one.
     pub fn at<X>(&self, x: &[f64], find: impl FnOnce() -> T, show: impl FnOnce(&T) -> X) -> X {
         let known = self.0.borrow().iter().any(|(at, _)| at == x);
         if !known {
@@ -105,7 +105,7 @@ impl<'p> TrustRegion<'p> {
         run.into_stepper().ok().map(Self)
     }
 
-    /// Does one iteration: where it is then; `None` where it has come to its end.
+    /// Performs one iteration and returns the new point; `None` at the end.
     pub fn step(&mut self) -> Option<Vec<f64>> {
         next(&mut self.0)
     }

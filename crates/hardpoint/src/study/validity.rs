@@ -1,4 +1,4 @@
-//! How far sensitivities can be trusted as predictions: from the second derivatives along each variable.
+//! Linear range of sensitivities: from the second derivatives along each variable.
 
 use crate::model::VariableId;
 use crate::run::{Analysis, Solution};
@@ -17,7 +17,7 @@ const SLIGHT: f64 = 1e-2;
 /// Second derivatives of that many bytes are held at once; between such parts the work can be ended.
 const MOST_BYTES: usize = 8 << 20;
 
-/// How far the sensitivities by one design variable can be trusted.
+/// Linear range of the sensitivities by one design variable.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Validity {
     /// Per output: how far the variable may go, m, rad or plain, before the largest second-order part over the motion is 5 % of the

@@ -21,10 +21,10 @@ pub const PASS: f64 = 1e-6;
 /// (machine epsilon)^(1/2) = 1.5e-8 at best: 400 times more than central ones, and the tolerance is as many times larger.
 pub const PASS_ONE_SIDED: f64 = 4e-4;
 
-/// What to sweep.
+/// Options of a verification.
 #[derive(Clone, Debug)]
 pub struct VerifyOptions {
-    /// Which designs are compared.
+    /// Designs that are compared.
     pub scheme: DifferenceScheme,
     /// Steps as parts of [natural steps](crate::model::Model::natural_step), from coarse to fine.
     pub steps: Vec<f64>,
@@ -55,7 +55,7 @@ impl DifferenceScheme {
 /// The check of all design variables.
 #[derive(Clone, Debug)]
 pub struct Verification {
-    /// Which designs were compared.
+    /// Designs that were compared.
     pub scheme: DifferenceScheme,
     /// One entry per variable, in the model's order.
     pub checks: Vec<VariableCheck>,
@@ -68,7 +68,7 @@ pub struct Verification {
 pub struct VariableCheck {
     /// The variable.
     pub variable: VariableId,
-    /// What came of it.
+    /// Outcome of the check.
     pub outcome: CheckOutcome,
     /// Every quantity at the step where it agrees best. Truncation and round-off are not the same for all of them, so that no one
     /// step suits all.
@@ -77,7 +77,7 @@ pub struct VariableCheck {
     pub sweep: Vec<StepError>,
 }
 
-/// What came of a check.
+/// Outcome of a check.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckOutcome {
     /// Every quantity agrees to [`DifferenceScheme::tolerance`] at some step.

@@ -1,4 +1,4 @@
-//! What if the design were changed so: predicted from the derivatives of today's design, and solved exactly.
+//! Changed designs: predicted from the derivatives of the nominal design, and solved exactly.
 
 use crate::joint::Quantity;
 use crate::model::{Change, DesignVariable, Dimension, End, HardpointId, JointId, Model, VariableId, change};
@@ -18,7 +18,7 @@ pub struct WhatIf {
     pub today: Solution,
     /// The changed design, re-solved.
     pub exact: Solution,
-    /// How the curves bend along the change.
+    /// Second derivatives of the curves along the change.
     bend: SecondDerivatives,
     /// The change as part of a natural one, of the variable that goes farthest.
     part: f64,
@@ -29,7 +29,7 @@ pub struct WhatIf {
     pub cannot_follow: Vec<VariableId>,
 }
 
-/// How well one output was predicted.
+/// Quality of the prediction of one output.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PredictionQuality {
     /// Largest exact change over the motion, and the index of its time.
@@ -109,7 +109,7 @@ impl WhatIf {
         value_beside(&self.today, &self.exact, k, m)
     }
 
-    /// How well output m was predicted over the motion; `None` where nothing was predicted or solved.
+    /// Quality of the prediction of output m over the motion; `None` if nothing was predicted or solved.
     pub fn foresight(&self, m: usize) -> Option<PredictionQuality> {
         if self.is_empty() || !self.cannot_follow.is_empty() {
             return None;

@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use super::Triangles;
 
-/// What a text begins with, and binary files too at times.
+/// First word of a text file, and sometimes of binary files too.
 const SOLID: &[u8] = b"solid";
 /// Bytes before the triangles of a binary file: a remark, and their number.
 const HEADER: usize = 84;

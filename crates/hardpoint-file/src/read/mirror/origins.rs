@@ -1,11 +1,11 @@
-//! What was made from what, for messages: an image has no text of its own.
+//! Originals of mirrored entries, for messages: an image has no text of its own.
 
 use std::collections::{BTreeMap, HashSet};
 
 use crate::diagnostic::Diagnostic;
 use crate::side_names::{exchanged, is_original};
 
-/// Where a mirror's images come from.
+/// Origins of a mirror's images.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Origins {
     /// The names of what was made from something else, and the names of that.
@@ -25,7 +25,7 @@ impl Origins {
     }
 }
 
-/// What is wrong with something that was written once is reported once, in its own name; and of what was made, from what.
+/// Reports each error once, under the name of the entry that was written; errors of images name their original.
 pub(crate) fn told_once(list: Vec<Diagnostic>, origins: &Origins) -> Vec<Diagnostic> {
     if origins.words.is_empty() {
         return list;

@@ -1,4 +1,4 @@
-//! What a mirror makes of each kind of thing.
+//! Images of all kinds of entries under a mirror.
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -30,9 +30,9 @@ pub(super) struct Side<'m, 'a> {
     /// As it is written.
     pub model: &'m DeTable<'a>,
     pub opposite: HashSet<String>,
-    /// What was made, by its section and name, and the name of its original.
+    /// Images by section and name, with the name of their original.
     pub made: HashMap<(&'static str, String), String>,
-    /// What cannot be made: where, why, and what to do.
+    /// Entries that cannot be mirrored: place, reason, and instruction.
     pub refused: Vec<(Range<usize>, String, String)>,
 }
 

@@ -1,4 +1,4 @@
-//! How well readings tell the variables: covariance, and what cannot be distinguished.
+//! Accuracy of the fitted variables: covariance, and changes that cannot be identified.
 
 use super::fit::{FitWorkspace, SearchResult, weighed};
 
@@ -7,14 +7,14 @@ const VAGUE: f64 = 1.0;
 /// A variable with no more than this part in what is not reported is not touched by it.
 const PART: f64 = 1e-6;
 
-/// How well the variables are known. In SI.
+/// Accuracy of the variables, SI.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Certainty {
     /// Standard deviation of each variable that was sought; `None` where the readings do not tell it.
     pub sigmas: Vec<Option<f64>>,
     /// Their covariance, over the directions that are reported.
     pub covariance: Vec<Vec<f64>>,
-    /// What the readings do not tell.
+    /// Changes that the readings do not determine.
     pub untold: Vec<UnidentifiableChange>,
     /// Readings that were compared, less the directions that they tell.
     pub freedom: usize,
@@ -28,7 +28,7 @@ pub struct Certainty {
 /// A change of the design that changes nothing that was read, or next to nothing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnidentifiableChange {
-    /// How far each variable goes; the one that goes farthest depends on a natural step.
+    /// Change of each variable; the largest one is a natural step.
     pub direction: Vec<f64>,
     /// Standard deviation as a multiple of that; `None` where the readings tell nothing of it.
     pub sigma: Option<f64>,
@@ -51,7 +51,7 @@ impl Known {
 }
 
 impl FitWorkspace<'_> {
-    /// What is known of each direction where a search ended.
+    /// Accuracy of each direction at the end of a search.
     pub(super) fn known(&self, search: &SearchResult) -> Known {
         let (found, told) = weighed(&search.at.d, &search.weights, self.variables.len());
         let mut known = Known::default();
@@ -70,7 +70,7 @@ impl FitWorkspace<'_> {
         known
     }
 
-    /// How well the variables are known where a search ended.
+    /// Accuracy of the variables at the end of a search.
     pub(super) fn certainty(&self, search: &SearchResult, known: &Known) -> Certainty {
         let n = self.variables.len();
         let untold_part = |k: usize| known.untold.iter().map(|(v, _)| v[k].abs()).fold(0.0, f64::max);

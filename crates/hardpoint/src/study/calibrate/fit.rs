@@ -26,7 +26,7 @@ const SETTLED: f64 = 1e-12;
 /// Median of the sizes of normal residuals, as a part of their standard deviation.
 const MEDIAN_OF_NORMAL: f64 = 0.6745;
 
-/// What is needed again and again.
+/// Workspace that is used repeatedly.
 pub(super) struct FitWorkspace<'b> {
     pub model: &'b Model,
     pub analyses: &'b [Analysis<'b>],
@@ -45,14 +45,14 @@ pub(super) struct FitWorkspace<'b> {
     pub cost: RefCell<StudyCost>,
 }
 
-/// Where a search has come to.
+/// State of a search.
 pub(super) struct SearchResult {
     pub status: FitStatus,
     /// Natural steps from the drawing.
     pub x: Vec<f64>,
     /// Residuals in the standard deviations given, or in SI, and their derivatives by natural steps.
     pub at: Rows,
-    /// What each counts.
+    /// Weight of each residual.
     pub weights: Vec<f64>,
     /// The standard deviation that was found of residuals; 1 where they were given.
     pub scale: f64,
@@ -88,7 +88,7 @@ impl<'b> FitWorkspace<'b> {
         &self.asked.measured.readings
     }
 
-    /// Which postures are reached, and which variables can be followed in them.
+    /// Determines the reachable postures, and the variables that can be followed in them.
     pub fn look_at_drawing(&mut self) -> Result<(), CalibrationError> {
         for (posture, analysis) in self.analyses.iter().enumerate() {
             let found = stand(analysis, &[], &mut self.cost.borrow_mut());
@@ -157,7 +157,7 @@ impl<'b> FitWorkspace<'b> {
         rows
     }
 
-    /// What a reading's residual is a multiple of: its standard deviation, or one of SI.
+    /// Unit of a reading's residual: its standard deviation, or one SI unit.
     fn unit(&self, reading: &Reading) -> f64 {
         reading.sigma.filter(|_| self.has_sigmas).unwrap_or(1.0)
     }
@@ -332,7 +332,7 @@ impl<'b> FitWorkspace<'b> {
     }
 }
 
-/// What rows tell of directions, each row by what it counts: those that are reported, and how many singular values are above round-off.
+/// Singular values of weighted rows: the directions they determine, and the number of singular values above round-off.
 pub(super) fn weighed(rows: &[Vec<f64>], weights: &[f64], n: usize) -> (Singular, usize) {
     let weighted: Vec<Vec<f64>> =
         rows.iter().zip(weights).map(|(row, w)| row.iter().map(|x| w.sqrt() * x).collect()).collect();

@@ -1,4 +1,4 @@
-//! Which geometry explains what was measured: best fit, how well it is known, what cannot be reported, what to measure next.
+//! Fit of the geometry to measured data: best fit, accuracy, unidentifiable changes, readings to add.
 //!
 //! A reading i of an output y in a posture with standard deviation s_i has the residual `r_i = (y(b) - m_i) / s_i`; the fit makes the sum
 //! of their squares least, or that of a robust loss. With the exact Jacobian `J = dr/db` of what was read,
@@ -31,22 +31,22 @@ pub struct Reading {
     pub posture: usize,
     /// The column of [`outputs`](crate::measure::outputs).
     pub output: usize,
-    /// What was read.
+    /// Measured value.
     pub value: f64,
     /// Standard deviation; none where that is to be found from the residuals, the same for all.
     pub sigma: Option<f64>,
 }
 
-/// What was measured of a mechanism.
+/// Measurements of a mechanism.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measurements {
-    /// Where each driver stood, as its laws count, m or rad.
+    /// Values of the drivers in each posture, as their laws count, m or rad.
     pub postures: Vec<Vec<f64>>,
-    /// What was read there.
+    /// Readings in the postures.
     pub readings: Vec<Reading>,
 }
 
-/// What a residual far from the others counts.
+/// Loss function of residuals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Loss {
     /// Square.
@@ -72,7 +72,7 @@ impl Loss {
     }
 }
 
-/// How a fit ended.
+/// Status of a fit at its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FitStatus {
     /// No small change of the design fits better.
@@ -88,7 +88,7 @@ pub enum FitStatus {
 pub struct UnreachedPosture {
     /// The posture.
     pub posture: usize,
-    /// What happened on the way.
+    /// Description of the event.
     pub why: String,
 }
 
@@ -97,18 +97,18 @@ pub struct UnreachedPosture {
 pub struct FittedReading {
     /// In the design configuration, SI.
     pub before: f64,
-    /// Of the design found.
+    /// Value of the fitted design.
     pub value: f64,
-    /// That less what was read, in standard deviations; those that were found where none were given.
+    /// Fitted minus measured value, in standard deviations; in estimated ones if none are given.
     pub residual: f64,
-    /// What it counted, from 0 to 1.
+    /// Weight in the fit, from 0 to 1.
     pub weight: f64,
 }
 
-/// What a calibration comes to. All in SI.
+/// Result of a calibration, SI.
 #[derive(Clone, Debug)]
 pub struct Calibration {
-    /// How it ended.
+    /// Status at the end.
     pub status: FitStatus,
     /// The variables that were sought.
     pub variables: Vec<VariableId>,
@@ -118,7 +118,7 @@ pub struct Calibration {
     pub design: Vec<f64>,
     /// The columns.
     pub outputs: Vec<Output>,
-    /// Of every reading; `None` where its posture is not reached.
+    /// Fitted values of every reading; `None` if its posture is not reached.
     pub fitted: Vec<Option<FittedReading>>,
     /// Postures whose readings were left out.
     pub not_reached: Vec<UnreachedPosture>,
@@ -127,15 +127,15 @@ pub struct Calibration {
     pub objective: [f64; 2],
     /// Objective after each iteration.
     pub iterations: Vec<f64>,
-    /// How well the variables are known.
+    /// Accuracy of the variables.
     pub certainty: Certainty,
-    /// Which further readings would tell most, the best first.
+    /// Further readings with the most information, the best first.
     pub next: Vec<NextReading>,
-    /// What it cost.
+    /// Cost of the study.
     pub cost: StudyCost,
 }
 
-/// Why nothing can be fitted.
+/// Reason why nothing can be fitted.
 #[derive(Clone, Debug)]
 pub enum CalibrationError {
     /// The mechanism cannot be driven.
@@ -156,11 +156,11 @@ pub enum CalibrationError {
 /// The request.
 #[derive(Clone, Copy, Debug)]
 pub struct CalibrationRequest<'a> {
-    /// What was measured.
+    /// Measurements to fit.
     pub measured: &'a Measurements,
     /// The variables that are sought.
     pub variables: &'a [VariableId],
-    /// What residuals count.
+    /// Loss function of the residuals.
     pub loss: Loss,
     /// In which formulation the mechanism is solved.
     pub formulation: Formulation,
@@ -193,8 +193,8 @@ pub fn calibrate(
     Ok(bench.calibration(search, certainty, next, outputs(model)))
 }
 
-/// What all outputs are where the drivers stand in each of some postures, as [`Measurements::postures`], of a design; or why one is not
-/// reached. In SI.
+/// Values of all outputs of a design in some postures of the drivers, as [`Measurements::postures`]; or the reason why
+/// one is not reached. SI.
 ///
 /// # Errors
 /// A [`TopologyError`] where the mechanism cannot be driven.

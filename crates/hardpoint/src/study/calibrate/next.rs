@@ -1,4 +1,4 @@
-//! Which further reading would tell most.
+//! Further readings with the most information.
 
 use crate::measure::outputs;
 use crate::model::{DriverId, Model, VariableId};
@@ -11,7 +11,7 @@ use super::posture::derivative;
 
 /// Number of readings are proposed.
 const PROPOSED: usize = 5;
-/// Of a motion, about that many postures are looked at.
+/// Maximum number of postures of a motion that are considered.
 const LOOKED_AT: usize = 24;
 /// A reading indicates a direction that the others do not tell if it makes its standard deviation less than a natural step, about the
 /// mechanism's size.
@@ -22,18 +22,18 @@ const TELLS: f64 = 1.0;
 pub struct NextReading {
     /// The column of [`outputs`](crate::measure::outputs).
     pub output: usize,
-    /// Where the drivers stand, as their laws count.
+    /// Values of the drivers, as their laws count.
     pub drivers: Vec<f64>,
     /// The standard deviation that was assumed.
     pub sigma: f64,
-    /// Of what is not reported, the direction that it would tell best.
+    /// Index of the unidentifiable change that it would determine best.
     pub tells: Option<usize>,
     /// The variable whose standard deviation it makes smaller by the largest part, by its place among those sought; none where it indicates
     /// nothing of those that are known.
     pub improves: Option<Improvement>,
 }
 
-/// What a further reading does to a variable.
+/// Effect of a further reading on a variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Improvement {
     /// The variable, by its place among those sought.
@@ -72,7 +72,8 @@ impl FitWorkspace<'_> {
         found.into_iter().take(PROPOSED).map(|(_, next)| next).collect()
     }
 
-    /// How much it is worth, the change of the logarithm of the determinant, and by far more for what is not reported.
+    /// Information of a reading: the change of the logarithm of the determinant, and far more if it determines an
+    /// unidentifiable change.
     fn judged(
         &self,
         Candidate { mut next, g }: Candidate,
@@ -104,7 +105,7 @@ impl FitWorkspace<'_> {
         (worth, next)
     }
 
-    /// What could be read: every output in the postures that were measured, and along the motions of the model.
+    /// Possible readings: every output in the measured postures, and along the motions of the model.
     fn candidates(&self, search: &SearchResult) -> Vec<Candidate> {
         let readings = &self.asked.measured.readings;
         let known = outputs(self.model);

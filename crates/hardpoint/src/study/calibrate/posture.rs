@@ -1,4 +1,5 @@
-//! Where a mechanism was measured: its drivers stand, and every posture is reached from the drawing by itself.
+//! Postures of measurements: the drivers are at rest, and every posture is reached from the design configuration by
+//! itself.
 
 use crate::model::{Case, CaseId, DriverId, LoadMode, Model, VariableId};
 use crate::motion::Stop;
@@ -16,7 +17,7 @@ impl ReachedPosture {
         self.0.motion.len() - 1
     }
 
-    /// What an output is.
+    /// Value of an output.
     pub fn value(&self, output: usize) -> f64 {
         self.0.measured.value(self.last(), output)[0]
     }

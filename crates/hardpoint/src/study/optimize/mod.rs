@@ -36,7 +36,7 @@ const OPTIMAL: f64 = 1e-6;
 const SHARP: f64 = 5e-9;
 /// ... as often as this.
 const AGAIN: usize = 3;
-/// A search that finds no less than before, to this part of the objective, has come to rest.
+/// Relative change of the objective below which a search is at rest.
 const NO_LESS: f64 = 1e-14;
 /// ... and so has one whose step is less than this part of the bounds.
 const RESTING: f64 = 1e-13;
@@ -79,12 +79,12 @@ const HALVINGS: i32 = 8;
 /// Low-discrepancy points have that many coordinates; further variables start where they are drawn.
 const MOST_DIMENSIONS: usize = 256;
 
-/// What an optimisation found.
+/// Result of an optimisation.
 #[derive(Clone, Debug)]
 pub struct OptimizationResult {
     /// The nominal design; `None` where it cannot be judged.
     pub drawn: Option<DesignAssessment>,
-    /// Why not.
+    /// Reason why the nominal design cannot be evaluated.
     pub drawn_refused: Option<FailedDesign>,
     /// The searches, one per start, in order; that of number 0 starts from the nominal design.
     pub searches: Vec<SearchResult>,
@@ -100,7 +100,7 @@ pub struct OptimizationResult {
 pub struct DesignAssessment {
     /// The values of all variables of the model, m, rad or plain.
     pub design: Vec<f64>,
-    /// What is made small: the sum over all goals, in no unit.
+    /// Objective: the weighted sum over all goals, without unit.
     pub objective: f64,
     /// By how much the limit is exceeded that is exceeded most, as a part of its scale; 0 where all are kept.
     pub violation: f64,
@@ -115,13 +115,13 @@ pub struct DesignAssessment {
 /// One search.
 #[derive(Clone, Debug)]
 pub struct SearchResult {
-    /// Where it started: the values of all variables.
+    /// Start values of all variables.
     pub start: Vec<f64>,
-    /// How it ended.
+    /// Status at the end.
     pub status: OptimizationStatus,
-    /// What it found; `None` where it could not start.
+    /// Best design; `None` if the search could not start.
     pub found: Option<DesignAssessment>,
-    /// How near to optimal that is, and what binds.
+    /// Optimality of the best design, with its active constraints.
     pub optimality: Optimality,
     /// Iterations, in order, the start first.
     pub iterations: Vec<Iteration>,
@@ -130,16 +130,16 @@ pub struct SearchResult {
     pub work: Vec<f64>,
     /// Designs that could not be judged.
     pub refused: Vec<FailedDesign>,
-    /// What it cost.
+    /// Cost of the search.
     pub cost: StudyCost,
 }
 
-/// How a search ended.
+/// Status of a search at its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OptimizationStatus {
     /// At an optimum.
     Optimal,
-    /// Where no step gets any further, although the conditions of an optimum are not fulfilled.
+    /// No step makes progress, although the conditions of an optimum are not satisfied.
     Stuck,
     /// At the design that exceeds the limits least, or as near to it as no step got further: they cannot all be kept there.
     LimitsNotKept,
@@ -160,7 +160,7 @@ pub struct Iteration {
     pub objective: f64,
     /// As [`DesignAssessment::violation`].
     pub violation: f64,
-    /// How far the step went, as the largest part of a variable's bounds.
+    /// Length of the step, as the largest fraction of a variable's bounds.
     pub step: f64,
     /// The variable that went farthest, and by how much in its unit.
     pub most: Option<(VariableId, f64)>,
@@ -181,7 +181,7 @@ pub struct FailedDesign {
     pub why: String,
 }
 
-/// What is informed of a search under way.
+/// Progress reports of a search.
 #[derive(Clone, Copy, Debug)]
 pub enum SearchProgress<'s> {
     /// It did an iteration.
@@ -190,7 +190,7 @@ pub enum SearchProgress<'s> {
     End(&'s SearchResult),
 }
 
-/// How an optimisation is done, besides the request.
+/// Options of an optimisation besides those of the model file.
 pub struct OptimizationRequest<'w> {
     /// Receives every iteration and of the end of every search, by its number, and may end them all.
     pub progress: &'w mut (dyn FnMut(usize, SearchProgress<'_>) -> ControlFlow<()> + Send),
@@ -316,7 +316,7 @@ fn judged(problem: &Problem<'_>, point: &Point, scales: &[f64]) -> DesignAssessm
     }
 }
 
-/// What the numbers of every limit are compared with: how far the whole bounds of the strongest variable would take them, at first.
+/// Scale of every limit: the initial change by the most influential variable over its whole bounds.
 fn limit_scales(problem: &Problem<'_>, point: &Point) -> Vec<f64> {
     let mut scales = vec![0.0_f64; problem.limits.len()];
     for row in &point.limits {
@@ -377,10 +377,10 @@ fn search(
 struct Descent<'p> {
     problem: &'p Problem<'p>,
     memory: &'p Memory<'p>,
-    /// Of limits, and of the gradient at the start.
+    /// Scales of the limits, and of the gradient at the start.
     scales: Vec<f64>,
     steepest: f64,
-    /// Where it is, as parts of the bounds.
+    /// Current point, as fractions of the bounds.
     at: Vec<f64>,
     here: Point,
     best: Point,

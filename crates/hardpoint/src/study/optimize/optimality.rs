@@ -1,24 +1,24 @@
-//! How near a design is to satisfying the first-order conditions of an optimum, and what the bounds and limits that bind it are worth.
+//! First-order optimality of a design, and the multipliers of its active bounds and limits.
 //!
 //! ```text
 //! grad f + sum of lambda_i grad c_i = 0,    lambda_i >= 0,    lambda_i c_i = 0                   (Karush, Kuhn and Tucker)
 //! ```
 //!
-//! with goals that count by their greatest value among the `c`: of all that reach it, the weights sum to one. The multipliers are found by
-//! least squares over what binds, whatever the solver that led there.
+//! with goals that count by their largest value among the `c`: over all that attain it, the weights sum to one. The
+//! multipliers are found by least squares over the active constraints, independent of the solver.
 
 use crate::linalg::least_squares;
 
 use super::problem::{Point, Problem, Rows};
 
-/// What is nearer than this to its end, as a part of its scale, binds.
+/// Distance from its end, as a fraction of its scale, below which a constraint is active.
 const BINDS: f64 = 1e-7;
 /// Misfits below this part of what the bounds of the strongest variable change them by are round-off: motions are solved to some 1e-14.
 const MET: f64 = 1e-12;
 /// The scale of goals that are no squares is at least this part of the gradient at the start: their value alone may pass through zero.
 const LEAST_SCALE: f64 = 1e-6;
 
-/// What keeps a design from getting better.
+/// A constraint that prevents a better design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ActiveConstraint {
     /// The lower bound of a searched variable, by its place in [`OptimizationSettings::variables`](crate::model::OptimizationSettings::variables).
@@ -31,7 +31,7 @@ pub enum ActiveConstraint {
     Most(usize, Option<usize>),
 }
 
-/// How near to optimal a design is.
+/// Optimality of a design.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Optimality {
     /// The part of the gradient that no active constraint balances, relative to the scale of the goals: 0 at an optimum.
@@ -43,7 +43,8 @@ pub struct Optimality {
     pub left_of_start: f64,
     /// True if all goals are squares that vanish to round-off: nothing is left to gain.
     pub met: bool,
-    /// What binds, and by how much the objective would get less if it gave way by one SI unit (its Lagrange multiplier).
+    /// Active constraints, each with the decrease of the objective if it were relaxed by one SI unit (its Lagrange
+    /// multiplier).
     pub binding: Vec<(ActiveConstraint, f64)>,
 }
 
@@ -53,7 +54,7 @@ struct Row {
     /// The group of peaks that it belongs to.
     peak: Option<usize>,
     equal: bool,
-    /// What it is, and how much one SI unit of it is in the unit of its gradient.
+    /// Active constraint, and the size of one of its SI units in the unit of its gradient.
     binding: Option<(ActiveConstraint, f64)>,
 }
 

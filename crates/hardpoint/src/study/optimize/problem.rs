@@ -1,4 +1,4 @@
-//! What a search asks of a design: goals and limits as numbers, with their exact derivatives.
+//! Optimisation problem of a search: goals and limits as numbers, with their exact derivatives.
 
 use crate::model::{Limit, LimitTarget, Model, OptimizationSettings, Reduction, VariableId};
 use crate::motion::Margin;
@@ -15,7 +15,7 @@ pub(super) struct Problem<'m> {
     pub asked: &'m OptimizationSettings,
     /// Per searched variable, its bounds, in its unit.
     pub bounds: Vec<[f64; 2]>,
-    /// What every goal is taken of: the goal, the motion, the metric's place there.
+    /// Goals in each motion: the goal, the motion, and the index of the metric there.
     pub goals: Vec<Taken>,
     /// The same of every limit, with no metric where it is on the design itself.
     pub limits: Vec<(usize, Option<Taken>)>,
@@ -24,7 +24,7 @@ pub(super) struct Problem<'m> {
 /// A metric in one motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Taken {
-    /// Which goal or limit it is taken for.
+    /// Index of the goal or limit.
     pub of: usize,
     pub motion: usize,
     /// Place in the metrics of that motion.
@@ -54,15 +54,15 @@ impl Rows {
 pub(super) struct Point {
     /// The values of all variables of the model.
     pub design: Vec<f64>,
-    /// Of goals that count by their squares: what is left, by weight.
+    /// Weighted residuals of goals that count by their squares.
     pub misfits: Rows,
-    /// Of goals that count as they are, and depend smoothly on the design: by weight.
+    /// Weighted values of goals that count by themselves and depend smoothly on the design.
     pub plain: Rows,
-    /// Of goals that count by their greatest value: all that may be it, by weight.
+    /// Weighted candidates for the largest value, for goals that count by it.
     pub peaks: Vec<Rows>,
     /// Per row of a limit: which limit it belongs to, and by how much it is exceeded, in its unit.
     pub limits: Vec<LimitRow>,
-    /// Of limits on how far a curve may range: all that may be its ends.
+    /// Candidates for the ends of curves with a limited range.
     pub spreads: Vec<Spread>,
     /// Per goal taken, its value; per limit taken, likewise.
     pub goal_values: Vec<f64>,
@@ -86,7 +86,7 @@ pub(super) struct LimitRow {
     pub spread: bool,
 }
 
-/// How far a curve ranges, and how far it may: by its greatest value less its least one.
+/// Range of a curve and its limit: largest value minus smallest value.
 #[derive(Clone, Debug)]
 pub(super) struct Spread {
     /// Place in [`Problem::limits`].
@@ -107,7 +107,7 @@ pub(super) struct Refusal {
 }
 
 impl Point {
-    /// What is made small.
+    /// Value of the objective.
     pub fn objective(&self) -> f64 {
         let squares: f64 = self.misfits.values.iter().map(|r| r * r).sum();
         let plain: f64 = self.plain.values.iter().sum();
@@ -183,13 +183,13 @@ impl<'m> Problem<'m> {
         design
     }
 
-    /// How far along their bounds the searched variables are.
+    /// Searched variables as fractions of their bounds.
     pub fn parts(&self, design: &[f64]) -> Vec<f64> {
         let part = |(v, [low, high]): (&VariableId, &[f64; 2])| (design[v.0] - low) / (high - low);
         self.asked.variables.iter().zip(&self.bounds).map(part).collect()
     }
 
-    /// How a limit on the design itself goes.
+    /// Value and gradient of a limit on the design itself.
     fn of_design(&self, limit: &Limit, design: &[f64]) -> (f64, Vec<f64>) {
         let map = self.motions.analyses()[0].design_map();
         let derivative = |v: VariableId| {
@@ -374,7 +374,7 @@ impl<'m> Problem<'m> {
         self.asked.variables.iter().map(|v| d[v.0]).collect()
     }
 
-    /// That no number is none.
+    /// Rejects points with a number that is not finite.
     fn finite(&self, motion: usize, metric: &str, point: &Point) -> Result<(), Refusal> {
         let Point { misfits, plain, peaks, .. } = point;
         let mut all = [misfits, plain].into_iter().chain(peaks);

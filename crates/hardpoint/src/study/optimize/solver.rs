@@ -24,7 +24,7 @@ pub(super) const FLAT: f64 = 1e-4;
 /// A first step without any known curvature goes so far along the bounds.
 const FIRST_STEP: f64 = 0.1;
 
-/// What is found at a design.
+/// Result at a design.
 type Found = Result<Point, Refusal>;
 
 /// Designs that a search looked at: the last of them with their values, and all that were refused.
@@ -47,7 +47,7 @@ impl<'p> Memory<'p> {
         }
     }
 
-    /// What is found at a design, given as parts of the bounds.
+    /// Result at a design, given as fractions of the bounds.
     pub fn at<X>(&self, parts: &[f64], of: impl FnOnce(&Found) -> X) -> X {
         let find = || {
             let design = self.problem.design(parts);
@@ -66,7 +66,7 @@ impl<'p> Memory<'p> {
         !(self.more)()
     }
 
-    /// How far every searched variable may go.
+    /// Width of the bounds of every searched variable.
     fn spans(&self) -> Vec<f64> {
         self.problem.bounds.iter().map(|[low, high]| high - low).collect()
     }
@@ -74,7 +74,7 @@ impl<'p> Memory<'p> {
 
 /// A solver under way.
 pub(super) trait Solver {
-    /// Does one iteration: where it is then, as parts of the bounds; `None` where it has come to its end.
+    /// Performs one iteration and returns the new point, as fractions of the bounds; `None` at the end.
     fn step(&mut self) -> Option<Vec<f64>>;
 }
 
@@ -134,7 +134,7 @@ pub(super) struct Programming<'p> {
     x0: Vec<f64>,
     /// Columns of T.
     t: Vec<Vec<f64>>,
-    /// What the objective, and every limit, is multiplied by.
+    /// Factor of the objective, and of every limit.
     scale: f64,
     limit_scales: Vec<f64>,
     /// Number of groups of peaks and limited ranges there are, and how many rows of each kind: the same for every design.

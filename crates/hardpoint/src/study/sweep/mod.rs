@@ -31,7 +31,7 @@ pub struct SweptMetric {
     place: usize,
 }
 
-/// What is found of some designs that follow each other. All in SI.
+/// Results of consecutive designs. SI.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SweptBlock {
     /// Their numbers.
@@ -40,9 +40,9 @@ pub struct SweptBlock {
     pub metrics: Vec<Vec<f64>>,
     /// Per motion, its curves; empty where none are requested.
     pub curves: Vec<SweptCurves>,
-    /// What happened to designs that do not move to the end, motion by motion.
+    /// Designs that do not move to the end, motion by motion.
     pub failures: Vec<SweptFailure>,
-    /// What it cost.
+    /// Cost of the designs.
     pub cost: StudyCost,
 }
 
@@ -62,9 +62,9 @@ pub struct SweptFailure {
     pub number: usize,
     /// In which motion, by its place among those studied.
     pub motion: usize,
-    /// Which kind of failure: its code in `docs/diagnostics.md`.
+    /// Kind of failure: its code in `docs/diagnostics.md`.
     pub code: String,
-    /// What happened.
+    /// Description of the failure.
     pub why: String,
 }
 

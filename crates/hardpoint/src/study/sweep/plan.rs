@@ -13,7 +13,7 @@ pub struct SweepPlan<'a> {
     sobol: Option<Sobol>,
 }
 
-/// Why designs cannot be chosen so.
+/// Reason why designs cannot be chosen so.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SweepPlanError {
     /// No variable changes.
@@ -96,7 +96,7 @@ impl<'a> SweepPlan<'a> {
         design
     }
 
-    /// Where in its range a variable of a design lies, from 0 to 1.
+    /// Position of a design's variable in its range, from 0 to 1.
     fn part(&self, number: usize, d: usize) -> f64 {
         let (seed, variables) = (self.asked.seed, self.asked.ranges.len());
         match (self.asked.method, &self.sobol) {
@@ -116,7 +116,8 @@ impl<'a> SweepPlan<'a> {
     }
 }
 
-/// Where a permutation of that many numbers takes one of them: a Feistel network over the next power of 4, walked until it comes back below.
+/// Image of a number under a permutation of `count` numbers: a Feistel network over the next power of 4, repeated until
+/// the result is below `count`.
 fn permuted(number: usize, count: usize, key: u64) -> usize {
     const ROUNDS: u64 = 6;
     let mut half = 1;

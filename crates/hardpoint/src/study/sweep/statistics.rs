@@ -1,6 +1,6 @@
-//! What a metric comes to over many designs.
+//! Statistics of a metric over many designs.
 
-/// How a metric is distributed over the designs that have it.
+/// Distribution of a metric over the designs that have it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Distribution {
     /// Number of have it.
@@ -21,7 +21,7 @@ impl Distribution {
     /// The parts of the quantiles.
     pub const PARTS: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
-    /// Of the values of a metric in all designs, NaN where it has none; `None` where no design has it.
+    /// Distribution of the values of a metric in all designs, NaN for designs without; `None` if no design has it.
     pub fn of(values: &[f64]) -> Option<Self> {
         let known = || values.iter().copied().enumerate().filter(|(_, x)| x.is_finite());
         let mut sorted: Vec<f64> = known().map(|(_, x)| x).collect();

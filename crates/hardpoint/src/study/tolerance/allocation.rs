@@ -22,7 +22,7 @@ const HARDER: f64 = 10.0;
 const SHARP: f64 = 1e-8;
 /// Newton's method ends where the cost would fall by less than this part, and after that many steps at the latest.
 const STILL: f64 = 1e-18;
-/// So near to the end a whole step is right, and the barrier's own value is round-off.
+/// Relative distance from the end below which a whole step is right, and the barrier's own value is round-off.
 const NEAR: f64 = 1e-4;
 const STEPS: usize = 100;
 /// A step that leaves what is allowed, or gains nothing, is halved that many times.
@@ -31,7 +31,7 @@ const HALVINGS: usize = 60;
 /// The loosest tolerances.
 #[derive(Clone, Debug)]
 pub struct Allocation {
-    /// What had to stay within the limits.
+    /// Rule that kept the limits.
     pub rule: AllocationRule,
     /// Per tolerance that has a cost.
     pub tolerances: Vec<AllocatedTolerance>,
@@ -40,9 +40,9 @@ pub struct Allocation {
     pub worth: Vec<f64>,
     /// The sum of `cost / reach` before and after.
     pub cost: [f64; 2],
-    /// What is left of the gradient of the costs that the limits do not take up, as a part of it.
+    /// Remaining gradient of the costs that the limits do not balance, relative to the whole gradient.
     pub residual: f64,
-    /// Why there is none: a limit that no tolerances keep.
+    /// Reason why there is none: a limit that no tolerances keep.
     pub impossible: Option<AllocationError>,
     /// Designs drawn from these tolerances.
     pub sampled: Option<MonteCarlo>,
@@ -51,7 +51,7 @@ pub struct Allocation {
 /// A tolerance that was sought.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AllocatedTolerance {
-    /// Which of the tolerances.
+    /// Index of the tolerance.
     pub tolerance: usize,
     /// Reach before.
     pub before: f64,
@@ -59,7 +59,7 @@ pub struct AllocatedTolerance {
     pub after: Option<f64>,
 }
 
-/// Why there are no tolerances that keep the limits.
+/// Reason why no tolerances keep the limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AllocationError {
     /// Nothing has a cost.
@@ -72,7 +72,7 @@ pub enum AllocationError {
     Fixed(usize),
 }
 
-/// What one limit asks for.
+/// Room of one limit for deviations.
 struct Room {
     limit: usize,
     /// Room, in SI.
@@ -146,7 +146,7 @@ impl Allocation {
     }
 }
 
-/// What every limit asks for: of one with two ends, the nearer one.
+/// Room of every limit: for a limit with two ends, the nearer one.
 fn rooms(study: &Study<'_>, rule: AllocationRule, found: &ToleranceResult) -> Vec<Room> {
     let deviations = study.deviations;
     let room = |(k, limit): (usize, &super::LimitYield)| {
@@ -192,7 +192,7 @@ impl Problem<'_> {
         t
     }
 
-    /// What is left of a room, as a part of it (by squares: of its square).
+    /// Unused part of a room, relative to it (by squares: of its square).
     fn slack(&self, room: &Room, t: &[f64]) -> f64 {
         match self.rule {
             AllocationRule::Rss { .. } => {
@@ -203,7 +203,7 @@ impl Problem<'_> {
         }
     }
 
-    /// How fast it gets less with each free tolerance.
+    /// Derivatives of the unused part by the free tolerances.
     fn use_of(&self, room: &Room, t: &[f64]) -> Vec<f64> {
         let one = |b: &usize| match self.rule {
             AllocationRule::Rss { .. } => 2.0 * dot(&room.q[*b], t) / (room.room * room.room),
@@ -220,7 +220,7 @@ impl Problem<'_> {
         }
     }
 
-    /// How fast the part of a room that is used gets less as the room grows, where all of it is used.
+    /// Derivative of the used part by the size of the room, if all of it is used.
     fn by_room(&self, room: &Room) -> f64 {
         match self.rule {
             AllocationRule::Rss { .. } => 2.0 / room.room,

@@ -10,7 +10,7 @@ const MOST_BYTES: usize = 256 << 20;
 /// And that many while they are worked out.
 const PART_BYTES: usize = 16 << 20;
 
-/// What tolerances make of a measure along one motion.
+/// Effect of tolerances on a measure along one motion.
 #[derive(Clone, Debug)]
 pub struct CurveBands {
     /// Place in [`Model::measures`](crate::model::Model::measures).
@@ -125,7 +125,7 @@ impl Study<'_> {
     }
 }
 
-/// How far the value goes at worst, to first order: of every tolerance its reach times the gradient's size.
+/// First-order worst case of the value: the sum over the tolerances of reach times gradient.
 fn reach(of: &Deviations, g: &[f64]) -> f64 {
     of.blocks.iter().map(|b| b.reach * g[b.range()].iter().map(|x| x * x).sum::<f64>().sqrt()).sum()
 }

@@ -19,7 +19,7 @@ pub(super) struct Deviations {
 /// Coordinates that are off together.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
-    /// Which of the tolerances.
+    /// Index of the tolerance.
     pub tolerance: usize,
     /// The first of its variables, and how many there are.
     pub first: usize,

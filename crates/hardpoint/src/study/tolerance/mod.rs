@@ -1,4 +1,4 @@
-//! How far off a design may be made: what tolerances of the design variables come to in every metric and along whole curves.
+//! Tolerance study: effects of the tolerances of design variables on every metric and along whole curves.
 //!
 //! From exact derivatives, without sampling: worst case, root of the sum of squares, mean and variance to second order, what each variable
 //! contributes, yield (`docs/theory.md`, section on tolerances). Beside it the same from designs that are drawn and solved exactly, so that
@@ -29,14 +29,14 @@ use deviations::Deviations;
 pub use monte_carlo::{FailureGroup, MonteCarlo, SampledCurve, SampledMetric, Yield};
 pub use worst::Extreme;
 
-/// Where the second-order part of a deviation, or the shift of its mean, is more than this part of the first-order standard deviation, the
-/// linear answer is reported to be off.
+/// Threshold for a warning about nonlinearity: the second-order part of a deviation, or the shift of its mean, relative
+/// to the first-order standard deviation.
 pub const NONLINEAR: f64 = 0.1;
 /// Gradients are differenced over this part of a natural step to either side: the error of the difference, in h^2, and round-off, in 1/h,
 /// are then some 1e-8 of the second derivative.
 const STEP: f64 = 1e-4;
 
-/// What tolerances come to.
+/// Result of a tolerance study.
 #[derive(Clone, Debug)]
 pub struct ToleranceResult {
     /// The variables that may be off, in the order of the tolerances.
@@ -57,7 +57,7 @@ pub struct ToleranceResult {
     pub sampled: Option<MonteCarlo>,
     /// The loosest tolerances, if they were requested.
     pub allocation: Option<Allocation>,
-    /// What it cost.
+    /// Cost of the study.
     pub cost: StudyCost,
     /// True if it was ended before all was done.
     pub interrupted: bool,
@@ -76,7 +76,7 @@ pub struct TolerancedVariable {
     pub kurtosis: f64,
 }
 
-/// What tolerances make of a metric in one motion, from derivatives. All in SI.
+/// Effect of tolerances on a metric in one motion, from derivatives. SI.
 #[derive(Clone, Debug)]
 pub struct MetricSpread {
     /// Place in [`Model::metrics`].
@@ -96,10 +96,10 @@ pub struct MetricSpread {
     pub second_shares: Option<Vec<f64>>,
     /// The least and the greatest value that the tolerances allow.
     pub worst: [Extreme; 2],
-    /// To second order; `None` where a moved design beside the drawn one does not come to its end, so that the gradient has no
-    /// difference there.
+    /// Second-order moments; `None` if a moved design near the nominal one does not reach the end, so that the gradient
+    /// has no difference there.
     pub second: Option<SecondOrder>,
-    /// What counts as no change of it at all.
+    /// Threshold of a zero change.
     pub round_off: f64,
 }
 
@@ -146,16 +146,16 @@ pub fn toleranced_designs(
     move |number| deviations.design(variables, &deviations.drawn(seed, number))
 }
 
-/// Why nothing can be said.
+/// Reason why there is no result.
 #[derive(Clone, Debug)]
 pub enum ToleranceError {
-    /// The nominal design does not come to its end in some motion, or it was ended there.
+    /// The nominal design does not reach the end of some motion, or it was interrupted there.
     Drawn(EvaluationError),
     /// The mechanism can follow none of the variables with a tolerance.
     NothingVaries,
 }
 
-/// What is informed of a study under way.
+/// Progress reports of a study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ToleranceStage {
     /// Number of gradients of that many are differenced.
@@ -175,7 +175,8 @@ impl MetricSpread {
         self.second.map_or(self.sigma, |s| s.sigma)
     }
 
-    /// How far from linear the metric is within the tolerances: the second-order part as a part of the first-order standard deviation.
+    /// Nonlinearity of the metric within the tolerances: the second-order part relative to the first-order standard
+    /// deviation.
     pub fn nonlinearity(&self) -> Option<f64> {
         let s = self.second?;
         let part = s.bend.max(s.shift.abs());
@@ -302,7 +303,7 @@ fn deviations(
 }
 
 impl Study<'_> {
-    /// What is taken of which motion, and what has no value there.
+    /// Metrics of each motion, and those without a value.
     fn taken(&self) -> (Vec<Taken>, Vec<(usize, usize)>) {
         let mut asked = self.asked.metrics.clone();
         let of_limit = |limit: &crate::model::Limit| match limit.of {

@@ -16,16 +16,16 @@ use crate::study::whatif::value_beside;
 use super::deviations::Deviations;
 use super::{CurveBands, MetricSpread, Study, ToleranceResult, ToleranceStage};
 
-/// What was found of designs that were drawn. All in SI.
+/// Results of the Monte Carlo designs. SI.
 #[derive(Clone, Debug, Default)]
 pub struct MonteCarlo {
-    /// That many were solved.
+    /// Number of solved designs.
     pub samples: usize,
-    /// Of the metrics, in the order of [`ToleranceResult::metrics`].
+    /// Results of the metrics, in the order of [`ToleranceResult::metrics`].
     pub metrics: Vec<SampledMetric>,
-    /// Of the curves, in the order of [`ToleranceResult::curves`].
+    /// Results of the curves, in the order of [`ToleranceResult::curves`].
     pub curves: Vec<SampledCurve>,
-    /// Of the limits, in the order of [`ToleranceResult::limits`].
+    /// Yields of the limits, in the order of [`ToleranceResult::limits`].
     pub limits: Vec<Yield>,
     /// Those that keep all limits.
     pub all: Option<Yield>,
@@ -33,14 +33,14 @@ pub struct MonteCarlo {
     pub failures: Vec<FailureGroup>,
     /// Number of designs these are.
     pub failed: usize,
-    /// What it cost.
+    /// Cost of the designs.
     pub cost: StudyCost,
 }
 
 /// A metric of all designs drawn that have it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SampledMetric {
-    /// Of each design, NaN where it has none.
+    /// Values of each design, NaN if it has none.
     pub values: Vec<f64>,
     /// Designs that have it.
     pub known: usize,
@@ -72,9 +72,9 @@ pub struct SampledCurve {
 /// The part of designs that keep something.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Yield {
-    /// That many keep it.
+    /// Number of designs that keep it.
     pub kept: usize,
-    /// Of that many.
+    /// Number of designs in all.
     pub of: usize,
 }
 
@@ -83,7 +83,7 @@ pub struct Yield {
 pub struct FailureGroup {
     /// In which motion, by its place among those studied.
     pub motion: usize,
-    /// What happened to the first of them.
+    /// Description of the first failure.
     pub why: String,
     /// Number.
     pub first: usize,
@@ -137,7 +137,7 @@ impl Growing {
     }
 }
 
-/// What is gathered of a block of designs.
+/// Results of a block of designs.
 #[derive(Default)]
 struct Block {
     /// Per metric, its value in each design.

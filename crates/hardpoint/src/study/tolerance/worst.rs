@@ -7,7 +7,7 @@ use super::dot;
 const ROUNDS: usize = 50;
 /// Within a sphere the direction is improved that many times in each round.
 const TURNS: usize = 10;
-/// Where what is gained is less than this part, it is round-off.
+/// Relative gain below which the difference is round-off.
 const NO_MORE: f64 = 1e-12;
 
 /// The least or the greatest value that tolerances allow. All in SI.
@@ -17,11 +17,11 @@ pub struct Extreme {
     pub first: f64,
     /// To second order, where that is known: an extreme of the quadratic found by ascent from the first order's and its neighbours.
     pub second: Option<f64>,
-    /// Where that is, per variable that may be off: that to second order, else that to first.
+    /// Deviations at the worst case, per toleranced variable: to second order if known, otherwise to first order.
     pub deviations: Vec<f64>,
     /// The metric of the design there, solved exactly.
     pub exact: Option<f64>,
-    /// Why there is none, where that design does not move to the end.
+    /// Reason why there is none, if that design does not move to the end.
     pub why: Option<String>,
 }
 
