@@ -1,5 +1,5 @@
-//! What a generated mechanism costs, stage by stage: `grow chain|truss|scissors|far_scissors SIZE STEPS`; with `text` in place of the
-//! steps, its model file.
+//! Cost of a generated mechanism, stage by stage: `grow chain|truss|scissors|far_scissors SIZE STEPS`; with `text` in
+//! place of the steps, its model file.
 //!
 //! Scissors are driven where they stand on the ground, far ones at the other end.
 

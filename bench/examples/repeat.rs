@@ -27,7 +27,7 @@ fn main() {
                 solution = analysis.solve(bodies().reusing(solution));
                 solution.motion.len()
             }
-            // What one call from Python comes to: nothing is used again.
+            // Cost of one call from Python: nothing is reused.
             "values" => analysis.solve(Run::new().without_sensitivities()).motion.len(),
             "all" => analysis.run().motion.len(),
             "sweep" => {

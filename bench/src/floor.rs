@@ -8,8 +8,8 @@ use std::process::Command;
 
 use crate::designs::{DESIGNS, designs};
 
-/// What the floor reads, in SI units: steps, times and drivers; then hardpoints and frames of W1 (in the plane) and of W2,
-/// as in `peers/workloads.py`.
+/// Inputs of the floor, in SI units: steps, times and drivers; then hardpoints and frames of W1 (in the plane) and of
+/// W2, as in `peers/workloads.py`.
 const DATA: &str = "2001 2.0 1001 10.0 0.06 0.5 0.03 0.2 1000 101 10.0
 0.0 0.0 0.15 0.2 0.75 0.0
 0.075 0.1 0.45 0.1 0.75 0.0

@@ -26,7 +26,7 @@ const COORDINATES: usize = 24;
 /// Numbers of a body's state in the files of the floor: r(3) A(9, row by row) v(3) omega(3) a(3) alpha(3).
 const STATE: usize = 24;
 
-/// What is run.
+/// Work to measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Workload {
     /// A slider-crank, 2001 steps; with its 6 sensitivities or without.
@@ -88,7 +88,7 @@ impl FromStr for Workload {
     }
 }
 
-/// What a workload took, and how far its results are from the reference.
+/// Cost of a workload, and the difference of its results from the reference.
 #[derive(Clone, Copy, Debug)]
 pub struct Figures {
     /// Median CPU time of this thread per output time, us.

@@ -26,7 +26,7 @@ pub(crate) fn threads(asked: Option<usize>) -> NonZero<usize> {
     asked.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZero::<usize>::MIN)
 }
 
-/// What is kept of many designs.
+/// Stored results of many designs.
 struct Kept {
     outputs: Vec<usize>,
     order: usize,
@@ -230,7 +230,7 @@ impl Model {
     }
 }
 
-/// What is wanted of one design.
+/// Results that are requested of one design.
 fn keep(
     kept: &mut Kept,
     file: &hardpoint_file::ModelFile,

@@ -1,4 +1,4 @@
-//! Why there is no answer, as exceptions of the package.
+//! Reasons why there is no answer, as exceptions of the package.
 
 use hardpoint_file::{Diagnostic, Diagnostics, ModelFile};
 use pyo3::prelude::*;
@@ -17,19 +17,19 @@ pub(crate) enum Kind {
     Study,
 }
 
-/// Why there is no answer.
+/// Reason why there is no answer.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// What was found, each diagnostic as JSON.
+    /// Diagnostics, each as JSON.
     Found(Kind, Vec<Value>),
-    /// What was asked makes no sense.
+    /// Invalid request.
     Misunderstood(String),
     /// An exception of a callback, or an interruption.
     Raised(PyErr),
 }
 
 impl Failure {
-    /// What a reader of files found.
+    /// Diagnostics of a reader of files.
     pub fn of_text(found: &Diagnostics) -> Self {
         let rendered = found.render(false);
         let mut list: Vec<Value> = found.list().iter().map(|d| diagnostic(d, "", String::new())).collect();
@@ -40,7 +40,7 @@ impl Failure {
         Self::Found(Kind::Model, list)
     }
 
-    /// What was found in a model.
+    /// Diagnostic of a model.
     pub fn of_model(kind: Kind, file: &ModelFile, found: &Diagnostic) -> Self {
         Self::Found(kind, vec![told(file, found)])
     }

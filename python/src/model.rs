@@ -132,7 +132,7 @@ impl Model {
         Self::new(whole)
     }
 
-    /// What there is in the model, as JSON.
+    /// Contents of the model, as JSON.
     fn info(&self) -> String {
         let (file, model, units) = (&self.whole, &self.whole.model, self.whole.units);
         let body = |b: hardpoint::model::BodyId| model.bodies[b.0].name.as_str();

@@ -107,7 +107,7 @@ impl Run {
             .collect()
     }
 
-    /// Why the motion ended before its last output time, as the JSON of a diagnostic.
+    /// Reason why the motion ended before its last output time, as the JSON of a diagnostic.
     #[getter]
     fn stop(&self) -> Option<String> {
         let (file, solution) = (self.file(), &self.solution);
@@ -247,7 +247,7 @@ impl Run {
         Ok(json(&summary))
     }
 
-    /// What there is to tell of the motion, as the JSON of diagnostics.
+    /// Diagnostics of the motion, as JSON.
     fn diagnostics(&self) -> PyResult<String> {
         let (file, model) = (self.file(), self.model.get());
         let course = self.course();

@@ -18,7 +18,7 @@ use hardpoint_report::diagnose;
 use hardpoint_report::maps::MapFact;
 use hardpoint_report::optimize::{OptimizeFacts, rounded};
 use hardpoint_report::page::Table;
-use hardpoint_report::tolerance::{ToleranceInputs, ToleranceFacts};
+use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs};
 use hardpoint_report::validity::ValidityFact;
 use hardpoint_report::verdict::Verdict;
 use hardpoint_report::whatif::WhatIfFacts;
@@ -33,7 +33,7 @@ use crate::failure::{Failure, Kind};
 use crate::model::Model;
 use crate::watch::patiently;
 
-/// What a study came to.
+/// Result of a study.
 fn outcome(facts: &impl Serialize, tables: &[Table]) -> String {
     json!({ "facts": facts, "tables": tables }).to_string()
 }
@@ -113,7 +113,7 @@ impl Model {
         Ok((outcome(&facts, &facts.tables()), design, exact))
     }
 
-    /// What the tolerances of the design variables come to.
+    /// Runs the tolerance study.
     #[pyo3(signature = (samples=None, seed=None, allocate=None, workers=None, progress=None))]
     fn tolerance(
         &self,
@@ -167,7 +167,8 @@ impl Model {
                 "the mechanism can follow none of the variables with a tolerance; give tolerances to variables that it can follow",
             ),
         })?;
-        let facts = ToleranceFacts::of(&ToleranceInputs { file, numbers: &numbers, asked: &asked, found: &found });
+        let facts =
+            ToleranceFacts::of(&ToleranceInputs { file, numbers: &numbers, asked: &asked, found: &found });
         Ok(outcome(&facts, &facts.tables()))
     }
 
@@ -250,12 +251,17 @@ impl Model {
                  seek fewer variables, or measure more"
             )),
         })?;
-        let facts =
-            CalibrateFacts::of(&CalibrationInputs { file, measured: &table, data: measured, loss, found: &found });
+        let facts = CalibrateFacts::of(&CalibrationInputs {
+            file,
+            measured: &table,
+            data: measured,
+            loss,
+            found: &found,
+        });
         Ok((outcome(&facts, &facts.tables()), self.values_of(&found.design)))
     }
 
-    /// What a changed design does, exactly and as predicted.
+    /// Effect of a changed design, exact and predicted.
     fn what_if(&self, py: Python<'_>, case: usize, design: Vec<f64>) -> PyResult<String> {
         let (file, analysis, changes) = (&self.cases[case], self.analysis(case)?, self.changes(&design)?);
         let facts = patiently(py, None, |watch| {
@@ -304,7 +310,7 @@ impl Model {
         Ok(outcome(&verdict, &[verdict.table()]))
     }
 
-    /// How far sensitivities can be trusted.
+    /// Linear range of the sensitivities.
     fn validity(&self, py: Python<'_>, case: usize) -> PyResult<String> {
         let (file, analysis): (_, &Analysis<'_>) = (&self.cases[case], self.analysis(case)?);
         let found = patiently(py, None, |watch| {

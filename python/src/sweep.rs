@@ -21,7 +21,7 @@ use crate::failure::Failure;
 use crate::model::Model;
 use crate::watch::patiently;
 
-/// What is asked besides what the file says.
+/// Options besides those of the file.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct Asked {
@@ -232,7 +232,7 @@ impl Sweep {
         Ok((table(py, columns, rows)?, table(py, curve_columns, curves)?))
     }
 
-    /// Solves all designs: their table, that of curves, and what they come to.
+    /// Solves all designs: their table, that of curves, and the summary.
     #[pyo3(signature = (workers=None, progress=None))]
     fn run<'py>(
         &self,

@@ -41,10 +41,10 @@ export function decades(low: number | null, high: number | null): [number, numbe
   return [10 ** Math.min(bottom, top - 1), 10 ** top]
 }
 
-/** Of the size of a constant, what the axis shows round it. */
+/** Range of the axis around a constant, relative to its size. */
 const FLAT = 0.2
 
-/** What an axis shows of values from `low` to `high`: they, and a little on both sides. */
+/** Range of an axis for values from `low` to `high`: they, and a little on both sides. */
 export function padded(low: number | null, high: number | null): [number, number] {
   if (low === null || high === null) return [-1, 1]
   const size = Math.max(Math.abs(low), Math.abs(high))

@@ -1,7 +1,7 @@
 import { groups, type Order, type Report, type Sensitivity, type Variable } from './report'
 import { rounded } from './rounding'
 
-/** How a variable acts on the selected quantity. */
+/** Effect of a variable on the selected quantity. */
 export interface Effect {
   variable: Variable
   sensitivity: Sensitivity

@@ -7,7 +7,7 @@ import { extent } from './export/axis'
 import type { State } from './state'
 import { atLeast, between, moved, ordinates, type Part, scaled, within, Zoom } from './zoom'
 
-/** What a plot is wide before it has a place, at least high, and on paper wide and high, px. */
+/** Default width of a plot, minimum height, and size on paper, px. */
 const USUAL = 400
 const LEAST = 120
 const PAPER = { width: 330, height: 190 }
@@ -42,24 +42,24 @@ export interface Content {
   lines: Line[]
   /** From a power of ten to another; what is not positive is left out. */
   logarithmic?: boolean
-  /** What the curves are drawn over instead of time. */
+  /** Abscissa of the curves instead of time. */
   over?: { label: string; unit: string; curve: Curve }
-  /** What is seen of the abscissa; all of it where there is none. */
+  /** Visible part of the abscissa; all of it if undefined. */
   part?: Part
   caption?: string
-  /** What is wanted of the values: at one abscissa, or everywhere. */
+  /** Targets of the values: at one abscissa, or everywhere. */
   wanted?: { low: number | null; high: number | null; at?: number }[]
   /** Shown in place of the plot. */
   message?: string
 }
 
-/** What lies over the curves of a plot and moves with them. */
+/** Overlay on the curves of a plot that moves with them. */
 export interface Overlay {
   /** The plot is drawn anew, and has a place for it. */
   onto(plot: uPlot): void
   /** The curves were drawn, and may have moved. */
   drawn(): void
-  /** What the vertical axis shows, of what it would. */
+  /** Range of the vertical axis, given its default range. */
   reach(low: number, high: number): [low: number, high: number]
 }
 
@@ -71,9 +71,9 @@ export interface Overlay {
 export class Plot {
   readonly element: HTMLElement
   readonly area = el('div', { class: 'area' })
-  /** What lies over the curves, if anything. */
+  /** Overlay on the curves, if there is one. */
   overlay?: Overlay
-  /** What is shown. */
+  /** Contents of the plot. */
   content: Content = { title: '', unit: '', lines: [] }
   #title = el('h3')
   #legend = el('ul', { class: 'legend' })
@@ -85,15 +85,15 @@ export class Plot {
   #readings: { curve: Curve; output: HTMLElement }[] = []
   #pointed?: number
   #band = el('div', { class: 'band', hidden: true })
-  /** Where a drag began that chooses the part that is seen, px. */
+  /** Start of a drag that selects the visible part, px. */
   #from?: number
   /** The left end of the curves on the screen, px; requested once where the pointer comes in. */
   #left?: number
-  /** What is seen where the curves are over another quantity. */
+  /** Visible part if the curves are over another quantity. */
   #own = new Zoom()
   #closer = el('button', { type: 'button', class: 'icon', 'data-testid': 'closer', title: 'Closer (+); drag along the axis, or with Shift, to choose what is seen', 'aria-label': 'see closer', onclick: () => this.#scale(CLOSER) }, svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, svg('path', { d: GLASS })))
   #whole = el('button', { type: 'button', class: 'icon', 'data-testid': 'whole', title: 'The whole (0)', 'aria-label': 'show the whole', onclick: () => this.#see(undefined) }, 'whole')
-  /** Of the area, px, as its observer reported. */
+  /** Size of the area, px, from its observer. */
   #extent?: { width: number; height: number }
 
   constructor(
@@ -250,7 +250,7 @@ export class Plot {
     })
   }
 
-  /** Where the pointer is from left to right, px from the left end of the curves. */
+  /** Horizontal position of the pointer, px from the left end of the curves. */
   #across({ clientX }: PointerEvent): number {
     return clientX - (this.#left ??= this.#uplot?.over.getBoundingClientRect().left ?? 0)
   }
@@ -430,7 +430,7 @@ function facets(line: Line): uPlot.Series {
   return { stroke: line.color, width: marks ? 1.5 : (line.width ?? 1.8), dash: line.dash, paths, facets: auto, points: { show: false } }
 }
 
-/** Of the circles over another quantity than time, px. */
+/** Radius of the circles over another quantity than time, px. */
 const RADIUS = 3.5
 
 function faceted(over: Curve, { lines }: Content): uPlot.AlignedData {

@@ -27,7 +27,7 @@ export interface Mesh {
 export interface Driver extends Omit<wire.DriverMark, 'travel' | 'alone'> {
   /** The driven coordinate, one number per step. */
   travel: Curve
-  /** Where several drivers move: how fast the first quantities go with this one alone; empty of what is not known. */
+  /** If several drivers move: rates of the first quantities by this one alone; empty if unknown. */
   alone: Curve[]
 }
 
@@ -37,7 +37,7 @@ export interface Quantity {
   group: string
   units: ByOrder<string>
   curves: ByOrder<Curve>
-  /** What a metric wants its value to be, one number per step; empty where none does. */
+  /** Target of a metric, one number per step; empty without one. */
   wanted: Curve
 }
 
@@ -198,7 +198,7 @@ function byOrder<T>([value, rate, accel]: T[]): ByOrder<T> {
   return [value, rate, accel]
 }
 
-/** What a function gives, found when it is first requested. */
+/** Value of a function, computed at the first request. */
 function once<T>(find: () => T): () => T {
   let found: { it: T } | undefined
   return () => (found ??= { it: find() }).it

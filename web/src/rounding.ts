@@ -1,7 +1,7 @@
 /** Smaller is rounding: as a share of the largest of its kind, and of a size in the reader's units, whatever it is of. */
 const ROUNDING = 1e-9
 
-/** What varies less than this share of its size is as good as constant. */
+/** Relative variation below which a quantity counts as constant. */
 export const RESOLUTION = 1e-5
 
 /** A number, 0 where it is rounding next to the largest of its kind. */

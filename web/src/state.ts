@@ -10,7 +10,7 @@ export interface Choice {
   order: Order
   /** The quantity that curves are drawn over; time where there is none. */
   over?: number
-  /** What is selected in the view: a body, a joint, a wheel, ... */
+  /** Selection in the view: a body, a joint, a wheel, ... */
   selected?: Part
   /** Body and hardpoint whose path is drawn. */
   trace?: [body: number, point: number]
@@ -24,7 +24,10 @@ export interface Choice {
   compared?: number
 }
 
-/** What the reader chose and the moment shown; the views listen, and change it only through its methods. */
+/**
+ * State of the page: the reader's choices and the moment shown; the views listen, and change it only through its
+ * methods.
+ */
 export class State {
   choice: Choice
   /** By how much each variable is changed from the model as loaded, in its unit. */
@@ -35,7 +38,7 @@ export class State {
   solver?: () => void
   /** The bound that keeps the design from going as far as was requested. */
   bound = ''
-  /** Why the design does not go as far as was requested. */
+  /** Reason why the design is not the requested one. */
   refusal = ''
   /** Designs that were kept to be compared with. */
   readonly kept: Design[] = []
@@ -86,7 +89,7 @@ export class State {
     return [...this.report.designs, ...this.kept]
   }
 
-  /** What is changed, by name. */
+  /** Changed variables, by name. */
   get settings(): VariableSetting[] {
     const changed = this.report.variables.flatMap(({ name }, index) => (this.changes[index] === 0 ? [] : [{ name, by: this.changes[index] }]))
     return [...changed, ...[...this.moves].map(([name, by]) => ({ name, by }))]

@@ -4,7 +4,7 @@ import type * as wire from './payload'
 /** From a curve of the payload to its values. */
 export type Decode = (curve: wire.Curve) => Curve
 
-/** What the report's file holds, as `crates/hardpoint-report/src/encoding.rs` packs it. */
+/** Contents of the report's file, as `crates/hardpoint-report/src/encoding.rs` packs them. */
 export async function unpack(base64: string): Promise<{ payload: wire.Payload; decode: Decode }> {
   const block = await inflated(base64)
   const [json, tracks, gaps, residuals] = new Uint32Array(block.buffer, 0, COUNTS)
@@ -70,7 +70,7 @@ class Tracks {
   readonly #gapCounts: Uint32Array
   readonly #gaps: Uint32Array
   readonly #planes: Uint8Array[]
-  /** Of each track the first residual and the first gap. */
+  /** First residual and first gap of each track. */
   readonly #starts: { residual: number; gap: number }[] = []
   readonly #known = new Map<number, Curve>()
 

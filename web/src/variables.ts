@@ -8,7 +8,7 @@ const BADGES: Record<Admissibility, string> = {
   cannot_follow: 'cannot follow',
 }
 
-/** How the mechanism follows a variable, where that is not simply so. */
+/** Badge of a variable that the mechanism does not simply follow. */
 export function badge(variable: Variable): HTMLElement | undefined {
   const text = BADGES[variable.admissibility]
   return text ? el('span', { class: `badge ${variable.admissibility}`, title: variable.note }, text) : undefined

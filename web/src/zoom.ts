@@ -1,13 +1,13 @@
 import type { Curve } from './curve'
 import { extent } from './export/axis'
 
-/** What is seen of an abscissa: from a value to another, larger one. */
+/** Visible part of an abscissa: from a value to a larger one. */
 export type Part = readonly [low: number, high: number]
 
-/** Of the whole, what is seen at least: below that, a curve between output times is nothing but a straight line. */
+/** Smallest visible part: below it, a curve between output times is only a straight line. */
 const LEAST = 1 / 200
 
-/** Which part of the abscissa some plots show; all of it where there is none. */
+/** Visible part of the abscissa of some plots; all of it if undefined. */
 export class Zoom {
   #part?: Part
   #listeners: (() => void)[] = []

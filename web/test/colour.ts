@@ -3,7 +3,7 @@
 type Triple = [number, number, number]
 type Matrix = [Triple, Triple, Triple]
 
-/** What is left of linear RGB without one kind of cone: Machado, Oliveira and Fernandes 2009, severity 1. */
+/** Linear RGB without one kind of cone: Machado, Oliveira and Fernandes 2009, severity 1. */
 export const BLINDNESS: Record<'protanopia' | 'deuteranopia' | 'tritanopia', Matrix> = {
   protanopia: [
     [0.152286, 1.052583, -0.204868],

@@ -2,10 +2,10 @@ import type { Page } from 'playwright-core'
 
 /** Pixels along each side of a picture of the view where only background and floor may be seen. */
 const BORDER = 3
-/** How much a channel of 255 may differ and still be the same colour: rounding, and the smoothing of thin lines. */
+/** Difference of a channel of 255 up to which colours are the same: rounding, and the smoothing of thin lines. */
 const ROUNDING = 10
 
-/** How much the greys of a scheme lean to blue, of 255. */
+/** Bias of a scheme's greys to blue, of 255. */
 const LEAN = 18
 
 /** Greys of a view without a mechanism, from 0 to 255. */
@@ -14,7 +14,7 @@ export interface Paper {
   lightest: number
 }
 
-/** What a picture shows beside paper. */
+/** Contents of a picture besides paper. */
 export interface Seen {
   /** Share of its pixels. */
   drawn: number
@@ -37,7 +37,7 @@ export function paper(page: Page): Promise<Paper> {
   })
 }
 
-/** What is to be seen in a PNG; worked out in a page, because Node does not decode pictures. */
+/** Contents of a PNG; computed in a page, because Node does not decode pictures. */
 export function examine(desk: Page, png: Buffer, { darkest, lightest }: Paper): Promise<Seen> {
   return desk.evaluate(
     async ({ data, low, high, spread, band, within, sample }) => {

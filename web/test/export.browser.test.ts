@@ -12,7 +12,7 @@ vi.stubGlobal('self', globalThis)
 
 const { models } = inject('samples')
 
-/** Where pictures for readers go, when the tests are asked to make them anew. */
+/** Folder for the documents' pictures, if the tests are to make them anew. */
 const IMAGES = process.env.UPDATE_DOCS && join(import.meta.dirname, '../../docs/images')
 
 /** Bytes of a PNG's head: its signature, and where its width and height stand. */

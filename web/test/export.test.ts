@@ -164,7 +164,7 @@ test('file names keep what any system takes', () => {
   expect(fileName('Übersetzung.csv')).toBe('Übersetzung.csv')
 })
 
-/** What GLTFExporter reads blobs with in a browser; Node has none. */
+/** Reader of blobs for GLTFExporter; browsers have one, Node has none. */
 class Reader {
   result: ArrayBuffer | null = null
   onloadend?: () => void

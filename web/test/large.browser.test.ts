@@ -36,7 +36,7 @@ describe('a model of 81 bodies and 240 variables', () => {
   })
   afterAll(() => page?.context().close())
 
-  /** How often the browser lays out the page meanwhile. */
+  /** Number of layouts of the page meanwhile. */
   async function layouts(doing: () => Promise<unknown>): Promise<number> {
     const count = async () => (await session.send('Performance.getMetrics')).metrics.find(({ name }) => name === 'LayoutCount')!.value
     await drawn(page)

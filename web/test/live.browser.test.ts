@@ -9,7 +9,7 @@ import { frames, slide } from './person'
 
 const { models, answers } = inject('samples')
 const MODELS = join(import.meta.dirname, '../../models')
-/** Where pictures for readers go, when the tests are asked to make them anew: `UPDATE_DOCS=1 npm test`. */
+/** Folder for the documents' pictures, if the tests are to make them anew: `UPDATE_DOCS=1 npm test`. */
 const IMAGES = process.env.UPDATE_DOCS && join(import.meta.dirname, '../../docs/images')
 
 let browser: Browser
@@ -33,7 +33,7 @@ const open = async (name: string) => {
 }
 const card = async (name: string) => Number((await page.getByTestId(`card-${name}`).getByTestId('card-value').innerText()).replace('−', '-'))
 const grip = (name: string) => page.getByTestId(`grip-${name}`)
-/** What the command says of a measure of the strut's at the start, with a change. */
+/** Value of the command for a measure of the strut at the start, with a change. */
 const coordinate = async (axis: string) => Number((await page.getByTestId(`grip-${axis}`).inputValue()).replace('−', '-'))
 
 /** The value of every card as the native engine has it with these changes. */

@@ -3,7 +3,7 @@ import type { Report } from '../src/report'
 import type { Palette } from '../src/scene/palette'
 import type { Choice } from '../src/state'
 
-/** What a page is about, when it is about nothing. */
+/** An empty page. */
 export const EMPTY: Payload = {
   title: '',
   description: '',
@@ -42,7 +42,7 @@ export const PALETTE: Palette = {
   ...{ trace: '#0b62b8', former: '#2a323a', grid: '#e4e8ec', gridMain: '#d2d8dd', axes: { x: '#d55e00', y: '#009e73', z: '#0072b2' } },
   ...{ light: { sky: 2, earth: '#c2cad2', sun: 1, shadow: 0.16 }, glass: 0.13 },
 }
-/** What is chosen at first. */
+/** Initial choice. */
 export const CHOICE: Choice = { quantity: 0, variable: 0, order: 0, labels: false, forces: true }
 
 /** Turns about z by which the crank goes on from one step to the next. */

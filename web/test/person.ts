@@ -16,13 +16,13 @@ export function frames(page: Page, count: number): Promise<void> {
 /** Waits until what was requested is on the screen: one frame to draw, one to be sure that it was drawn. */
 export const drawn = (page: Page) => frames(page, 2)
 
-/** What the view draws at this moment, as a PNG. */
+/** Present picture of the view, as a PNG. */
 export async function picture(page: Page): Promise<Buffer> {
   await drawn(page)
   return page.locator(VIEW).screenshot({ style: ONLY_THE_VIEW })
 }
 
-/** What a curve's canvas shows: how many colours, and a sum that changes with its picture. */
+/** Contents of a curve's canvas: number of colours, and a sum that changes with the picture. */
 export async function curve(page: Page, id: string): Promise<{ colours: number; sum: number }> {
   await drawn(page)
   return page.getByTestId(id).locator('canvas').first().evaluate((canvas: HTMLCanvasElement) => {
@@ -33,7 +33,7 @@ export async function curve(page: Page, id: string): Promise<{ colours: number; 
   })
 }
 
-/** What a reader of one part of the page sees. */
+/** Text of one part of the page. */
 export const text = (page: Page, id: string) => page.getByTestId(id).innerText()
 
 /** Moves a slider to a value, as a drag does. */

@@ -101,7 +101,10 @@ function ridden(strut: string): string {
   return text
 }
 
-/** The built programs: with the whole workspace, as `cargo test --release` builds it, so that after that there is nothing left to compile. */
+/**
+ * Built programs: with the whole workspace, as `cargo test --release` builds it, so that nothing is left to compile
+ * after that.
+ */
 function build(): Record<'hardpoint' | 'sample_page' | 'rockers' | 'answers', string> {
   const command = ['build', '--release', '--workspace', '--bin', 'hardpoint', '--example', 'sample_page', '--example', 'rockers', '--example', 'answers', '--message-format', 'json']
   const stdio: StdioOptions = ['ignore', 'pipe', 'inherit']

@@ -17,7 +17,7 @@ const MOMENTS = [0.3, 0.75]
 /** At any one moment a mechanism takes at least so much of the view, which has room for its whole motion. */
 const FILLED = 0.35
 
-/** Where pictures for readers go, when the tests are asked to make them anew: `UPDATE_DOCS=1 npm test`. */
+/** Folder for the documents' pictures, if the tests are to make them anew: `UPDATE_DOCS=1 npm test`. */
 const IMAGES = process.env.UPDATE_DOCS && join(import.meta.dirname, '../../docs/images')
 
 /** Largest less smallest value, as a share of the largest size. */

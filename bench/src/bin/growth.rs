@@ -1,4 +1,4 @@
-//! How cost grows: with design variables, with loops and bodies, and with both at once.
+//! Growth of cost: with design variables, with loops and bodies, and with both at once.
 //!
 //!     growth                                  measures all, writes the plots and the tables of docs/performance.md
 //!     growth gradients                        gradients of some outputs, direct and adjoint: writes their table alone
@@ -276,7 +276,7 @@ fn write_whole(path: &Path, text: &str) -> io::Result<()> {
     std::fs::rename(part, path)
 }
 
-/// Which axes are logarithmic.
+/// Logarithmic axes.
 enum Log {
     None,
     X,

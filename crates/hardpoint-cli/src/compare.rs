@@ -70,7 +70,8 @@ fn compare_in(
             outcome = Outcome::Stopped;
         }
     }
-    let both = [SolvedModel { file: &file, solution: &today }, SolvedModel { file: &other, solution: &exact }];
+    let both =
+        [SolvedModel { file: &file, solution: &today }, SolvedModel { file: &other, solution: &exact }];
     let facts = CompareFacts::of(both);
     let names: Vec<&str> = facts.measures.iter().map(|c| c.measure.as_str()).collect();
     if let Some(name) = options.measure.iter().find(|name| !names.contains(&name.as_str())) {

@@ -38,8 +38,9 @@ fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Re
         })?,
         None => {
             let name = to.to_string_lossy();
-            let why =
-                || format!("`-o {name}`: its ending indicates no format; name one with `--format`: {}", known());
+            let why = || {
+                format!("`-o {name}`: its ending indicates no format; name one with `--format`: {}", known())
+            };
             Format::of(&name).ok_or_else(|| session.misunderstood(&why()))?
         }
     };

@@ -14,7 +14,7 @@ use hardpoint_report::figures::bytes;
 use hardpoint_report::npy::{Npy, Sidecar, add_motion, add_sensitivities};
 
 use crate::args::{Format, Orientation, Run};
-use crate::folder::{Folder, WriteError, PendingFile};
+use crate::folder::{Folder, PendingFile, WriteError};
 use crate::long_table::{TableFormat, TableWriter};
 use crate::session::json_text;
 

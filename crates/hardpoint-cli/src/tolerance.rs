@@ -10,7 +10,7 @@ use hardpoint_file::ModelFile;
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::some_of;
 use hardpoint_report::optimize::case_name;
-use hardpoint_report::tolerance::{ToleranceInputs, ToleranceFacts};
+use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs};
 
 use crate::args::{Allocate, Tolerance};
 use crate::folder::{Folder, WriteError};
@@ -28,7 +28,8 @@ pub fn run(options: &Tolerance) -> Outcome {
 fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, Outcome> {
     let file = session.read(&options.common.model)?;
     let numbers = session.numbers_of(&file, &options.motions)?;
-    let asking = ToleranceOverrides { samples: options.samples, seed: options.seed, allocate: options.allocate };
+    let asking =
+        ToleranceOverrides { samples: options.samples, seed: options.seed, allocate: options.allocate };
     let asked = asked(session, &file, &asking)?;
     let models = file.model.motions();
     let models: Vec<Model> = numbers.iter().map(|k| models[*k].clone()).collect();
@@ -71,7 +72,11 @@ pub struct ToleranceOverrides {
 }
 
 /// The request, by the file and besides.
-pub fn asked(session: &Session, file: &ModelFile, options: &ToleranceOverrides) -> Result<ToleranceSettings, Outcome> {
+pub fn asked(
+    session: &Session,
+    file: &ModelFile,
+    options: &ToleranceOverrides,
+) -> Result<ToleranceSettings, Outcome> {
     let asked = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
     let Some(mut asked) = asked else {
         let why = format!(

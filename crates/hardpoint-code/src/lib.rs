@@ -77,7 +77,7 @@ pub const PARTS: usize = 3;
 /// for as many instructions is below 2 GB.
 const MOST: usize = 1 << 22;
 
-/// Why there is no machine code.
+/// Reason why there is no machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UnsupportedProgram {
     /// Another kind of machine or system.
@@ -98,14 +98,14 @@ pub enum UnsupportedProgram {
     /// Offsets would not fit into an instruction.
     #[error("the program has {count} {what}, more than machine code is made for ({})", MOST)]
     Size {
-        /// Of what there are too many.
+        /// Name of the quantity that is too large.
         what: &'static str,
         /// Number of there are.
         count: usize,
     },
 }
 
-/// What code comes to.
+/// Statistics of the code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Machine instructions.
@@ -127,7 +127,7 @@ pub struct Counts {
 #[repr(align(64))]
 struct Line(#[allow(dead_code, reason = "where there is no machine code, nobody reads it")] [f64; 8]);
 
-/// Where code puts numbers aside while it runs. It serves any code, and grows with the first run that needs more.
+/// Memory for numbers while code runs. It serves any code, and grows with the first run that needs more.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
     lines: Vec<Line>,
@@ -227,7 +227,7 @@ impl Code {
         self.width
     }
 
-    /// What it comes to.
+    /// Statistics of the code.
     pub fn counts(&self) -> Counts {
         self.counts
     }

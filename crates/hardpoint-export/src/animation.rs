@@ -194,7 +194,7 @@ impl Triangles {
     }
 }
 
-/// Where something is over time.
+/// Positions over time.
 struct Track {
     places: Vec<[f32; 3]>,
     turns: Vec<[f32; 4]>,
@@ -224,7 +224,7 @@ impl Track {
     }
 }
 
-/// What changes of a node, and its numbers.
+/// Animated property of a node, and its numbers.
 type Changing = (Index<Node>, Property, Index<Accessor>);
 
 struct Writer {

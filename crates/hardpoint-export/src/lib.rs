@@ -37,18 +37,18 @@ pub use tables::hardpoints;
 pub struct ExportedModel {
     /// The file's text.
     pub text: String,
-    /// What it does not say, or says only nearly.
+    /// Features that the format does not support, or only approximately.
     pub unsaid: Vec<UnsupportedFeature>,
 }
 
 /// Something that a format does not support.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct UnsupportedFeature {
-    /// What it is in the model: `joint`, `driver`.
+    /// Kind in the model: `joint`, `driver`.
     pub kind: &'static str,
     /// Name there.
     pub name: String,
-    /// Why, or how else it is said.
+    /// Reason, or replacement.
     pub why: String,
 }
 
@@ -57,9 +57,9 @@ pub struct UnsupportedFeature {
 pub struct Format {
     /// The name by which it can be requested.
     pub name: &'static str,
-    /// What it is.
+    /// Description of the format.
     pub about: &'static str,
-    /// How names of its files end.
+    /// Endings of its files' names.
     pub endings: &'static [&'static str],
     write: fn(&ModelFile, &mut ExportedModel),
 }

@@ -1,4 +1,4 @@
-//! What bodies look like where nothing else says it: their places, and lines between them.
+//! Default appearance of bodies: their points, and lines between them.
 
 use hardpoint::model::{Direction, Joint, Model};
 use hardpoint::space::Vec3;

@@ -31,7 +31,7 @@ const CLOSE: [&str; 4] = ["spherical", "revolute", "fixed", "distance"];
 /// A hinge that closes a loop is held at two points of its axis, this part of the mechanism's size apart.
 const APART: f64 = 0.1;
 
-/// Which axis of a joint's frame.
+/// Axis of a joint's frame.
 #[derive(Clone, Copy)]
 enum Along {
     X,
@@ -67,7 +67,7 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
     out.without_motions(file, "MJCF");
 }
 
-/// What closes loops and couples joints, and the tendons that rods are.
+/// Writes the constraints that close loops and couple joints, and the tendons of rods.
 fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut ExportedModel) -> (String, String) {
     let model = tree.model;
     let (mut equalities, mut tendons) = (String::new(), String::new());

@@ -9,7 +9,7 @@ use crate::ExportedModel;
 pub struct Skeleton<'m> {
     /// The model.
     pub model: &'m Model,
-    /// How each body is carried; ground, and what is not written, is not.
+    /// Carrier of each body; ground, and bodies that are not written, have none.
     pub carrier: Vec<Option<Carrier>>,
     /// The bodies in an order in which what carries comes first; ground is the first.
     pub order: Vec<usize>,
@@ -17,7 +17,7 @@ pub struct Skeleton<'m> {
     pub loops: Vec<usize>,
 }
 
-/// What carries a body.
+/// Joint that carries a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carrier {
     /// A joint: its number, and whether the body is its first one. Then the format's joint has the opposite axis, about or along which the
@@ -38,7 +38,8 @@ pub fn axis(joint: &Joint) -> Vec3 {
 }
 
 impl<'m> Skeleton<'m> {
-    /// Of a model; `carries` says which types of joints can carry a body, `closes` which can close a loop. What has neither is named.
+    /// Skeleton of a model; `carries` are the types of joints that can carry a body, `closes` those that can close a
+    /// loop. Others are reported.
     pub fn new(model: &'m Model, carries: &[&str], closes: &[&str], out: &mut ExportedModel) -> Self {
         let mut tree =
             Self { model, carrier: vec![None; model.bodies.len()], order: vec![0], loops: Vec::new() };
@@ -111,7 +112,7 @@ impl<'m> Skeleton<'m> {
         self.carrier.iter().any(|c| matches!(c, Some(Carrier::Joint(k, _)) if *k == joint))
     }
 
-    /// Where the frame of a body's element is: at the joint that carries it, or else at one that holds it.
+    /// Origin of the frame of a body's element: at the joint that carries it, or else at one that holds it.
     pub fn origin(&self, body: usize) -> Vec3 {
         let on = |k: usize| {
             let joint = &self.model.joints[k];

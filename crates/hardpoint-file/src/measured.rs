@@ -231,10 +231,8 @@ impl ModelFile {
         let readings = &found.measurements.readings;
         let moving = readings.iter().map(|r| &outputs[r.output]);
         if let Some(output) = moving.clone().find(|o| !self.model.is_known_at_rest(o.source)) {
-            let message = format!(
-                "`{}` cannot be compared: it is nothing of a mechanism that is at rest",
-                output.name
-            );
+            let message =
+                format!("`{}` cannot be compared: it is nothing of a mechanism that is at rest", output.name);
             return Err(Refusal::new("HP0248", message, "remove its column, or let `#` head it")
                 .note("every line is a posture, in which all drivers stand"));
         }

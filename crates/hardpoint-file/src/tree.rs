@@ -556,9 +556,8 @@ impl Reader<'_> {
             ConstantError::Follows(name, what) => {
                 let message = format!("{} cannot follow parameter `{name}`", subject.name);
                 let d = self.report("HP0230", at, message);
-                d.notes.push(format!(
-                    "{what} changes `{name}`, and what is here is the same in every design"
-                ));
+                d.notes
+                    .push(format!("{what} changes `{name}`, and what is here is the same in every design"));
                 d.help =
                     Some("write `design = false` for the parameter that changes, or a number here".into());
             }

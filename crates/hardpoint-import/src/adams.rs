@@ -9,7 +9,7 @@ use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::adams_statement::{SEAM, SHORTEST, Statement, number, statements};
 use crate::law::{self, Language};
-use crate::markers::{MarkerJoint, Marker, carrying, counted, join, offset, way};
+use crate::markers::{Marker, MarkerJoint, carrying, counted, join, offset, way};
 use crate::mechanism::{Coordinate, Drives, GROUND, Law, Mechanism};
 use crate::report::{ImportLog, SourceSpan};
 use crate::turn::{from_z_and_x, home, sequence};
@@ -600,7 +600,8 @@ impl Reader<'_> {
         if law::constant(&text) == Some(0.0) { Ok(Law::Held) } else { Ok(Law::Text(text)) }
     }
 
-    /// The law that a velocity (of order 1) or an acceleration (2) comes to: an expression where that is constant, or else a table.
+    /// Law with a given velocity (order 1) or acceleration (order 2): an expression if that is constant, otherwise a
+    /// table.
     fn integral(
         &mut self,
         s: &Statement,
@@ -883,7 +884,8 @@ impl Reader<'_> {
             let zero = value.split([',', SEAM]).all(|w| number(w.trim()) == Some(0.0));
             if ["ICTRAN", "ICROT", "IC"].contains(&key) {
                 if !zero {
-                    let why = "where the joint starts is left out: the model begins in the design configuration";
+                    let why =
+                        "where the joint starts is left out: the model begins in the design configuration";
                     self.notes.refused(key, &s.label, Some(s.at), why);
                 }
                 continue;

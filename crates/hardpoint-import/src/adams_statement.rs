@@ -11,7 +11,7 @@ pub const SHORTEST: usize = 3;
 const NAMES: [&str; 10] =
     ["PART", "MARKER", "JOINT", "JPRIM", "MOTION", "COUPLER", "GEAR", "UNITS", "SPLINE", "FLEX_BODY"];
 
-/// Where a statement was continued: a blank, or in the middle of a function perhaps a comma.
+/// Mark of a continued statement: a blank, or in the middle of a function perhaps a comma.
 pub const SEAM: char = '\u{1}';
 
 /// A statement: `NAME/id, KEY = values, FLAG, ...`.
@@ -21,16 +21,16 @@ pub struct Statement {
     pub name: String,
     /// The number behind the stroke.
     pub id: String,
-    /// Where it is.
+    /// Position in the source.
     pub at: SourceSpan,
-    /// What the modeller calls it, from the comment before it.
+    /// Name that the modeller gives it, from the comment before it.
     pub label: String,
     /// In capital letters, with what is behind the equals sign; flags with nothing.
     pub keys: Vec<(String, String)>,
 }
 
 impl Statement {
-    /// What is behind a key, which may be cut short as far as it is clear.
+    /// Value of a key, which may be abbreviated as far as it is unambiguous.
     pub fn text(&self, key: &str) -> Option<&str> {
         let short = |k: &str| k.len() >= SHORTEST && key.starts_with(k);
         let found = self.keys.iter().find(|(k, _)| k == key);
@@ -47,7 +47,7 @@ impl Statement {
         self.keys.iter().any(|(k, v)| v.is_empty() && k.len() >= SHORTEST && flag.starts_with(k.as_str()))
     }
 
-    /// What it is called, and where it is.
+    /// Name and position for reports.
     pub fn called(&self) -> JointSource<'_> {
         JointSource { kind: &self.name, name: &self.label, at: Some(self.at) }
     }

@@ -6,7 +6,9 @@ use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::chain;
 use crate::law::{self, Language};
-use crate::markers::{JointSource, MarkerJoint, Marker, carrying, counted, is_drawn, join, linked, offset, screw, way};
+use crate::markers::{
+    JointSource, Marker, MarkerJoint, carrying, counted, is_drawn, join, linked, offset, screw, way,
+};
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Times};
 use crate::report::{ImportLog, SourceSpan};
 use crate::series::{Series, StoredPose};
@@ -234,7 +236,7 @@ struct Reader<'n> {
     markers: BTreeMap<String, Marker>,
     joints: BTreeMap<String, MarkerJoint>,
     parts: BTreeMap<String, usize>,
-    /// Where the stored motion has the parts when it begins.
+    /// Poses of the parts at the start of the stored motion.
     closed: BTreeMap<String, Pose>,
     /// Number of are drawn elsewhere.
     moved: usize,
@@ -452,8 +454,9 @@ impl Reader<'_> {
                     .with_axes(i.z(), j.z());
                 match said(self, "theIzJz").filter(|a| (a.cos() - drawn.cos()).abs() > 1e-6) {
                     Some(said) => {
-                        let why =
-                            format!("drawn at {drawn} rad where {said} rad are said: it is taken in the design configuration");
+                        let why = format!(
+                            "drawn at {drawn} rad where {said} rad are said: it is taken in the design configuration"
+                        );
                         self.notes.approximated(joint.text, joint.name(), Some(joint.at), why);
                         Some(self.m.joint(angle))
                     }
@@ -501,7 +504,8 @@ impl Reader<'_> {
             && let Some(number) = join(&mut self.m, self.notes, called, "screw", [i, j])
         {
             self.m.joints[number].lead = Some(pitch);
-            self.joints.insert(joint.name().to_owned(), MarkerJoint { number, kind: "screw", markers: [i, j] });
+            self.joints
+                .insert(joint.name().to_owned(), MarkerJoint { number, kind: "screw", markers: [i, j] });
         }
     }
 
@@ -607,7 +611,8 @@ impl Reader<'_> {
         let drawn = if turns { drawn.angle } else { drawn.displacement };
         let text = counted(&law::translate(function, Language::Ondsel)?, drawn, turns);
         let law = if law::constant(&text) == Some(0.0) { Law::Held } else { Law::Text(text) };
-        let note = JointSource { kind: motion.text, name: motion.name(), at: Some(motion.at) }.note(self.notes);
+        let note =
+            JointSource { kind: motion.text, name: motion.name(), at: Some(motion.at) }.note(self.notes);
         self.m.driver(motion.name(), note, Drives::Coordinate(coordinate), law);
         self.notes.taken(motion.text, motion.name(), Some(motion.at));
         Ok(())
@@ -683,7 +688,7 @@ impl Reader<'_> {
     }
 }
 
-/// What the file has stored of a part.
+/// Stored data of a part.
 struct StoredPart<'t> {
     path: &'t str,
     at: SourceSpan,

@@ -176,8 +176,12 @@ impl Axle<'_> {
                 .along(axis.into()),
         );
         let drives = Drives::Coordinate(Coordinate { joint: slide, name: "displacement" });
-        let steering =
-            self.m.driver("steering", "no law in the source: fixed in the design configuration".into(), drives, Law::Held);
+        let steering = self.m.driver(
+            "steering",
+            "no law in the source: fixed in the design configuration".into(),
+            drives,
+            Law::Held,
+        );
         self.m.steering = Some(steering);
         let why = "the steering is a file of its own: its link slides along the drag link, and a driver holds it in the design configuration";
         self.notes.approximated("motion", "steering_slide", self.at(part), why);

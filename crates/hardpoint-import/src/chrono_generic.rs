@@ -85,7 +85,7 @@ struct Side<'r> {
 }
 
 impl Side<'_> {
-    /// What is made on this side: all that is mirrored, and on the left what is between both.
+    /// True for elements of this side: all that is mirrored, and on the left the elements between both sides.
     fn is_here(&self, tree: &Tree) -> bool {
         self.side > 0.0 || is_mirrored(tree)
     }

@@ -42,7 +42,7 @@ pub struct Closing {
     pub places: [[f64; 3]; 2],
     /// The joint type.
     pub kind: &'static str,
-    /// Which axis of the first frame the joint has: 0, 1, 2 for x, y, z.
+    /// Axis of the first frame that the joint has: 0, 1, 2 for x, y, z.
     pub axis: usize,
 }
 

@@ -15,7 +15,7 @@ const MOST: usize = 1_000_000;
 
 type Triangle = [Vec3; 3];
 
-/// Where a node's points are: `turn s + shift`.
+/// Placement of a node's points: `turn s + shift`.
 #[derive(Clone, Copy)]
 struct Placed {
     turn: Mat3,
@@ -72,7 +72,7 @@ impl<'a, 'i: 'a> Reader<'a, 'i> {
         self.ids.get(node.attribute(key)?.trim().strip_prefix('#')?).copied()
     }
 
-    /// What a node of the scene shows, and those in it.
+    /// Adds the shapes of a node of the scene, and of the nodes in it.
     fn node(&mut self, node: Node<'a, 'i>, outer: Placed, depth: usize) {
         if depth > DEEPEST || self.out.len() > MOST {
             return;

@@ -11,22 +11,22 @@ use crate::report::{ImportLog, SourceSpan};
 use crate::sides::over;
 use crate::turn::{X, Y, from_z_and_x};
 
-/// What a hardpoint of a corner is.
+/// Role of a hardpoint of a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
-    /// Of the lower arm: its pivots and its ball joint.
+    /// Lower arm: its pivots and its ball joint.
     LowerFront,
     /// See there.
     LowerRear,
     /// See there.
     LowerOuter,
-    /// Of the upper arm.
+    /// Upper arm.
     UpperFront,
     /// See there.
     UpperRear,
     /// See there.
     UpperOuter,
-    /// Of the tie rod.
+    /// Tie rod.
     TieInner,
     /// See there.
     TieOuter,
@@ -34,11 +34,11 @@ pub enum Role {
     WheelCentre,
     /// A point of the wheel's axis, inboard of the centre.
     Spindle,
-    /// Of a strut or coilover: on the body, and where it is clamped.
+    /// Strut or coilover: on the body, and at its clamp.
     StrutTop,
     /// See there.
     StrutBottom,
-    /// Of the push or pull rod: at the suspension, and at the rocker.
+    /// Push or pull rod: at the suspension, and at the rocker.
     RodOuter,
     /// See there.
     RodInner,
@@ -46,11 +46,11 @@ pub enum Role {
     RockerA,
     /// See there.
     RockerB,
-    /// Of a damper at the rocker or arm: on the body, and there.
+    /// Damper at the rocker or arm: on the body, and there.
     DamperChassis,
     /// See there.
     DamperMoving,
-    /// Of a spring, likewise.
+    /// Spring, likewise.
     SpringChassis,
     /// See there.
     SpringMoving,
@@ -339,13 +339,13 @@ pub fn plain(name: &str) -> String {
     out.trim_end_matches('_').to_owned()
 }
 
-/// What a hardpoint of that name is.
+/// Role of a hardpoint with this name.
 pub fn role_of(name: &str) -> Option<Role> {
     let name = plain(name);
     NAMES.iter().find(|(_, names)| names.contains(&name.as_str())).map(|(role, _)| *role)
 }
 
-/// What a rod, or a spring, is on.
+/// Part that a rod or a spring is attached to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Mount {
     /// The lower arm.
@@ -369,7 +369,7 @@ pub struct Link {
     pub ends: [Vec3; 2],
     /// Both pins of the cross at its inner end, of the body's and of its own, where the source has one.
     pub pins: Option<[Vec3; 2]>,
-    /// Where it is.
+    /// Position in the source.
     pub at: Option<SourceSpan>,
 }
 
@@ -387,17 +387,17 @@ impl Link {
 /// One corner of a vehicle.
 #[derive(Clone, Debug, Default)]
 pub struct Corner {
-    /// What is put behind the names of its bodies and joints.
+    /// Suffix of the names of its bodies and joints.
     pub suffix: String,
     /// Hardpoints, by what they are.
     pub points: BTreeMap<Role, Vec3>,
     /// Further links between body and upright.
     pub links: Vec<Link>,
-    /// What the push rod is on.
+    /// Part that the push rod is attached to.
     pub rod_on: Option<Mount>,
-    /// What the coilover, or the spring and damper, are on.
+    /// Part that the coilover, or the spring and damper, are attached to.
     pub spring_on: Option<Mount>,
-    /// What the damper is on, where that is something else.
+    /// Part that the damper is attached to, if it is another one.
     pub damper_on: Option<Mount>,
     /// True if a rack moves the tie rod.
     pub rack: bool,
@@ -411,7 +411,7 @@ pub struct Corner {
     pub end: Option<VehicleEnd>,
     /// The driver that moves its wheel up and down, where there is one already.
     pub bump: Option<usize>,
-    /// Where its file begins to tell of it.
+    /// Start of its description in the file.
     pub at: Option<SourceSpan>,
 }
 
@@ -655,7 +655,12 @@ impl Corner {
                 .along([0.0, 1.0, 0.0].into()),
         );
         let drives = Drives::Coordinate(Coordinate { joint: slide, name: "displacement" });
-        let steering = m.driver("steering", "no law in the source: fixed in the design configuration".into(), drives, Law::Held);
+        let steering = m.driver(
+            "steering",
+            "no law in the source: fixed in the design configuration".into(),
+            drives,
+            Law::Held,
+        );
         m.steering = Some(steering);
         notes.approximated(
             "motion",

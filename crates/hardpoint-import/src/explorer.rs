@@ -271,7 +271,7 @@ fn account(root: &Tree, notes: &mut ImportLog) {
     }
 }
 
-/// What the rod or the coilover is on.
+/// Reads the part that the rod or the coilover is attached to.
 fn mount(root: &Tree, corner: &mut Corner) {
     let outer = root.get("axle_config").unwrap_or(root);
     let Some(actuation) = outer.get("actuation") else { return };

@@ -1,4 +1,4 @@
-//! What a source leaves open: bodies that nothing holds, motions that nothing drives.
+//! Completion of what a source leaves open: bodies that nothing holds, motions that nothing drives.
 
 use std::collections::HashSet;
 
@@ -21,7 +21,7 @@ use crate::write;
 const SWING: f64 = 0.2;
 /// Or along this part of the mechanism's size.
 const STROKE: f64 = 0.05;
-/// What is off an axis by less than this part of the mechanism's size stays where it is when it turns.
+/// Distance from an axis, as a fraction of the mechanism's size, below which a point does not move when the axis turns.
 const OFF: f64 = 1e-6;
 /// Output times at which such a swing is tried.
 const TRIED: usize = 20;
@@ -77,7 +77,8 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
             {
                 left = now;
                 for driver in m.drivers[before..].iter().filter(|_| !only_one) {
-                    let why = "nothing drives it in the source: a driver holds it in the design configuration";
+                    let why =
+                        "nothing drives it in the source: a driver holds it in the design configuration";
                     notes.approximated("motion", driver.name.trim_end_matches("_held"), None, why);
                 }
             }
@@ -105,7 +106,9 @@ pub fn remark(m: &Mechanism, notes: &mut ImportLog, closes: bool) {
         if is_tree { format!("; it is a tree, in which no loop is closed{how}") } else { String::new() };
     let motions =
         if held == 1 { "its one motion is".to_owned() } else { format!("all of its {held} motions are") };
-    notes.remark(format!("nothing in the source drives it: {motions} fixed in the design configuration{loops}"));
+    notes.remark(format!(
+        "nothing in the source drives it: {motions} fixed in the design configuration{loops}"
+    ));
 }
 
 /// Takes as closed what is drawn open where it does not close, since what nothing drives is fixed in the design configuration.
@@ -275,17 +278,18 @@ fn straightened(m: &mut Mechanism, notes: &mut ImportLog) {
 /// The motions that nothing drives.
 #[derive(Default)]
 struct FreeMotions {
-    /// How many.
+    /// Number of them.
     count: usize,
     /// The joints that move in them.
     joints: Vec<usize>,
     /// The bodies that move in them.
     bodies: Vec<usize>,
-    /// Why that may be so in the design configuration only: a driver indicates, since what moves by its special proportions looks alike.
+    /// Note that this may be so in the design configuration only: a driver shows it, since special proportions look
+    /// alike.
     singular: Option<Box<Diagnostic>>,
 }
 
-/// What nothing drives.
+/// Motions that nothing drives.
 fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<Diagnostic>> {
     let refused = |message: String| {
         notes.diagnostic("HP0808", None, format!("the imported mechanism does not work: {message}"))
@@ -309,9 +313,12 @@ fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<Diagnost
                 (1..m.bodies.len()).filter(is).collect()
             };
             match &fault {
-                TopologyError::UnderDriven { freedom, joints, bodies, .. } => {
-                    Ok(FreeMotions { count: *freedom, joints: own(joints), bodies: named(bodies), singular: None })
-                }
+                TopologyError::UnderDriven { freedom, joints, bodies, .. } => Ok(FreeMotions {
+                    count: *freedom,
+                    joints: own(joints),
+                    bodies: named(bodies),
+                    singular: None,
+                }),
                 TopologyError::Singular { freedom, joints, bodies, .. } => Ok(FreeMotions {
                     count: *freedom,
                     joints: own(joints),
@@ -335,9 +342,9 @@ fn parsed(m: &Mechanism) -> Result<hardpoint_file::ModelFile, String> {
     })
 }
 
-/// What could be held, mostly by the joint's number.
+/// Motion that a driver could fix, mostly a coordinate by the joint's number.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-enum SharedModel {
+enum FixableMotion {
     /// A coordinate of it.
     Coordinate(usize, &'static str),
     /// Some of the angles between its bodies, these axes, together: to hold one turn of a body that else spins idly leaves as much to
@@ -356,7 +363,7 @@ enum SharedModel {
 /// Global axes and their letters.
 const AXES: [(&str, [f64; 3]); 3] = [("x", X), ("y", Y), ("z", Z)];
 
-impl SharedModel {
+impl FixableMotion {
     /// The drivers that hold it.
     fn drivers(&self, m: &Mechanism) -> Vec<(String, Drives)> {
         let turn = |joint: usize, (letter, axis): (&str, [f64; 3])| {
@@ -401,28 +408,29 @@ fn coordinates(joint: &Joint) -> &'static [hardpoint::joint::CoordinateType] {
 const ALL_AXES: &[usize] = &[0, 1, 2];
 const TOGETHER: [&[usize]; 4] = [ALL_AXES, &[0, 1], &[0, 2], &[1, 2]];
 
-/// What could be held, best first: coordinates of the joints that move, then turns and ways of their bodies, then of any body. A ball joint
-/// is held as a whole where it can be: the spin of a body between two of them is none of the freedoms that are counted.
-fn candidates<'m>(m: &'m Mechanism, left: &'m FreeMotions) -> impl Iterator<Item = SharedModel> + 'm {
+/// Motions that could be fixed, best first: coordinates of the joints that move, then rotations and translations of
+/// their bodies, then of any body. A ball joint is fixed as a whole if possible: the rotation of a body between two of
+/// them is none of the counted freedoms.
+fn candidates<'m>(m: &'m Mechanism, left: &'m FreeMotions) -> impl Iterator<Item = FixableMotion> + 'm {
     let joints = &left.joints;
     let free = joints.iter().flat_map(move |&joint| {
         let constant = ["distance", "revolute_spherical"].contains(&m.joints[joint].kind);
         let all = coordinates(&m.joints[joint]).iter().filter(move |_| !constant);
         let open = all.filter(move |c| !m.is_driven(Coordinate { joint, name: c.name }));
-        open.map(move |c| SharedModel::Coordinate(joint, c.name))
+        open.map(move |c| FixableMotion::Coordinate(joint, c.name))
     });
     let balls = joints.iter().filter(|j| left.count > 1 && m.joints[**j].kind == "spherical");
-    fn each(list: &[usize], held: fn(usize, usize) -> SharedModel) -> impl Iterator<Item = SharedModel> {
+    fn each(list: &[usize], held: fn(usize, usize) -> FixableMotion) -> impl Iterator<Item = FixableMotion> {
         list.iter().flat_map(move |&k| (0..AXES.len()).map(move |axis| held(k, axis)))
     }
-    let together = joints.iter().flat_map(|&j| TOGETHER.map(|axes| SharedModel::Turns(j, axes)));
-    let of_joints = each(joints, SharedModel::Turn).chain(together).chain(each(joints, SharedModel::Way));
+    let together = joints.iter().flat_map(|&j| TOGETHER.map(|axes| FixableMotion::Turns(j, axes)));
+    let of_joints = each(joints, FixableMotion::Turn).chain(together).chain(each(joints, FixableMotion::Way));
     let of = |list: &[usize]| {
-        each(list, SharedModel::BodyWay).chain(each(list, SharedModel::BodyTurn)).collect::<Vec<_>>()
+        each(list, FixableMotion::BodyWay).chain(each(list, FixableMotion::BodyTurn)).collect::<Vec<_>>()
     };
     let others: Vec<usize> = (1..m.bodies.len()).filter(|b| !left.bodies.contains(b)).collect();
     let of_bodies = of(&left.bodies).into_iter().chain(of(&others));
-    free.chain(balls.map(|j| SharedModel::Turns(*j, ALL_AXES))).chain(of_joints).chain(of_bodies)
+    free.chain(balls.map(|j| FixableMotion::Turns(*j, ALL_AXES))).chain(of_joints).chain(of_bodies)
 }
 
 /// Returns whether it moves from end to end in the first second.
@@ -445,7 +453,7 @@ fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
     let per_rad = if m.angle == "deg" { 180.0 / std::f64::consts::PI } else { 1.0 };
     let usual = if is_angle { SWING * per_rad } else { STROKE * m.size() };
     let wanted = match limits.map(|[low, high]| (-low, high)) {
-        // Both ways, or the one way that there is.
+        // Both directions, or the only one that is possible.
         Some((down, up)) if down > 0.0 && up > 0.0 => vec![(usual.min(down).min(up), false)],
         Some((down, up)) if up > 0.0 && down <= 0.0 => vec![(usual.min(up), true)],
         Some((down, _)) if down > 0.0 => vec![(-usual.min(down), true)],
@@ -467,7 +475,8 @@ fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
         }
     }
     let d = &mut m.drivers[driver];
-    (d.law, d.note) = (Law::Held, "nothing drives it in the source: fixed in the design configuration".into());
+    (d.law, d.note) =
+        (Law::Held, "nothing drives it in the source: fixed in the design configuration".into());
     notes.approximated(
         "motion",
         &name,

@@ -7,7 +7,9 @@ use hardpoint::space::{Pose, Quat, Vec3};
 use roxmltree::Node;
 
 use crate::law::{self, Language};
-use crate::markers::{JointSource, MarkerJoint, Marker, carrying, counted, is_drawn, join, linked, offset, screw, way};
+use crate::markers::{
+    JointSource, Marker, MarkerJoint, carrying, counted, is_drawn, join, linked, offset, screw, way,
+};
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Times};
 use crate::report::{ImportLog, SourceSpan};
 use crate::turn::home;
@@ -138,7 +140,7 @@ impl<'a, 'i> Object<'a, 'i> {
         listed.or(TYPES.get(k).copied()).map(str::to_owned)
     }
 
-    /// Where it is in what it is in.
+    /// Pose relative to its container.
     fn pose(&self, notes: &mut ImportLog) -> Pose {
         let of_link = self.placement("LinkPlacement", notes);
         self.placement("Placement", notes).or(of_link).unwrap_or_else(home)
@@ -165,7 +167,7 @@ impl<'a, 'i> Object<'a, 'i> {
         Some(Pose { rot, r: r.map(Option::unwrap_or_default).into() })
     }
 
-    /// What a link names: the object, the first path in it, and another document's file.
+    /// Target of a link: the object, the first path in it, and the file of another document.
     fn link(&self, property: &str) -> Option<(&'a str, String, &'a str)> {
         let node = self.value(property)?;
         let name = node.attribute("name").or_else(|| node.attribute("value"))?;
@@ -326,7 +328,12 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         for motion in motions {
             let (label, at) = (self.objects[motion].label(), self.objects[motion].at());
             if let Err(why) = self.motion(motion) {
-                self.notes.refused("motion", label, at, format!("{why}; what it drives is fixed in the design configuration"));
+                self.notes.refused(
+                    "motion",
+                    label,
+                    at,
+                    format!("{why}; what it drives is fixed in the design configuration"),
+                );
             }
         }
         self.times();
@@ -502,7 +509,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         (ends != [None, None]).then(|| [0, 1].map(|k| ends[k].unwrap_or(open[k])))
     }
 
-    /// What an end of a joint is on: `Face`, `Edge` or `Vertex`; or a whole part.
+    /// Element that an end of a joint is on: `Face`, `Edge` or `Vertex`; or a whole part.
     fn element(&self, joint: &'a str, k: usize) -> &'static str {
         let reference = self.objects[joint].link(&format!("Reference{k}"));
         let sub = reference.map(|(_, sub, _)| sub).unwrap_or_default();
@@ -510,8 +517,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         ["Face", "Edge", "Vertex"].into_iter().find(|e| last.starts_with(e)).unwrap_or_default()
     }
 
-    /// A distance between two surfaces, lines or points. What kind of surface a face is is in its shape alone; how its frame lies as
-    /// drawn, where the distance holds, mostly indicates.
+    /// A distance between two surfaces, lines or points. The kind of surface of a face is in its shape alone; the
+    /// position of its frame in the design configuration, where the distance holds, mostly indicates it.
     fn distance(&mut self, called: JointSource<'_>, elements: [&str; 2], ends: [Marker; 2], said: f64) {
         // The face, or else the edge, comes first.
         let rank = |e: &str| ["Face", "Edge", "Vertex"].iter().position(|x| *x == e).unwrap_or(3);

@@ -60,7 +60,7 @@ pub use mechanism::Mechanism;
 pub use report::{ElementOutcome, Entry, ImportErrors, ImportLog, Report, SourceLocation, SourceSpan};
 pub use series::{Difference, Series, StoredPose};
 
-/// What a source says of other files: their bytes by the path that it names, where they can be read.
+/// Access to other files of a source: their bytes by the path that the source names, if they can be read.
 pub type Resolve<'r> = &'r dyn Fn(&str) -> Option<Vec<u8>>;
 
 /// A mechanism of another program, as a model file.
@@ -68,13 +68,13 @@ pub type Resolve<'r> = &'r dyn Fn(&str) -> Option<Vec<u8>>;
 pub struct ImportedModel {
     /// The model file's text.
     pub text: String,
-    /// What became of every element of the source.
+    /// Outcome of every element of the source.
     pub report: Report,
     /// Files that it refers to, by their paths from its folder.
     pub files: Vec<(String, Vec<u8>)>,
     /// The motion that the source has stored.
     pub series: Option<Series>,
-    /// Why the model cannot be driven as it is, if so. The text is there all the same, for somebody to mend it.
+    /// Reason why the model cannot be driven, if so. The text is complete all the same, for a user to correct it.
     pub fault: Option<ImportErrors>,
 }
 
@@ -99,9 +99,9 @@ pub struct Input<'s> {
 pub struct Format {
     /// The name by which it can be requested.
     pub name: &'static str,
-    /// What it is.
+    /// Description of the format.
     pub about: &'static str,
-    /// How names of its files end.
+    /// Endings of its files' names.
     pub endings: &'static [&'static str],
     /// True if a text (the first part of it) looks like it.
     looks: fn(&str) -> bool,
@@ -155,7 +155,7 @@ impl Format {
 const ROBOTS: [&str; 3] = ["urdf", "sdf", "mjcf"];
 /// Tables, which many keep their hardpoints in.
 const TABLES: [&str; 7] = ["csv", "tsv", "txt", "xlsx", "xlsm", "xls", "ods"];
-/// So much of a file is looked at to tell its format.
+/// Number of bytes of a file that are examined to identify its format.
 const LOOKED_AT: usize = 1 << 16;
 /// Places in files of robots agree to about this part of the mechanism's size.
 const FEW_DIGITS: f64 = 1e-4;

@@ -41,7 +41,7 @@ impl Marker {
     }
 }
 
-/// How the second marker is to the first, as the coordinates of joints count.
+/// Offset of the second marker from the first, as the coordinates of joints count.
 pub struct Offset {
     /// Turn about the first's z, in rad.
     pub angle: f64,
@@ -54,14 +54,14 @@ pub fn offset(i: &Marker, j: &Marker) -> Offset {
     Offset { angle: angle_about(i.z(), i.x(), j.x()), displacement: i.z().dot(j.pose.r - i.pose.r) }
 }
 
-/// What a joint is called and where it is in the source.
+/// Name and position of a joint in the source.
 #[derive(Clone, Copy, Debug)]
 pub struct JointSource<'s> {
-    /// What it is in the source.
+    /// Kind in the source.
     pub kind: &'s str,
     /// Name.
     pub name: &'s str,
-    /// Where it is.
+    /// Position in the source.
     pub at: Option<SourceSpan>,
 }
 
@@ -259,9 +259,13 @@ pub fn linked(
     }
 }
 
-/// How body j slides along an axis against body i, and how it turns about it: coordinates of joints with their factors. Either of one
-/// joint between both, or of those that carry them on a third.
-pub fn relative(joints: &[MarkerJoint], [i, j]: [usize; 2], axis: Vec3) -> Option<[Vec<(Coordinate, f64)>; 2]> {
+/// Coordinates of sliding along an axis and rotation about it of body j relative to body i: coordinates of joints with
+/// their factors. Either of one joint between both, or of those that carry them on a third body.
+pub fn relative(
+    joints: &[MarkerJoint],
+    [i, j]: [usize; 2],
+    axis: Vec3,
+) -> Option<[Vec<(Coordinate, f64)>; 2]> {
     let bases = joints.iter().flat_map(|k| k.markers.map(|m| m.body));
     let bases: BTreeSet<usize> = bases.chain([i, j]).collect();
     // The joint between both, if there is one, is met with body i as the base.
@@ -336,7 +340,7 @@ pub fn carrying<'j>(
     })
 }
 
-/// How a joint's coordinate counts for a body and an axis: up or down.
+/// Sign of a joint's coordinate for a body and an axis.
 pub fn way(joint: &MarkerJoint, body: usize, axis: Vec3) -> f64 {
     let sign = if joint.markers[1].body == body { 1.0 } else { -1.0 };
     sign * joint.markers[0].z().dot(axis).signum()

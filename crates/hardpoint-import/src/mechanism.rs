@@ -1,4 +1,5 @@
-//! What every format says, in one form: bodies, joints, couplers, drivers in the design configuration. Importers fill it, one writer makes a model file of it.
+//! Common form of all formats: bodies, joints, couplers, drivers in the design configuration. Importers fill it; one
+//! writer makes a model file of it.
 
 use std::collections::{HashMap, HashSet};
 
@@ -25,7 +26,7 @@ pub struct Mechanism {
     pub joints: Vec<Joint>,
     /// Linear relations of joint coordinates.
     pub couplers: Vec<Coupler>,
-    /// What is prescribed.
+    /// Drivers.
     pub drivers: Vec<Driver>,
     /// Points whose motion is wanted.
     pub points: Vec<Point>,
@@ -166,7 +167,7 @@ pub struct Times {
 pub struct Body {
     /// Name in the model file.
     pub name: String,
-    /// What the source calls it.
+    /// Name in the source.
     pub note: String,
     /// Reference frame in the design configuration.
     pub pose: Option<Pose>,
@@ -186,7 +187,7 @@ pub struct Mesh {
 pub struct Joint {
     /// Name in the model file.
     pub name: String,
-    /// What the source calls it.
+    /// Name in the source.
     pub note: String,
     /// The joint type, as model files name it.
     pub kind: &'static str,
@@ -206,16 +207,16 @@ pub struct Joint {
     pub length: Option<f64>,
     /// Between which values the source lets its coordinate go.
     pub limits: Option<[f64; 2]>,
-    /// What it is drawn as.
+    /// Shape in drawings.
     pub draw: Option<&'static str>,
 }
 
 /// A coordinate of a joint, by the joint's number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coordinate {
-    /// Which joint.
+    /// Index of the joint.
     pub joint: usize,
-    /// Which of its coordinates.
+    /// Name of its coordinate.
     pub name: &'static str,
 }
 
@@ -224,7 +225,7 @@ pub struct Coordinate {
 pub struct Coupler {
     /// Name in the model file.
     pub name: String,
-    /// What the source calls it.
+    /// Name in the source.
     pub note: String,
     /// Coordinates and their coefficients, per unit of the mechanism.
     pub terms: Vec<(Coordinate, f64)>,
@@ -237,15 +238,15 @@ pub struct Coupler {
 pub struct Driver {
     /// Name in the model file.
     pub name: String,
-    /// What the source calls it.
+    /// Name in the source.
     pub note: String,
-    /// What it prescribes.
+    /// Prescribed quantity.
     pub drives: Drives,
     /// Over time, counted from the drawing.
     pub law: Law,
 }
 
-/// What a driver prescribes.
+/// Quantity that a driver prescribes.
 #[derive(Clone, Copy, Debug)]
 pub enum Drives {
     /// A joint's coordinate.
@@ -270,7 +271,7 @@ pub enum Drives {
     },
 }
 
-/// How a driven number goes over time.
+/// Law of a driver.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {
     /// It stays in the design configuration.
@@ -290,7 +291,7 @@ pub struct Point {
     pub name: String,
     /// The body.
     pub body: usize,
-    /// Where it is in the design configuration.
+    /// Position in the design configuration.
     pub at: Vec3,
 }
 
@@ -453,7 +454,7 @@ impl Mechanism {
         }
     }
 
-    /// How large it is: the greatest distance of two of its places along an axis, above zero.
+    /// Size of the mechanism: the largest distance of two of its points along an axis, above zero.
     pub fn size(&self) -> f64 {
         let places = self.joints.iter().flat_map(|j| j.at.iter().copied());
         let places: Vec<Vec3> = places.chain(self.hardpoints.iter().map(|h| h.1)).collect();

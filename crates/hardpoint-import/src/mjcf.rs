@@ -222,13 +222,13 @@ fn included(input: &Input<'_>, notes: &mut ImportLog) -> Vec<(String, String)> {
     texts
 }
 
-/// Where an included file may lie: from the folder of the main file, or from that of the one which includes it.
+/// Possible paths of an included file: from the folder of the main file, or from that of the including file.
 fn paths_of(path: &str, from: &str) -> Vec<String> {
     let own = from.rsplit_once('/').map(|(folder, _)| format!("{folder}/{path}"));
     std::iter::once(path.to_owned()).chain(own).collect()
 }
 
-/// What `compiler` says of how the rest is meant.
+/// Settings of `compiler`, which define the meaning of the rest.
 struct Compiler {
     degrees: bool,
     euler: String,
@@ -245,7 +245,7 @@ impl Default for Compiler {
 /// Attributes by element, as a class of defaults gives them.
 type Class = HashMap<(String, String), String>;
 
-/// Where in the tree of bodies.
+/// Position in the tree of bodies.
 #[derive(Clone)]
 struct Inside {
     body: usize,
@@ -257,7 +257,7 @@ struct Inside {
 /// A joint of a body.
 struct JointOnBody<'d> {
     element: Element<'d>,
-    /// What its coordinates count from.
+    /// Frame of its coordinates.
     pose: Pose,
     class: Option<String>,
 }
@@ -404,7 +404,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         out
     }
 
-    /// What is in a body, or in a frame in it: `inside` says where its coordinates count from.
+    /// Reads a body, or a frame in it; `inside` is the frame of its coordinates.
     fn body(&mut self, element: Element<'d>, inside: &Inside, name: &str) {
         if inside.depth > DEEPEST {
             self.notes.problem_with(

@@ -1,4 +1,4 @@
-//! What became of every element of the source, and what is wrong with it.
+//! Report of an import: the outcome of every element of the source, and the errors.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt;
@@ -15,7 +15,7 @@ const MOST_PROBLEMS: usize = 200;
 /// Distance of marks in a text, bytes; each mark has the number of characters before it.
 const MARK: usize = 1024;
 
-/// What became of an element.
+/// Outcome of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ElementOutcome {
@@ -31,10 +31,10 @@ pub enum ElementOutcome {
     NotUnderstood,
 }
 
-/// Where something is: bytes of one of the texts that a source consists of.
+/// Position in a source: bytes of one of the texts that it consists of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SourceSpan {
-    /// Which text: the file itself is the first, what it includes follows.
+    /// Index of the text: the file itself is the first, included files follow.
     pub text: usize,
     /// First byte.
     pub start: usize,
@@ -42,7 +42,7 @@ pub struct SourceSpan {
     pub end: usize,
 }
 
-/// Where something is, for people.
+/// Position for people: file, line, column.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SourceLocation {
     /// The file's name.
@@ -53,22 +53,22 @@ pub struct SourceLocation {
     pub column: usize,
 }
 
-/// What became of one element.
+/// Outcome of one element.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Entry {
-    /// What became of it.
+    /// Outcome.
     pub fate: ElementOutcome,
-    /// What it is in the source: `joint`, `PART`.
+    /// Kind in the source: `joint`, `PART`.
     pub kind: String,
     /// Name there, or none.
     pub name: String,
-    /// Where it is in the source.
+    /// Position in the source.
     pub place: Option<SourceLocation>,
-    /// Why, or how.
+    /// Reason, or manner.
     pub why: String,
 }
 
-/// What became of every element of a source.
+/// Outcomes of every element of a source.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Report {
     /// In words, what the source is.
@@ -189,16 +189,16 @@ impl fmt::Display for ImportErrors {
 
 impl std::error::Error for ImportErrors {}
 
-/// What an importer indicates while it reads.
+/// Log of an importer while it reads.
 #[derive(Debug)]
 pub struct ImportLog {
     /// The texts that there are.
     sources: Vec<Source>,
     /// Places of the lines and characters of these texts.
     indexes: Vec<Index>,
-    /// What became of what.
+    /// Outcomes so far.
     pub report: Report,
-    /// What is wrong; where there is any of it there is no model.
+    /// Errors; with any of them there is no model.
     problems: Vec<(usize, Diagnostic)>,
     /// Text, line, column and message of these.
     known: HashSet<(usize, Option<usize>, Option<usize>, String)>,
@@ -248,7 +248,7 @@ fn begins(bytes: &[u8]) -> usize {
 }
 
 impl ImportLog {
-    /// Of a file, as yet empty.
+    /// Empty log of a file.
     pub fn new(file: &str, text: &str) -> Self {
         let sources = vec![Source::new(&printable(file), text)];
         let indexes = vec![Index::new(text)];
@@ -263,7 +263,7 @@ impl ImportLog {
         self.sources.len() - 1
     }
 
-    /// Where that is, for people.
+    /// Position for people.
     pub fn place(&self, at: SourceSpan) -> Option<SourceLocation> {
         let source = self.sources.get(at.text)?;
         let (line, column) = self.indexes[at.text].line_column(&source.text, at.start);
@@ -322,7 +322,7 @@ impl ImportLog {
         }
     }
 
-    /// How much is wrong.
+    /// Number of errors.
     pub fn problem_count(&self) -> usize {
         self.problems.len()
     }

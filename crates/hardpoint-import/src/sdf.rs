@@ -80,7 +80,7 @@ const IRRELEVANT: [&str; 22] = [
 ];
 /// Gravity of SDFormat where a source names none, m/s^2.
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.8];
-/// What has a place in a model or world.
+/// Elements with a pose in a model or world.
 const PLACED: [&str; 5] = ["link", "frame", "joint", "model", "include"];
 
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
@@ -206,7 +206,7 @@ struct Model<'d> {
     node: Node<'d, 'd>,
     /// The number of its text.
     text: usize,
-    /// What comes before the names in it.
+    /// Prefix of the names in it.
     scope: String,
     /// The element that includes it, and the number of that one's text.
     include: Option<(usize, Node<'d, 'd>)>,
@@ -243,11 +243,11 @@ struct Reader<'d, 'n> {
     documents: &'d [Option<Document<'d>>],
     /// In an order in which what contains comes after what is in it.
     models: Vec<Model<'d>>,
-    /// Of the links, by their names with those of the models that they are in.
+    /// Bodies of the links, by their names with those of the models that contain them.
     bodies: BTreeMap<String, usize>,
     /// Likewise.
     frames: BTreeMap<String, Frame>,
-    /// What comes before the names in each model.
+    /// Prefixes of the names in each model.
     scopes: BTreeSet<String>,
     /// The names of all joints, likewise.
     names: BTreeSet<String>,
@@ -415,7 +415,8 @@ impl<'d> Reader<'d, '_> {
         let of_model = Frame { body: model.canonical.unwrap_or(GROUND), pose: place };
         let elements =
             children(model.node).filter(|n| ["link", "frame", "joint"].contains(&n.tag_name().name()));
-        let mut waiting: Vec<UnplacedItem<'d>> = model.inner.iter().map(|k| UnplacedItem::Model(*k)).collect();
+        let mut waiting: Vec<UnplacedItem<'d>> =
+            model.inner.iter().map(|k| UnplacedItem::Model(*k)).collect();
         waiting.extend(elements.map(UnplacedItem::Element));
         loop {
             let before = waiting.len();

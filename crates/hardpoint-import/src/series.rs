@@ -9,7 +9,7 @@ use hardpoint_file::ModelFile;
 /// Times nearer than this, of a second or of themselves, are the same: files have about ten digits.
 const SAME_TIME: f64 = 1e-9;
 
-/// What a source says of how its bodies moved.
+/// Stored motion of a source's bodies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
     /// The times.
@@ -21,7 +21,7 @@ pub struct Series {
 /// A body at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredPose {
-    /// Where its frame is.
+    /// Pose of its frame.
     pub pose: Pose,
     /// Velocity of the frame's origin, angular velocity, acceleration and angular acceleration, as far as they are stored.
     pub rates: [Option<Vec3>; 4],
@@ -32,13 +32,14 @@ pub struct StoredPose {
 pub struct Difference {
     /// Number of times were compared.
     pub times: usize,
-    /// Of places, in the file's unit.
+    /// Difference of positions, in the file's unit.
     pub place: f64,
-    /// Of orientations, rad.
+    /// Difference of orientations, rad.
     pub turn: f64,
-    /// Of velocities, angular velocities, accelerations and angular accelerations, in the file's unit of length, rad and s.
+    /// Differences of velocities, angular velocities, accelerations and angular accelerations, in the file's unit of
+    /// length, rad and s.
     pub rates: [f64; 4],
-    /// How large those are.
+    /// Largest values of those.
     pub largest: [f64; 4],
 }
 

@@ -10,7 +10,7 @@ use crate::turn::{X, Y, Z};
 /// Axes nearer to each other than this, in rad, may be meant to be parallel: half a turn is often written as 3.14.
 pub const MEANT: f64 = 2e-3;
 
-/// What was straightened.
+/// Axes that were straightened.
 pub struct StraightenedAxes {
     /// The joints whose axes are turned.
     pub joints: Vec<String>,

@@ -24,7 +24,7 @@ pub const FORMAT: Format = Format {
 
 /// The columns of parameters.
 const PARAMETERS: [&str; 4] = ["parameter_name", "symmetry", "type", "value"];
-/// What a row's columns are, where the block does not say.
+/// Default columns of a row.
 const COLUMNS: [&str; 5] = ["hardpoint_name", "symmetry", "x_value", "y_value", "z_value"];
 
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {

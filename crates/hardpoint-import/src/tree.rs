@@ -114,7 +114,7 @@ fn blanked(text: &str) -> String {
     String::from_utf8(out).unwrap_or_default()
 }
 
-/// What is open while the events come: a map with its next key, or a list.
+/// Open container while events arrive: a map with its next key, or a list.
 enum Open {
     Map(SourceSpan, Vec<(String, SourceSpan, Tree)>, Option<(String, SourceSpan)>, HashSet<String>),
     List(SourceSpan, Vec<Tree>),

@@ -42,7 +42,7 @@ pub fn roll_pitch_yaw(angles: [f64; 3]) -> Mat3 {
     sequence("XYZ", angles)
 }
 
-/// Of a quaternion `[w, x, y, z]`; none where it is null.
+/// Rotation of a quaternion `[w, x, y, z]`; `None` if it is null.
 pub fn quaternion(q: [f64; 4]) -> Option<Mat3> {
     Some(Quat::from_array(q)?.rotation())
 }

@@ -185,7 +185,8 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         reader.notes.problem_with("HP0802", None, message, "leave out of the source what need not move");
         return None;
     }
-    let mut joints: Vec<JointDeclaration<'_, '_>> = named(robot, "joint").filter_map(|j| reader.written(j)).collect();
+    let mut joints: Vec<JointDeclaration<'_, '_>> =
+        named(robot, "joint").filter_map(|j| reader.written(j)).collect();
     reader.followers(robot, &mut joints);
     reader.tree(&joints);
     reader.mimics(&joints);
@@ -401,8 +402,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
         if let Some(j) = waiting.first().map(|k| &joints[*k]) {
             let message = format!("the links `{}` and `{}` carry each other in a circle", j.parent, j.child);
-            let help =
-                "one of them has to be carried by a link that is; loops are closed by `loop_joint`";
+            let help = "one of them has to be carried by a link that is; loops are closed by `loop_joint`";
             self.notes.problem_with("HP0803", xml::at(0, j.node), message, help);
             return;
         }
@@ -474,7 +474,13 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         };
         if type_name == "fixed" {
             let ends = [(i, at_i), (j, at_j)].map(|(body, pose)| Marker { body, pose });
-            return robot::weld(&mut self.m, self.notes, JointSource { kind: "joint", name, at }, "fixed", ends);
+            return robot::weld(
+                &mut self.m,
+                self.notes,
+                JointSource { kind: "joint", name, at },
+                "fixed",
+                ends,
+            );
         }
         // A universal joint turns about x of the first frame and y of the second.
         let axes = if kind == "universal" { [X, Y].map(Vec3::from) } else { [axis; 2] };
@@ -488,7 +494,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     }
 }
 
-/// Where a joint is in the design configuration: at zero, or where the joint that it follows puts it.
+/// Coordinate of a joint in the design configuration: zero, or the value given by the joint that it follows.
 fn value_as_drawn(joints: &[JointDeclaration<'_, '_>], k: usize, depth: usize) -> f64 {
     let Some(mimic) = &joints[k].mimic else { return 0.0 };
     let master = joints.iter().position(|j| j.name == mimic.joint).filter(|_| depth < DEEPEST);

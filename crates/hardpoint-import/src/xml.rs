@@ -1,4 +1,4 @@
-//! What the formats in XML share: places of elements, numbers in attributes.
+//! Common parts of the XML formats: positions of elements, numbers in attributes.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +16,7 @@ const UNLIMITED: f64 = 1e15;
 /// Maximum number of attributes of an element: parsers compare each with all others.
 const MOST_ATTRIBUTES: usize = 1000;
 
-/// Why a text is not handed to the parser.
+/// Reason why a text is not given to the parser.
 enum Unfit {
     /// Elements are nested too deep, from this byte on.
     Deep(usize),
@@ -151,7 +151,7 @@ fn is_of_name(b: u8) -> bool {
     b.is_ascii_alphanumeric() || b"_-.".contains(&b) || !b.is_ascii()
 }
 
-/// Where the names of elements and attributes have a colon.
+/// Positions of elements and attributes with a colon in their names.
 fn colons(text: &[u8]) -> Vec<usize> {
     let (mut out, mut inside, mut quote) = (Vec::new(), false, None);
     for (k, &b) in text.iter().enumerate() {
@@ -167,7 +167,7 @@ fn colons(text: &[u8]) -> Vec<usize> {
     out
 }
 
-/// Why a parser would take too long, or too much memory, with a text.
+/// Reason why a parser would need too much time or memory for a text.
 fn unfit(text: &str) -> Option<Unfit> {
     let bytes = text.as_bytes();
     let (mut k, mut depth) = (0, 0_usize);
@@ -230,7 +230,7 @@ fn offset(text: &str, pos: roxmltree::TextPos) -> usize {
     line + column
 }
 
-/// Where an element is: its name.
+/// Position of an element: its name.
 pub fn at(text: usize, node: Node<'_, '_>) -> Option<SourceSpan> {
     let start = node.range().start;
     Some(SourceSpan { text, start, end: start + 1 + node.tag_name().name().len() })
@@ -325,7 +325,7 @@ pub fn range(low: f64, high: f64) -> Option<[f64; 2]> {
     (low < high && low.abs() < UNLIMITED && high.abs() < UNLIMITED).then_some([low, high])
 }
 
-/// Where an attribute's value is.
+/// Position of an attribute's value.
 pub fn attribute_at(text: usize, node: Node<'_, '_>, name: &str) -> Option<SourceSpan> {
     let range = node.attribute_node(name)?.range_value();
     Some(SourceSpan { text, start: range.start, end: range.end })

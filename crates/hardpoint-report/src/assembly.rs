@@ -1,4 +1,4 @@
-//! What was open in the drawing, and how the mechanism closed it.
+//! Open constraints of the design configuration, and their assembly.
 
 use hardpoint::joint::Quantity;
 use hardpoint::model::Model;
@@ -10,10 +10,10 @@ use crate::facts::table;
 use crate::figures::{symbol, with_unit};
 use crate::page::Table;
 
-/// How the mechanism was closed before it moved.
+/// Assembly of the mechanism before its motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct AssemblyFact {
-    /// What was open, largest gaps first.
+    /// Open constraints, largest gaps first.
     pub gaps: Vec<GapFact>,
     /// The bodies that moved.
     pub moved: Vec<MovedFact>,
@@ -35,16 +35,16 @@ pub struct GapFact {
     pub unit: &'static str,
 }
 
-/// How far a body moved from where it was drawn.
+/// Displacement of a body by the assembly.
 #[derive(Clone, Debug, Serialize)]
 pub struct MovedFact {
     /// The body.
     pub body: String,
-    /// How far its origin moved.
+    /// Displacement of its origin.
     pub distance: f64,
     /// The unit of that.
     pub distance_unit: &'static str,
-    /// How far it turned.
+    /// Angle of its rotation.
     pub angle: f64,
     /// The unit of that.
     pub angle_unit: &'static str,
@@ -87,7 +87,7 @@ impl AssemblyFact {
         }
     }
 
-    /// What was open, and what moved.
+    /// Tables of the open constraints and of the displaced bodies.
     pub fn tables(&self) -> [Table; 2] {
         let gap = |g: &GapFact| vec![format!("{} {}", g.kind, g.name), g.size_text()];
         let moved = |m: &MovedFact| {

@@ -1,4 +1,4 @@
-//! What a calibration comes to: the geometry that explains measurements, how well it is known, and what is not, in the model's units.
+//! Result of a calibration: the fitted geometry, its accuracy, and unidentifiable changes, in the model's units.
 
 use std::io::Write;
 
@@ -41,13 +41,14 @@ pub struct CalibrateFacts {
     pub file: String,
     /// The file of what was measured.
     pub data: String,
-    /// How it ended: `found`, `not_told` (found, but not all variables are reported), `iteration_limit` or `interrupted`.
+    /// Status at the end: `found`, `not_told` (found, but not all variables are determined), `iteration_limit` or
+    /// `interrupted`.
     pub status: &'static str,
     /// The same in words, and what to do.
     pub message: String,
     /// The sum of squared residuals, or of the loss, in standard deviations: in the design configuration, and of the design found.
     pub objective: [f64; 2],
-    /// What it cost.
+    /// Cost of the search.
     pub evaluations: Evaluations,
     /// Readings that were compared.
     pub readings: usize,
@@ -63,7 +64,7 @@ pub struct CalibrateFacts {
     pub variables: Vec<CalibratedVariable>,
     /// Pairs of variables that these readings hardly distinguishes, with their correlation.
     pub together: Vec<(String, String, f64)>,
-    /// What they do not tell at all.
+    /// Changes that the readings do not determine.
     pub untold: Vec<UntoldFact>,
     /// Variables that the mechanism cannot follow, and that stay.
     pub left_out: Vec<String>,
@@ -77,11 +78,11 @@ pub struct CalibrateFacts {
     pub far_off_count: usize,
     /// Postures that the mechanism in the design configuration does not reach: their readings are left out.
     pub not_reached: Vec<NotReachedFact>,
-    /// Which further readings would tell most, the best first.
+    /// Further readings with the most information, the best first.
     pub next: Vec<NextFact>,
     /// The files that were written.
     pub files: Vec<String>,
-    /// How long it took, s.
+    /// Duration, s.
     pub seconds: f64,
 }
 
@@ -100,7 +101,7 @@ pub struct CalibratedVariable {
     pub sigma: Option<f64>,
 }
 
-/// What readings do not tell.
+/// A change that the readings do not determine.
 #[derive(Clone, Debug, Serialize)]
 pub struct UntoldFact {
     /// The variables that go together, by how much, and their units: the largest part is 1.
@@ -114,7 +115,7 @@ pub struct UntoldFact {
 pub struct FarOff {
     /// The line of the file.
     pub line: u64,
-    /// What was read.
+    /// Column of the reading.
     pub column: String,
     /// That, and what the design found gives.
     pub values: [f64; 2],
@@ -122,7 +123,7 @@ pub struct FarOff {
     pub unit: String,
     /// The difference in standard deviations.
     pub residual: f64,
-    /// What it counted, from 0 to 1.
+    /// Weight in the fit, from 0 to 1.
     pub weight: f64,
 }
 
@@ -131,20 +132,20 @@ pub struct FarOff {
 pub struct NotReachedFact {
     /// The line of the file.
     pub line: u64,
-    /// What happens on the way.
+    /// Description of the event.
     pub why: String,
 }
 
 /// A further reading.
 #[derive(Clone, Debug, Serialize)]
 pub struct NextFact {
-    /// What to measure.
+    /// Reading to take.
     pub measure: String,
     /// The standard deviation that is assumed, with `unit`.
     pub sigma: f64,
     /// Unit.
     pub unit: String,
-    /// Where the drivers stand: name, place, unit.
+    /// Values of the drivers: name, value, unit.
     pub drivers: Vec<(String, f64, String)>,
     /// The number of what is not reported, from 1, that it would tell.
     pub tells: Option<usize>,
@@ -156,18 +157,18 @@ pub struct NextFact {
     pub variable_unit: Option<String>,
 }
 
-/// What the facts are made of.
+/// Inputs of the facts.
 #[derive(Clone, Copy, Debug)]
 pub struct CalibrationInputs<'a> {
     /// The model file.
     pub file: &'a ModelFile,
-    /// What was measured, and its file's name.
+    /// Measurements, and the name of their file.
     pub measured: &'a MeasuredData,
     /// The file of what was measured.
     pub data: &'a str,
-    /// What residuals counted.
+    /// Loss function of the residuals.
     pub loss: Loss,
-    /// What was found.
+    /// Result of the calibration.
     pub found: &'a Calibration,
 }
 
@@ -202,7 +203,7 @@ impl CalibrationInputs<'_> {
         readings.iter().zip(&self.found.fitted).filter_map(|(r, f)| Some((r, f.as_ref()?)))
     }
 
-    /// Where the drivers of a posture stand: name, place, unit.
+    /// Values of the drivers in a posture: name, value, unit.
     fn stands(&self, places: &[f64]) -> Vec<(String, f64, String)> {
         let model = self.model();
         let of = |(driver, place): (&hardpoint::model::Driver, &f64)| {
@@ -447,7 +448,7 @@ impl CalibrateFacts {
         }
     }
 
-    /// What it comes to, line by line.
+    /// Facts of the result, line by line.
     pub fn rows(&self) -> Vec<(&'static str, String)> {
         let mut rows = vec![("result", self.message.clone())];
         let of = format!("{} in {}", count(self.readings, "reading"), count(self.postures, "posture"));
@@ -474,7 +475,10 @@ impl CalibrateFacts {
             rows.push(("left out", format!("{names}: the mechanism cannot follow")));
         }
         if !self.as_drawn.is_empty() {
-            rows.push(("nominal", format!("{} stood in the design configuration", some_of(&self.as_drawn, ", "))));
+            rows.push((
+                "nominal",
+                format!("{} stood in the design configuration", some_of(&self.as_drawn, ", ")),
+            ));
         }
         for n in self.not_reached.iter().take(LISTED) {
             rows.push(("not reached", format!("line {}: {}", n.line, n.why)));
@@ -487,7 +491,7 @@ impl CalibrateFacts {
         rows
     }
 
-    /// What is printed besides: variables, what is not reported, readings far off, what to measure next.
+    /// Further tables: variables, unidentifiable changes, readings far off, readings to add.
     pub fn tables(&self) -> Vec<Table> {
         let header = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
         let table = |title: &str, note: &str, names: &[&str], rows: Vec<Vec<String>>| {

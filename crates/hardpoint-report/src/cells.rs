@@ -66,7 +66,7 @@ impl Cells {
         }
     }
 
-    /// What goes beyond that many cells.
+    /// Cells beyond that number, split off.
     pub fn split_off(&mut self, at: usize) -> Self {
         match self {
             Self::Whole(cells) => Self::Whole(cells.split_off(at.min(cells.len()))),

@@ -1,4 +1,4 @@
-//! What is in which column of the files of results: one rule for all of them (`docs/results.md`).
+//! Columns of the result files: one rule for all of them (`docs/results.md`).
 //!
 //! A component of a vector is called after its order: `wheel.x`, `wheel.vx`, `wheel.ax`, `wheel.jx`; of an angular vector
 //! `wheel.omega_x`, `wheel.alpha_x`. What is a number by itself has the order in words: `toe`, `toe rate`,
@@ -18,7 +18,7 @@ use crate::figures::order_unit;
 /// A column.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Column {
-    /// What it holds.
+    /// Name of the column.
     pub name: String,
     /// Unit; `1` for a plain number.
     pub unit: String,
@@ -48,7 +48,7 @@ pub struct Columns<'m> {
     pub angles: Option<Angles>,
 }
 
-/// What is before a component of a position's derivative by time.
+/// Letter before a component of a position's time derivative.
 const LETTERS: [&str; 4] = ["", "v", "a", "j"];
 
 impl Columns<'_> {

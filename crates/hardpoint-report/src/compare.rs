@@ -36,13 +36,13 @@ pub struct CompareFacts {
     pub measures: Vec<CurveDifference>,
     /// The metrics that both have.
     pub metrics: Vec<Difference>,
-    /// What only the first file has, and what only the second one.
+    /// Entries of the first file only, and of the second file only.
     pub only_in: [Vec<String>; 2],
     /// Number of output times each was solved for.
     pub steps: [usize; 2],
     /// Output times, s.
     pub times: Vec<f64>,
-    /// What else there is to tell.
+    /// Further diagnostics.
     pub diagnostics: Vec<Diagnostic>,
 }
 
@@ -108,7 +108,7 @@ impl CompareFacts {
         self.hardpoints.is_empty() && self.parameters.is_empty() && self.only_in.iter().all(Vec::is_empty)
     }
 
-    /// What differs, and what it does to those measures that are wanted.
+    /// Tables of the differences, and of their effect on the requested measures.
     pub fn tables(&self, wanted: &dyn Fn(&str) -> bool) -> Vec<Table> {
         let of = |title: &str, what: &str, list: &[Difference]| {
             (!list.is_empty()).then(|| Table {
@@ -289,7 +289,7 @@ fn of_metrics([a, b]: [SolvedModel<'_>; 2], units: Units) -> Vec<Difference> {
     a.file.model.metrics.iter().enumerate().filter_map(compare).collect()
 }
 
-/// What a model has and another one has not, by name.
+/// Entries of a model that another one lacks, by name.
 fn only_in(model: &Model, other: &Model) -> Vec<String> {
     let names = |m: &Model| -> BTreeSet<(&'static str, String)> {
         let hardpoints = m.hardpoints.iter().filter(|h| !h.unnamed).map(|h| ("hardpoint", h.name.clone()));

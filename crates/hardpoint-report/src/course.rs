@@ -1,4 +1,4 @@
-//! What a whole run comes to, gathered window by window, so that the run itself need not fit into memory.
+//! Facts of a whole run, gathered window by window, so that the run itself need not fit into memory.
 
 use hardpoint::model::{Dimension, Model, OutputSource, VariableId};
 use hardpoint::motion::{Margin, Motion};
@@ -9,7 +9,7 @@ use hardpoint::{Footprint, SampledResults, Sampling, Solution};
 
 use crate::shifts::Shifts;
 
-/// What is kept of a run for the page and what is compared afterwards: that many bytes.
+/// Memory limit of the results that are stored for the page and for comparisons, in bytes.
 const KEPT_BYTES: usize = 64 << 20;
 /// Sensitivities of bodies are kept where that many output times of them fit.
 const ENOUGH_ROWS: usize = 512;
@@ -21,38 +21,38 @@ const AS_LARGE: f64 = 1e-9;
 /// A value that exceeds the largest so far by less than this part is not reported from it.
 const SAME: f64 = 1e-12;
 
-/// Gathers what a run comes to.
+/// Collector of the facts of a run.
 #[derive(Clone, Debug)]
 pub struct Gathering {
     course: Course,
     orders: Vec<(Dimension, usize)>,
     kept: SampledResults,
-    /// Where what is kept for the page is too coarse for metrics.
+    /// Results for metrics, if those stored for the page are too coarse.
     curves: Option<SampledResults>,
-    /// Where sensitivities of bodies are not kept.
+    /// Motion of bodies by the variables, if sensitivities of bodies are not stored.
     shifts: Option<Shifts>,
 }
 
-/// What a whole run comes to.
+/// Facts of a whole run.
 #[derive(Clone, Debug, Default)]
 pub struct Course {
     /// Output times solved.
     pub steps: usize,
     /// The last of them, s.
     pub last_time: Option<f64>,
-    /// How far the motion stays from singular positions.
+    /// Margins from singular positions.
     pub margins: MarginCourse,
     /// Some of the output times, with the facts of all.
     pub kept: Solution,
-    /// Of that many output times, each is kept.
+    /// Interval of stored output times.
     pub stride: usize,
     /// The curves of the metrics, where they are not taken from what is kept.
     curves: Option<Solution>,
-    /// How bodies move with the variables, where that is kept apart.
+    /// Motion of bodies by the variables, if it is stored separately.
     shifts: Option<Shifts>,
-    /// Of that many output times, metrics are taken from each.
+    /// Interval of the output times that metrics use.
     pub metric_stride: usize,
-    /// Of the motion.
+    /// Magnitude of the motion.
     magnitude: Magnitude,
     /// `peaks[(m * 3 + order) * variables + b]`: of the derivative of order of measure m by variable b.
     peaks: Vec<Peak>,
@@ -70,7 +70,7 @@ pub struct MarginCourse {
     pub span: [f64; 2],
 }
 
-/// Where a derivative is largest.
+/// Time and value of the largest derivative.
 #[derive(Clone, Debug, Default)]
 struct Peak {
     /// Values and times of those that come near to the largest, each larger than the one before.
@@ -161,12 +161,13 @@ impl Course {
         gathering.end(solution)
     }
 
-    /// What metrics are taken from.
+    /// Results that metrics use.
     pub fn curves(&self) -> &Solution {
         self.curves.as_ref().unwrap_or(&self.kept)
     }
 
-    /// How bodies move with the variables was kept at each of that many output times of those that are kept; `None` where it was not.
+    /// Interval, among the stored output times, of those with the motion of bodies by the variables; `None` if it was
+    /// not stored.
     pub(crate) fn shift_stride(&self) -> Option<usize> {
         if self.has_bodies() {
             return Some(1);
@@ -251,7 +252,7 @@ pub(crate) struct RoundOff {
     natural: Vec<f64>,
 }
 
-/// What remains of a number without round-off: 0 where it is no more than that.
+/// A number without round-off: 0 if it is no more than that.
 pub(crate) fn settled(x: f64, round_off: f64) -> f64 {
     if x.abs() <= round_off { 0.0 } else { x }
 }

@@ -1,5 +1,5 @@
-//! Why a mechanism cannot be driven, a run ended early, or a variable has no sensitivity: as diagnostics of
-//! the model file, in the user's names and units.
+//! Reasons why a mechanism cannot be driven, a run ended early, or a variable has no sensitivity, as diagnostics of the
+//! model file in the user's names and units.
 
 use hardpoint::Analysis;
 use hardpoint::joint::Quantity;
@@ -127,7 +127,7 @@ fn ended(file: &ModelFile, stop: &Stop, who: &str, left: String) -> Diagnostic {
     }
 }
 
-/// What stays open where a mechanism does not assemble.
+/// Notes on the gaps that remain if a mechanism does not assemble.
 fn gap_notes(file: &ModelFile, stop: &Stop, closed: f64) -> Vec<String> {
     let gaps: Vec<GapFact> = stop.remains.iter().map(|g| GapFact::new(&file.model, file.units, g)).collect();
     let at_best = |g: &GapFact| format!("{} `{}` stays open by {} at best", g.kind, g.name, g.size_text());

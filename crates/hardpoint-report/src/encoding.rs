@@ -1,4 +1,4 @@
-//! How a page's data is packed: its JSON and all its curves as one deflated block in base64.
+//! Encoding of a page's data: its JSON and all its curves as one deflated block in base64.
 //!
 //! A curve is one or more *tracks*: a curve that holds several numbers per step, such as the seven of a pose, has a track for each.
 //! What the page computes with is kept to the last bit of its `f32`; what it only draws and ranks, the sensitivities, to
@@ -29,11 +29,11 @@ use serde::Serialize;
 
 use crate::page::{Curve, Design, Payload};
 
-/// How far a value that is only drawn may be from its own, in parts of the range of its track.
+/// Maximum error of a value that is only drawn, relative to the range of its track.
 pub const ERROR: f64 = 1e-5;
 /// Steps of the grid within the range: half a step is 0.83e-5 of it, which leaves some of [`ERROR`] for the rounding to `f32`.
 const STEPS: f64 = 60_000.0;
-/// Where values are larger than that many ranges, the rounding to `f32` would take the rest of [`ERROR`].
+/// Maximum size of values in ranges: above it the rounding to `f32` would use the rest of [`ERROR`].
 const LARGEST: f64 = 25.0;
 /// Highest order of differences: beyond it the rounding grows faster than the curve's own part shrinks.
 const MOST_DIFFERENCES: u8 = 4;
@@ -43,7 +43,7 @@ const CONSTANT: u8 = 0;
 const SCALED: u8 = 8;
 const BITS: u8 = 16;
 
-/// How well the values of a curve are kept.
+/// Precision of a curve's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Precision {
     /// To the last bit of their `f32`.
@@ -145,8 +145,8 @@ fn each_curve_of(design: &mut Design, visit: &mut impl FnMut(&mut Curve, Precisi
     design.margin.iter_mut().for_each(|margin| visit(margin, Full, 1));
 }
 
-/// What has curves, and can be handed on with them laid out plainly, one number after the other: a curve is then its first number's place
-/// and how many it has. For whoever is in the same program, where nothing has to be packed.
+/// A value with curves that can be handed on in plain layout, one number after the other: a curve is then the index of
+/// its first number and their count. For callers in the same program, where nothing has to be packed.
 pub trait Plain: Serialize + Sized {
     /// Lays the curves out, and says in their place where they are.
     fn lay_out(&mut self, numbers: &mut Vec<f32>);
@@ -260,7 +260,7 @@ fn gaps(values: &[f32]) -> Vec<[u32; 2]> {
     gaps
 }
 
-/// What the values are near enough multiples of; `None` where nothing but their bits will do.
+/// Step of which the values are multiples, nearly; `None` if only their bits will do.
 fn scale(values: &[f32], precision: Precision) -> Option<f32> {
     if values.iter().all(|v| v.fract() == 0.0 && v.abs() < WHOLE) {
         return Some(1.0);
@@ -283,7 +283,7 @@ fn in_order(value: f32) -> i32 {
     if bits < 0 { -(bits & i32::MAX) } else { bits }
 }
 
-/// Of the differences of all orders those with the smallest numbers, signs folded in; the first are from zero.
+/// Differences of the order with the smallest numbers, signs folded in; the first are from zero.
 fn differences(mut numbers: Vec<i32>) -> (u8, Vec<u32>) {
     let folded = |r: i32| ((r << 1) ^ (r >> 31)) as u32;
     let (mut least, mut best, mut residuals) = (u64::MAX, 0, Vec::new());
@@ -313,7 +313,7 @@ mod tests {
 
     use crate::page::{Margin, tests::payload};
 
-    /// What the page makes of a track.
+    /// Values that the page decodes from a track.
     fn read(track: &Track) -> Vec<f32> {
         let missing = |k: u32| track.gaps.iter().any(|[first, length]| (*first..first + length).contains(&k));
         let mut numbers: Vec<i32> =

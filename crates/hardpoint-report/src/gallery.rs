@@ -8,13 +8,13 @@ use crate::page::{escape_text, fill};
 pub struct Card {
     /// Name.
     pub title: String,
-    /// What it says about itself.
+    /// Description in the model.
     pub description: Option<String>,
     /// Name of its file.
     pub file: String,
-    /// What keeps it from being shown, in a few words.
+    /// Reason why it cannot be shown, in a few words.
     pub wrong: Option<String>,
-    /// Where its page is.
+    /// Address of its page.
     pub link: String,
     /// Further pages of it, each with its name: its cases.
     pub more: Vec<(String, String)>,

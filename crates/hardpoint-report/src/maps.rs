@@ -29,7 +29,7 @@ pub struct MapFact {
     pub asked: usize,
     /// True if the user ended it before all were tried.
     pub interrupted: bool,
-    /// Why the others were not reached, row by row.
+    /// Reasons why the others were not reached, row by row.
     pub gaps: Vec<MapGap>,
     /// Per position, which of these ended its row before; `null` where it was reached or not tried.
     pub gap: Vec<Vec<Option<usize>>>,
@@ -48,7 +48,7 @@ pub struct MapLine {
     pub solved: usize,
     /// Number of there are.
     pub asked: usize,
-    /// Why the others were not reached.
+    /// Reasons why the others were not reached.
     pub gaps: Vec<String>,
 }
 
@@ -59,18 +59,18 @@ pub struct MapDriver {
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// Where it is, counted as its laws are.
+    /// Positions of the driver, counted like its laws.
     pub values: Vec<f64>,
 }
 
-/// Why a row of a map has an end.
+/// End of a row of a map, with the reason.
 #[derive(Clone, Debug, Serialize)]
 pub struct MapGap {
-    /// Where the two drivers stood when the mechanism could not go on.
+    /// Positions of the two drivers when the mechanism could not move on.
     pub drivers: [f64; 2],
     /// Stable code.
     pub code: &'static str,
-    /// What happened.
+    /// Description of the stop.
     pub message: String,
 }
 
@@ -134,7 +134,7 @@ impl MapFact {
         }
     }
 
-    /// What `summary.json` has of it.
+    /// Line of the map in `summary.json`.
     pub fn line(&self) -> MapLine {
         MapLine {
             name: self.name.clone(),
@@ -145,7 +145,7 @@ impl MapFact {
         }
     }
 
-    /// What the maps come to, for the terminal.
+    /// Table of the maps for the terminal.
     pub fn table(facts: &[Self]) -> Vec<Table> {
         facts.iter().map(Self::own_table).collect()
     }
@@ -350,7 +350,7 @@ impl MapFact {
         Ok(())
     }
 
-    /// Why a position was not reached: what ended its row on that side.
+    /// Reason why a position was not reached: the stop of its row on that side.
     fn why(&self, j: usize, i: usize) -> String {
         self.gap[j][i].map_or(String::new(), |gap| self.gap_line(&self.gaps[gap]))
     }

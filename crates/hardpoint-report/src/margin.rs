@@ -1,4 +1,4 @@
-//! How far a motion stays from singular positions, in words.
+//! Margin of a motion from singular positions, in words.
 
 use hardpoint::model::{Driver, Model};
 use hardpoint::motion::{Motion, StopKind};
@@ -28,13 +28,14 @@ pub struct MarginFact {
     pub joints: Vec<String>,
     /// Number of about 16 digits of the velocities are lost there.
     pub digits_lost: f64,
-    /// Where the motion starts.
+    /// Margin at the start of the motion.
     pub start: f64,
-    /// How long after the last output time the motion would come to a singular position if it went on, s, where one is near.
+    /// Time after the last output time at which the motion would reach a singular position if it continued, s, if one
+    /// is near.
     pub singular_after: Option<f64>,
-    /// How far the drivers would move until then.
+    /// Travel of the drivers until then.
     pub drivers_until: Vec<DriverTravel>,
-    /// What is there: `limit`, beyond which the loop cannot be closed, or `two_motions`, which meet.
+    /// Kind of the position: `limit`, beyond which the loop cannot be closed, or `two_motions`, which meet.
     pub singular_kind: Option<&'static str>,
     /// The margin at every output time; of very many, at those that were kept (`steps.kept_every` of the summary).
     pub series: Vec<f64>,
@@ -43,12 +44,12 @@ pub struct MarginFact {
     span: f64,
 }
 
-/// How far a driver moves.
+/// Travel of a driver.
 #[derive(Clone, Debug, Serialize)]
 pub struct DriverTravel {
     /// The driver.
     pub driver: String,
-    /// How far, in its unit.
+    /// Travel, in its unit.
     pub travel: f64,
     /// That unit.
     pub unit: String,
@@ -112,7 +113,7 @@ impl MarginFact {
         format!("{} at the start, {}", rounded(self.start, 2), self.line())
     }
 
-    /// What the least margin means.
+    /// Sentence about the minimum margin.
     pub fn sentence(&self) -> String {
         let least = format!(
             "The least margin is {} at t = {} s, in the loop of {}",
@@ -134,7 +135,7 @@ impl MarginFact {
         format!("{least}: {lost}{how}.{}", self.ahead().map_or(String::new(), |s| format!(" {s}.")))
     }
 
-    /// Of a singular position just beyond the end.
+    /// Sentence about a singular position just beyond the end.
     pub fn ahead(&self) -> Option<String> {
         let after = self.singular_after.filter(|after| *after <= SOON * self.span)?;
         let drivers = self.drivers_until.iter();

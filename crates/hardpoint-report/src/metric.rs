@@ -1,4 +1,4 @@
-//! Metrics: what a whole curve comes to, what moves it, and what a changed design makes of it.
+//! Metrics: values, influences, and their changes in a changed design.
 
 use hardpoint::Solution;
 use hardpoint::model::{Metric, Model, Reduction};
@@ -19,7 +19,7 @@ const COARSE: f64 = 1e-3;
 pub struct MetricFact {
     /// Name.
     pub name: String,
-    /// What it is, in words.
+    /// Description in words.
     pub what: String,
     /// Value; `null` where the motion does not reach the request.
     pub value: Option<f64>,
@@ -27,8 +27,8 @@ pub struct MetricFact {
     pub unit: String,
     /// When it is taken, s; `null` for what is taken of the whole curve.
     pub time: Option<f64>,
-    /// How far it may be from that of the curve between the output times, which is interpolated; `null` for a mean, and where there
-    /// are too few output times to say.
+    /// Error of the interpolation between output times; `null` for a mean, and if there are too few output times to
+    /// estimate it.
     pub interpolation_error: Option<f64>,
     /// True if that is more than a thousandth of the curve's range.
     pub coarse: bool,
@@ -36,7 +36,7 @@ pub struct MetricFact {
     pub sensitivities: Vec<MetricSensitivity>,
 }
 
-/// How a metric changes with a design variable.
+/// Sensitivity of a metric to a design variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct MetricSensitivity {
     /// The variable.

@@ -97,7 +97,7 @@ pub struct Sidecar {
     pub sensitivity: Option<SensitivitySidecar>,
 }
 
-/// What `sensitivity.npy` holds: `[output time, variable, column]`, the output times of `motion.npy`.
+/// Contents of `sensitivity.npy`: `[output time, variable, column]`, the output times of `motion.npy`.
 #[derive(Clone, Debug, Serialize)]
 pub struct SensitivitySidecar {
     /// The variables, each with its unit; those that the mechanism cannot follow have NaN.
@@ -107,7 +107,7 @@ pub struct SensitivitySidecar {
 }
 
 impl Sidecar {
-    /// Of these columns.
+    /// Sidecar of these columns.
     pub fn new(motion: &Columns<'_>, sensitivities: Option<&Columns<'_>>) -> Self {
         let time = Column { name: "t".into(), unit: "s".into() };
         let sensitivity = |c: &Columns<'_>| {

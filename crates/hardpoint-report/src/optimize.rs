@@ -1,4 +1,4 @@
-//! What an optimisation comes to: goals, limits and variables before and after, in the model's units.
+//! Result of an optimisation: goals, limits and variables before and after, in the model's units.
 
 use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
@@ -16,7 +16,8 @@ use crate::facts::variable_unit;
 use crate::figures::{error, number, seconds, some_of, symbol, unit, with_unit};
 use crate::page::{Payload, Table};
 
-/// What binds by less than this part of the objective per whole range of a variable is not reported.
+/// Multiplier, as a fraction of the objective per whole range of a variable, below which an active constraint is not
+/// reported.
 const SLIGHT: f64 = 1e-9;
 /// Number of designs that were refused are reported.
 const REFUSED: usize = 20;
@@ -37,7 +38,7 @@ pub struct OptimizeFacts {
     pub status: &'static str,
     /// The same in words, and what to do.
     pub message: String,
-    /// What is made small, a sum over the goals without a unit: in the design configuration, and of the best design.
+    /// Objective, a sum over the goals without a unit: of the nominal design, and of the best design.
     pub objective: BeforeAfter,
     /// By how much the limit is exceeded that is exceeded most, as a part of what the bounds of the variables make of it.
     pub violation: BeforeAfter,
@@ -49,11 +50,11 @@ pub struct OptimizeFacts {
     pub kkt: Option<f64>,
     /// The start of the best search: 0 is the nominal design.
     pub best_start: Option<usize>,
-    /// What it cost.
+    /// Cost of the search.
     pub evaluations: Evaluations,
-    /// What it was for.
+    /// Goals of the optimisation.
     pub goals: Vec<GoalFact>,
-    /// What had to hold.
+    /// Limits of the optimisation.
     pub limits: Vec<LimitFact>,
     /// All variables that were searched.
     pub variables: Vec<SearchedVariable>,
@@ -67,11 +68,11 @@ pub struct OptimizeFacts {
     pub refused: Vec<RefusedFact>,
     /// Number of there were.
     pub refused_count: usize,
-    /// What is worth knowing besides.
+    /// Further notes.
     pub diagnostics: Vec<Diagnostic>,
     /// The files that were written.
     pub files: Vec<String>,
-    /// How long it took, s.
+    /// Duration, s.
     pub seconds: f64,
 }
 
@@ -80,7 +81,7 @@ pub struct OptimizeFacts {
 pub struct BeforeAfter {
     /// In the design configuration; `null` where it cannot be judged.
     pub before: Option<f64>,
-    /// Of the best design; `null` where none was found.
+    /// Value of the best design; `null` if none was found.
     pub after: Option<f64>,
 }
 
@@ -95,11 +96,11 @@ pub struct SavedFact {
     pub violation: Option<f64>,
     /// The least margin to a singular position in any motion.
     pub margin: Option<f64>,
-    /// Why the design is not the optimum; `null` where it is.
+    /// Reason why the design is not the optimum; `null` if it is.
     pub why: Option<String>,
 }
 
-/// What an optimisation cost.
+/// Cost of an optimisation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Evaluations {
     /// Designs that were looked at.
@@ -121,11 +122,11 @@ pub struct GoalFact {
     pub case: Option<String>,
     /// The metric's unit.
     pub unit: String,
-    /// What it should be; `null` for as small as possible.
+    /// Target; `null` if the metric is minimised.
     pub target: Option<f64>,
-    /// How much one unit of it counts.
+    /// Weight of one unit.
     pub weight: f64,
-    /// What it is.
+    /// Value before and after.
     #[serde(flatten)]
     pub value: BeforeAfter,
 }
@@ -135,7 +136,7 @@ pub struct GoalFact {
 pub struct LimitFact {
     /// Name.
     pub name: String,
-    /// What it is on.
+    /// Limited quantity.
     pub of: String,
     /// In which case.
     pub case: Option<String>,
@@ -145,7 +146,7 @@ pub struct LimitFact {
     pub min: Option<f64>,
     /// It must not be more.
     pub max: Option<f64>,
-    /// What it is.
+    /// Value before and after.
     #[serde(flatten)]
     pub value: BeforeAfter,
     /// The end that binds: `min` or `max`.
@@ -173,7 +174,7 @@ pub struct SearchedVariable {
     pub binds: Option<&'static str>,
     /// By how much the objective would get less if that bound gave way by one unit.
     pub worth: Option<f64>,
-    /// How much of the change of the objective it brought, along the way of the best search.
+    /// Share of the change of the objective, along the path of the best search.
     pub work: f64,
 }
 
@@ -214,7 +215,7 @@ pub struct IterationFact {
 pub struct StartFact {
     /// Number; 0 starts from the nominal design.
     pub start: usize,
-    /// How it ended.
+    /// Status at the end.
     pub status: &'static str,
     /// The objective that it found.
     pub objective: Option<f64>,
@@ -224,7 +225,7 @@ pub struct StartFact {
     pub iterations: usize,
     /// Designs that it looked at.
     pub designs: usize,
-    /// Of these, how many could not be judged.
+    /// Number of these that could not be evaluated.
     pub refused: usize,
 }
 
@@ -417,7 +418,7 @@ impl OptimizeFacts {
         facts
     }
 
-    /// How it ended, and what to do.
+    /// Sentence about the end of a search, with an instruction.
     fn sentence(&self, model: &Model, status: OptimizationStatus, found: &OptimizationResult) -> String {
         let exceeded = || {
             let missed = |l: &&LimitFact| l.missed().is_some();
@@ -455,7 +456,7 @@ impl OptimizeFacts {
         }
     }
 
-    /// What is printed: goals, limits, variables.
+    /// Tables for printing: goals, limits, variables.
     pub fn tables(&self) -> Vec<Table> {
         let optional = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| with_unit(x, unit));
         let header = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
@@ -546,7 +547,7 @@ impl OptimizeFacts {
         tables
     }
 
-    /// What it comes to, line by line.
+    /// Facts of the result, line by line.
     pub fn rows(&self) -> Vec<(&'static str, String)> {
         let BeforeAfter { before, after } = self.objective;
         let shown = |x: Option<f64>| x.map_or("-".into(), number);
@@ -562,7 +563,10 @@ impl OptimizeFacts {
             let before = self.margin.before.map_or("-".into(), number);
             rows.push((
                 "margin",
-                format!("{before} in the design configuration, {} found, to a singular position", number(after)),
+                format!(
+                    "{before} in the design configuration, {} found, to a singular position",
+                    number(after)
+                ),
             ));
         }
         if let Some(saved) = &self.saved {
@@ -595,7 +599,7 @@ impl OptimizeFacts {
         rows
     }
 
-    /// A multiplier in the unit of the one goal that there is, else in that of the objective.
+    /// A multiplier in the unit of the only goal, or in that of the objective.
     fn worth(&self, worth: f64) -> String {
         match &self.goals[..] {
             [goal] => {
@@ -669,13 +673,13 @@ impl OptimizeFacts {
         }
     }
 
-    /// How long it took, in a line.
+    /// Line about the duration.
     pub fn time_line(&self) -> String {
         seconds(self.seconds)
     }
 }
 
-/// What a unit is called in a sentence.
+/// Name of a unit in a sentence.
 fn unit_name(unit: &str) -> &str {
     if unit.is_empty() || unit == "1" { "unit" } else { unit }
 }

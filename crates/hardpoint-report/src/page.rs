@@ -71,7 +71,7 @@ impl Serialize for Curve {
 pub struct Payload {
     /// Headline, usually the model's title.
     pub title: String,
-    /// What the model file says about itself; may be empty.
+    /// Description in the model file; may be empty.
     pub description: String,
     /// Name of the model file.
     pub file: String,
@@ -93,7 +93,7 @@ pub struct Payload {
     pub joints: Vec<JointMark>,
     /// Gears, belts, racks, screws and other relations between the joints' coordinates.
     pub couplers: Vec<CouplerMark>,
-    /// What is driven.
+    /// Driven coordinates.
     pub drivers: Vec<DriverMark>,
     /// Road wheels.
     pub wheels: Vec<WheelMark>,
@@ -103,7 +103,7 @@ pub struct Payload {
     pub loads: Vec<LoadMark>,
     /// The vehicle's own axes in the world, where the mechanism belongs to one.
     pub vehicle: Option<VehicleAxes>,
-    /// What can be plotted over time.
+    /// Quantities that can be plotted over time.
     pub quantities: Vec<Quantity>,
     /// Single numbers that the design is judged by: metrics, then the static values of measures.
     pub values: Vec<Value>,
@@ -117,7 +117,7 @@ pub struct Payload {
     pub maps: Vec<GridMap>,
     /// Designs that were swept over.
     pub sweep: Option<SweepPlot>,
-    /// How far from singular the mechanism is over time, if anything is solved for.
+    /// Margin from singular positions over time, if anything is solved for.
     pub margin: Option<Margin>,
     /// Design variables with their sensitivities.
     pub variables: Vec<Variable>,
@@ -139,11 +139,11 @@ pub struct ModelText {
     pub files: BTreeMap<String, String>,
     /// The case whose motion this is, where the model has cases.
     pub case: Option<String>,
-    /// How much of the motion the page shows; as much as there is room for where it does not say.
+    /// Detail of the motion on the page; as much as fits if it is not given.
     pub shown: Option<Detail>,
 }
 
-/// How much of a motion the page shows.
+/// Detail of a motion on the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Detail {
@@ -151,7 +151,7 @@ pub struct Detail {
     pub stride: usize,
     /// Curves of body origins.
     pub origins: bool,
-    /// How bodies move with the variables, and with that the sensitivities of their origins.
+    /// Motion of bodies by the variables, and with that the sensitivities of their origins.
     pub bodies: bool,
     /// Sensitivities of the velocities and accelerations of body origins.
     pub body_rates: bool,
@@ -171,7 +171,7 @@ pub struct Units {
     pub time: String,
 }
 
-/// How the run ended.
+/// Status at the end of the run.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Status {
@@ -185,7 +185,7 @@ pub struct Status {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Fact {
-    /// What it is.
+    /// Label of the figure.
     pub label: String,
     /// The figure.
     pub value: String,
@@ -203,13 +203,13 @@ pub struct BodyTrack {
     pub skeleton: Vec<[f64; 3]>,
     /// Names of the hardpoints, in the order of `skeleton`.
     pub labels: Vec<String>,
-    /// What they are there for, in the order of `skeleton`.
+    /// Roles of the points, in the order of `skeleton`.
     pub roles: Vec<PointRole>,
     /// The body's own shape, where the model names a file of it.
     pub mesh: Option<Mesh>,
 }
 
-/// What a hardpoint of a body is there for; of several reasons the first.
+/// Role of a hardpoint of a body; of several roles the first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
@@ -265,7 +265,7 @@ pub struct JointMark {
     pub lead: Option<f64>,
     /// The curve that a point of body j follows, as points in the frame of body i.
     pub curve: Option<JointCurve>,
-    /// How it is to be drawn, where the model says so: `coilover`, `spring`, `damper`, `cylinder` or `rod`.
+    /// Shape in drawings, if the model gives one: `coilover`, `spring`, `damper`, `cylinder` or `rod`.
     pub draw: Option<String>,
     /// True if the joint closes a loop instead of carrying body j.
     pub cut: bool,
@@ -309,13 +309,13 @@ pub struct CouplerTerm {
     pub coefficient: f64,
 }
 
-/// What a driver drives.
+/// Coordinate that a driver drives.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct DriverMark {
     /// The user's name.
     pub name: String,
-    /// What its law is, in words.
+    /// Law in words.
     pub law: String,
     /// Index into [`Payload::joints`], where a joint is driven that is drawn.
     pub joint: Option<usize>,
@@ -327,8 +327,9 @@ pub struct DriverMark {
     pub along: Option<[f64; 3]>,
     /// The driven coordinate, `n` steps, in the length unit or in radians, counted from the drawing.
     pub travel: Curve,
-    /// Where several drivers move: how fast each of the first of [`Payload::quantities`] goes with this one while the others stand, in
-    /// its unit per length unit or radian; empty of what does not follow from positions alone.
+    /// If several drivers move: rate of each of the first of [`Payload::quantities`] by this driver while the others
+    /// are at rest, in its unit per length unit or radian; empty for quantities that do not follow from positions
+    /// alone.
     pub alone: Vec<Curve>,
 }
 
@@ -368,7 +369,7 @@ pub struct DistanceMark {
     pub from: BodyPlace,
     /// To where.
     pub to: BodyPlace,
-    /// How it is to be drawn, where the model says so; see [`JointMark::draw`].
+    /// Shape in drawings, if the model gives one; see [`JointMark::draw`].
     pub draw: Option<String>,
 }
 
@@ -380,7 +381,7 @@ pub struct LoadMark {
     pub name: String,
     /// Index into [`Payload::joints`], where a joint puts it there.
     pub joint: Option<usize>,
-    /// Where it acts.
+    /// Point of action.
     pub at: BodyPlace,
     /// Three numbers per step: the force in the world, N. What redundant constraints leave open is left out; not a number where nothing is known.
     pub force: Curve,
@@ -424,9 +425,9 @@ pub struct Value {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Design {
-    /// What it is called on the page: `changed`, `foreseen to first order`, ...
+    /// Name on the page: `changed`, `predicted to first order`, ...
     pub name: String,
-    /// How it was found.
+    /// Source of the design.
     pub kind: DesignKind,
     /// By how much each variable is changed, in the order of [`Payload::variables`], in their units.
     pub change: Vec<f64>,
@@ -446,7 +447,7 @@ pub struct Design {
     pub margin: Option<Curve>,
 }
 
-/// How another design was found.
+/// Source of another design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
@@ -493,7 +494,7 @@ pub struct Quantity {
     pub rate: Curve,
     /// Second time derivative.
     pub accel: Curve,
-    /// What a metric wants it to be, `n` steps; empty where none does.
+    /// Target curve of a metric, `n` steps; empty without one.
     pub wanted: Curve,
 }
 
@@ -501,7 +502,7 @@ pub struct Quantity {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct SweepPlot {
-    /// What a point is: `design`, or `posture`.
+    /// Meaning of a point: `design`, or `posture`.
     pub what: String,
     /// That many were solved.
     pub designs: usize,
@@ -551,7 +552,7 @@ pub struct GridMap {
     pub drivers: [GridDriver; 2],
     /// Number of positions were reached, and why others were not.
     pub note: String,
-    /// What is measured.
+    /// Measured quantities.
     pub quantities: Vec<GridQuantity>,
 }
 
@@ -563,7 +564,7 @@ pub struct GridDriver {
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// Where it is, increasing.
+    /// Positions, increasing.
     pub places: Vec<f64>,
 }
 
@@ -593,13 +594,13 @@ pub struct GridSensitivity {
     pub values: Curve,
 }
 
-/// How far the mechanism is from singular: 1 is best, 0 is a singular position.
+/// Margin of the mechanism from singular positions: 1 is best, 0 is a singular position.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Margin {
     /// The margin, `n` steps.
     pub value: Curve,
-    /// What its least value means.
+    /// Meaning of its minimum.
     pub note: String,
 }
 
@@ -609,7 +610,7 @@ pub struct Margin {
 pub struct Variable {
     /// The user's name.
     pub name: String,
-    /// What it means, in a few words; may be empty.
+    /// Meaning in a few words; may be empty.
     pub description: String,
     /// Unit of the variable, `1` for a pure number.
     pub unit: String,
@@ -651,11 +652,11 @@ pub enum Admissibility {
 pub struct Arrow {
     /// Index into [`Payload::bodies`].
     pub body: usize,
-    /// Where the hardpoint is.
+    /// Position of the hardpoint.
     pub at: [f64; 3],
-    /// How its location changes.
+    /// Velocity of its location.
     pub v: [f64; 3],
-    /// How its orientation turns.
+    /// Velocity of its orientation.
     pub turn: [f64; 3],
 }
 
@@ -739,7 +740,7 @@ pub(crate) fn file(title: &str, packed: &[u8]) -> String {
     })
 }
 
-/// Where a page hears of the server that it comes from: empty in a file.
+/// Element in which a page finds the server that it comes from: empty in a file.
 const SERVER: &str = "<script type=\"application/json\" id=\"server\">";
 
 /// A page as a server sends it, reported `about` the server. Pages are those of this crate.

@@ -45,14 +45,15 @@ const BYTES_PER_VALUE: [f64; 2] = [0.2, 3.0];
 const MARKS: usize = 36;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// What a page is made of: a run, and what is shown beside it. [`Request::of`] asks for the run alone; what a study has besides, it sets.
+/// Contents of a page: a run, and results that are shown alongside. [`Request::of`] has the run alone; a study adds its
+/// own results.
 #[derive(Clone, Debug)]
 pub struct Request<'a> {
     /// The model file.
     pub file: &'a ModelFile,
     /// The plan that the model was solved by.
     pub analysis: &'a Analysis<'a>,
-    /// What was gathered of the whole motion.
+    /// Facts of the whole motion.
     pub course: &'a Course,
     /// Facts.
     pub summary: &'a Summary,
@@ -131,8 +132,8 @@ fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payloa
     (compose(*last), None)
 }
 
-/// What each driver does by itself, where several move and there are variables: over another quantity, one of them moves on while a
-/// variable changes. Where one moves alone, the rates say it.
+/// Rates of each driver alone, if several move and there are variables: over another quantity, one of them moves on
+/// while a variable changes. If one moves alone, its rates are those of the motion.
 fn driver_rates(request: &Request<'_>) -> Option<DriverRates> {
     let (model, times) = (request.analysis.model(), &request.course.kept.motion.times);
     let moves = |driver: &Driver| {
@@ -212,7 +213,7 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
     }
 }
 
-/// What was kept of how bodies move with the variables.
+/// Stored motion of bodies by the variables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Bodies {
     /// All orders.
@@ -233,7 +234,7 @@ impl Bodies {
     }
 }
 
-/// How much there is to show.
+/// Size of the contents.
 #[derive(Clone, Copy, Debug)]
 struct Size {
     steps: usize,
@@ -250,7 +251,7 @@ struct Size {
 }
 
 impl Detail {
-    /// From all that there is to what is always shown.
+    /// Levels of detail, from everything to the minimum.
     fn levels(size: Size, bodies: Bodies) -> Vec<Self> {
         let stride = size.steps.div_ceil(MOST_STEPS).max(1);
         let all = Self { stride, origins: true, bodies: true, body_rates: true, body_differences: true };
@@ -295,8 +296,8 @@ impl Detail {
     }
 }
 
-/// Of that many output times that are shown, differences are drawn at each of these, rounded, so that the marks are nearest to the number
-/// that is wanted.
+/// Interval of the shown output times at which differences are drawn, rounded, so that the number of marks is nearest
+/// to the wanted one.
 pub fn stride_of_marks(steps: usize) -> usize {
     ((steps + MARKS / 2) / MARKS).max(1)
 }
@@ -312,7 +313,7 @@ fn file_name(file: &str) -> String {
     Path::new(file).file_name().map_or_else(|| file.into(), |n| n.to_string_lossy().into_owned())
 }
 
-/// How the run ended, and the sentence on the changed design where that stopped early.
+/// Status of the run, and the sentence on the changed design if that stopped early.
 fn status(summary: &Summary, changed: Option<String>, detail: Detail) -> Status {
     let steps = &summary.steps;
     let complete = summary.status == RunStatus::Complete && changed.is_none();
@@ -400,13 +401,13 @@ struct Compose<'a> {
     units: Units,
     analysis: &'a Analysis<'a>,
     course: &'a Course,
-    /// What the course keeps.
+    /// Stored results.
     solution: &'a Solution,
     /// The output times that are shown.
     steps: Vec<usize>,
     detail: Detail,
     round_off: RoundOff,
-    /// What each driver does by itself at the output times that the course keeps, where several move.
+    /// Rates of each driver alone at the stored output times, if several move.
     alone: Option<&'a DriverRates>,
 }
 
@@ -461,7 +462,7 @@ impl<'a> Compose<'a> {
         self.steps.iter().map(|&k| value(k)).collect()
     }
 
-    /// Of value, rate and acceleration that many; the others are empty.
+    /// The first `orders` of value, rate and acceleration; the others are empty.
     fn curves(&self, orders: usize, value: impl Fn(usize, usize) -> f64) -> [Curve; 3] {
         [0, 1, 2].map(|order| if order < orders { self.curve(|k| value(k, order)) } else { Curve::default() })
     }
@@ -547,7 +548,7 @@ impl<'a> Compose<'a> {
         facts.variables.iter().enumerate().map(variable).collect()
     }
 
-    /// How every body moves with a variable, to first order.
+    /// First-order motion of every body by a variable.
     fn shifts(&self, b: usize) -> Vec<Curve> {
         let by = self.model.variables[b].quantity;
         let shown = self.derivatives_shown(b, Dimension::LENGTH);

@@ -1,4 +1,4 @@
-//! How bodies move with the design variables, kept of a run whose sensitivities are too many to be kept whole.
+//! Motion of bodies by the design variables, stored for runs with too many sensitivities to store whole.
 //!
 //! The page draws a changed design by these six numbers per body and variable, and holds no more than `f32`; rates and accelerations,
 //! which are twice as many, are left out.
@@ -16,7 +16,7 @@ const NUMBERS: usize = 6;
 pub(crate) struct Shifts {
     /// They may take that many bytes.
     most: usize,
-    /// Of that many output times, each is kept.
+    /// Interval of the stored output times.
     stride: usize,
     bodies: usize,
     /// `places[b * bodies + i]`: where the numbers of body i by variable b begin in a row, if b moves it.
@@ -73,7 +73,7 @@ impl Shifts {
         self.rows.retain(|(time, _)| time.is_multiple_of(stride));
     }
 
-    /// Of that many output times, each is kept; `None` where they are too few, of all that were solved, to draw a motion.
+    /// Interval of the stored output times; `None` if they are too few, among all that were solved, to draw a motion.
     pub fn stride(&self, solved: usize) -> Option<usize> {
         (self.bodies > 0 && self.rows.len() >= solved.min(ENOUGH_ROWS)).then_some(self.stride)
     }

@@ -23,39 +23,39 @@ use crate::validity::ValidityFact;
 pub struct Summary {
     /// Program and version.
     pub generator: &'static str,
-    /// How the run ended.
+    /// Status at the end of the run.
     pub status: RunStatus,
     /// The mechanism.
     pub model: Facts,
     /// Output times.
     pub steps: Steps,
-    /// What the solution took.
+    /// Effort of the solution.
     pub effort: EffortFact,
-    /// How far it stayed from singular positions, if anything was solved for.
+    /// Margin from singular positions, if anything was solved for.
     pub margin: Option<MarginFact>,
-    /// How the mechanism was closed first, if it was open in the design configuration.
+    /// Assembly before the motion, if the mechanism was open in the design configuration.
     pub assembly: Option<AssemblyFact>,
-    /// Why it ended early, if it did.
+    /// Reason of an early end.
     pub stop: Option<StopFact>,
-    /// How far sensitivities can be trusted, variable by variable; empty where that was not looked at.
+    /// Linear range of the sensitivities, variable by variable; empty if it was not examined.
     pub validity: Vec<ValidityFact>,
-    /// What the metrics come to.
+    /// Values of the metrics.
     pub metrics: Vec<MetricFact>,
     /// The maps that were written: over which drivers, how many positions were reached, and why not the others.
     pub maps: Vec<MapLine>,
     /// The largest sensitivities of every measure.
     pub sensitivities: Vec<Ranking>,
-    /// Where the time went.
+    /// Durations of the parts of the work.
     pub timings: Timings,
     /// The files that were written.
     pub files: Vec<String>,
-    /// What was not done or not written, and how to have it.
+    /// Results that were not computed or not written, and how to get them.
     pub left_out: Vec<String>,
     /// Warnings and errors, also those shown on the terminal.
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// How a run ended.
+/// Status at the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunStatus {
@@ -80,17 +80,18 @@ pub struct Steps {
     pub end: f64,
     /// The last one solved.
     pub last_solved: Option<f64>,
-    /// Of that many, one was kept for the page, for the margin's series and for what is compared: 1 where all were. The files of
-    /// results hold all of them.
+    /// Interval of the output times stored for the page, for the series of the margin and for comparisons: 1 for all.
+    /// The result files hold all of them.
     pub kept_every: usize,
-    /// Of that many, metrics are taken from each one.
+    /// Interval of the output times that metrics use.
     pub metrics_every: usize,
 }
 
-/// What the solution took.
+/// Effort of a solution.
 #[derive(Clone, Debug, Serialize)]
 pub struct EffortFact {
-    /// What solved the even steps: machine code, an interpreted program or the kernel; and why not machine code, if not.
+    /// Solver of the smooth steps: machine code, an interpreted program or the kernel; with the reason if it is not
+    /// machine code.
     pub solved_by: Option<String>,
     /// Output times that a program has solved; the kernel all others.
     pub steps_by_program: usize,
@@ -106,7 +107,7 @@ pub struct EffortFact {
     pub least_pivot_time: f64,
 }
 
-/// Why a run ended early.
+/// Reason why a run ended early.
 #[derive(Clone, Debug, Serialize)]
 pub struct StopFact {
     /// Stable code.
@@ -123,14 +124,14 @@ pub struct StopFact {
     pub pivot_ratio: f64,
     /// The joints of that loop.
     pub joints: Vec<String>,
-    /// Where the mechanism does not assemble: what stays open at best, largest first.
+    /// Smallest remaining gaps, largest first, if the mechanism does not assemble.
     pub remains: Vec<GapFact>,
-    /// Where it was being assembled: the part of its gaps that could be closed together, 0 to 1.
+    /// Fraction of its gaps that could be closed together during the assembly, 0 to 1.
     pub closed: Option<f64>,
 }
 
 impl StopFact {
-    /// Of a solution that stopped early.
+    /// Facts of a solution that stopped early.
     pub(crate) fn of(file: &ModelFile, solution: &Solution) -> Option<Self> {
         let (model, units) = (&file.model, file.units);
         let stop = solution.stop.as_ref()?;
@@ -196,7 +197,7 @@ pub struct RankedVariable {
     pub time: f64,
 }
 
-/// Where the time went, s.
+/// Durations of the parts of the work, s.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Timings {
     /// Reading and checking the file, planning the solution.

@@ -1,4 +1,4 @@
-//! What a sweep comes to: its designs as a table, and how metrics are distributed over them, in the model's units.
+//! Result of a sweep: its designs as a table, and the distributions of metrics over them, in the model's units.
 
 use std::io;
 
@@ -38,13 +38,13 @@ pub struct SweepFacts {
     pub message: String,
     /// The first metric: in the design configuration, and the least that was found.
     pub objective: BeforeAfter,
-    /// What it cost.
+    /// Cost of the designs.
     pub evaluations: Evaluations,
     /// Designs that were solved.
     pub designs: usize,
     /// Designs that were requested.
     pub asked: usize,
-    /// How they were chosen.
+    /// Method that chose the designs.
     pub method: &'static str,
     /// From which seed; `null` where nothing is drawn.
     pub seed: Option<u64>,
@@ -58,7 +58,7 @@ pub struct SweepFacts {
     pub failures: Vec<FailureFact>,
     /// The files that were written.
     pub files: Vec<String>,
-    /// How long it took, s.
+    /// Duration, s.
     pub seconds: f64,
 }
 
@@ -94,20 +94,20 @@ pub struct SweptFact {
     pub drawn: Option<f64>,
     /// Number of designs have it.
     pub known: usize,
-    /// How it is distributed over these.
+    /// Distribution over these designs.
     pub distribution: Option<DistributionFact>,
-    /// How it goes with each variable.
+    /// Influence of each variable.
     pub influences: Vec<InfluenceFact>,
 }
 
-/// How a metric is distributed over the designs that have it.
+/// Distribution of a metric over the designs that have it.
 #[derive(Clone, Debug, Serialize)]
 pub struct DistributionFact {
     /// Mean.
     pub mean: f64,
     /// Standard deviation.
     pub sigma: f64,
-    /// What 5 %, 25 %, 50 %, 75 % and 95 % of the designs are below.
+    /// Quantiles at 5 %, 25 %, 50 %, 75 % and 95 %.
     pub quantiles: [f64; 5],
     /// The design with the least value.
     pub least: ExtremeDesign,
@@ -126,7 +126,7 @@ pub struct ExtremeDesign {
     pub variables: Vec<f64>,
 }
 
-/// How a metric goes with a variable.
+/// Influence of a variable on a metric.
 #[derive(Clone, Debug, Serialize)]
 pub struct InfluenceFact {
     /// The variable.
@@ -145,14 +145,14 @@ pub struct InfluenceFact {
     pub pairs: Option<usize>,
 }
 
-/// What the facts are made of.
+/// Inputs of the facts.
 #[derive(Clone, Copy)]
 pub struct SweepInputs<'a> {
     /// The model file.
     pub file: &'a ModelFile,
     /// Per motion, its number among those of the model.
     pub numbers: &'a [usize],
-    /// What was asked.
+    /// Settings of the sweep.
     pub asked: &'a SweepSettings,
     /// The motions.
     pub motions: &'a Motions<'a>,
@@ -160,7 +160,7 @@ pub struct SweepInputs<'a> {
     pub sweep: &'a Sweep<'a>,
 }
 
-/// What blocks come to, one after the other.
+/// Sum of the results of blocks.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
     /// Designs so far.
@@ -367,7 +367,8 @@ impl SweepInputs<'_> {
         mut column: impl FnMut(usize) -> io::Result<Vec<f64>>,
     ) -> io::Result<(SweepFacts, SweepPlot)> {
         let (file, asked) = (self.file, self.asked);
-        let mut drawn = DrawnDesigns { numbers: self.drawn_numbers(tally.designs), ..DrawnDesigns::default() };
+        let mut drawn =
+            DrawnDesigns { numbers: self.drawn_numbers(tally.designs), ..DrawnDesigns::default() };
         drawn.variables = vec![Vec::new(); asked.ranges.len()];
         for number in &drawn.numbers {
             drawn.variables.iter_mut().zip(self.variables_of(*number)).for_each(|(c, x)| c.push(x));
@@ -472,7 +473,7 @@ impl SweepInputs<'_> {
     }
 }
 
-/// What the page draws.
+/// Plot on the page.
 fn plot(facts: &SweepFacts, drawn: DrawnDesigns) -> SweepPlot {
     let variable = |(v, values): (&SweptVariable, Vec<f64>)| SweepAxis {
         name: v.name.clone(),
@@ -514,7 +515,7 @@ fn common_divisor(a: usize, b: usize) -> usize {
 }
 
 impl SweepFacts {
-    /// What it comes to, line by line.
+    /// Facts of the result, line by line.
     pub fn rows(&self) -> Vec<(&'static str, String)> {
         let mut rows = vec![("result", self.message.clone())];
         let seed = self.seed.map_or(String::new(), |seed| format!(", seed {seed}"));
@@ -543,7 +544,7 @@ impl SweepFacts {
         rows
     }
 
-    /// What is printed besides: metrics, variables, influences, failures.
+    /// Further tables: metrics, variables, influences, failures.
     pub fn tables(&self) -> Vec<Table> {
         let optional = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| with_unit(x, unit));
         let metric = |m: &SweptFact| {
@@ -616,7 +617,7 @@ impl SweepFacts {
         tables
     }
 
-    /// How metrics go with variables: Sobol's indices where they were requested, else rank correlations.
+    /// Influences of the variables on the metrics: Sobol indices if they were requested, otherwise rank correlations.
     fn influence_tables(&self) -> Vec<Table> {
         let indices = self.method == SweepMethod::Indices.name();
         let known = self.metrics.iter().filter(|m| m.distribution.as_ref().is_some_and(|d| d.sigma > 0.0));
@@ -673,7 +674,7 @@ impl SweepFacts {
         known.map(table).collect()
     }
 
-    /// How long it took, in a line.
+    /// Line about the duration.
     pub fn time_line(&self) -> String {
         seconds(self.seconds)
     }

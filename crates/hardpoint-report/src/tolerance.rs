@@ -1,4 +1,4 @@
-//! What tolerances come to: spread, yield, contributions and the loosest tolerances, in the model's units.
+//! Result of a tolerance study: spread, yield, contributions and the loosest tolerances, in the model's units.
 
 use std::io::Write;
 
@@ -21,7 +21,7 @@ use crate::page::{Curve, Design, DesignCurves, DesignKind, Fact, Payload, Table}
 const BAND: f64 = 3.0;
 /// Contributions below this part are not reported one by one.
 const SLIGHT: f64 = 1e-3;
-/// What is drawn differs from what derivatives say where that many standard errors are between them.
+/// Number of standard errors above which Monte Carlo and derivatives differ.
 const ERRORS: f64 = 3.0;
 /// A whole bar in a table has that many marks.
 const BAR: f64 = 40.0;
@@ -45,7 +45,7 @@ pub struct ToleranceFacts {
     pub message: String,
     /// The part that keeps all limits: with the tolerances as they are, and with those that were found.
     pub objective: BeforeAfter,
-    /// What it cost.
+    /// Cost of the study.
     pub evaluations: Evaluations,
     /// Designs that were drawn and solved.
     pub samples: usize,
@@ -69,7 +69,7 @@ pub struct ToleranceFacts {
     pub allocation: Option<AllocationFact>,
     /// The files that were written.
     pub files: Vec<String>,
-    /// How long it took, s.
+    /// Duration, s.
     pub seconds: f64,
 }
 
@@ -90,7 +90,7 @@ pub struct ToleratedFact {
     pub end: Option<f64>,
     /// Standard deviation.
     pub sigma: f64,
-    /// What its tolerance costs.
+    /// Cost of its tolerance.
     pub cost: Option<f64>,
 }
 
@@ -120,13 +120,13 @@ pub struct SpreadFact {
     /// `linear`, `second_order` or `drawn`: where the spread and the contributions are from.
     #[serde(serialize_with = "as_word")]
     pub told_by: SpreadModel,
-    /// Why linear statistics are off; `null` where they hold.
+    /// Reason why linear statistics are off; `null` if they hold.
     pub nonlinear: Option<String>,
     /// The part of the variance that each variable contributes, the largest first.
     pub contributions: Vec<Contribution>,
     /// The part that only several variables together bring; `null` where it is shared out among them.
     pub together: Option<f64>,
-    /// Of the designs drawn.
+    /// Statistics of the Monte Carlo designs.
     pub sampled: Option<SampledFact>,
 }
 
@@ -139,11 +139,11 @@ pub struct ExtremeFact {
     pub second: Option<f64>,
     /// Solved exactly, with all deviations where the second order has them.
     pub exact: Option<f64>,
-    /// Why that design has no value.
+    /// Reason why that design has no value.
     pub why: Option<String>,
 }
 
-/// What a variable contributes.
+/// Contribution of a variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct Contribution {
     /// Name.
@@ -198,7 +198,7 @@ pub struct YieldFact {
     pub sampled: Option<f64>,
     /// Standard error.
     pub error: Option<f64>,
-    /// What it is worth in an allocation: the cost that would be saved if it gave way by one unit.
+    /// Value in an allocation: the cost saved if it were relaxed by one unit.
     pub worth: Option<f64>,
 }
 
@@ -207,7 +207,7 @@ pub struct YieldFact {
 pub struct FailureFact {
     /// In which case.
     pub case: Option<String>,
-    /// What happened to the first of them.
+    /// Description of the first failure.
     pub why: String,
     /// Number.
     pub first: usize,
@@ -226,7 +226,7 @@ pub struct AllocationFact {
     pub status: String,
     /// The sum of `cost / tolerance`, in the file's units; of all that have a cost.
     pub cost: BeforeAfter,
-    /// What is left of the conditions of optimality.
+    /// Residual of the conditions of optimality.
     pub kkt: Option<f64>,
     /// The part of designs drawn from these tolerances that keeps all limits.
     pub sampled: Option<f64>,
@@ -234,16 +234,16 @@ pub struct AllocationFact {
     pub error: Option<f64>,
 }
 
-/// What the facts are made of.
+/// Inputs of the facts.
 #[derive(Clone, Copy, Debug)]
 pub struct ToleranceInputs<'a> {
     /// The model file.
     pub file: &'a ModelFile,
     /// Per motion, its number among those of the model.
     pub numbers: &'a [usize],
-    /// What was asked.
+    /// Settings of the study.
     pub asked: &'a ToleranceSettings,
-    /// What was found.
+    /// Result of the study.
     pub found: &'a ToleranceResult,
 }
 
@@ -482,7 +482,7 @@ impl ToleranceInputs<'_> {
         }
     }
 
-    /// How the metrics of a motion are distributed over the designs drawn.
+    /// Histograms of the metrics of a motion over the Monte Carlo designs.
     fn histograms(&self, motion: usize) -> Vec<Table> {
         let Some(sampled) = &self.found.sampled else { return Vec::new() };
         let of_motion = self.found.metrics.iter().zip(&sampled.metrics).filter(|(m, _)| m.motion == motion);
@@ -592,7 +592,7 @@ impl ToleranceFacts {
         facts
     }
 
-    /// What it comes to, line by line.
+    /// Facts of the result, line by line.
     pub fn rows(&self) -> Vec<(&'static str, String)> {
         let mut rows = vec![("result", self.message.clone())];
         if let Some(part) = self.objective.before {
@@ -621,7 +621,10 @@ impl ToleranceFacts {
             rows.push(("left out", format!("{names}: the mechanism cannot follow")));
         }
         if !self.unknown.is_empty() {
-            rows.push(("no value", format!("{}: not reached in the design configuration", some_of(&self.unknown, ", "))));
+            rows.push((
+                "no value",
+                format!("{}: not reached in the design configuration", some_of(&self.unknown, ", ")),
+            ));
         }
         if let Some(a) = &self.allocation {
             let kept = a.sampled.zip(a.error).map_or(String::new(), |(p, e)| {
@@ -640,7 +643,7 @@ impl ToleranceFacts {
         rows
     }
 
-    /// What is printed besides: metrics, contributions, limits, tolerances, failures.
+    /// Further tables: metrics, contributions, limits, tolerances, failures.
     pub fn tables(&self) -> Vec<Table> {
         let optional = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| with_unit(x, unit));
         let metric = |m: &SpreadFact| {
@@ -779,7 +782,7 @@ impl ToleranceFacts {
         tables
     }
 
-    /// How long it took, in a line.
+    /// Line about the duration.
     pub fn time_line(&self) -> String {
         seconds(self.seconds)
     }

@@ -1,4 +1,4 @@
-//! How far the sensitivities by each variable can be trusted.
+//! Linear range of the sensitivities by each variable.
 
 use hardpoint::Solution;
 use hardpoint::model::{Model, OutputSource};
@@ -11,15 +11,15 @@ use crate::figures::rounded;
 use crate::page::Table;
 use crate::summary::Summary;
 
-/// How far the sensitivities by one variable can be trusted as predictions.
+/// Linear range of the sensitivities by one variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct ValidityFact {
     /// The variable.
     pub variable: String,
     /// Unit.
     pub unit: String,
-    /// How far it may go either way before the second-order part of some measure is 5 % of the first-order part, over the
-    /// whole motion; `null` where all measures are exactly linear, or none depends on the variable.
+    /// Change in either direction up to which the second-order part of every measure is at most 5 % of the first-order
+    /// part, over the whole motion; `null` if all measures are exactly linear, or none depends on the variable.
     pub linear_up_to: Option<f64>,
     /// True if all measures that depend on it are exactly linear in it: their second-order parts are round-off.
     pub exactly_linear: bool,
@@ -29,12 +29,12 @@ pub struct ValidityFact {
     pub measures: Vec<MeasureValidity>,
 }
 
-/// How far the sensitivity of one measure by one variable can be trusted.
+/// Linear range of the sensitivity of one measure by one variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct MeasureValidity {
     /// The measure.
     pub measure: String,
-    /// How far the variable may go, in its unit; `null` where the measure is exactly linear in it.
+    /// Change of the variable, in its unit; `null` if the measure is exactly linear in it.
     pub linear_up_to: Option<f64>,
     /// True if the measure is exactly linear in the variable: its second-order part is round-off.
     pub exactly_linear: bool,

@@ -24,7 +24,7 @@ pub struct Verdict {
     pub passed: bool,
     /// True if it was ended before all variables were checked.
     pub interrupted: bool,
-    /// Which designs were compared.
+    /// Designs that were compared.
     pub differences: Differences,
     /// Every quantity must agree to this at some step.
     pub tolerance: f64,
@@ -48,7 +48,7 @@ pub enum Differences {
     Backward,
 }
 
-/// Where the agreement is worst.
+/// Place of the worst agreement.
 #[derive(Clone, Debug, Serialize)]
 pub struct Worst {
     /// The variable.
@@ -66,9 +66,9 @@ pub struct CheckFact {
     pub variable: String,
     /// Unit; `1` for a plain number.
     pub unit: String,
-    /// What came of it.
+    /// Outcome of the check.
     pub outcome: Outcome,
-    /// What to know about it, in a sentence.
+    /// Note on the check, in a sentence.
     pub note: Option<&'static str>,
     /// The quantity that agrees worst, each judged at the step where it agrees best; that step.
     pub worst: Option<StepFact>,
@@ -76,7 +76,7 @@ pub struct CheckFact {
     pub sweep: Vec<StepFact>,
 }
 
-/// What came of a check.
+/// Outcome of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
@@ -221,7 +221,8 @@ impl Verdict {
     }
 }
 
-/// What a deviation that falls with the step itself, not its square, says of a mechanism with redundant constraints.
+/// Meaning of a deviation that is proportional to the step itself, not to its square, in a mechanism with redundant
+/// constraints.
 const FIRST_ORDER: &str = "the mechanism cannot follow a finite step exactly, because its redundant constraints part at \
     second order; the difference falls in proportion to the step, as it must";
 

@@ -30,23 +30,23 @@ pub struct WhatIfFacts {
     pub name: String,
     /// The model file, as it was given.
     pub file: String,
-    /// What is changed, and by how much.
+    /// Changed variables, and their changes.
     pub change: Vec<ChangeFact>,
     /// The nearest admissible change, where this one is none: what would keep the joints closed.
     pub nearest: Vec<ChangeFact>,
     /// True if and how the mechanism follows, in a sentence.
     pub follows: String,
-    /// How far the mechanism stays from singular positions, today and changed.
+    /// Margins from singular positions, nominal and changed.
     pub margins: [Option<MarginFact>; 2],
     /// Per measure, how it changes and how well that was predicted.
     pub measures: Vec<MeasureFact>,
-    /// What the change makes of the metrics.
+    /// Changes of the metrics.
     pub metrics: Vec<MetricChange>,
-    /// Which variable moves which measure most.
+    /// Most influential variables of each measure.
     pub influence: Vec<InfluenceFact>,
     /// Output times, s.
     pub times: Vec<f64>,
-    /// What else there is to tell: of the file, and of changes beyond the bounds of their variables.
+    /// Further diagnostics: of the file, and of changes beyond the bounds of their variables.
     pub diagnostics: Vec<Diagnostic>,
 }
 
@@ -62,7 +62,7 @@ pub struct ChangeFact {
 }
 
 impl ChangeFact {
-    /// What a change in SI does to the variables of a model that it touches.
+    /// Changes of the variables of a model by a change in SI.
     pub fn all(model: &Model, units: Units, change: &[f64]) -> Vec<Self> {
         let changed = model.variables.iter().zip(change).filter(|(_, by)| **by != 0.0);
         let fact = |(variable, by): (&hardpoint::model::DesignVariable, &f64)| Self {
@@ -109,7 +109,7 @@ pub struct MeasureFact {
     pub exact: Vec<f64>,
 }
 
-/// How much a variable moves a measure.
+/// Influence of a variable on a measure.
 #[derive(Clone, Debug, Serialize)]
 pub struct InfluenceFact {
     /// The measure.
@@ -126,7 +126,7 @@ pub struct InfluenceFact {
     pub per: String,
     /// The measure's unit.
     pub of: String,
-    /// What the variable's typical change moves the measure by, to first order, in the measure's unit; `null` where the file
+    /// First-order change of the measure by the variable's typical change, in the measure's unit; `null` if the file
     /// gives none.
     pub typical: Option<f64>,
     /// Likewise, of what its tolerance moves it by, either way.
@@ -208,12 +208,12 @@ impl WhatIfFacts {
         }
     }
 
-    /// What is changed, in a line.
+    /// Line about the change.
     pub fn change_line(&self) -> String {
         ChangeFact::line(&self.change)
     }
 
-    /// How the measures change, and how well that was predicted; of those requested, or of all.
+    /// Table of the changes of the measures, and the quality of their prediction; of those requested, or of all.
     pub fn table(&self, wanted: &dyn Fn(&str) -> bool) -> Table {
         let range = |x: &[f64]| {
             let low = x.iter().copied().fold(f64::INFINITY, f64::min);
@@ -342,7 +342,7 @@ impl WhatIfFacts {
         Payload { checks, ..page }
     }
 
-    /// What the change is, what it makes of the measures and of the metrics; nothing where the design is not changed.
+    /// Tables of the change, of the measures and of the metrics; none if the design is not changed.
     fn changed_tables(&self, wanted: &dyn Fn(&str) -> bool) -> Vec<Table> {
         if self.change.is_empty() {
             return Vec::new();

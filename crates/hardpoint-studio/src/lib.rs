@@ -36,7 +36,7 @@ pub struct Engine {
     open: Option<Open>,
 }
 
-/// Why there is no answer.
+/// Reason why there is no answer.
 type Refusal = Vec<DiagnosticMessage>;
 
 impl Engine {
@@ -117,12 +117,12 @@ fn whole(model: &ModelText) -> Result<ModelFile, Refusal> {
         .map_err(|all| all.list().iter().map(|d| DiagnosticMessage::of(&model.text, d)).collect())
 }
 
-/// Of a file with cases, the first.
+/// For a file with cases, the model of the first case.
 fn first_case(file: ModelFile) -> ModelFile {
     if file.model.cases.is_empty() { file } else { file.in_case(hardpoint::model::CaseId(0)) }
 }
 
-/// What is wrong or worth knowing about a text: also what hinders its motion.
+/// Diagnostics of a text, including those of its motion.
 fn checked(model: &ModelText) -> CheckReply {
     let file = match read(model) {
         Ok(file) => file,

@@ -1,4 +1,4 @@
-//! What a study may choose, and what the text chooses.
+//! Options of a study, with their values in the text.
 
 use hardpoint::model::{
     Dimension, Goal, Limit, LimitTarget, Model, OptimizationSettings, ToleranceSettings, VariableId,
@@ -19,7 +19,7 @@ use crate::protocol::{
 const STARTS: usize = 1;
 const ITERATIONS: usize = 100;
 
-/// What a search may choose.
+/// Options of an optimisation.
 pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, Refusal> {
     let (model, units, asked) = (&file.model, file.units, file.model.optimization.as_ref());
     let values = values(file);
@@ -93,7 +93,7 @@ fn sentence(model: &Model, units: Units, limit: &Limit) -> String {
     }
 }
 
-/// What is asked, on top of what the text says; the model has the bounds that are requested.
+/// Request on top of the settings in the text; the model has the requested bounds.
 pub(crate) fn asked(
     file: &mut ModelFile,
     request: &OptimizeRequest,
@@ -149,7 +149,7 @@ pub(crate) fn asked(
     Ok(asked)
 }
 
-/// What a study of tolerances may choose.
+/// Options of a tolerance study.
 pub(crate) fn tolerance(file: &ModelFile) -> Result<ToleranceOffer, Refusal> {
     let (model, units) = (&file.model, file.units);
     let asked = model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(model));

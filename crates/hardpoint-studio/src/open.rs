@@ -19,7 +19,7 @@ use crate::protocol::{
 };
 use crate::{Refusal, first_case, read, whole};
 
-/// Where a design cannot be reached, that many times the way to it is halved: the last step is a thousandth of it.
+/// Maximum number of halvings of the path to a design that cannot be reached: the last step is a thousandth of it.
 const HALVINGS: usize = 10;
 
 /// A model that is open.

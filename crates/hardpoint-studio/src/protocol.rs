@@ -1,4 +1,4 @@
-//! What a page asks, and what it is answered.
+//! Requests of a page, and the replies.
 
 use hardpoint_file::Diagnostic;
 use hardpoint_report::page::{Design, ModelText, Table};
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[cfg(test)]
 use ts_rs::TS;
 
-/// What is asked of the engine.
+/// Request to the engine.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "ask", rename_all = "snake_case")]
@@ -26,7 +26,7 @@ pub enum Request {
     },
     /// A design of the open model. Answered by [`DesignReply`].
     Design {
-        /// What is changed.
+        /// Changed variables.
         change: Vec<VariableSetting>,
         /// A design that is solved already: where the changed one cannot be, what is given is as far on the way from this one to it
         /// as can be.
@@ -34,7 +34,7 @@ pub enum Request {
     },
     /// The text of the open model with a changed design. Answered by [`Text`].
     Text {
-        /// What is changed.
+        /// Changed variables.
         change: Vec<VariableSetting>,
     },
     /// Everything that the page of a model shows, which need not be open. Answered by a payload.
@@ -54,38 +54,38 @@ pub enum Request {
         /// The model.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
-        /// What is asked besides what the text says.
+        /// Options besides those of the text.
         asked: OptimizeRequest,
     },
-    /// What a search may choose. Answered by [`OptimizeOffer`].
+    /// Asks for the options of an optimisation. Answered by [`OptimizeOffer`].
     OptimizeOffer {
         /// The model.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
     },
-    /// What a study of tolerances may choose. Answered by [`ToleranceOffer`].
+    /// Asks for the options of a tolerance study. Answered by [`ToleranceOffer`].
     ToleranceOffer {
         /// The model.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
     },
-    /// What the tolerances of a model come to. Answered by [`StudyReply`].
+    /// Runs the tolerance study of a model. Answered by [`StudyReply`].
     Tolerance {
         /// The model.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
-        /// What is asked besides what the text says.
+        /// Options besides those of the text.
         asked: ToleranceRequest,
     },
 }
 
-/// What is asked of an optimisation; all else is as the text has it.
+/// Options of an optimisation; all others are those of the text.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct OptimizeRequest {
-    /// What may change, and within what.
+    /// Variables that may change, with their bounds.
     pub variables: Vec<VariableChoice>,
-    /// What is to be small.
+    /// Goals to minimise.
     pub goals: Vec<GoalChoice>,
     /// From how many designs it starts.
     pub starts: usize,
@@ -109,13 +109,13 @@ pub struct VariableChoice {
 pub struct GoalChoice {
     /// Name.
     pub metric: String,
-    /// How much its unit counts.
+    /// Weight of one unit.
     pub weight: f64,
-    /// Where it is to be; as small as possible where there is none.
+    /// Target; `null` to minimise.
     pub target: Option<f64>,
 }
 
-/// What an optimisation of a text may choose, and what the text chooses: `[optimize]`, and what could stand there.
+/// Options of an optimisation, with their values in the text: `[optimize]` and its possible entries.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct OptimizeOffer {
@@ -123,7 +123,7 @@ pub struct OptimizeOffer {
     pub variables: Vec<SearchVariable>,
     /// All metrics.
     pub goals: Vec<SearchGoal>,
-    /// What must hold, a sentence each.
+    /// Limits, a sentence each.
     pub limits: Vec<String>,
     /// From how many designs it starts.
     pub starts: usize,
@@ -155,9 +155,9 @@ pub struct SearchGoal {
     pub unit: String,
     /// The value of the design of the text, in the first case that it is taken in, where it is known.
     pub value: Option<f64>,
-    /// How much its unit counts.
+    /// Weight of one unit.
     pub weight: f64,
-    /// Where it is to be; as small as possible where there is none.
+    /// Target; `null` to minimise.
     pub target: Option<f64>,
     /// True if its target is a curve, which the text has: then it has none of its own.
     pub curve: bool,
@@ -165,17 +165,17 @@ pub struct SearchGoal {
     pub chosen: bool,
 }
 
-/// What a tolerance study of a text may choose, and what the text chooses: `[tolerance]`.
+/// Options of a tolerance study, with their values in the text: `[tolerance]`.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ToleranceOffer {
-    /// What may be off, by how much.
+    /// Tolerances of the variables.
     pub tolerances: Vec<ToleranceChoice>,
-    /// What is looked at.
+    /// Names of the metrics.
     pub metrics: Vec<String>,
     /// Number of designs are drawn.
     pub samples: usize,
-    /// What they are drawn from.
+    /// Seed of the random numbers.
     #[cfg_attr(test, ts(type = "number"))]
     pub seed: u64,
 }
@@ -190,17 +190,17 @@ pub struct ToleranceChoice {
     pub tolerance: f64,
     /// Unit.
     pub unit: String,
-    /// How it scatters.
+    /// Distribution of the deviations.
     pub distribution: String,
 }
 
-/// What is asked of a tolerance study; all else is as the text has it.
+/// Options of a tolerance study; all others are those of the text.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ToleranceRequest {
     /// Number of designs are drawn and solved exactly.
     pub samples: usize,
-    /// What they are drawn from: the same number gives the same designs.
+    /// Seed of the random numbers: the same seed gives the same designs.
     pub seed: u32,
 }
 
@@ -231,11 +231,11 @@ pub struct DiagnosticMessage {
     pub column: Option<usize>,
     /// Number of characters are meant.
     pub length: Option<usize>,
-    /// What to write at that place.
+    /// Text at that place.
     pub label: Option<String>,
     /// Facts.
     pub notes: Vec<String>,
-    /// What to do.
+    /// Instruction that corrects the problem.
     pub help: Option<String>,
 }
 
@@ -278,7 +278,7 @@ impl DiagnosticMessage {
     }
 }
 
-/// What is wrong or worth knowing about a text.
+/// Diagnostics of a text.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct CheckReply {
@@ -286,7 +286,7 @@ pub struct CheckReply {
     pub messages: Vec<DiagnosticMessage>,
 }
 
-/// What can be done with a model that was opened.
+/// Abilities of a model that was opened.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct OpenReply {
@@ -294,9 +294,9 @@ pub struct OpenReply {
     pub cases: Vec<String>,
     /// The hardpoints that can be taken hold of.
     pub grips: Vec<MovableHardpoint>,
-    /// How the frames of the bodies are turned in the drawing, quaternions w x y z, ground first.
+    /// Orientations of the bodies' frames in the design configuration, quaternions w x y z, ground first.
     pub frames: Vec<[f64; 4]>,
-    /// Why its motion ends early, where it does.
+    /// Reason of an early end of its motion.
     pub stop: Option<DiagnosticMessage>,
 }
 
@@ -306,13 +306,13 @@ pub struct OpenReply {
 pub struct MovableHardpoint {
     /// Name.
     pub name: String,
-    /// Where it is in the drawing, in the model's unit.
+    /// Position in the design configuration, in the model's unit.
     pub place: [f64; 3],
-    /// What its coordinates are varied by.
+    /// Variables of its coordinates.
     pub coordinates: [Coordinate; 3],
 }
 
-/// What a coordinate of a hardpoint is varied by.
+/// Variable of a coordinate of a hardpoint.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Coordinate {
@@ -333,7 +333,7 @@ pub struct DesignReply {
     /// The design; `None` where nothing of its motion could be solved.
     #[cfg_attr(test, ts(type = "Design | null"))]
     pub design: Option<Design>,
-    /// Why it is not the one requested, or why its motion ends early.
+    /// Reason why it is not the requested design, or of an early end of its motion.
     pub why: Option<DiagnosticMessage>,
 }
 
@@ -345,13 +345,13 @@ pub struct Text {
     pub text: String,
 }
 
-/// What a study came to.
+/// Result of a study.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct StudyReply {
-    /// How it ended, in a sentence.
+    /// Sentence about its end.
     pub message: String,
-    /// What was found.
+    /// Tables of the result.
     #[cfg_attr(test, ts(type = "Array<Table>"))]
     pub tables: Vec<Table>,
     /// The design found, where one was searched for.
@@ -360,7 +360,7 @@ pub struct StudyReply {
     pub text: Option<String>,
 }
 
-/// Why there is no answer.
+/// Reason why there is no answer.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ErrorReply {
@@ -368,15 +368,15 @@ pub struct ErrorReply {
     pub failed: Vec<DiagnosticMessage>,
 }
 
-/// How far a study is.
+/// Progress of a study.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ProgressReply {
-    /// So much is done ...
+    /// Amount that is done ...
     pub done: usize,
     /// ... of so much, where that is known.
     pub total: Option<usize>,
-    /// What has happened, in a line.
+    /// Line about the last event.
     pub line: String,
     /// The design that the study is at.
     pub change: Option<Vec<VariableSetting>>,

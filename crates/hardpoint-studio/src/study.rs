@@ -1,4 +1,4 @@
-//! What takes its time: the whole page of a model, a search, tolerances.
+//! Studies that take time: the whole page of a model, optimisations, tolerances.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -17,7 +17,7 @@ use hardpoint_report::optimize::{OptimizeFacts, iteration_line, rounded, start_l
 use hardpoint_report::page::{ModelText, Payload};
 use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
-use hardpoint_report::tolerance::{ToleranceInputs as Toleranced, ToleranceFacts};
+use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs as Toleranced};
 use hardpoint_report::validity::ValidityFact;
 
 use crate::protocol::{
@@ -114,7 +114,7 @@ pub(crate) fn optimized(
     })
 }
 
-/// What the tolerances of a model come to.
+/// Runs the tolerance study of a model.
 pub(crate) fn toleranced(
     model: &ModelText,
     request: &ToleranceRequest,

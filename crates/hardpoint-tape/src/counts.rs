@@ -1,8 +1,9 @@
-//! What became of a recording, in figures.
+//! Statistics of a recording.
 
 use crate::program::{Instruction, Program};
 
-/// What became of the recorded operations. A recorded `a b + c` is two: a product and a sum. Constants, inputs and uniforms are none.
+/// Statistics of the recorded operations. A recorded `a b + c` is two: a product and a sum. Constants, inputs and
+/// uniforms are none.
 ///
 /// Every operation has one end: `recorded = folded + common + dead + fused + left - negations`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! From a recording to a program: what need not be computed goes.
 //!
-//! A recording holds all that a kernel did. Half of that is done with exact zeros and ones, and much is done twice. The graph
-//! takes the steps one by one, finds the node that each comes to, and makes a new one only where there is none:
+//! A recording holds all operations of a kernel. Half of them have exact zeros and ones as operands, and many are
+//! repeated. The graph takes the steps one by one, finds the node of each, and makes a new one only if none exists:
 //!
 //! - constants are folded: with each other as `f64` does, and `x * 0`, `x * 1`, `x + 0`, `0 / x`, `x / 1`, `x - x`;
 //! - a number carries a sign, so that negations cost nothing: `a - b` is the sum of `a` and `-b`;
@@ -14,7 +14,7 @@ use crate::counts::Counts;
 use crate::number::{Recording, Step, larger};
 use crate::program::{Call, Instruction, Operand, Program};
 
-/// How a recording is turned into a program.
+/// Options of turning a recording into a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
     /// True if products are fused with the sums that take them, which rounds once instead of twice. Where they are not, every
@@ -53,7 +53,7 @@ impl Recording {
     }
 }
 
-/// What computes a node.
+/// Operation that computes a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     /// Not negative; its bits are in `a` and `b`.
@@ -62,14 +62,14 @@ enum Kind {
     Input,
     /// Number `a`.
     Uniform,
-    /// Of two signed numbers, the first positive.
+    /// Sum of two signed numbers, the first positive.
     Add,
-    /// Of two nodes without signs, as they follow.
+    /// Operation on two nodes without signs, in order.
     Mul,
     Div,
     Abs,
     Round,
-    /// Of signed numbers, as they follow.
+    /// Operation on signed numbers, in order.
     Sqrt,
     Larger,
     Call(Call),
@@ -108,17 +108,17 @@ impl Signed {
 /// No node, no instruction, nothing.
 const NONE: u32 = u32::MAX;
 
-/// The nodes that a recording comes to, operands before what is computed from them.
+/// Nodes of a recording, operands before the nodes that use them.
 struct Graph {
     nodes: Vec<Node>,
     /// Open addressing: where in `nodes` a node with this hash is; a power of two of places, at most half of them taken.
     table: Vec<u32>,
     outputs: Vec<Signed>,
-    /// How often live nodes and outputs read each node; 0 is dead.
+    /// Number of reads of each node by live nodes and outputs; 0 is dead.
     uses: Vec<u32>,
-    /// Of a sum: the product that is fused with it.
+    /// For a sum: the product that is fused with it.
     fused: Vec<u32>,
-    /// Of a product: whether it is fused with all that takes it, and is no instruction of its own.
+    /// For a product: true if it is fused with all its uses and is no instruction of its own.
     absorbed: Vec<bool>,
     counts: Counts,
 }
@@ -500,7 +500,7 @@ impl Graph {
                 last[*read as usize] = k as u32 + 1;
             }
         }
-        // By the time: how many come to live, less how many end.
+        // By the time: the number of values that become live, minus the number that end.
         let mut change = vec![0i32; order.len() + 1];
         for (k, node) in order.iter().enumerate() {
             if last[*node as usize] > 0 {

@@ -20,7 +20,7 @@ const ABREAST: usize = 4;
 #[derive(Clone, Debug)]
 pub struct Interpreter {
     code: Vec<Code>,
-    /// Where results go that are outputs, in the order of the code.
+    /// Destinations of results that are outputs, in the order of the code.
     stores: Vec<u32>,
     /// Constants of the program, then uniforms.
     scalars: Vec<f64>,
@@ -50,7 +50,7 @@ struct Code {
     c: u32,
 }
 
-/// What is done with slots and scalars: letters say which the operands are, `s` slot and `c` scalar.
+/// Operation on slots and scalars: the letters are the operands, `s` slot and `c` scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Op {
     /// Brings input `a` into its slot.
@@ -387,7 +387,7 @@ impl<'a> Assembler<'a> {
         self.push(op, [from, 0, 0])
     }
 
-    /// Where an operand is; inputs are loaded when they are first read.
+    /// Location of an operand; inputs are loaded when they are first read.
     fn place(&mut self, operand: Operand) -> Place {
         match operand {
             Operand::Value(k) => Place::Slot(self.slot_of_value[k as usize]),

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::program::Call;
 
-/// What was computed, step by step, and which of it is wanted.
+/// Computation, step by step, and the requested results.
 ///
 /// Made by [`record`]; [`Recording::program`](Recording::program) turns it into a program.
 #[derive(Clone, Debug, Default)]
@@ -38,7 +38,7 @@ pub(crate) enum Step {
     Call(Call, u32, u32),
 }
 
-/// What the thread records at this moment; session 0 is none.
+/// Recording of the thread at this moment; session 0 is none.
 struct Session {
     id: u32,
     recording: Recording,
@@ -93,7 +93,7 @@ pub fn record<O: IntoIterator<Item = Number>>(f: impl FnOnce() -> O) -> Recordin
 }
 
 impl Session {
-    /// Where `number` is in this session.
+    /// Index of `number` in this session.
     #[inline(always)]
     fn place(&self, number: Number) -> u32 {
         if number.session != self.id {
@@ -120,7 +120,7 @@ impl Session {
     /// The same, where it is no constant and no other number: what is known in every run is known while recording.
     #[inline(always)]
     fn push_folded(&mut self, step: Step, value: f64) -> Number {
-        /// What a step comes to.
+        /// Result of a step.
         enum Fold {
             Same(u32),
             Constant(f64),
@@ -234,7 +234,7 @@ impl Number {
         self.value
     }
 
-    /// What it is in every run, if it was made a [`constant`](Number::constant), or of constants alone.
+    /// Value in every run, for a [`constant`](Number::constant) and for results of constants alone.
     pub fn known(self) -> Option<f64> {
         SESSION.with_borrow(|s| match s.recording.steps[s.place(self) as usize] {
             Step::Constant(x) => Some(x),

@@ -31,26 +31,26 @@ pub struct Pieces {
 pub struct Shape {
     /// Outputs are those that are kept, and then those in the second and in the third area.
     pub program: Program,
-    /// Where the outputs that are kept end, and those in the second area.
+    /// End of the stored outputs, and of those in the second area.
     pub ends: [usize; AREAS - 1],
 }
 
 /// A piece of a program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// Which of the shapes it has.
+    /// Index of its shape.
     pub shape: usize,
-    /// What its inputs are: inputs of the whole program, or values, by their number among those that are kept.
+    /// Inputs: inputs of the whole program, or values, by their number among the stored ones.
     pub inputs: Vec<Operand>,
-    /// Which uniforms of the whole program are its first ones.
+    /// Uniforms of the whole program that are its first ones.
     pub given: Vec<u32>,
     /// Other uniforms.
     pub uniforms: Vec<f64>,
-    /// Which of the numbers that are kept are its own.
+    /// Range of the stored numbers that are its own.
     pub kept: Range<usize>,
     /// The last of these are outputs: of which area, and which there.
     pub outputs: Vec<(usize, u32)>,
-    /// Which outputs of the second and the third area are written there by its program.
+    /// Outputs of the second and the third area that its program writes.
     pub areas: [Range<usize>; AREAS - 1],
 }
 
@@ -136,12 +136,12 @@ impl Pieces {
     }
 }
 
-/// What the pieces of a program are run in; of one program only.
+/// Working memory of the pieces of one program.
 #[derive(Clone, Debug, Default)]
 pub struct PiecesRoom {
     kept: Vec<Line>,
     read: Vec<Line>,
-    /// Of all pieces, one after the other.
+    /// Uniforms of all pieces, one after the other.
     uniforms: Vec<f64>,
 }
 
@@ -152,7 +152,7 @@ struct Line(Lanes);
 
 const _: () = assert!(size_of::<Line>() == LANES * size_of::<f64>());
 
-/// What belongs to which piece.
+/// Assignment of instructions to pieces.
 struct Cut {
     /// True if a later piece reads it.
     is_read: Vec<bool>,
@@ -210,7 +210,7 @@ impl Cut {
     }
 }
 
-/// What pieces of one shape have in common: operands are numbered as they come up.
+/// Common form of the pieces of one shape: operands are numbered in the order of their first use.
 #[derive(PartialEq, Eq, Hash)]
 struct Form {
     instructions: Vec<Instruction>,

@@ -12,7 +12,7 @@ pub const LANES: usize = 8;
 /// The scalars of one number, lane by lane.
 pub type Lanes = [f64; LANES];
 
-/// Where an instruction finds a number.
+/// Source of an operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Operand {
     /// The result of an earlier instruction.
@@ -75,9 +75,9 @@ calls! {
     Exp "exp" of 1 |a, _| a.exp();
     /// Natural logarithm.
     Ln "ln" of 1 |a, _| a.ln();
-    /// Of two: `a.atan2(b)`, the angle of the point (b, a).
+    /// `a.atan2(b)`, the angle of the point (b, a).
     Atan2 "atan2" of 2 |a, b| a.atan2(b);
-    /// Of two: `a.powf(b)`.
+    /// `a.powf(b)`.
     Pow "pow" of 2 |a, b| a.powf(b);
 }
 
@@ -125,9 +125,9 @@ pub struct Program {
     pub uniforms: usize,
     /// The numbers of the program itself.
     pub constants: Vec<f64>,
-    /// What is computed, in this order.
+    /// Instructions, in order.
     pub instructions: Vec<Instruction>,
-    /// What is given back, in this order.
+    /// Outputs, in order.
     pub outputs: Vec<Operand>,
 }
 

@@ -31,7 +31,7 @@ impl Program {
     /// Splits the program: what reads only leaves that are `early`, and the rest, which finds the k-th output of the first part at
     /// `joint(k)`.
     fn split(self, early: impl Fn(Operand) -> bool, joint: impl Fn(u32) -> Operand) -> (Self, Self) {
-        /// Where a value of the whole is found in the rest.
+        /// Location in the rest of a value of the whole program.
         #[derive(Clone, Copy)]
         enum Place {
             /// Value of the first part, by its number there; not requested so far.

@@ -20,9 +20,9 @@ export interface Schema {
 /** A word that could stand where one is being written. */
 export interface Suggestion {
   label: string
-  /** What is written for it. */
+  /** Text to insert. */
   insert: string
-  /** What it is, in a word. */
+  /** Description in a word. */
   detail?: string
   about?: string
 }
@@ -63,7 +63,10 @@ const NAMED: Record<string, string[]> = {
 /** One of each kind, as its table is called. */
 const ONE: Record<string, string> = { hardpoints: 'hardpoint', bodies: 'body', joints: 'joint', points: 'point', wheels: 'wheel', axles: 'axle', drivers: 'driver', measures: 'measure', metrics: 'metric', cases: 'case', design: 'design variable', parameters: 'parameter' }
 
-/** What could stand at a place of a text, and where the word that it would replace begins; nothing where nothing is known. */
+/**
+ * Possible entries at a place of a text, and the start of the word that they would replace; undefined where nothing is
+ * known.
+ */
 export function suggest(source: string, at: number, schema?: Schema): { from: number; suggestions: Suggestion[] } | undefined {
   const here = standing(source.slice(0, at))
   if (!here) return undefined
@@ -94,7 +97,7 @@ function unique(suggestions: Suggestion[]): Suggestion[] {
   return [...new Map(suggestions.map((one) => [one.label, one])).values()]
 }
 
-/** What a schema represents: itself, what it refers to, and each of several. */
+/** Forms of a schema: itself, its references, and each of several alternatives. */
 function forms(node: Schema, root: Schema, seen = new Set<Schema>()): Schema[] {
   if (seen.has(node)) return []
   seen.add(node)
@@ -107,7 +110,7 @@ function elements(node: Schema, root: Schema): Schema[] {
   return forms(node, root).flatMap((form) => [form, ...[form.items, ...(form.prefixItems ?? [])].flatMap((item) => (item && typeof item === 'object' ? elements(item, root) : []))])
 }
 
-/** What a schema says of the value at a path. */
+/** Schemas of the value at a path. */
 function walk(root: Schema, path: string[]): Schema[] {
   let nodes = [root]
   for (const part of path) {

@@ -27,7 +27,7 @@ export interface Options {
   check: Checker
   /** A text that was typed is valid: the page can show it. */
   onValid: (text: string) => void
-  /** What the file may hold, from which keys and words are completed. */
+  /** Schema of the file, for the completion of keys and words. */
   schema?: Schema
 }
 
@@ -50,7 +50,7 @@ export interface Editor {
   destroy(): void
 }
 
-/** Where a change comes from that was not typed, and whether it continues with the one before. */
+/** Mark of a change that was not typed, and whether it continues the one before. */
 const outside = Annotation.define<{ sameStep: boolean }>()
 
 /** Makes the pane of the model's text; put its element into the page before it is given the focus. */
@@ -58,7 +58,7 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
   let lineBreak = lineBreakOf(text)
   /** The text that the page shows: the last valid one. */
   let shown = ''
-  /** Of the present text: what the check reported, and what solving it did. */
+  /** Diagnostics of the present text: from the check, and from solving it. */
   let checked: Diagnostic[] = []
   let solved: Diagnostic[] = []
   let waiting: ReturnType<typeof setTimeout> | undefined
@@ -102,7 +102,7 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
           { key: 'Escape', run: () => (view.setTabFocusMode(true), false) },
         ]),
         EditorView.contentAttributes.of({ 'aria-label': 'Model, TOML. Escape, then Tab leaves the text.', 'data-testid': 'model-text', spellcheck: 'false' }),
-        // Who comes by Tab goes on by Tab; who types, or presses into the text, means the text.
+        // The Tab key continues to move the focus for those who came by it; typing or clicking into the text edits it.
         EditorView.domEventHandlers({
           focus: () => view.setTabFocusMode(true),
           pointerup: () => view.setTabFocusMode(false),
@@ -211,7 +211,7 @@ function lineBreakOf(text: string): string {
   return text.includes('\r\n') ? '\r\n' : '\n'
 }
 
-/** What is said where the check itself fails. */
+/** Diagnostic for a failure of the check itself. */
 function failure(error: unknown): Diagnostic {
   const message = `the text could not be checked: ${error instanceof Error ? error.message : String(error)}`
   return { severity: 'error', code: '', message, line: null, column: null, length: null, label: null, notes: [], help: null }
@@ -228,7 +228,7 @@ function complete({ state, pos, explicit }: CompletionContext, schema?: Schema):
   return { from: found.from, options, validFor: /^[\w-]*$/ }
 }
 
-/** What is said of a word is below the list of words, or above it, so that it hides none of them. */
+/** The description of a word is below or above the list of words, so that it hides none of them. */
 function beside(_: EditorView, list: Rect, __: Rect, info: Rect, space: Rect): { style: string } {
   const fits = list.bottom + info.bottom - info.top <= space.bottom
   return { style: `left: 0; ${fits ? 'top' : 'bottom'}: calc(100% + 2px)` }

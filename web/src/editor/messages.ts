@@ -3,7 +3,7 @@ import type { Text } from '@codemirror/state'
 import { el, prose } from '../dom'
 import type { Diagnostic } from '../engine/engine'
 
-/** Where something is in a text, in the editor's count. */
+/** Range in a text, in the editor's positions. */
 export interface Span {
   from: number
   to: number
@@ -22,7 +22,7 @@ export function placeOf(doc: Text, line: number, column: number): number {
   return from + ahead(text, column - 1)
 }
 
-/** What a message underlines: what it is about, or else the line. */
+/** Range that a message underlines: its place, or else the line. */
 export function spanOf(doc: Text, { line, column, length }: Diagnostic): Span | undefined {
   if (line === null) return undefined
   const whole = doc.line(Math.min(line, doc.lines))

@@ -1,7 +1,7 @@
-/** What a piece of TOML is; nothing for spaces and punctuation without a meaning of its own. */
+/** Kind of a piece of TOML; undefined for spaces and punctuation without a meaning of their own. */
 export type Kind = 'comment' | 'heading' | 'key' | 'string' | 'number' | 'atom' | 'bracket' | undefined
 
-/** Where a reader of TOML is at the start of a line, or within it. */
+/** State of a reader of TOML at the start of a line, or within it. */
 export interface Reading {
   /** The quotes that a text over several lines waits for. */
   quotes: string
@@ -52,7 +52,7 @@ export function piece(line: string, at: number, reading: Reading): [kind: Kind, 
   return ['[]{}'.includes(mark) ? 'bracket' : undefined, at + 1]
 }
 
-/** Where a text over several lines ends on this one, from `at`. */
+/** End on this line of a text over several lines, from `at`. */
 function closing(line: string, at: number, reading: Reading): number {
   for (let k = at; k < line.length; k++) {
     if (line[k] === '\\' && reading.quotes === '"""') k++
@@ -83,12 +83,12 @@ export function text(value: string): string {
   return JSON.stringify(value)
 }
 
-/** What is somewhere in a text: a table's heading, or a key with its value. */
+/** An entry of a text: the heading of a table, or a key with its value. */
 export interface Entry {
   /** From the root: `[metrics.bump]` and `at = 5` in it are `metrics bump` and `metrics bump at`. */
   path: string[]
   heading: boolean
-  /** Of a key, how many brackets it is in. */
+  /** Nesting depth of a key in brackets. */
   depth: number
   from: number
   /** The end of the heading, or of the key. */
@@ -97,12 +97,12 @@ export interface Entry {
   end: number
 }
 
-/** What a text declares, in its order; it need not be valid. */
+/** Entries of a text, in order; the text need not be valid. */
 export function outline(source: string): Entry[] {
   return read(source).entries
 }
 
-/** What is about to be written at the end of a text. */
+/** Entry that is about to be written at the end of a text. */
 export interface Standing {
   /** The table that it belongs to. */
   table: string[]
@@ -116,7 +116,7 @@ export interface Standing {
   heading: boolean
 }
 
-/** Where a writer is at the end of a text; nowhere in a comment, or in a text of several lines. */
+/** State of a writer at the end of a text; undefined in a comment, or in a text over several lines. */
 export function standing(source: string): Standing | undefined {
   const { table, around, key, reading, last, kind } = read(source)
   if (kind === 'comment' || reading.quotes !== '') return undefined

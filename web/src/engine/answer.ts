@@ -9,7 +9,7 @@ export interface Answer<T> {
   decode: Decode
 }
 
-/** Why there is no answer, in the words of the command line. */
+/** Reason why there is no answer, in the words of the command line. */
 export class Refused extends Error {
   constructor(readonly messages: DiagnosticMessage[]) {
     super(messages[0]?.message ?? 'there is no answer')

@@ -18,20 +18,20 @@ export interface Running<T> {
   readonly result: Promise<T>
 }
 
-/** What a study comes to. */
+/** Result of a study. */
 export interface StudyResult {
   tables: Table[]
   /** The design found, as changes from the text that was studied; none where nothing better was found. */
   change: VariableSetting[] | null
   /** The text with the design found, its comments kept. */
   text: string | null
-  /** How it ended, in a sentence. */
+  /** Sentence about its end. */
   message: string
 }
 
 /** The studies of a text, each in a worker of its own. */
 export interface Studies {
-  /** What an optimisation of the text may choose. */
+  /** Options of an optimisation of the text. */
   optimizeOffer(text: string): Promise<OptimizeOffer>
   optimize(text: string, request: OptimizeRequest): Running<StudyResult>
   toleranceOffer(text: string): Promise<ToleranceOffer>

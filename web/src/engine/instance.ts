@@ -1,6 +1,6 @@
 import type { Request, ProgressReply } from './protocol'
 
-/** What the engine's binary offers: see `web/engine`. */
+/** Exports of the engine's binary: see `web/engine`. */
 interface Exports {
   memory: WebAssembly.Memory
   room(length: number): number

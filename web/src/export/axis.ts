@@ -2,7 +2,7 @@ import { number } from '../format'
 
 /** From values to pixels, with round numbers on the way. */
 export interface Axis {
-  /** Where a value is; NaN for what a logarithmic axis cannot show. */
+  /** Position of a value; NaN if a logarithmic axis cannot show it. */
   at(value: number): number
   ticks: { value: number; text: string }[]
 }

@@ -33,14 +33,14 @@ export async function motionGltf(mechanism: Mechanism, drawn: Drawn[], step: num
   return new Blob([file as ArrayBuffer], { type: 'model/gltf-binary' })
 }
 
-/** What is written: the things drawn with materials that glTF knows, and their motion. */
+/** Scene to write: the drawn things with materials that glTF knows, and their motion. */
 function motionScene(mechanism: Mechanism, drawn: Drawn[], step: number): { scene: Object3D; clip: AnimationClip } {
   const { report } = mechanism
   const materials = new Map<Material, Material>()
   const matter = drawn.filter(({ overlay }) => !overlay)
   const bodies = report.bodies.map(({ name }) => named(new Group(), name))
   const loose = new Group()
-  /** What is drawn, and its copy in the file. */
+  /** Drawn objects, and their copies in the file. */
   const pairs: [Object3D, Object3D][] = []
   for (const { body, object, part } of matter) {
     const copied = copy(object, materials, pairs)
@@ -99,7 +99,7 @@ function matt(material: Material): Material {
   return new MeshStandardMaterial({ color: color ?? new Color(), map: map ?? null, metalness: 0, roughness: 1, opacity, transparent, side })
 }
 
-/** Where something is at every time at which it is somewhere. */
+/** Positions of an object at all times at which it has one. */
 class Path {
   #times: number[] = []
   #place: number[] = []
@@ -114,7 +114,7 @@ class Path {
     this.#size.push(...scale.toArray())
   }
 
-  /** Of what does not change there are no tracks. */
+  /** Tracks of properties that change. */
   tracks({ uuid }: Object3D): KeyframeTrack[] {
     const times = this.#times
     return [

@@ -108,7 +108,7 @@ function stroked(color: string, width = 1.8, dash?: number[]): Record<string, st
   return { fill: 'none', stroke: color, 'stroke-width': width, 'stroke-linejoin': 'round', 'stroke-dasharray': dash?.join(' ') }
 }
 
-/** Where the lines' names stand below the plot, in rows. */
+/** Positions of the lines' names below the plot, in rows. */
 function legend(lines: Line[]): { places: [number, number][]; height: number } {
   let [left, top] = [LEFT, 4]
   const places = lines.map(({ label }): [number, number] => {

@@ -1,4 +1,4 @@
-/** What is drawn on a canvas, as a file. */
+/** Contents of a canvas, as a file. */
 function canvasPng(canvas: HTMLCanvasElement): Promise<Blob> {
   return new Promise((resolve, reject) =>
     canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('the picture is too large for this browser'))), 'image/png'),

@@ -3,7 +3,7 @@ import { LineSegments2 } from 'three/addons/lines/LineSegments2.js'
 import type { Placed } from '../scene/labels'
 import { escaped, round, svgFile, tag } from './markup'
 
-/** How a picture of the view is drawn. */
+/** Options of a picture of the view. */
 interface Picture {
   width: number
   height: number

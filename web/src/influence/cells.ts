@@ -4,7 +4,7 @@ import { figure } from '../format'
 /** A row of the map: the heading of a unit, or a variable. */
 export type Row = { unit: string; variable?: Variable }
 
-/** What the map says of a quantity and a variable. */
+/** Cell of the map for a quantity and a variable. */
 interface Cell {
   /** The value that is largest in magnitude over time, with its sign. */
   extreme: number

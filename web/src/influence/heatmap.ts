@@ -11,9 +11,9 @@ const ROW = 20
 const COLUMN = { least: 24, most: 72 }
 /** Columns from this width show their numbers, px. */
 const ROOMY = 46
-/** Of the names beside the rows and above the columns, px. */
+/** Sizes of the names of rows and columns, px. */
 const NAMES = { width: 176, height: 112 }
-/** Of the window: at most so high, and room for a scroll bar under a map that is not, px. */
+/** Maximum height of the window, and room for a scroll bar, px. */
 const HIGHEST = 460
 const SPARE = 18
 const FONT = '12px system-ui, sans-serif'

@@ -21,7 +21,7 @@ interface Ranking {
   unit: string
 }
 
-/** Which variables matter for the chosen quantity, largest first within each unit; only rows in sight are made. */
+/** Most influential variables of the chosen quantity, largest first within each unit; only visible rows are made. */
 export function rankingTable(state: State): HTMLElement {
   const { report, choice } = state
   const heading = el('h2')
@@ -30,7 +30,7 @@ export function rankingTable(state: State): HTMLElement {
   const [above, below] = [el('div'), el('div')]
   let rows: Ranking[] = []
   let range = [0, 0]
-  /** Of the window: how far it is scrolled, and its height, px. */
+  /** Scroll position and height of the window, px. */
   let top = 0
   let height = FIRST_ROWS * ROW
   let frame = 0

@@ -22,7 +22,7 @@ export function forcePaths(state: State): HTMLElement {
   return new Polar(state).element
 }
 
-/** What is drawn of a force: on which body, seen in which plane. */
+/** View of a force: its body and its plane. */
 interface View {
   load: Load
   sign: 1 | -1
@@ -150,7 +150,7 @@ class Polar {
     return [SIZE / 2 + x * this.#scale, SIZE / 2 - y * this.#scale]
   }
 
-  /** Where the force is at the moment, and how large it becomes. */
+  /** Marks the present force and its largest value. */
   #mark(): void {
     const { report, present, step, changed } = this.state
     if (!this.#view) return

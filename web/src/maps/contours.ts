@@ -11,7 +11,7 @@ export interface Grid {
 /** Points of a line in the drivers' units. */
 export type Line = [number, number][]
 
-/** Where the values are at least a level: areas, each an outline and its holes. */
+/** Region where the values are at least a level: an outline and its holes. */
 export interface Area {
   level: number
   outlines: Line[]
@@ -58,7 +58,7 @@ export function valueAt({ columns, rows, values }: Grid, x: number, y: number): 
   return mixed(edge(j), edge(j + 1), t)
 }
 
-/** What has no part in it needs no value. */
+/** A value with zero weight may be missing. */
 function mixed(a: number, b: number, part: number): number {
   return part === 0 ? a : part === 1 ? b : a + (b - a) * part
 }

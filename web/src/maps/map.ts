@@ -76,7 +76,7 @@ class DriverMap {
     this.#render()
   }
 
-  /** What is shown: its name, its unit, and its numbers. */
+  /** Shown table: name, unit, and numbers. */
   #shown(): { name: string; unit: string; grid: Grid } {
     const quantity = this.map.quantities[Number(this.#quantity.value)]
     const [columns, rows] = this.map.drivers.map(({ places }) => places)
@@ -119,7 +119,7 @@ class DriverMap {
     this.#say()
   }
 
-  /** Where the mechanism did not come to: no colour. */
+  /** Positions that the mechanism did not reach: no colour. */
   #gaps({ columns, rows, values }: Grid, x: Axis, y: Axis): SVGElement[] {
     const cells: SVGElement[] = []
     const known = (i: number, j: number) => Number.isFinite(values[j * columns.length + i])

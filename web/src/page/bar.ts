@@ -3,7 +3,7 @@ import type { Design } from '../report'
 import type { State } from '../state'
 import { menu, type Item } from './menu'
 
-/** What the bar offers beside the title. */
+/** Controls of the bar next to the title. */
 export interface Offers {
   find?: HTMLElement
   exports: () => Item[]
@@ -26,7 +26,7 @@ export function bar(state: State, { find, exports, help }: Offers): HTMLElement 
   )
 }
 
-/** Whether it is an edge of where curves lie, which is drawn beside them and compared with nothing. */
+/** True for edges of bands of curves, which are drawn with them and compared with nothing. */
 function isBand({ kind }: Design): boolean {
   return kind === 'band'
 }

@@ -74,7 +74,7 @@ function miss(value: number, [low, high]: Target): number {
   return Math.max(0, (low ?? -Infinity) - value, value - (high ?? Infinity))
 }
 
-/** Places band and tick, and says in words how the value stands to its target. */
+/** Places band and tick, and describes the value relative to its target. */
 function showTarget(scale: HTMLElement, target: Target, now: number | null): string {
   const [low, high] = target
   const ends = [low, high, now].filter((end) => end !== null)

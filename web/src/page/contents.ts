@@ -7,7 +7,7 @@ import type { Content, Line } from '../plot'
 import { derivativeName, derivativeUnit, orderedName, type Driver, type Order, type Report } from '../report'
 import type { State } from '../state'
 
-/** What one figure draws. */
+/** Subject of a figure. */
 export interface Subject {
   quantity: number
   order: Order
@@ -15,12 +15,12 @@ export interface Subject {
   over?: number
 }
 
-/** How many sensitivities are drawn beside that of the selected variable. */
+/** Number of sensitivities that are drawn with that of the selected variable. */
 const FEW = 5
 const DASHED = [7, 5]
 const DOTTED = [2, 4]
 
-/** The quantity of the present design, the one that it is compared with, what was foreseen, and what is wanted. */
+/** Lines of the present design, of the one that it is compared with, of predictions, and of targets. */
 export function valueContent(state: State, { quantity: index, order, over }: Subject): Content {
   const { report, former, present } = state
   const quantity = report.quantities[index]
@@ -146,7 +146,7 @@ function atAbscissa({ senses: report }: State, { quantity, order, over }: Subjec
   return { seen, note: alone && keeper ? `At the same ${x.name}, which ${keeper.name} keeps while other drivers stand.` : '' }
 }
 
-/** Of several drivers that move, the one that moves the quantity most. */
+/** Among several moving drivers, the one that moves the quantity most. */
 function moverOf({ drivers }: Report, quantity: number): Driver | undefined {
   const reach = ({ alone, travel }: Driver) => {
     const [least, most] = extent([travel]) ?? [0, 0]

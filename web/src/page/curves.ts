@@ -11,10 +11,10 @@ export class Curves {
   readonly figures: Figure[] = []
   #list = el('div', { class: 'figures' })
   #made = 0
-  /** What is seen of the time, in all of them. */
+  /** Visible part of the time, in all figures. */
   #time = new Zoom()
 
-  /** `tool` makes what stands beside the controls of a figure, as soon as there is something. */
+  /** `tool` makes the controls of a figure, as soon as it has contents. */
   constructor(
     private readonly state: State,
     private readonly tool?: (figure: Figure) => HTMLElement | undefined,

@@ -12,7 +12,7 @@ import type { Item } from './menu'
 /** Pixels of an exported picture per pixel of the page. */
 const SHARP = 2
 
-/** What can be exported of what is shown now. */
+/** Items that can be exported from the present view. */
 export function exports(state: State, figures: Figure[], view: View | undefined): Item[] {
   const { report } = state
   const name = report.file.replace(/\.[^.]*$/, '') || 'report'

@@ -8,7 +8,7 @@ import { pointing } from './pointing'
 
 export type Shown = 'value' | 'sensitivity'
 
-/** What a figure is made with. */
+/** Options of a figure. */
 interface Wish {
   /** Fixed quantity; the selected one where there is none. */
   quantity?: number
@@ -73,7 +73,7 @@ export class Figure {
 
   readonly show: () => void
 
-  /** What is drawn. */
+  /** Subject of the figure. */
   get subject(): Subject {
     const { quantity, order, over } = this.state.choice
     return this.#follows ? { quantity, order, over } : { quantity: this.#quantity!, order: this.#order, over: this.#over }

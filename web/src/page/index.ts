@@ -23,18 +23,18 @@ import { tabs, type Tab } from './tabs'
 import { transport } from './transport'
 import { variables } from './variables'
 
-/** What the page is given to show besides the report. */
+/** Parts that the page shows besides the report. */
 export interface Tools {
-  /** Stands in the bar. */
+  /** Element in the bar. */
   bar?: HTMLElement
   /** More that can be exported. */
   exports?: () => Item[]
   grips?: () => void
-  /** What stands beside the controls of a figure. */
+  /** Element next to the controls of a figure. */
   figure?: (figure: Figure) => HTMLElement | undefined
 }
 
-/** What was built, for what is added to it later. */
+/** Parts of the page, for later additions. */
 export interface Made {
   view?: View
   bar: HTMLElement

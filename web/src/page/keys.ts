@@ -1,6 +1,6 @@
 import type { State } from '../state'
 
-/** What the keys act on beside the state; a part that is not on the page is left out. */
+/** Targets of the keys besides the state; missing parts are left out. */
 interface Targets {
   fit?: () => void
   /** Takes the standard view of this number, from 0. */

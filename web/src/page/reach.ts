@@ -6,7 +6,7 @@ const SEEN = 0.08
 /** And so far they turn at most, rad. */
 const TURNED = 0.2
 
-/** How far a slider goes to either side: to the bounds that the model gives, or until the change is seen. */
+/** Range of a slider in both directions: up to the bounds of the model, or until the change is visible. */
 export function reach(report: Report, { arrows, bounds, typical, tolerance }: Variable): [low: number, high: number] {
   const speed = Math.max(0, ...arrows.map(({ v }) => Math.hypot(...v)))
   const turn = Math.max(0, ...arrows.map(({ turn }) => Math.hypot(...turn)))

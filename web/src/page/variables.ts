@@ -128,7 +128,7 @@ function row(state: State, variable: Variable): Row {
   element.addEventListener('pointerdown', (event) => {
     if (!(event.target as HTMLElement).closest('button') && state.choice.variable !== index) state.choose({ variable: index })
   })
-  /** What is shown; of many rows, a choice changes two. */
+  /** Shown rows; a choice changes two of many. */
   let shown = ''
   const digits = step > 0 ? Math.max(0, -Math.floor(Math.log10(step))) : 0
   return {

@@ -1,7 +1,7 @@
 import { ConeGeometry, CylinderGeometry, Group, type Mesh, type Object3D, TorusGeometry, Vector3 } from 'three'
 import { type Kit, place } from './kit'
 
-/** What is drawn over the mechanism, from the lowest to the highest. */
+/** Drawing order of the layers above the mechanism, from the lowest to the highest. */
 export const ABOVE = { casing: 1, former: 2, trace: 3, driver: 4, dimension: 5, load: 6, velocity: 7 }
 
 /** Radius of a head as a part of its length. */

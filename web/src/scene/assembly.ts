@@ -15,7 +15,7 @@ export class Assembly {
   /** One per body, then what is in the world. */
   readonly groups: Group[]
   readonly drawn: Drawn[]
-  /** Which numbers a part has in the picture of part numbers. */
+  /** Numbers of the parts in the picture of part numbers. */
   readonly numbers: { part: Drawn['part']; number: number }[] = []
   #kit: Kit
   #frame?: Frame

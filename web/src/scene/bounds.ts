@@ -14,7 +14,7 @@ const directions = Array.from({ length: DIRECTIONS }, (_, k) => {
 
 const known = new WeakMap<BufferGeometry, Vector3[]>()
 
-/** Of some points those that reach farthest in one of many directions: what holds them holds all, but for 2 % of a ball's radius. */
+/** Outermost points in many directions: a shape that holds them holds all points, but for 2 % of a ball's radius. */
 export function outermost(points: Vector3[]): Vector3[] {
   if (points.length <= DIRECTIONS) return points
   const found = new Set<Vector3>()

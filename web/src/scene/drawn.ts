@@ -3,13 +3,13 @@ import type { Choice } from '../state'
 import type { Kit } from './kit'
 import type { Mechanism } from './mechanism'
 
-/** What the pointer finds. */
+/** Part under the pointer. */
 export interface Part {
   kind: 'body' | 'joint' | 'coupler' | 'driver' | 'wheel' | 'distance' | 'load' | 'mark'
   /** Index into the report's list of its kind. */
   index: number
   name: string
-  /** What it is, in a few words: the second line of the tip. */
+  /** Description in a few words: the second line of the tip. */
   about: string
 }
 
@@ -41,7 +41,7 @@ export interface Frame {
   visible(body: number): boolean
 }
 
-/** How a kind of thing is drawn; what is chosen matters to marks only. */
+/** Drawing of a kind of thing; the choice matters to marks only. */
 export type Draw = (mechanism: Mechanism, kit: Kit, choice: Choice) => Drawn[]
 
 /** True if two are the same thing, drawn of several objects. */

@@ -19,7 +19,7 @@ import { across } from './flat'
 import type { Mechanism } from './mechanism'
 import type { Palette } from './palette'
 
-/** How far the grid is seen from its middle, and how strongly that of a planar mechanism, as parts of its reach and of its colour. */
+/** Visible radius of the grid, and its strength for a planar mechanism, relative to its reach and colour. */
 const FADE = 1.05
 const FLAT_GRID = 0.55
 /** Direction of the sun that casts shadows. */

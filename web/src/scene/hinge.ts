@@ -2,7 +2,10 @@ import { Vector3 } from 'three'
 import type { JointMark } from '../payload'
 import type { Mechanism } from './mechanism'
 
-/** How far a bearing is moved along its shaft away from another joint in its place: units, and part of the shaft's length. */
+/**
+ * Offset of a bearing along its shaft away from another joint at the same place: units, and fraction of the shaft's
+ * length.
+ */
 const ASIDE = { units: 14, part: 0.5 }
 /** Joints with glyphs that a bearing in the same place would hide. */
 const SHY = ['universal', 'constant_velocity']
@@ -48,7 +51,10 @@ export function carried(mechanism: Mechanism, { body_i, body_j, at_i, at_j, axis
   }
 }
 
-/** Where a hinge is drawn, in the frame of body i: at the hardpoints that its axis is given by, or along the axis from where another joint is. */
+/**
+ * Positions of a hinge, in the frame of body i: at the hardpoints that define its axis, or along the axis from another
+ * joint.
+ */
 export function hingePlaces(mechanism: Mechanism, joint: JointMark): Vector3[] {
   if (joint.hinge && !mechanism.plane) return joint.hinge.map((point) => new Vector3(...point))
   const at = new Vector3(...joint.at_i)

@@ -36,7 +36,7 @@ import { across, type Basis, type Flat, square } from './flat'
 import type { Mechanism } from './mechanism'
 import type { Palette } from './palette'
 
-/** How a mesh is drawn, where it is not a plain solid. */
+/** Finish of a mesh that is not a plain solid. */
 export interface Finish {
   /** Translucent things have no outline and cast no shadow. */
   opacity?: number
@@ -48,7 +48,7 @@ export interface Finish {
   facets?: boolean
 }
 
-/** How a line is drawn. */
+/** Style of a line. */
 export interface Stroke {
   dashed?: boolean
   opacity?: number
@@ -58,13 +58,13 @@ export interface Stroke {
 
 /** Dashes and gaps in units. */
 const DASH = { on: 1.4, off: 1.1 }
-/** How strongly edges within a part are drawn. */
+/** Strength of edges within a part. */
 const EDGE = 0.55
 const Y = new Vector3(0, 1, 0)
 
-/** What everything is built of, in the frame that the places are given in; frees what the graphics card holds. */
+/** Builder of all objects, in the frame of the given points; frees memory of the graphics card. */
 export class Kit {
-  /** What things are measured in. */
+  /** Unit of all sizes. */
   readonly unit: number
   #materials = new Map<string, Material>()
   #geometries: BufferGeometry[] = []

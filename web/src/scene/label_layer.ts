@@ -25,7 +25,7 @@ const MOST = 60
 /** Names over the view, with leaders to their places. */
 export class LabelLayer {
   readonly element = svg('svg', { class: 'labels', 'aria-hidden': 'true' })
-  /** What is where, for a picture of the view. */
+  /** Placed labels, for a picture of the view. */
   placed: Placed[] = []
   #brush = document.createElement('canvas').getContext('2d')
   #widths = new Map<string, number>()

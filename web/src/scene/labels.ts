@@ -5,7 +5,7 @@ export interface Spot {
   text: string
 }
 
-/** Where a text is: its middle, and the spot it belongs to. */
+/** Place of a text: its middle, and the point that it belongs to. */
 export interface Placed {
   spot: Spot
   x: number
@@ -22,7 +22,7 @@ export interface Room {
   top: number
 }
 
-/** So far from its spot a text may stand, px, nearest first. */
+/** Distances of a text from its point, px, nearest first. */
 const DISTANCES = [22, 34, 48]
 /** Directions that are tried, outwards from the middle first, then turned to either side by steps. */
 const DIRECTIONS = 12

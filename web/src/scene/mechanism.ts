@@ -44,7 +44,7 @@ export class Mechanism {
   readonly centre: Vector3
   /** Diagonal of the box round the sweep. */
   readonly size: number
-  /** What glyphs are measured in: a rod has this radius or so. It stays within what is seen well, see `sizeTo`. */
+  /** Unit of all glyphs: about the radius of a rod. It stays within the visible range, see `sizeTo`. */
   unit: number
   /** Normal of a planar mechanism, towards the reader. */
   readonly plane?: Vector3
@@ -245,7 +245,7 @@ export class Mechanism {
     })
   }
 
-  /** Where all joints stand out from one another. */
+  /** Direction from which all joints are distinguishable. */
   #seenFrom(): Vector3 {
     const { moments } = this
     const judged = Array.from({ length: JUDGED }, (_, k) => moments[Math.floor((k * (moments.length - 1)) / (JUDGED - 1))])

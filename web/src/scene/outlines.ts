@@ -16,11 +16,11 @@ import {
 import type { Camera } from './camera'
 import type { Palette } from './palette'
 
-/** What is in the picture of part numbers, and what is drawn over everything. */
+/** Layers of the picture of part numbers, and of overlays. */
 const PARTS = 1
 export const OVER = 2
 
-/** How a part's outline is drawn. */
+/** Emphasis of a part's outline. */
 export type Emphasis = 'none' | 'hovered' | 'chosen'
 
 const LEVELS: Record<Emphasis, number> = { none: 0, hovered: 0.5, chosen: 1 }
@@ -70,7 +70,7 @@ export class Outlines {
     }
   }
 
-  /** Which parts are drawn with a thicker line. */
+  /** Draws these parts with a thicker line. */
   emphasise(parts: Map<number, Emphasis>): void {
     this.#emphasis = parts
     this.#ink.uniforms.emphasis.value = parts.size > 0 ? 1 : 0

@@ -49,7 +49,7 @@ export class Overview {
     return Math.round(Math.min(STRIP.share * height, STRIP.most))
   }
 
-  /** Of some points those that the view is to show round a place. */
+  /** Points around a place that the view is to show. */
   part(points: Vector3[], place: Vector3, aspect: number): Vector3[] {
     const reach = (PART * this.#height * aspect) / 2
     const [low, high] = [-1, 1].map((sign) => sign * points.reduce((most, point) => Math.max(most, sign * point.dot(this.#along)), -Infinity))

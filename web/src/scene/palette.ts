@@ -17,7 +17,7 @@ export interface Palette {
   steel: string
   /** Massless rods and cylinders. */
   rod: string
-  /** What is fixed. */
+  /** Colour of fixed parts. */
   ground: string
   /** Lines of a hatch. */
   hatch: string
@@ -45,7 +45,7 @@ export interface Palette {
     sun: number
     shadow: number
   }
-  /** How opaque a tyre is. */
+  /** Opacity of a tyre. */
   glass: number
 }
 

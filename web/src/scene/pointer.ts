@@ -3,12 +3,12 @@ import { el } from '../dom'
 import type { Camera } from './camera'
 import type { Part } from './drawn'
 
-/** How near the pointer has to come to a line, in pixels. */
+/** Distance from a line at which the pointer finds it, px. */
 const REACH = 6
-/** How far the pointer may go between down and up for it to be a click and not a drag, in pixels. */
+/** Distance between press and release up to which it is a click and not a drag, px. */
 const STILL = 4
 
-/** What the pointer is over: names it beside the pointer, and chooses it with a click. */
+/** Part under the pointer: names it next to the pointer, and selects it with a click. */
 export class Pointer {
   readonly tip = el('div', { class: 'tip', hidden: true, 'data-testid': 'tip' })
   hovered?: Part
@@ -48,7 +48,7 @@ export class Pointer {
     })
   }
 
-  /** What is seen at a place: translucent things only where nothing solid is. */
+  /** Part at a position: translucent parts only where nothing solid is. */
   #find(x: number, y: number): Part | undefined {
     const { clientWidth: width, clientHeight: height } = this.canvas
     this.#ray.setFromCamera(new Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.camera)

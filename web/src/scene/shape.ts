@@ -9,7 +9,7 @@ import { poseAt, shifted } from './poses'
 type Place = [number, number, number]
 type Move = (body: number, at: Place) => Place
 
-/** How far places may be apart, as a part of the size, to be the same hardpoint. */
+/** Distance up to which points are the same hardpoint, relative to the size. */
 const SAME = 1e-6
 
 /**

@@ -9,7 +9,7 @@ export interface Slide {
   block: number
   /** Unit vector in the rail's frame. */
   axis: Vector3
-  /** Where travel is counted from, in the rail's frame. */
+  /** Origin of the travel, in the rail's frame. */
   place: Vector3
   /** The joint's place on the block, in its frame. */
   blockPlace: Vector3

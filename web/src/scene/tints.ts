@@ -2,7 +2,7 @@ import { Vector3 } from 'three'
 import type { Mechanism } from './mechanism'
 import { TINTS } from './palette'
 
-/** How far apart mirrored points of two bodies may be, as a part of the size, for them to be each other's image. */
+/** Distance up to which mirrored points of two bodies are each other's image, relative to the size. */
 const MIRRORED = 0.05
 
 /** A colour for every body: neighbours differ, least used first, mirror images agree. Ground has none, -1. */

@@ -18,7 +18,7 @@ export interface Shaft {
   body: number
   at: Vector3
   axis: Vector3
-  /** How far from `at` along the axis there is something on it. */
+  /** Distance from `at` along the axis of the nearest part on it. */
   low: number
   high: number
 }
@@ -32,7 +32,7 @@ export interface Wheel {
   coefficient: number
 }
 
-/** Where the wheels of all couplers are along their shafts: several on one shaft are spaced in file order. */
+/** Positions of the wheels of all couplers along their shafts: several on one shaft are spaced in file order. */
 export class Train {
   readonly face: number
   #shafts = new Map<number, Shaft>()

@@ -67,9 +67,9 @@ export class View {
   #stale = false
   #moved = true
   #pending = false
-  /** Of the element, px, as its observer reported: to ask the element would make the browser lay out the page in the middle of a frame. */
+  /** Size of the element, px, from its observer: to ask the element would force a layout in the middle of a frame. */
   #extent = { width: 0, height: 0 }
-  /** What is drawn no more. It goes once the next picture is drawn, so that this one finds its shaders compiled. */
+  /** Parts that are no longer drawn. They are removed after the next picture, which then finds its shaders compiled. */
   #gone: Assembly[] = []
   #onDrawn: (() => void)[] = []
 
@@ -132,7 +132,7 @@ export class View {
     return this.#matter.mechanism
   }
 
-  /** What is drawn of the mechanism itself, in groups that move with the bodies. */
+  /** Objects of the mechanism itself, in groups that move with the bodies. */
   get assembly(): Assembly {
     return this.#matter
   }
@@ -142,7 +142,7 @@ export class View {
     this.#onDrawn.push(listener)
   }
 
-  /** Where a place of the world is on the screen, px from the corner of the view. */
+  /** Position on the screen of a point of the world, px from the corner of the view. */
   project(place: Vector3): { x: number; y: number; seen: boolean } {
     const { width, height } = this.#extent
     const { x, y, z } = place.clone().project(this.camera)
@@ -213,7 +213,7 @@ export class View {
     return motionGltf(this.mechanism, this.#matter.drawn, this.state.step)
   }
 
-  /** Where the part of a long mechanism is that is looked at: at what is selected, else where the chosen variable moves something. */
+  /** Focus in a long mechanism: the selection, or else the point that the chosen variable moves. */
   #focus(): Vector3 {
     const { selected, variable } = this.state.choice
     const { report, sweep } = this.today

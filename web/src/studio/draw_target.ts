@@ -3,7 +3,7 @@ import type { Plot } from '../plot'
 import { Sketch } from './sketch'
 import { targetToml } from './target'
 
-/** What the page does with a target. */
+/** Actions of the page on a target. */
 export interface TargetHost {
   /** The text of the present design. */
   text: () => string
@@ -11,7 +11,7 @@ export interface TargetHost {
   replace: (text: string, label: string) => void
 }
 
-/** What a plot draws, by the names of the text. */
+/** Contents of a plot, by the names of the text. */
 export interface Drawing {
   /** A measure, or a coordinate of a point. */
   of: string

@@ -11,7 +11,7 @@ import { AXES, followed, lengthOf, mirrors, placeOf, settingsFor, snapped, turnO
 const SNAPS = [0, 0.1, 0.5, 1, 5, 10]
 /** An arrow key moves by this part of the size, where there is no snap; with Shift by ten times that. */
 const NUDGE = 1e-3
-/** Where an axis is drawn through a hardpoint, so far to either side, in parts of the size. */
+/** Half length of an axis drawn through a hardpoint, relative to the size. */
 const GUIDE = 0.25
 
 interface Shown {
@@ -24,7 +24,7 @@ interface Shown {
 /** A drag under way. */
 interface Hold {
   shown: Shown
-  /** Of the world and of the drawing, at its start. */
+  /** Position in the world and in the design configuration, at the start. */
   from: Vector3
   drawn: Vector3
   turn: Quaternion
@@ -93,7 +93,7 @@ export class Grips {
     this.#follow()
   }
 
-  /** Where a hardpoint is drawn: of the bodies that it is fixed in, ground first. */
+  /** Positions of a drawn hardpoint: for the bodies that it is fixed in, ground first. */
   #place(grip: MovableHardpoint): Shown[] {
     const { bodies } = this.state.report
     for (const [body, { labels }] of bodies.entries()) {

@@ -4,9 +4,9 @@ import type { VariableSetting } from '../engine/protocol'
 export interface Step {
   /** The model's text that the changes count from. */
   text: string
-  /** Of design variables and coordinates of hardpoints, by name. */
+  /** Values of design variables and coordinates of hardpoints, by name. */
   settings: readonly VariableSetting[]
-  /** What made it of the one before: `tie_rod_outer_z`, `typed`, `optimised`. */
+  /** Source of the change: `tie_rod_outer_z`, `typed`, `optimised`. */
   label: string
 }
 
@@ -26,7 +26,7 @@ export class History {
   readonly #snapshots: Snapshot[] = []
   readonly #listeners: (() => void)[] = []
   #at = 0
-  /** What the last step came from, as long as it may go on. */
+  /** Source of the last step, as long as it may be continued. */
   #hand?: string
   #named = 0
 
@@ -42,7 +42,7 @@ export class History {
     return this.#steps[this.#at]
   }
 
-  /** What undoing takes back, and what redoing makes again; nothing where there is nothing. */
+  /** Steps that undo and redo would take; undefined without one. */
   get undoable(): string | undefined {
     return this.#at > 0 ? this.present.label : undefined
   }

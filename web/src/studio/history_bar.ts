@@ -2,7 +2,7 @@ import { el, svg } from '../dom'
 import type { History, Snapshot, Step } from './history'
 import './studio.css'
 
-/** What the page does when the bar is used. */
+/** Actions of the page for the bar. */
 export interface Shows {
   /** Shows another design. */
   show: (step: Step) => void
@@ -45,7 +45,7 @@ export function historyBar(history: History, { show, compare }: Shows): HTMLElem
   return el('div', { class: 'history', role: 'group', 'aria-label': 'Designs' }, back, forth, reset, snapshots(history, { show, compare }))
 }
 
-/** What a key with Ctrl, or with the command key, asks for. */
+/** Action of a key with Ctrl, or with the command key. */
 function stepOf({ key, ctrlKey, metaKey, altKey, shiftKey }: KeyboardEvent): 'undo' | 'redo' | undefined {
   if (ctrlKey === metaKey || altKey) return undefined
   const letter = key.toLowerCase()

@@ -38,7 +38,7 @@ export function followed(ray: Ray, place: Vector3, way: Way, turn: Quaternion, f
   return ray.origin.clone().addScaledVector(ray.direction, far).sub(place)
 }
 
-/** What a body has turned since the drawing: `frame` is its frame there, w x y z, `pose` the one of the moment. */
+/** Rotation of a body since the design configuration: `frame` is its frame there, w x y z, `pose` the present one. */
 export function turnOf(frame: readonly number[], pose: Quaternion): Quaternion {
   const [w, x, y, z] = frame
   return pose.clone().multiply(new Quaternion(x, y, z, w).invert())
@@ -56,7 +56,10 @@ export function placeOf(grip: MovableHardpoint, settings: readonly VariableSetti
   return new Vector3(x, y, z)
 }
 
-/** What puts a hardpoint at a place of the drawing, within the bounds of its variables, and the variable whose bound is reached. */
+/**
+ * Settings that put a hardpoint at a position, within the bounds of its variables, and the variable whose bound is
+ * reached.
+ */
 export function settingsFor(grip: MovableHardpoint, place: Vector3): { settings: VariableSetting[]; bound?: string } {
   let bound: string | undefined
   const settings = grip.coordinates.map(({ variable, sign, bounds }, k) => {

@@ -1,4 +1,4 @@
-/** What the page is informed of the server that it comes from; nothing in a file. */
+/** Data about the server that the page comes from; undefined in a file. */
 interface About {
   token: string
   /** The model file that the page shows. */
@@ -39,7 +39,7 @@ export interface Diagnostic {
   help: string | null
 }
 
-/** What saving came to. */
+/** Outcome of saving. */
 export type Saved =
   | { outcome: 'saved'; revision: string }
   | ({ outcome: 'changed' } & OnDisk)
@@ -56,7 +56,7 @@ export interface Asked {
   options?: { starts?: number; iterations?: number; samples?: number; seed?: number; allocate?: 'rss' | 'worst_case' }
 }
 
-/** How a study is going, or how it went. */
+/** State of a study. */
 export interface Study {
   id: number
   what: What
@@ -73,7 +73,7 @@ export interface Study {
 /** `gone`: nobody answers. `stranger`: somebody else does, with another token. */
 export type State = 'there' | 'gone' | 'stranger'
 
-/** What may happen without being requested. */
+/** Events from the server. */
 interface Events {
   /** True if the server answers. */
   state: State
@@ -106,13 +106,13 @@ export class Server {
   readonly case: string | null
   readonly cases: string[]
   state: State = 'there'
-  /** Of the text on disk that the present one was made from. */
+  /** Revision of the text on disk that the present one was made from. */
   private revision: string | null
   private readonly token: string
-  /** What this page saves is no news to it. */
+  /** Identity of this page, which ignores its own changes. */
   private readonly client = crypto.randomUUID()
   private readonly listeners: { [K in keyof Events]: Set<(event: Events[K]) => void> } = { state: new Set(), changed: new Set(), study: new Set(), missed: new Set() }
-  /** Which run of the server this is. */
+  /** Identity of the server's run. */
   private run?: string
   private leaving = false
 
@@ -142,7 +142,7 @@ export class Server {
     return (await this.request('GET', '/api/models')).json()
   }
 
-  /** Where the page of a model is. */
+  /** Address of the page of a model. */
   link(file: string, shown?: string): string {
     return `/?${new URLSearchParams({ file, ...(shown === undefined ? {} : { case: shown }) })}`
   }
@@ -188,7 +188,7 @@ export class Server {
     return response.json()
   }
 
-  /** How a study is going; `undefined` where the server knows of none. */
+  /** State of a study; `undefined` if the server does not know it. */
   async study(id: number): Promise<Study | undefined> {
     const response = await this.request('GET', `/api/study/${id}`)
     return response.ok ? response.json() : undefined
@@ -264,7 +264,7 @@ async function outcome(response: Response): Promise<Saved> {
   return { outcome: 'refused', why: await why(response) }
 }
 
-/** Why a request was refused, in the server's words. */
+/** Reason of a rejected request, in the server's words. */
 async function why(response: Response): Promise<string> {
   const { error, text } = await response.json().catch(() => ({}))
   return text ?? error ?? `the server answers ${response.status}`

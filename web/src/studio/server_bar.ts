@@ -10,10 +10,10 @@ export interface Text {
   onChange(listener: () => void): void
 }
 
-/** What the server can run, as buttons name it. */
+/** Studies of the server, by their button labels. */
 const STUDIES: Record<What, string> = { optimize: 'Optimise', tolerance: 'Study tolerances', sweep: 'Sweep' }
 
-/** What a server adds to the page's bar: save, other models, studies; and notices on what it indicates. */
+/** Controls that a server adds to the page's bar: save, other models, studies; and notices. */
 export function serverBar(server: Server, text: Text): HTMLElement {
   const notices = el('div', { class: 'notices', 'data-testid': 'notices' })
   const save = el('button', { type: 'button', 'data-testid': 'save', title: 'Save the model in place (Ctrl+S)', disabled: true, onclick: () => desk.save() }, 'Save')
@@ -22,9 +22,9 @@ export function serverBar(server: Server, text: Text): HTMLElement {
   return element
 }
 
-/** What is done with the model's file. */
+/** Actions on the model's file. */
 class Desk {
-  /** What is on disk, as far as the page knows. */
+  /** Text on disk, as far as the page knows. */
   private saved?: string
   private readonly notes: Notes
   private readonly running = new Map<number, (news: Partial<Study> & { line?: string }) => void>()
@@ -223,7 +223,7 @@ interface Note {
   stop?: boolean
   /** In the words of the command line. */
   detail?: string
-  /** So much is done. */
+  /** Fraction that is done. */
   part?: number
   actions?: Record<string, () => void>
   links?: [name: string, to: string][]
@@ -233,10 +233,10 @@ interface Note {
   passing?: boolean
 }
 
-/** How long a notice stays that depends on itself. */
+/** Duration of a notice that disappears by itself. */
 const PASSING = 4000
 
-/** What the server has to say, one notice for each matter. */
+/** Notices of the server, one for each matter. */
 class Notes {
   private readonly notes = new Map<string, HTMLElement>()
 

@@ -5,17 +5,17 @@ import type { Overlay, Plot } from '../plot'
 import { at, type Point, replaced, roundedIn, smoothed, thinned, upright, written } from './stroke'
 import './studio.css'
 
-/** How near to a point a press takes hold of it, a finger from farther; and by how much a press moves at least to be a stroke, px. */
+/** Distance at which a press takes hold of a point, for a mouse and a finger; and the minimum length of a stroke, px. */
 const NEAR = 10
 const FINGER = 22
 const CLICK = 4
-/** Of what is seen, about how far an arrow key moves the cross, in round numbers: as it is, and with Shift. */
+/** Step of an arrow key relative to the visible range, in round numbers: without and with Shift. */
 const STRIDE = 1 / 40
 const STEP = 1 / 200
 /** Times as much of the ordinate, round its middle, to draw beyond the curves. */
 const ROOM = 1.6
 
-/** What becomes of a curve. */
+/** Actions on a drawn curve. */
 export interface Drawn {
   /** The curve is as it should be: points with rising abscissas in the units that are shown; at least two. */
   done: (points: Point[]) => void
@@ -28,14 +28,14 @@ export interface Drawn {
  * What is drawn over a part takes its place. It is in use from when it is made until it is done, cancelled or `close`d.
  */
 export class Sketch implements Overlay {
-  /** What is drawn, in the units that are shown. */
+  /** Drawn points, in the shown units. */
   #points: Point[]
   #plot?: uPlot
   #room = ROOM
   /** The stroke under way, px; or the point that is held. */
   #stroke?: Point[]
   #held?: number
-  /** Where the keys are. */
+  /** Position of the cross that the keys move. */
   #cross?: Point
   #canvas = svg('svg', { 'aria-hidden': 'true' })
   #element = el('div', { class: 'sketch', tabindex: 0, role: 'application', 'data-testid': 'sketch', 'aria-label': 'Draw a target: arrow keys move the cross, with Shift less far; Enter sets a point, Delete takes the nearest away, Page up and down go from point to point, Escape ends' }, this.#canvas)
@@ -72,7 +72,7 @@ export class Sketch implements Overlay {
     this.#element.focus({ preventScroll: true })
   }
 
-  /** What is drawn, in numbers that a person would write. */
+  /** Drawn points, in numbers that a person would write. */
   get points(): Point[] {
     return written(this.#points, this.#range())
   }
@@ -130,7 +130,7 @@ export class Sketch implements Overlay {
     return [this.#plot!.posToVal(left, 'x'), this.#plot!.posToVal(top, 'y')]
   }
 
-  /** How much of either axis is seen. */
+  /** Visible range of both axes. */
   #range(): [across: number, up: number] {
     const of = (name: string) => {
       const { min, max } = this.#plot!.scales[name]

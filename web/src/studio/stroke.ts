@@ -1,15 +1,15 @@
 /** A point of a curve, or of the screen. */
 export type Point = readonly [x: number, y: number]
 
-/** Of what is seen, how far beyond the ends of a new part the old curve has come back to where it was. */
+/** Fraction of the visible range over which a new part blends into the old curve. */
 const BLEND = 0.03
-/** How far a hand trembles, and how far a thinned curve may be from the one drawn, px. */
+/** Tremble of a hand, and tolerance of a thinned curve, px. */
 const TREMBLE = 7
 const OFF = 2
 /** Steps of the numbers across what is seen, at least. */
 const STEPS = 500
 
-/** What a hand drew, as one value at each abscissa: where it went back, what it drew last. */
+/** Drawn stroke as one value at each abscissa: where it went back, the last one. */
 export function upright(drawn: readonly Point[]): Point[] {
   let curve: Point[] = []
   let [before] = drawn

@@ -7,7 +7,7 @@ import './studio.css'
 /** Lines of a study under way that are shown. */
 const LINES = 5
 
-/** What the panes need of the page. */
+/** Parts of the page that the panes use. */
 export interface StudyHost {
   studies: Studies
   /** The text of the present design. */
@@ -51,7 +51,7 @@ interface Form<Request> {
   request: () => Request | string
 }
 
-/** What is particular to a study. */
+/** Particulars of a study. */
 interface Kind<Offer, Request> {
   name: string
   /** On the button that begins it. */

@@ -107,7 +107,7 @@ export class Studio {
     await solved
   }
 
-  /** What can be exported besides what the report has. */
+  /** Items for export besides those of the report. */
   readonly exports = (): Item[] => [
     { name: 'Model as TOML', testId: 'export-toml', run: async () => save(new Blob([await this.#settled()], { type: 'application/toml' }), this.model.file) },
   ]

@@ -36,7 +36,7 @@ function keysOf({ case: of, ...curve }: TargetCurve): [key: string, value: strin
   ]
 }
 
-/** Where the metric is written, and how, so that it is with the others. */
+/** Place and text of the metric, in the style of the others. */
 function place(text: string, entries: Entry[], name: string, keys: [key: string, value: string][]): { at: number; piece: string } {
   const inline = `{ ${keys.map((pair) => pair.join(' = ')).join(', ')} }`
   const headings = entries.filter(({ heading }) => heading)

@@ -4,7 +4,7 @@ export function along(xs: ArrayLike<number>, ys: ArrayLike<number>): number[] {
   return known.sort((a, b) => xs[a] - xs[b] || ys[a] - ys[b] || a - b)
 }
 
-/** Which of some points is nearest to a place on the screen, if one is within reach. */
+/** Nearest point to a position on the screen, if one is within reach. */
 export function nearest(points: readonly number[], at: (k: number) => [number, number], [x, y]: [number, number], reach: number): number | undefined {
   let best: number | undefined
   let least = reach

@@ -12,7 +12,7 @@ declare global {
     pane: Editor
     /** The valid texts, as the page was informed of them. */
     valid: string[]
-    /** How often a text was checked. */
+    /** Number of checks of a text. */
     asked: number
     /** Number of checks to come fail. */
     failing: number

@@ -58,7 +58,12 @@ impl Address {
     ///
     /// # Errors
     /// Why not, in a sentence for whoever sent it.
-    pub fn lets_in(&self, method: &Method, uri: &Uri, headers: &HeaderMap) -> Result<TokenSource, &'static str> {
+    pub fn lets_in(
+        &self,
+        method: &Method,
+        uri: &Uri,
+        headers: &HeaderMap,
+    ) -> Result<TokenSource, &'static str> {
         const HOST: &str = "This server answers to 127.0.0.1 and localhost only.";
         const FOREIGN: &str = "This server answers to its own pages only.";
         const TOKEN: &str =

@@ -9,11 +9,11 @@ use flate2::read::DeflateDecoder;
 use tempfile::TempDir;
 
 /// A folder with a model.
-pub struct FitWorkspace {
+pub struct Bench {
     folder: TempDir,
 }
 
-impl FitWorkspace {
+impl Bench {
     /// With these model files of `tests/models`.
     pub fn with(models: &[&str]) -> Self {
         let bench = Self { folder: TempDir::new().unwrap() };
@@ -43,7 +43,7 @@ impl FitWorkspace {
         serde_json::from_str(&self.text(name)).unwrap()
     }
 
-    /// What a page knows. A curve in it is a list of tracks; equal curves have the same.
+    /// Data of a page. A curve in it is a list of tracks; equal curves have the same.
     pub fn page(&self, name: &str) -> serde_json::Value {
         let html = self.text(name);
         let (_, data) = html.split_once("id=\"payload\">").unwrap();

@@ -2,18 +2,18 @@
 
 use std::path::Path;
 
-use crate::bench::FitWorkspace;
+use crate::bench::Bench;
 
-fn bench() -> FitWorkspace {
+fn bench() -> Bench {
     let studies = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/studies");
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     for name in ["strut_calibrate.toml", "strut_measured.csv"] {
         bench.put(name, &std::fs::read_to_string(studies.join(name)).unwrap());
     }
     bench
 }
 
-/// What the readings were made of, mm: `models/studies/strut_calibrate.toml` says how.
+/// Design behind the readings, mm: see `models/studies/strut_calibrate.toml`.
 const HIDDEN: [(&str, f64); 6] = [
     ("strut_top_x", 1.4),
     ("strut_top_y", -0.9),

@@ -5,7 +5,7 @@ use std::net::{Ipv4Addr, TcpStream};
 use std::process::{Child, ExitStatus, Stdio};
 use std::time::Duration;
 
-use crate::bench::FitWorkspace;
+use crate::bench::Bench;
 
 /// After which a server counts as hung, whatever the machine does besides.
 const HANG: Duration = Duration::from_secs(900);
@@ -38,7 +38,7 @@ impl Reply {
 
 impl Server {
     /// Started in the folder of a bench.
-    pub fn start(bench: &FitWorkspace, arguments: &[&str]) -> Self {
+    pub fn start(bench: &Bench, arguments: &[&str]) -> Self {
         let all = [&["studio", "--no-browser"], arguments].concat();
         let mut child = bench.command(&all).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let mut line = String::new();
@@ -98,7 +98,7 @@ impl Server {
         self.get(&format!("/api/model?file={file}")).json()["revision"].as_str().unwrap().into()
     }
 
-    /// What a page hears.
+    /// Events of a page.
     pub fn events(&self, query: &str) -> Events {
         let mut stream = self.connect();
         stream.write_all((self.head("GET", &format!("/api/events?{query}")) + "\r\n").as_bytes()).unwrap();

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::bench::FitWorkspace;
+use crate::bench::Bench;
 
 /// Group codes and values in the order of the file.
 type Groups = Vec<(i32, String)>;
@@ -41,7 +41,7 @@ fn point(object: &[(i32, String)], code: i32) -> [f64; 3] {
     [0, 10, 20].map(|k| value(object, code + k).parse().unwrap())
 }
 
-fn exported(bench: &FitWorkspace, model: &str) -> (Drawing, String) {
+fn exported(bench: &Bench, model: &str) -> (Drawing, String) {
     let output = bench.run(&["export", model, "-o", "out.dxf"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     (Drawing::read(&bench.text("out.dxf")), String::from_utf8(output.stdout).unwrap())
@@ -59,7 +59,7 @@ fn layers(drawing: &Drawing) -> Vec<&str> {
 
 #[test]
 fn handles_are_unique_and_below_the_seed() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let (drawing, _) = exported(&bench, "slider.toml");
     // Code 5 of everything but header variables; dimension styles have theirs in code 105.
     let after_header = drawing.0.iter().position(|(code, value)| *code == 0 && value == "ENDSEC").unwrap();
@@ -80,7 +80,7 @@ fn handles_are_unique_and_below_the_seed() {
 fn a_skeleton_has_the_hardpoints_by_name_and_lines_for_bodies() {
     /// Lengths of some hundred mm through m and back.
     const ROUNDED: f64 = 1e-10;
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let (drawing, said) = exported(&bench, "slider.toml");
     assert_eq!(drawing.header("$INSUNITS"), "4");
     let texts = drawing.all("TEXT");
@@ -108,7 +108,7 @@ fn a_skeleton_has_the_hardpoints_by_name_and_lines_for_bodies() {
 
 #[test]
 fn a_hinge_through_two_hardpoints_has_a_place_at_both() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let text = bench.text("slider.toml").replace("\nC = ", "\nA2 = [0, 0, 50]\nC = ");
     let axis = "at = \"A\", axis = { through = [\"A\", \"A2\"] }";
     bench.put("hinge.toml", &text.replace("at = \"A\", axis = \"z\"", axis));
@@ -119,7 +119,7 @@ fn a_hinge_through_two_hardpoints_has_a_place_at_both() {
 
 #[test]
 fn a_skeleton_is_in_the_units_of_the_file_and_names_are_those_of_the_model() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let text = bench.text("slider.toml").replace("length = \"mm\"", "length = \"in\"");
     let text = text.replace("\"crank\"", "\"crank/ä\"").replace("crank = {}", "\"crank/ä\" = {}");
     bench.put(

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use gltf::animation::util::ReadOutputs;
 
-use crate::bench::FitWorkspace;
+use crate::bench::Bench;
 
 /// Numbers of single precision agree to so much, relatively: the file has no more digits.
 const SINGLE: f64 = 1e-6;
@@ -14,7 +14,7 @@ struct Animated {
     data: Vec<u8>,
 }
 
-/// Of a node: its times with translations, rotations (x, y, z, w), and scales; one value where it does not move.
+/// Path of a node: its times with translations, rotations (x, y, z, w), and scales; one value if it does not move.
 #[derive(Default)]
 struct Path {
     times: Vec<f32>,
@@ -25,7 +25,7 @@ struct Path {
 
 impl Animated {
     /// Reads and validates it.
-    fn open(bench: &FitWorkspace, name: &str) -> Self {
+    fn open(bench: &Bench, name: &str) -> Self {
         let gltf = gltf::Gltf::from_slice(&std::fs::read(bench.path(name)).unwrap()).unwrap();
         Self { document: gltf.document, data: gltf.blob.unwrap() }
     }
@@ -65,7 +65,7 @@ impl Animated {
     }
 }
 
-/// Of a list that may have one value for all times.
+/// Item of a list that may have one value for all times.
 fn at<T: Copy>(list: &[T], k: usize) -> T {
     list[usize::min(k, list.len() - 1)]
 }
@@ -81,7 +81,7 @@ fn turned([x, y, z, w]: [f32; 4], v: [f64; 3]) -> [f64; 3] {
 }
 
 /// Compares every body with the table of the motion.
-fn same_as_table(bench: &FitWorkspace, folder: &str, bodies: &[&str]) {
+fn same_as_table(bench: &Bench, folder: &str, bodies: &[&str]) {
     let glb = Animated::open(bench, &format!("{folder}/motion.glb"));
     let paths = glb.paths();
     let text = bench.text(&format!("{folder}/motion.csv"));
@@ -118,7 +118,7 @@ fn same_as_table(bench: &FitWorkspace, folder: &str, bodies: &[&str]) {
 
 #[test]
 fn an_animation_has_the_poses_of_the_motion() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let output = bench.run(&["run", "slider.toml", "-o", "out", "--gltf", "--json"]);
     assert!(output.status.success());
     same_as_table(&bench, "out", &["crank", "rod", "slider"]);
@@ -147,14 +147,14 @@ fn an_animation_has_the_poses_of_the_motion() {
 
 #[test]
 fn a_motion_that_stops_has_an_animation_of_its_part() {
-    let bench = FitWorkspace::with(&["short_rod.toml"]);
+    let bench = Bench::with(&["short_rod.toml"]);
     assert_eq!(bench.run(&["run", "short_rod.toml", "-o", "out", "--gltf"]).status.code(), Some(5));
     same_as_table(&bench, "out", &["crank", "rod", "rocker"]);
 }
 
 #[test]
 fn a_body_with_a_mesh_is_shown_in_it() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let text = bench.text("slider.toml").replace("crank = {}", "crank = { mesh = \"crank.stl\" }");
     bench.put("shown.toml", &text);
     bench.put(
@@ -181,7 +181,7 @@ fn a_body_with_a_mesh_is_shown_in_it() {
 
 #[test]
 fn rods_that_are_joints_are_stretched_between_their_ends() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let leg =
         "spring = { type = \"leg\", bodies = [\"ground\", \"slider\"], at = [\"A\", \"C\"] }\n\n[drivers]";
     bench.put("leg.toml", &bench.text("slider.toml").replace("[drivers]", leg));

@@ -1,6 +1,6 @@
 //! Output under snapshots; durations and round-off are hidden, nothing else.
 
-use crate::bench::FitWorkspace;
+use crate::bench::Bench;
 
 macro_rules! assert_shown {
     ($name:expr, $text:expr) => {
@@ -21,7 +21,7 @@ macro_rules! assert_shown {
 
 #[test]
 fn help_has_examples_and_exit_codes() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     for command in [
         "",
         "new",
@@ -46,7 +46,7 @@ fn help_has_examples_and_exit_codes() {
 
 #[test]
 fn run_prints_a_summary_and_names_the_report() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     assert_shown!("run", bench.shown(&["run", "slider.toml"]));
     assert_eq!(
         bench.list("results/slider"),
@@ -56,14 +56,14 @@ fn run_prints_a_summary_and_names_the_report() {
 
 #[test]
 fn check_prints_all_facts() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     assert_shown!("check", bench.shown(&["check", "slider.toml"]));
     assert_shown!("check_absolute", bench.shown(&["check", "slider.toml", "--absolute"]));
 }
 
 #[test]
 fn a_model_with_errors_ends_with_3() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     bench.put("broken.toml", &bench.text("slider.toml").replace("at = \"B\"", "at = \"BB\""));
     assert_shown!("bad_model", bench.shown(&["run", "broken.toml"]));
     assert_shown!("bad_model_json", bench.shown(&["run", "broken.toml", "--json"]));
@@ -73,7 +73,7 @@ fn a_model_with_errors_ends_with_3() {
 
 #[test]
 fn a_mechanism_that_cannot_be_driven_ends_with_4() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let text = bench.text("slider.toml");
     let free: String = text.lines().filter(|l| !l.starts_with("motor")).map(|l| format!("{l}\n")).collect();
     bench.put("free.toml", &free);
@@ -86,7 +86,7 @@ fn a_mechanism_that_cannot_be_driven_ends_with_4() {
 
 #[test]
 fn a_motion_past_its_limit_ends_with_5() {
-    let bench = FitWorkspace::with(&["short_rod.toml"]);
+    let bench = Bench::with(&["short_rod.toml"]);
     assert_shown!("limit", bench.shown(&["run", "short_rod.toml"]));
     assert_shown!("limit_verify", bench.shown(&["verify", "short_rod.toml"]));
     // The start itself is out of reach: the way there from the design configuration ends.
@@ -96,7 +96,7 @@ fn a_motion_past_its_limit_ends_with_5() {
 
 #[test]
 fn a_folder_that_cannot_be_written_ends_with_6() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     bench.put("file", "in the way");
     assert_shown!("not_written", bench.shown(&["run", "slider.toml", "-o", "file/results"]));
     let json = bench.run(&["verify", "slider.toml", "-o", "file/results", "--json"]);
@@ -108,7 +108,7 @@ fn a_folder_that_cannot_be_written_ends_with_6() {
 
 #[test]
 fn a_command_line_that_makes_no_sense_ends_with_2() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     for arguments in [&["walk"][..], &["run"], &["verify", "slider.toml", "--steps", "2"]] {
         let output = bench.run(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
@@ -118,7 +118,7 @@ fn a_command_line_that_makes_no_sense_ends_with_2() {
 
 #[test]
 fn schema_is_that_of_the_reader_and_completions_know_the_commands() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     let schema = bench.run(&["schema"]);
     assert_eq!(String::from_utf8(schema.stdout).unwrap(), hardpoint_file::schema());
     let bash = bench.run(&["completions", "bash"]);
@@ -127,7 +127,7 @@ fn schema_is_that_of_the_reader_and_completions_know_the_commands() {
 
 #[test]
 fn no_colour_where_there_is_no_terminal() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let output = bench.run(&["run", "slider.toml"]);
     assert!(!output.stdout.contains(&0x1b) && !output.stderr.contains(&0x1b));
 }

@@ -104,7 +104,11 @@ fn a_loop_that_is_left_open_is_told_first_and_closed_where_the_user_says() {
     let out = run(&[]).success();
     let told = String::from_utf8_lossy(&out.get_output().stdout).into_owned();
     let first: Vec<&str> = told.lines().take(4).collect();
-    assert!(first[1].contains("`--close coupler=rocker`") && first[2].contains("fixed in the design configuration"), "{told}");
+    assert!(
+        first[1].contains("`--close coupler=rocker`")
+            && first[2].contains("fixed in the design configuration"),
+        "{told}"
+    );
     assert!(first[3].contains("not understood"), "{told}");
     let out = run(&["--json"]).success();
     let document: serde_json::Value = serde_json::from_slice(&out.get_output().stdout).unwrap();

@@ -6,16 +6,16 @@ use hardpoint::Analysis;
 use hardpoint::model::{Hardpoint, Model, Side};
 use rust_xlsxwriter::Workbook;
 
-use crate::bench::FitWorkspace;
+use crate::bench::Bench;
 
 fn templates() -> Vec<String> {
-    let output = FitWorkspace::with(&[]).run(&["new", "--list"]);
+    let output = Bench::with(&[]).run(&["new", "--list"]);
     let text = String::from_utf8(output.stdout).unwrap();
     text.lines().filter_map(|l| Some(l.split_whitespace().next()?.to_owned())).collect()
 }
 
-/// What is reported, without the folder that it was in.
-fn said(bench: &FitWorkspace, arguments: &[&str]) -> (Option<i32>, String) {
+/// Output, without the folder that it was in.
+fn said(bench: &Bench, arguments: &[&str]) -> (Option<i32>, String) {
     let output = bench.run(arguments);
     (output.status.code(), String::from_utf8(output.stderr).unwrap())
 }
@@ -25,7 +25,7 @@ fn every_template_is_a_model_with_everything_that_checks_and_runs_at_once() {
     let all = templates();
     assert_eq!(all.len(), 8, "{all:?}");
     for template in &all {
-        let bench = FitWorkspace::with(&[]);
+        let bench = Bench::with(&[]);
         assert_eq!(bench.run(&["new", "mine", "--template", template]).status.code(), Some(0), "{template}");
         let text = bench.text("mine.toml");
         assert!(text.contains("\nname = \"mine\"") && text.starts_with("# "), "{template}");
@@ -58,7 +58,7 @@ fn every_template_is_a_model_with_everything_that_checks_and_runs_at_once() {
 #[test]
 fn what_a_template_is_to_be_optimised_for_can_be_reached() {
     for template in templates() {
-        let bench = FitWorkspace::with(&[]);
+        let bench = Bench::with(&[]);
         bench.run(&["new", "mine", "-t", &template]);
         let (code, told) = said(&bench, &["optimize", "mine.toml"]);
         assert_eq!(code, Some(0), "{template}: {told}");
@@ -67,7 +67,7 @@ fn what_a_template_is_to_be_optimised_for_can_be_reached() {
 
 #[test]
 fn a_table_places_the_hardpoints_in_its_units_and_axes() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     // The template itself, in inches, with x back, y right and z up.
     bench.run(&["new", "plain", "-t", "macpherson"]);
     let plain = hardpoint_file::read(&bench.path("plain.toml")).unwrap();
@@ -115,7 +115,7 @@ fn a_table_places_the_hardpoints_in_its_units_and_axes() {
 
 #[test]
 fn a_table_of_the_right_side_makes_a_right_wheel() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     bench.run(&["new", "left", "-t", "double-wishbone"]);
     let left = hardpoint_file::read(&bench.path("left.toml")).unwrap().model;
     let place = |h: &Hardpoint| [h.position.x, -h.position.y, h.position.z].map(|x| x * 1e3);
@@ -140,7 +140,7 @@ const SMALL: &str = "name,x,y,z\nuca_front,-100,-400,350\nuca_rear,100,-400,350\
 
 #[test]
 fn values_of_a_template_that_contradict_the_hardpoints_are_derived_and_told() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     bench.put("small.csv", &format!("{SMALL}spindle,0,-600,250\n"));
     bench.put("hash.csv", &SMALL.replacen("name", "#name", 1).replacen("\nuca", "\n-,mm,mm,mm\nuca", 1));
     bench.put("metres.csv", "upper_ball,0,-0.6,0.4166666666666667\n");
@@ -181,7 +181,7 @@ fn tables_of_hardpoints_import_again() {
     const SAME: f64 = 1e-12;
     for model in ["double_wishbone", "macpherson", "five_link", "front_axle"] {
         let file = format!("{model}.toml");
-        let bench = FitWorkspace::with(&[]);
+        let bench = Bench::with(&[]);
         let gallery = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
         bench.put(&file, &std::fs::read_to_string(gallery.join(&file)).unwrap());
         assert_eq!(said(&bench, &["export", &file, "-o", "points.sub"]).0, Some(0), "{model}");
@@ -202,7 +202,7 @@ fn tables_of_hardpoints_import_again() {
 fn the_page_about_it_says_what_works() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/new.md");
     let page = std::fs::read_to_string(page).unwrap();
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     bench.put("points.csv", page.split("```csv\n").nth(1).unwrap().split("```").next().unwrap());
     let commands: Vec<&str> = page.lines().filter_map(|l| l.strip_prefix("    hardpoint ")).collect();
     assert_eq!(commands.len(), 4, "{commands:?}");
@@ -220,7 +220,7 @@ fn the_page_about_it_says_what_works() {
 
 #[test]
 fn what_cannot_be_begun_is_told_and_leaves_nothing() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     bench.put("mine.toml", "there\n");
     bench.put("points.csv", "A,0,0,0\nB,35,60,0\nC,250,190,0\nE,300,0,0\nPP,130,200,0\n");
     bench.put("slip.csv", "A,0,0,0\nB,30,40,0\nC,200,10,0\nrial,300,10,0\n");

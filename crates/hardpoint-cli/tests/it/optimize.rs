@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
-use crate::bench::FitWorkspace;
+use crate::bench::Bench;
 
 fn root() -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 /// With these files of `models`.
-fn bench(names: &[&str]) -> FitWorkspace {
-    let bench = FitWorkspace::with(&[]);
+fn bench(names: &[&str]) -> Bench {
+    let bench = Bench::with(&[]);
     for name in names {
         let path = ["models", "models/studies"].map(|folder| root().join(folder).join(name));
         let text = path.iter().find_map(|path| std::fs::read_to_string(path).ok());
@@ -287,7 +287,7 @@ time = { end = 1, steps = 4 }
 
 #[test]
 fn what_cannot_be_saved_is_known_before_the_search() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     bench.put(
         "one.toml",
         &format!("{CRANK}design.A = {{ move = \"A\", along = \"xy\", bounds = [-9, 9] }}\n"),
@@ -304,7 +304,7 @@ fn what_cannot_be_saved_is_known_before_the_search() {
 
 #[test]
 fn the_saved_design_is_read_and_solved_again_and_tables_show_values() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     let variables = "design.A_x = { move = \"A\", along = \"x\", bounds = [-9, 9] }\ndesign.A_y = { move = \"A\", along = \"y\", bounds = [-9, 9] }\n";
     bench.put("two.toml", &format!("{CRANK}{variables}"));
     let output = bench.run(&["optimize", "two.toml", "--save", "found.toml"]);
@@ -326,7 +326,7 @@ fn the_saved_design_is_read_and_solved_again_and_tables_show_values() {
 
 #[test]
 fn a_result_that_cannot_be_written_is_still_shown() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     let variables = "design.A_y = { move = \"A\", along = \"y\", bounds = [-9, 9] }\n";
     bench.put("two.toml", &format!("{CRANK}{variables}"));
     // A file where the folder should be.
@@ -357,7 +357,7 @@ time = { end = 1, steps = 10 }
 fn a_saved_design_that_stops_or_comes_too_near_to_a_singular_position_is_no_optimum() {
     let table = |travel: f64| format!("time,travel\n0,0\n0.5,{}\n1,{travel}\n", 0.5 * travel);
     let saved = |margin: &str, travel: f64| {
-        let bench = FitWorkspace::with(&[]);
+        let bench = Bench::with(&[]);
         bench.put("pulled.toml", &format!("{PULLED}{margin}"));
         bench.put("travel.csv", &table(5.0));
         // Where the design is saved, another file is beside it.

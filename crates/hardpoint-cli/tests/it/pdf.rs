@@ -2,14 +2,14 @@
 
 use serde_json::Value;
 
-use crate::bench::FitWorkspace;
+use crate::bench::Bench;
 
 /// Blue, in which curves are drawn.
 const CURVE: &str = "0.02 0.37 0.73 RG";
 /// Places on paper are written in single precision, as parts of some 100 points.
 const ON_PAPER: f64 = 1e-5;
 
-fn document(bench: &FitWorkspace, name: &str) -> String {
+fn document(bench: &Bench, name: &str) -> String {
     let bytes = std::fs::read(bench.path(name)).unwrap();
     assert!(bytes.starts_with(b"%PDF-1.") && bytes.trim_ascii_end().ends_with(b"%%EOF"));
     bytes.into_iter().map(char::from).collect()
@@ -43,7 +43,7 @@ fn normalised(values: impl Iterator<Item = f64> + Clone) -> Vec<f64> {
 
 #[test]
 fn the_pages_say_what_was_run_and_draw_every_measure_as_it_is() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let output = bench.run(&["run", "slider.toml", "-o", "out", "--pdf"]);
     assert!(output.status.success());
     let document = document(&bench, "out/report.pdf");
@@ -100,7 +100,7 @@ fn the_pages_say_what_was_run_and_draw_every_measure_as_it_is() {
 
 #[test]
 fn a_name_in_letters_that_the_pages_lack_is_told() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let text = bench.text("slider.toml");
     let name = text.lines().find(|line| line.starts_with("name = ")).unwrap();
     bench.put("slider.toml", &text.replace(name, "name = \"\u{447}\""));

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::bench::FitWorkspace;
+use crate::bench::Bench;
 
 fn rows(csv: &str) -> usize {
     csv.lines().count() - 1
@@ -12,7 +12,7 @@ fn rows(csv: &str) -> usize {
 
 #[test]
 fn json_of_a_run_is_its_summary_and_nothing_else() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let output = bench.run(&["run", "slider.toml", "-o", "out", "--json"]);
     assert_eq!(output.status.code(), Some(0));
     assert!(output.stderr.is_empty());
@@ -27,7 +27,7 @@ fn json_of_a_run_is_its_summary_and_nothing_else() {
 
 #[test]
 fn both_formulations_write_the_same_motion() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     for (folder, extra) in [("relative", &[][..]), ("absolute", &["--absolute"])] {
         let output = bench.run(&[&["run", "slider.toml", "-o", folder], extra].concat());
         assert_eq!(output.status.code(), Some(0));
@@ -47,7 +47,7 @@ fn both_formulations_write_the_same_motion() {
 
 #[test]
 fn loads_of_joints_are_written_and_what_they_share_is_empty() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     let press = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/press.toml");
     let output = bench.run(&["run", press.to_str().unwrap(), "-o", "out"]);
     assert_eq!(output.status.code(), Some(0));
@@ -81,7 +81,7 @@ fn loads_of_joints_are_written_and_what_they_share_is_empty() {
 
 #[test]
 fn drivers_are_written_with_their_power_and_the_work_that_they_did() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     let press = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/press.toml");
     assert_eq!(bench.run(&["run", press.to_str().unwrap(), "-o", "out"]).status.code(), Some(0));
     let table = |name: &str| {
@@ -114,7 +114,7 @@ fn drivers_are_written_with_their_power_and_the_work_that_they_did() {
 
 #[test]
 fn a_motion_past_its_limit_leaves_the_part_that_was_solved() {
-    let bench = FitWorkspace::with(&["short_rod.toml"]);
+    let bench = Bench::with(&["short_rod.toml"]);
     let output = bench.run(&["run", "short_rod.toml", "-o", "out"]);
     assert_eq!(output.status.code(), Some(5));
     assert_eq!(bench.list("out"), ["motion.csv", "report.html", "sensitivity.csv", "summary.json"]);
@@ -137,7 +137,7 @@ fn a_motion_past_its_limit_leaves_the_part_that_was_solved() {
 fn an_interrupted_run_leaves_the_part_that_was_solved() {
     use std::process::{Command, Stdio};
     use std::time::Duration;
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let long =
         bench.text("slider.toml").replace("steps = 40", "steps = 1000000").replace("40*sin", "0.1*sin");
     bench.put("long.toml", &long);
@@ -180,7 +180,7 @@ fn an_interrupted_run_leaves_the_part_that_was_solved() {
 
 #[test]
 fn verify_passes_on_the_best_steps_and_names_the_worst() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let output = bench.run(&["verify", "slider.toml", "--sweep", "-o", "out"]);
     let shown = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0), "{shown}");
@@ -219,7 +219,7 @@ fn verify_passes_on_the_best_steps_and_names_the_worst() {
 /// The crank pin so far outboard, the rod is too short for the motion; inboard it is not.
 #[test]
 fn a_backward_difference_serves_where_the_other_side_cannot_be_assembled() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let solved = |differences: &str| {
         let output = bench.run(&[
             "verify",
@@ -239,7 +239,7 @@ fn a_backward_difference_serves_where_the_other_side_cannot_be_assembled() {
 
 #[test]
 fn verify_fails_where_no_step_agrees() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     // A single coarse step leaves its truncation error.
     let output = bench.run(&["verify", "slider.toml", "--steps", "0.1", "--json"]);
     assert_eq!(output.status.code(), Some(1));
@@ -251,7 +251,7 @@ fn verify_fails_where_no_step_agrees() {
 #[test]
 fn the_gallery_runs_and_its_reports_are_complete() {
     let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     let mut seen = 0;
     for entry in std::fs::read_dir(models).unwrap() {
         let path = entry.unwrap().path();
@@ -276,7 +276,7 @@ fn the_gallery_runs_and_its_reports_are_complete() {
 
 #[test]
 fn a_long_motion_is_thinned_for_the_page_and_whole_in_the_tables() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let long = bench.text("slider.toml").replace("steps = 40", "steps = 30000").replace("40*sin", "4*sin");
     bench.put("long.toml", &long);
     let output = bench.run(&["run", "long.toml", "-o", "out"]);
@@ -306,7 +306,7 @@ fn a_long_motion_is_thinned_for_the_page_and_whole_in_the_tables() {
 
 #[test]
 fn arrays_hold_what_the_tables_hold() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     assert!(bench.run(&["run", "slider.toml", "-o", "out", "--bodies"]).status.success());
     let [motion, sensitivity] = ["motion", "sensitivity"].map(|f| bench.text(&format!("out/{f}.csv")));
     assert!(bench.run(&["run", "slider.toml", "-o", "out", "--bodies", "--format", "npy"]).status.success());
@@ -347,7 +347,7 @@ fn parquet_holds_what_the_tables_hold_with_their_units() {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
 
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     assert!(bench.run(&["run", "slider.toml", "-o", "out", "--bodies"]).status.success());
     let tables = ["motion", "sensitivity"].map(|name| (name, bench.text(&format!("out/{name}.csv"))));
     assert!(
@@ -386,7 +386,7 @@ fn parquet_holds_what_the_tables_hold_with_their_units() {
 
 #[test]
 fn nothing_is_written_that_nobody_asked_for() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let text = bench.text("slider.toml");
     let (before, after) = text.split_once("[design]").unwrap();
     let (_, after) = after.split_once("[points]").unwrap();
@@ -404,7 +404,7 @@ fn nothing_is_written_that_nobody_asked_for() {
 
 #[test]
 fn names_that_spreadsheets_would_run_are_text() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let text = bench.text("slider.toml").replace("guide_turn =", "\"=1+1\" =").replace("tip =", "\"@tip\" =");
     bench.put("odd.toml", &text);
     let output = bench.run(&["run", "odd.toml", "-o", "out"]);
@@ -424,7 +424,7 @@ fn names_that_spreadsheets_would_run_are_text() {
 
 #[test]
 fn nothing_that_a_terminal_obeys_is_printed() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let odd = "\"a\\u001b[2J\\u202eb\" =";
     bench.put("odd.toml", &bench.text("slider.toml").replace("guide_jam =", odd).replace("stroke =", odd));
     for command in [&["run", "odd.toml"][..], &["check", "odd.toml"], &["verify", "odd.toml", "--sweep"]] {
@@ -441,7 +441,7 @@ fn nothing_that_a_terminal_obeys_is_printed() {
 #[test]
 fn a_full_disk_behind_stdout_ends_with_6_and_a_closed_pipe_quietly() {
     use std::process::Stdio;
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     for command in
         [&["run", "slider.toml", "--json"][..], &["check", "slider.toml"], &["schema"], &["--help"]]
     {
@@ -458,7 +458,7 @@ fn a_full_disk_behind_stdout_ends_with_6_and_a_closed_pipe_quietly() {
 
 #[test]
 fn what_a_killed_run_left_is_removed_by_the_next() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     std::fs::create_dir(bench.path("out")).unwrap();
     bench.put("out/.motion.csv.aB3.part", "half");
     assert!(bench.run(&["run", "slider.toml", "-o", "out"]).status.success());
@@ -468,7 +468,7 @@ fn what_a_killed_run_left_is_removed_by_the_next() {
 #[test]
 fn work_that_no_memory_holds_is_refused_before_it_begins() {
     use std::fmt::Write;
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let mut text = bench.text("slider.toml");
     let (mut variables, mut bodies, mut joints) = (String::new(), String::new(), String::new());
     for k in 0..800 {

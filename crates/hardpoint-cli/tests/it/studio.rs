@@ -3,7 +3,7 @@
 use std::io::{Read, Write};
 use std::path::Path;
 
-use crate::bench::FitWorkspace;
+use crate::bench::Bench;
 use crate::client::Server;
 
 const TOKEN: &str = "a-token-of-this-test";
@@ -13,19 +13,19 @@ fn study_file(name: &str) -> String {
     std::fs::read_to_string(path).unwrap()
 }
 
-fn slider() -> FitWorkspace {
-    FitWorkspace::with(&["slider.toml"])
+fn slider() -> Bench {
+    Bench::with(&["slider.toml"])
 }
 
-/// What is in a page's packed block.
-fn payload(bench: &FitWorkspace, html: &str) -> serde_json::Value {
+/// Contents of a page's packed block.
+fn payload(bench: &Bench, html: &str) -> serde_json::Value {
     bench.put("served.html", html);
     let page = bench.page("served.html");
     std::fs::remove_file(bench.path("served.html")).unwrap();
     page
 }
 
-/// What a page is informed of its server.
+/// Data about the server in a page.
 fn about(html: &str) -> serde_json::Value {
     let (_, rest) = html.split_once("id=\"server\">").unwrap();
     serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
@@ -583,7 +583,7 @@ fn a_server_that_was_killed_is_found_again_on_its_port_with_its_token() {
 
 #[test]
 fn without_a_model_all_models_are_shown_and_what_is_none_is_not() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     std::fs::create_dir(bench.path("models")).unwrap();
     let slider = slider().text("slider.toml");
     bench.put("models/slider.toml", &slider);

@@ -4,20 +4,20 @@ use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use crate::bench::FitWorkspace;
+use crate::bench::Bench;
 
 const STRUT: &str = "strut_sweep.toml";
 /// The designs of a block: what is kept of a sweep that is killed are whole blocks.
 const BLOCK: usize = 512;
 
-fn bench() -> FitWorkspace {
+fn bench() -> Bench {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/studies").join(STRUT);
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     bench.put(STRUT, &std::fs::read_to_string(path).unwrap());
     bench
 }
 
-fn done(bench: &FitWorkspace, arguments: &[&str]) -> String {
+fn done(bench: &Bench, arguments: &[&str]) -> String {
     let output = bench.run(&[&["sweep", STRUT], arguments].concat());
     let [text, errors] = [output.stdout, output.stderr].map(|b| String::from_utf8(b).unwrap());
     assert_eq!(output.status.code(), Some(0), "{text}{errors}");
@@ -25,7 +25,7 @@ fn done(bench: &FitWorkspace, arguments: &[&str]) -> String {
 }
 
 /// All files of a folder but for the time that it took, which no two runs share.
-fn files(bench: &FitWorkspace, folder: &str) -> Vec<(String, Vec<u8>)> {
+fn files(bench: &Bench, folder: &str) -> Vec<(String, Vec<u8>)> {
     let content = |name: String| {
         let mut bytes = std::fs::read(bench.path(&format!("{folder}/{name}"))).unwrap();
         if name == "summary.json" {
@@ -37,7 +37,7 @@ fn files(bench: &FitWorkspace, folder: &str) -> Vec<(String, Vec<u8>)> {
     bench.list(folder).into_iter().map(content).collect()
 }
 
-fn same(bench: &FitWorkspace, a: &str, b: &str) {
+fn same(bench: &Bench, a: &str, b: &str) {
     let [a, b] = [a, b].map(|folder| files(bench, folder));
     let names = |of: &[(String, Vec<u8>)]| of.iter().map(|f| f.0.clone()).collect::<Vec<_>>();
     assert_eq!(names(&a), names(&b));
@@ -166,7 +166,7 @@ fn designs_that_fail_keep_their_rows_and_their_reasons() {
         "{table}"
     );
     assert!(rows[1].starts_with("0,0,0,-0.44") && rows[1].ends_with(','), "{table}");
-    // It is steered, and does not come to the end of bump.
+    // It is steered, and does not reach the end of bump.
     assert!(rows[2].starts_with("1,0,5000,,,,0.13") && rows[2].contains(",,,bump: the mechanism"), "{table}");
     // Curves of a design that moves, at every output time of both cases.
     let curves = bench.text("out/curves.csv");

@@ -7,7 +7,7 @@ use hardpoint::space::Vec3;
 use hardpoint_export::Format;
 use hardpoint_file::ModelFile;
 
-use crate::bench::FitWorkspace;
+use crate::bench::Bench;
 
 fn source(name: &str) -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hardpoint-import/tests/models");
@@ -167,7 +167,7 @@ fn a_teimorbit_table_that_was_exported_is_a_suspension_again() {
     /// Millimetres through metres and back.
     const ROUNDED: f64 = 1e-9;
     for model in ["double_wishbone", "double_wishbone_4x4", "macpherson", "front_axle", "five_link"] {
-        let bench = FitWorkspace::with(&[]);
+        let bench = Bench::with(&[]);
         let source = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../models/{model}.toml"));
         let run = |arguments: &[&str]| {
             let output = bench.run(arguments);

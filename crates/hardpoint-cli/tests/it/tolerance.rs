@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use crate::bench::FitWorkspace;
+use crate::bench::Bench;
 
 /// With these files of `models`.
-fn bench(names: &[&str]) -> FitWorkspace {
+fn bench(names: &[&str]) -> Bench {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     for name in names {
         let path = ["models", "models/studies"].map(|folder| root.join(folder).join(name));
         let text = path.iter().find_map(|path| std::fs::read_to_string(path).ok());
@@ -165,7 +165,7 @@ fn an_interrupted_study_keeps_the_designs_that_were_drawn() {
 
 /// A study of a model of these tests: what it prints, and its summary.
 fn studied(name: &str, samples: &str) -> (String, serde_json::Value) {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models").join(name);
     bench.put(name, &std::fs::read_to_string(path).unwrap());
     let output = bench.run(&["tolerance", name, "--samples", samples, "-o", "out"]);

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::bench::FitWorkspace;
+use crate::bench::Bench;
 
 /// The strut of the tutorial: ride only.
-fn ride(bench: &FitWorkspace) {
+fn ride(bench: &Bench) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/macpherson.toml");
     let text = std::fs::read_to_string(path).unwrap();
     let held = text.replace("law = \"30*sin(2*pi*0.2*t)\"", "law = \"0\"");
@@ -30,7 +30,7 @@ fn spread(curve: &[f64]) -> f64 {
 
 #[test]
 fn the_tutorial_takes_the_bump_steer_out() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     ride(&bench);
     let ranked = bench.run(&["whatif", "ride.toml", "--measure", "toe"]);
     assert_eq!(ranked.status.code(), Some(0));
@@ -90,7 +90,7 @@ fn the_tutorial_takes_the_bump_steer_out() {
 
 #[test]
 fn what_cannot_be_set_or_measured_is_refused_with_what_there_is() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     ride(&bench);
     for (arguments, told) in [
         (["--set", "tie_rod_outr.z=2"], "did you mean `tie_rod_outer.z`?"),
@@ -112,7 +112,7 @@ fn what_cannot_be_set_or_measured_is_refused_with_what_there_is() {
 
 #[test]
 fn a_variable_and_its_coordinate_are_one() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     ride(&bench);
     let ranked = |set: &str| {
         let output = bench.run(&["whatif", "ride.toml", "--set", set, "--json"]);
@@ -146,7 +146,7 @@ fn a_variable_and_its_coordinate_are_one() {
 
 #[test]
 fn a_change_beyond_the_bounds_is_told_and_solved() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     ride(&bench);
     let text =
         bench.text("ride.toml") + "\n[design.up]\nmove = \"strut_top\"\nalong = \"z\"\nbounds = [-1, 2]\n";
@@ -165,7 +165,7 @@ fn a_change_beyond_the_bounds_is_told_and_solved() {
 /// A planar mechanism cannot follow the tilt of one joint out of its plane, but that of all four.
 #[test]
 fn a_change_that_cannot_be_followed_is_offered_with_what_makes_it_admissible() {
-    let bench = FitWorkspace::with(&[]);
+    let bench = Bench::with(&[]);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/slider_crank.toml");
     bench.put("slider_crank.toml", &std::fs::read_to_string(path).unwrap());
     let set = ["whatif", "slider_crank.toml", "--set", "J4.tilt_y=1deg"];

@@ -4,13 +4,13 @@ use std::io::Read;
 
 use calamine::{Data, DataType, Range, Reader, Xlsx};
 
-use crate::bench::FitWorkspace;
+use crate::bench::Bench;
 
-fn open(bench: &FitWorkspace, name: &str) -> Xlsx<std::io::BufReader<std::fs::File>> {
+fn open(bench: &Bench, name: &str) -> Xlsx<std::io::BufReader<std::fs::File>> {
     calamine::open_workbook(bench.path(name)).unwrap()
 }
 
-fn sheet(bench: &FitWorkspace, name: &str, sheet: &str) -> Range<Data> {
+fn sheet(bench: &Bench, name: &str, sheet: &str) -> Range<Data> {
     open(bench, name).worksheet_range(sheet).unwrap()
 }
 
@@ -48,7 +48,7 @@ fn same(cells: &[f64], csv: &[String]) {
 
 #[test]
 fn a_workbook_holds_the_numbers_of_the_tables_to_the_last_digit() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let output = bench.run(&["run", "slider.toml", "-o", "out", "--workbook", "--bodies", "--json"]);
     assert!(output.status.success());
     let mut book = open(&bench, "out/motion.xlsx");
@@ -115,7 +115,7 @@ fn a_workbook_holds_the_numbers_of_the_tables_to_the_last_digit() {
 
 #[test]
 fn every_measure_has_a_chart_of_its_column() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     assert!(bench.run(&["run", "slider.toml", "-o", "out", "--workbook"]).status.success());
     let mut zip = zip::ZipArchive::new(std::fs::File::open(bench.path("out/motion.xlsx")).unwrap()).unwrap();
     for (chart, column) in [("chart1", "B"), ("chart2", "E")] {
@@ -132,7 +132,7 @@ fn every_measure_has_a_chart_of_its_column() {
 
 #[test]
 fn a_motion_that_stops_says_why_in_its_workbook() {
-    let bench = FitWorkspace::with(&["short_rod.toml"]);
+    let bench = Bench::with(&["short_rod.toml"]);
     let output = bench.run(&["run", "short_rod.toml", "-o", "out", "--workbook"]);
     assert_eq!(output.status.code(), Some(5));
     let about = said(&sheet(&bench, "out/motion.xlsx", "About"));
@@ -142,7 +142,7 @@ fn a_motion_that_stops_says_why_in_its_workbook() {
 
 #[test]
 fn a_workbook_without_measures_has_the_bodies_and_names_are_no_formulas() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let text = bench.text("slider.toml").replace("rod = {}", "\"=1+1\" = {}").replace("\"rod\"", "\"=1+1\"");
     let (before, _) = text.split_once("[points]").unwrap();
     let (_, after) = text.split_once("[time]").unwrap();
@@ -158,7 +158,7 @@ fn a_workbook_without_measures_has_the_bodies_and_names_are_no_formulas() {
 #[test]
 fn what_does_not_fit_into_a_workbook_is_told() {
     const STEPS: usize = 70_000;
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     bench.put("long.toml", &bench.text("slider.toml").replace("steps = 40", &format!("steps = {STEPS}")));
     let asked = [
         "run",
@@ -185,7 +185,7 @@ fn what_does_not_fit_into_a_workbook_is_told() {
 
 #[test]
 fn every_case_has_a_workbook() {
-    let bench = FitWorkspace::with(&["slider.toml"]);
+    let bench = Bench::with(&["slider.toml"]);
     let cases = "\n[cases.slow]\nlaws = { motor = \"10*sin(2*pi*t)\" }\n[cases.fast]\nlaws = { motor = \"20*sin(2*pi*t)\" }\n";
     bench.put("cases.toml", &(bench.text("slider.toml") + cases));
     let output = bench.run(&["run", "cases.toml", "-o", "out", "--workbook"]);

@@ -1,4 +1,4 @@
-//! Which number is in which register, and the instructions that follow from it.
+//! Register allocation, and the instructions that follow from it.
 //!
 //! Linear scan in the order of the program. When registers run out, the number that is read furthest ahead makes room.
 //! What has a home in memory (inputs, uniforms, constants, outputs that are known, what was spilled before) is read there and
@@ -16,7 +16,7 @@ const NOWHERE: u8 = u8::MAX;
 /// A number with a home in memory makes room as if it were read that many instructions later: it need not be stored.
 const CLEAN: u32 = 50;
 
-/// What a register holds.
+/// Contents of a register.
 #[derive(Clone, Copy, Debug)]
 struct Holder {
     name: Name,
@@ -34,9 +34,9 @@ pub struct Allocator<'l> {
     holders: Vec<Holder>,
     /// Registers that hold nothing that is needed, as bits.
     free: u32,
-    /// Of each name, its register.
+    /// Register of each name.
     register: Vec<u8>,
-    /// Of each name, where in memory it is found.
+    /// Location in memory of each name.
     home: Vec<Option<Memory>>,
     slots: usize,
     /// Slots that hold nothing that is needed.
@@ -331,7 +331,7 @@ impl<'l> Allocator<'l> {
         r
     }
 
-    /// What the register holds is in memory afterwards, and in no register.
+    /// Moves the contents of a register to memory.
     fn evict(&mut self, r: u8) {
         let name = self.holders[usize::from(r)].name;
         if self.home[name as usize].is_none() {

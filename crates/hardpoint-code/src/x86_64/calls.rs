@@ -15,7 +15,7 @@ extern "sysv64" fn lane_by_lane<const N: usize>(cell: &mut Cell<N>, call: &Call)
     }
 }
 
-/// What is to be called with the cell's address and `which(call)`.
+/// Address to call with the cell's address and `which(call)`.
 pub fn address(width: Width) -> u64 {
     let function = match width {
         Width::Avx2 => lane_by_lane::<4> as extern "sysv64" fn(&mut Cell<4>, &Call) as usize,
@@ -24,7 +24,7 @@ pub fn address(width: Width) -> u64 {
     function as u64
 }
 
-/// Where the program finds which function is meant: for ever, for it is a constant.
+/// Address of the constant that identifies the function to the called code.
 pub fn which(call: Call) -> u64 {
     let forever: &'static Call = Call::ALL.iter().find(|c| **c == call).expect("the list has all of them");
     std::ptr::from_ref(forever).expose_provenance() as u64

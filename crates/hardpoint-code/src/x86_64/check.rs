@@ -1,4 +1,4 @@
-//! What a program must fulfil so that its code reads and writes only what it is given.
+//! Conditions on a program under which its code reads and writes only the memory it is given.
 
 use hardpoint_tape::{Operand, Program};
 

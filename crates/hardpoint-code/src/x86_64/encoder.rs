@@ -102,7 +102,7 @@ pub enum Sign {
     NegMulSub = 6,
 }
 
-/// Where a jump goes: a place in the code.
+/// Target of a jump: a position in the code.
 #[derive(Clone, Copy, Debug)]
 pub struct Label(usize);
 

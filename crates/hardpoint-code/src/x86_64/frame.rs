@@ -1,4 +1,4 @@
-//! Where numbers are in memory, and what is around the instructions: entry, loop over groups, calls.
+//! Layout of numbers in memory, and the code around the instructions: entry, loop over groups, calls.
 //!
 //! The code is a function by the System V convention,
 //!
@@ -22,19 +22,19 @@ use super::encoder::{Assembler, Gpr, Memory, When};
 use super::lower::{LoweredProgram, NEVER, Name, Names};
 use crate::{PARTS, Width};
 
-/// Where the parts of the outputs are.
+/// Registers with the addresses of the parts of the outputs.
 const OUTPUTS: [Gpr; PARTS] = [Gpr::Rdx, Gpr::R10, Gpr::R11];
 
 const SAVED: [Gpr; 8] = [Gpr::Rdi, Gpr::Rsi, Gpr::Rdx, Gpr::Rcx, Gpr::R8, Gpr::R9, Gpr::R10, Gpr::R11];
 
-/// Where numbers are in memory.
+/// Layout of numbers in memory.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     width: Width,
     names: Names,
     inputs: i32,
     uniforms: i32,
-    /// Of each part.
+    /// Offsets of each part.
     outputs: [i32; PARTS],
 }
 
@@ -69,7 +69,7 @@ impl Frame {
         }
     }
 
-    /// Where a number is from the start; nowhere if it is a value.
+    /// Initial location of a number; `None` for a value.
     pub fn home(&self, name: Name) -> Option<Memory> {
         let n = self.names;
         let scalar = self.width == Width::Avx512;
@@ -82,7 +82,7 @@ impl Frame {
         })
     }
 
-    /// What a constant takes.
+    /// Size of a constant.
     pub fn constant_bytes(&self) -> i32 {
         match self.width {
             Width::Avx2 => 32,
@@ -127,7 +127,7 @@ impl Frame {
         }
     }
 
-    /// What a run needs of scratch, in bytes.
+    /// Scratch memory of a run, in bytes.
     pub fn scratch_bytes(&self, slots: usize) -> usize {
         self.slots_at() as usize + self.vector_bytes() as usize * slots
     }
@@ -136,7 +136,7 @@ impl Frame {
         Memory { base, offset: offset - self.ahead(base), broadcast }
     }
 
-    /// How far a register points into what it represents: 128 short offsets.
+    /// Offset of a register into the memory that it represents: 128 short offsets.
     fn ahead(&self, base: Gpr) -> i32 {
         match (self.width, base) {
             (Width::Avx512, Gpr::Rsi | Gpr::R8) => 128 * 8,

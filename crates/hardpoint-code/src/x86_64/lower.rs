@@ -10,16 +10,16 @@ pub const NEVER: u32 = u32::MAX;
 /// A number by one index: values by their instruction, then inputs, uniforms, constants, and the two masks for signs.
 pub type Name = u32;
 
-/// What an instruction does.
+/// Operation of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// Of one number.
+    /// Operation on one number.
     Unary(Opcode),
-    /// Of two.
+    /// Operation on two numbers.
     Binary(Opcode),
-    /// Of two that may change places.
+    /// Commutative operation on two numbers.
     Commuting(Opcode),
-    /// Of three.
+    /// Operation on three numbers.
     Fused(Sign),
     Larger,
     Call(Call),
@@ -37,18 +37,18 @@ pub struct Step {
 }
 
 impl Step {
-    /// What it reads.
+    /// Operands that it reads.
     pub fn operands(&self) -> &[Name] {
         &self.operands[..usize::from(self.count)]
     }
 
-    /// Of each operand, the next instruction that reads the same number.
+    /// For each operand, the next instruction that reads the same number.
     pub fn next(&self) -> &[u32] {
         &self.next[..usize::from(self.count)]
     }
 }
 
-/// How numbers are named.
+/// Names of numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Names {
     pub inputs: Name,
@@ -93,9 +93,9 @@ impl Names {
 pub struct LoweredProgram {
     pub names: Names,
     pub steps: Vec<Step>,
-    /// Of each name, the first instruction that reads it.
+    /// First instruction that reads each name.
     pub first: Vec<u32>,
-    /// Of each output, its name.
+    /// Name of each output.
     pub outputs: Vec<Name>,
     /// Outputs that are values, in the order of these.
     by_value: Vec<(Name, u32)>,

@@ -37,11 +37,11 @@ pub struct Machine {
     executable: Executable,
     /// As wide as the code wants them, with the masks for signs.
     constants: Vec<Line>,
-    /// How much scratch a run needs.
+    /// Scratch memory of a run.
     scratch: usize,
     inputs: usize,
     uniforms: usize,
-    /// Of each part.
+    /// Sizes of the parts.
     outputs: [usize; PARTS],
 }
 

@@ -1,4 +1,4 @@
-//! What the code of random programs touches, read back by a decoder.
+//! Memory accesses of the code of random programs, read back by a decoder.
 
 #[path = "../../tests/it/random.rs"]
 mod random;

@@ -1,4 +1,4 @@
-//! What code must not do, and what it refuses.
+//! Limits of code, and programs that it rejects.
 
 use hardpoint_code::{Code, PARTS, Scratch, UnsupportedProgram, Width};
 use hardpoint_tape::{Call, Instruction, LANES, Lanes, Operand, Program};
@@ -16,7 +16,7 @@ fn two_inputs_one_uniform_two_outputs() -> Program {
     }
 }
 
-/// What `run` says to these numbers of inputs, uniforms and outputs; nothing if it runs.
+/// Panic message of `run` for these numbers of inputs, uniforms and outputs; `None` if it runs.
 fn said(inputs: usize, uniforms: usize, outputs: usize) -> Option<String> {
     let code = Code::new(&two_inputs_one_uniform_two_outputs()).expect("machine code is here");
     let run = || {
@@ -61,7 +61,7 @@ fn arrays_of_other_lengths_are_refused() {
     }
 }
 
-/// What `run_in_parts` says to code with parts that end there and arrays of these lengths; nothing if it runs.
+/// Panic message of `run_in_parts` for code with these ends of parts and arrays of these lengths; `None` if it runs.
 fn said_in_parts(ends: [usize; PARTS - 1], inputs: usize, lengths: [usize; PARTS]) -> Option<String> {
     let program = two_inputs_one_uniform_two_outputs();
     let code = Code::in_parts(&program, ends).expect("machine code is here");
@@ -206,7 +206,7 @@ fn every_reason_is_a_sentence() {
     assert!(text.starts_with("the system does not let memory be made executable ("), "{text}");
 }
 
-/// Where there is no code, there is a reason, and it is the right one.
+/// If there is no code, there is a reason, and it is the right one.
 #[test]
 fn code_is_made_where_it_can_be() {
     let program = two_inputs_one_uniform_two_outputs();
@@ -214,7 +214,9 @@ fn code_is_made_where_it_can_be() {
     let target = cfg!(all(target_arch = "x86_64", unix));
     match Width::ALL.into_iter().rev().find(|w| w.is_here()) {
         Some(widest) => assert_eq!(made, Ok(widest)),
-        None => assert_eq!(made, Err(if target { UnsupportedProgram::Cpu } else { UnsupportedProgram::Target })),
+        None => {
+            assert_eq!(made, Err(if target { UnsupportedProgram::Cpu } else { UnsupportedProgram::Target }))
+        }
     }
     for width in Width::ALL.into_iter().filter(|w| !w.is_here()) {
         let reason = if target { UnsupportedProgram::Width(width) } else { UnsupportedProgram::Target };

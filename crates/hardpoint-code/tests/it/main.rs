@@ -1,4 +1,4 @@
-//! What code computes is what its program says.
+//! Code computes the results of its program.
 
 mod limits;
 mod meaning;

@@ -18,9 +18,8 @@ fn bits(x: f64) -> u64 {
     if x.is_nan() { f64::NAN.to_bits() } else { x.to_bits() }
 }
 
-/// Code of this program for every width that is here, with outputs in one part and in several; fails unless all outputs
-/// are those of `plain::evaluate`.
-/// Gives how many outputs were finite, and what the code of the widest comes to.
+/// Checks the code of this program for every available width, with outputs in one part and in several: all outputs must
+/// be those of `plain::evaluate`. Returns the number of finite outputs, and the statistics of the widest code.
 fn holds(program: &Program, groups: usize, inputs: &[Lanes], uniforms: &[f64]) -> (usize, Counts) {
     let expected = plain::evaluate(program, groups, inputs, uniforms);
     let seed = inputs.first().map_or(program.outputs.len() as u64, |x| x[0].to_bits());
@@ -152,7 +151,7 @@ fn special_numbers_meet_in_every_instruction() {
 }
 
 /// Of zeros of either sign the larger may be any, and one divided by it is one infinity or the other: programs with
-/// `Larger` are compared for what it gives alone.
+/// `Larger` are compared by that result alone.
 #[test]
 fn code_and_interpreter_agree() {
     let mut random = Random(9);

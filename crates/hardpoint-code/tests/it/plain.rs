@@ -1,4 +1,4 @@
-//! What programs say, one scalar at a time.
+//! Interpretation of programs, one scalar at a time.
 
 use hardpoint_code::PARTS;
 use hardpoint_tape::{LANES, Lanes, Program};

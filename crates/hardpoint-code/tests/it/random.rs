@@ -68,7 +68,7 @@ pub const CALLS: [Call; 11] = [
     Call::Pow,
 ];
 
-/// What a random program is like.
+/// Shape of a random program.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape {
     pub inputs: usize,
@@ -76,7 +76,7 @@ pub struct Shape {
     pub constants: usize,
     pub instructions: usize,
     pub outputs: usize,
-    /// How far back most values are that an instruction reads.
+    /// Distance back of most values that an instruction reads.
     pub near: usize,
     /// One in that many instructions is a call; none if zero.
     pub calls: usize,
@@ -131,7 +131,7 @@ pub fn program(random: &mut Random, shape: Shape) -> Program {
     program
 }
 
-/// Where parts of that many outputs end; often some are empty.
+/// Ends of the parts of the outputs; often some parts are empty.
 pub fn ends(random: &mut Random, outputs: usize) -> [usize; 2] {
     let [a, b] = [(); 2].map(|()| random.below(outputs + 1));
     match random.below(6) {
@@ -163,7 +163,7 @@ pub fn plain(a: Operand, b: Operand, c: Operand) -> [Instruction; 13] {
     ]
 }
 
-/// Any number that there is, more often one of the last.
+/// Any existing number, more often one of the last.
 fn any(random: &mut Random, program: &Program, near: usize) -> Operand {
     let values = program.instructions.len();
     loop {

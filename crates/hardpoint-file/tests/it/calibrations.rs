@@ -1,4 +1,4 @@
-//! What measurements tell of a geometry: held against the normal equations, against hidden designs over many seeds, and against fits with the
+//! Calibration: compared with the normal equations, with hidden designs over many seeds, and with fits with the
 //! readings that were proposed.
 
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What a user sees for each kind of mistake: the full texts are in `tests/snapshots`.
+//! Diagnostics for each kind of mistake: the full texts are in `tests/snapshots`.
 
 use hardpoint_file::{Diagnostics, parse, read};
 
@@ -320,7 +320,7 @@ fn measures_of_measures_metrics_and_shapes() {
     with("axle_of_no_wheel", "[axles.a]\nleft = \"l\"\nright = \"r\"");
 }
 
-/// What only follows from something wrong about a wheel is not reported.
+/// Consequences of an error in a wheel are not reported.
 #[test]
 fn consequences_at_wheels_are_not_reported() {
     for (old, new) in [
@@ -390,7 +390,7 @@ fn several_problems_at_once() {
     );
 }
 
-/// What only follows from another problem is not reported.
+/// Consequences of another problem are not reported.
 #[test]
 fn consequences_are_not_reported() {
     let long = "x".repeat(101);

@@ -25,7 +25,7 @@ fn solved(file: &ModelFile, design: &[f64]) -> Solution {
     analysis.solve(Run::new().at(design).without_sensitivities())
 }
 
-/// How far apart two motions are, as a part of how large they are; infinite where they are not of the same length.
+/// Relative difference of two motions; infinite if they are not of the same length.
 fn apart(size: f64, a: &Solution, b: &Solution) -> f64 {
     if a.motion.len() != b.motion.len() {
         return f64::INFINITY;

@@ -279,7 +279,7 @@ rub = { type = "spring_force", force = "rub" }
 "#;
     let file = parse(text, "slider.toml").unwrap_or_else(|e| panic!("{e}"));
     let solution = solved(&file);
-    // The ram hangs on its pin at the guide's middle: only the side thrust presses.
+    // The ram hangs on its pin at the guide's middle: only the side thrust is a normal force.
     for (rub, thrust) in values(&solution, "rub").iter().zip(values(&solution, "thrust")).skip(1) {
         assert!(rub.abs() <= 0.1 * thrust.abs() * (1.0 + SAME), "{rub} {thrust}");
     }

@@ -17,7 +17,7 @@ use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, read};
 
-/// What is known of a model.
+/// Known facts of a model.
 struct Entry {
     file: &'static str,
     mobility: usize,
@@ -553,7 +553,7 @@ fn five_link_rods_keep_their_lengths_to_second_order(m: &Solved) {
     m.rod("spring_strut", |t| sine(0.055, TAU, t));
 }
 
-/// What the wheels measure together; their slopes are tested in `wheels.rs`.
+/// Joint measures of the wheels; their slopes are tested in `wheels.rs`.
 fn front_axle_is_steered_and_moves_as_its_wheels_do(m: &Solved) {
     let of = |k: usize, name: &str| m.value(k, name);
     for side in ["left", "right"] {

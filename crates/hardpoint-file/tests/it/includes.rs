@@ -157,10 +157,7 @@ fn a_number_of_another_file_is_not_saved_in_this_one() {
     let saved = design(&[("left_pivot", 0.001), ("right_pivot", 0.001)]).unwrap();
     assert_eq!(saved, AXLE.replace("[110, 210, 0]", "[110, 210, 1]"));
     let refused = design(&[("left_arm", 0.001), ("right_arm", 0.001)]).unwrap_err();
-    assert!(
-        refused.to_string().contains("`left_arm` is in the included file `corner.toml`"),
-        "{refused}"
-    );
+    assert!(refused.to_string().contains("`left_arm` is in the included file `corner.toml`"), "{refused}");
 }
 
 #[test]

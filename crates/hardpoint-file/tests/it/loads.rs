@@ -406,7 +406,8 @@ fn made_up(k: usize, size: f64) -> [f64; 7] {
     [mass, 0.9 * i, 1.1 * i, 1.3 * i, 0.1 * i, -0.2 * i, 0.15 * i]
 }
 
-/// What [`made_up`] needs of force and of moment, about its centre, by Newton and Euler; and the centre's place and velocity.
+/// Force and moment that [`made_up`] requires, about its centre, by Newton and Euler; and the centre's position and
+/// velocity.
 fn newton_euler(model: &Model, k: usize, s: &BodyState) -> [Vec3; 4] {
     let (x, size) = (k as f64, 0.1 * model.size());
     let [mass, a, b, c, d, e, f] = made_up(k, size);

@@ -286,7 +286,7 @@ fn turns_and_poles_are_the_same_by_a_program() {
         );
         assert!(value("pitch", k)[0].abs() < 1e-12 && value("euler", k)[0].is_nan(), "{k}");
     }
-    // min, the poles and an angle that there is not depend on formulas; all else does not.
+    // min, the poles and an angle that does not exist depend on formulas; all else does not.
     let outputs = solution.measured.outputs.len();
     let least = all / outputs;
     assert!((2 * least..3 * least).contains(&by_formula), "{by_formula} of {all}");
@@ -314,7 +314,7 @@ fn a_program_of_measures_is_bounded() {
     assert_eq!(by_formula, all);
 }
 
-/// What is left of a rate when the drivers' parts of it are taken away, as a part of the largest of all.
+/// Remainder of a rate without the contributions of the drivers, relative to the largest of all.
 const PARTS_OF_A_RATE: f64 = 1e-9;
 
 #[test]

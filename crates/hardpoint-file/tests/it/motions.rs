@@ -1,5 +1,5 @@
-//! What a user sees for each mistake in couplers, drivers, laws, data files and rare joints: the full texts are in
-//! `tests/snapshots`. And that what is right means what the documents say.
+//! Diagnostics for mistakes in couplers, drivers, laws, data files and rare joints: the full texts are in
+//! `tests/snapshots`. And the meaning of valid entries.
 
 use hardpoint::joint::Quantity;
 use hardpoint::model::{Change, Model, change};
@@ -323,7 +323,7 @@ fn variables_are_in_the_units_of_what_they_change() {
     assert_eq!(m.joints.iter().find(|j| j.name == "rod").unwrap().length, Some(0.0505));
 }
 
-/// What only follows from another problem is not reported.
+/// Consequences of another problem are not reported.
 #[test]
 fn consequences_are_not_reported() {
     for (old, new) in [

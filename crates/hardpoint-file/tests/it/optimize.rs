@@ -1,4 +1,4 @@
-//! What a file says it is to be optimised for, in SI.
+//! Settings of an optimisation in a file, SI.
 
 use hardpoint::model::{Goal, Limit, LimitTarget, Reduction};
 use hardpoint_file::{parse, read};

@@ -19,7 +19,7 @@ const SAME: f64 = 1e-9;
 /// Next to a singular position, where a run stops, velocities and accelerations lose digits: there they are not compared.
 const NEAR_THE_END: f64 = 1e-2;
 
-/// How a run ended: where, and why; `None` at the last output time.
+/// End of a run: time and reason; `None` at the last output time.
 type Verdict = Option<(f64, StopKind)>;
 
 fn model(text: &str) -> Model {
@@ -412,7 +412,7 @@ fn a_locomotive_with_unequal_cranks_locks_at_the_same_place() {
     }
 }
 
-/// What happened in a run, for comparison with the same mechanism elsewhere: how it ended, and all measures at all output times.
+/// Outcome of a run, for comparison with the same mechanism elsewhere: its end, and all measures at all output times.
 fn outcome(text: &str) -> (Verdict, Vec<f64>, Vec<f64>) {
     let model = model(text);
     let solution = run(&model, spaced(&model, 60));

@@ -25,7 +25,7 @@ fn six_lines() -> String {
     block.and_then(|rest| rest.split("```").next()).unwrap().to_owned()
 }
 
-/// Where a point is at each output time, in m.
+/// Positions of a point at all output times, in m.
 fn path(model: &Model, name: &str) -> Vec<[f64; 3]> {
     let solution = Analysis::new(model).unwrap().run();
     assert!(solution.stop.is_none());

@@ -10,7 +10,7 @@ use crate::diagnostics::{VALID, snapshot};
 
 /// Prescribed values are met as the solver meets all others, m or rad.
 const MET: f64 = 1e-12;
-/// What is prescribed does not change with the design, per m or rad.
+/// Prescribed values do not change with the design, per m or rad.
 const STAYS: f64 = 1e-10;
 /// Differences of two designs, 0.1 mm away on either side, against the sensitivity between them.
 const DIFFERENCES: f64 = 2e-6;

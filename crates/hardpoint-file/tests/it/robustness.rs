@@ -244,7 +244,7 @@ fn deep_nesting_is_refused() {
     survives(&format!("drivers.d.law = \"{}\"", "t+".repeat(100_000)));
 }
 
-/// How often memory is requested while a text is read and its diagnostics are shown, and how much of it.
+/// Number of allocations while a text is read and its diagnostics are shown, and their size.
 fn work(text: &str) -> [u64; 2] {
     let used = allocation_counter::measure(|| survives(text));
     [used.count_total, used.bytes_total]
@@ -346,7 +346,7 @@ fn ranges_of(text: &str, value: &DeValue<'_>, found: &mut Vec<std::ops::Range<us
     }
 }
 
-/// Where something cannot be read, that is said, and nothing of what would follow from it.
+/// An entry that cannot be read is reported, and none of the consequences.
 #[test]
 fn a_value_that_cannot_be_read_is_one_mistake() {
     let wheels = include_str!("../../../../models/front_axle.toml");

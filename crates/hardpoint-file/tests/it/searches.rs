@@ -12,7 +12,7 @@ use hardpoint::study::{
 use hardpoint::topology::Formulation;
 use hardpoint_file::ModelFile;
 
-/// What is left of the gradient at an optimum, as a part of that at the start.
+/// Remainder of the gradient at an optimum, relative to that at the start.
 const OPTIMAL: f64 = 1e-8;
 
 fn model(name: &str) -> ModelFile {
@@ -147,7 +147,7 @@ fn the_strut_gets_its_toe_curve_and_steers_no_worse() {
     }
 }
 
-/// What is left of the published toe curve, 0.77 deg to either side, at most: root mean square, rad.
+/// Maximum deviation from the published toe curve, 0.77 deg to either side: root mean square, rad.
 const FOLLOWED: f64 = 0.003 * std::f64::consts::PI / 180.0;
 
 #[test]

@@ -1,10 +1,10 @@
-//! What a user sees for mistakes in cases, targets and optimisations: the full texts are in `tests/snapshots`.
+//! Diagnostics for mistakes in cases, targets and optimisations: the full texts are in `tests/snapshots`.
 
 use hardpoint_file::{parse, read};
 
 use crate::diagnostics::{VALID, diagnosed, snapshot};
 
-/// What is appended to the valid model, whose rod and variables are there for it.
+/// Appended to the valid model, whose rod and variables are there for it.
 const STUDIES: &str = r#"
 [joints.rod]
 type = "leg"
@@ -208,7 +208,7 @@ fn targets_in_files() {
     broken("target_that_falls", "[[0, 150], [1, 160]]", "[[0, 150], [0, 160]]");
 }
 
-/// What only follows from something wrong elsewhere is not reported.
+/// Consequences of errors elsewhere are not reported.
 #[test]
 fn consequences_for_studies_are_not_reported() {
     let fast = "[cases.fast]\nlaws = { turn = \"720*t\" }\ntime = { end = 0.5, steps = 20 }\n";

@@ -213,7 +213,9 @@ fn broken_lists_of_designs() {
         std::fs::write(folder.path().join("designs.csv"), list).unwrap();
         hardpoint_file::read(&path)
     };
-    let model = read("B_x [mm]; lean\n# in the design configuration\n0; 0\n1.5; -2\n").unwrap_or_else(|e| panic!("{e}")).model;
+    let model = read("B_x [mm]; lean\n# in the design configuration\n0; 0\n1.5; -2\n")
+        .unwrap_or_else(|e| panic!("{e}"))
+        .model;
     let sweeping = model.sweeping.unwrap();
     assert_eq!((sweeping.method, sweeping.listed.len()), (SweepMethod::Listed, 2));
     assert_eq!(sweeping.listed[1], [0.0015, -2.0_f64.to_radians()]);

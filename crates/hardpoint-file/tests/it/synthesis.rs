@@ -14,11 +14,11 @@ use hardpoint::study::{
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, read, schema};
 
-/// What is left of the gradient at an optimum, as a part of that at the start.
+/// Remainder of the gradient at an optimum, relative to that at the start.
 const STATIONARY: f64 = 1e-8;
 /// ... and as a part of the gradient of the goals themselves, which misfits far below those of the start make much smaller.
 const SCALED: f64 = 1e-6;
-/// How far bounds may be exceeded by, as a part of their width.
+/// Tolerance of bounds, relative to their width.
 const ROUND_OFF: f64 = 1e-12;
 
 fn folder() -> PathBuf {

@@ -209,7 +209,7 @@ fn designs_by_programs_are_those_of_the_kernel() {
 /// Loads divide by pivots as accelerations do.
 const CARRIED: f64 = 1e-8;
 
-/// How far apart all measures of a model are, by program and by the kernel; and how many output times went by program.
+/// Difference of all measures of a model between program and kernel; and the number of output times by program.
 fn loads_apart(model: &Model, execution: Execution) -> (f64, usize) {
     let solve = |execution| Analysis::new(model).unwrap().executed(execution).run();
     let (right, again) = (solve(Execution::Kernel), solve(execution));

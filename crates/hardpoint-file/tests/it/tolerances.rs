@@ -1,4 +1,4 @@
-//! What tolerances come to: held against closed forms, against designs that are drawn and solved, and against each other.
+//! Tolerance studies: compared with closed forms, with designs that are drawn and solved, and with each other.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -198,7 +198,7 @@ fn squares_and_moments_match_re_solved_designs() {
 /// That many standard errors may be between what derivatives say and what is drawn: of all numbers of these tests none is beyond, since
 /// the seeds are fixed.
 const ERRORS: f64 = 4.0;
-/// Of angles, rad.
+/// Tolerance of angles, rad.
 const ROUND_OFF: f64 = 1e-12;
 
 #[test]

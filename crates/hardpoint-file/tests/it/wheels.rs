@@ -647,8 +647,8 @@ fn a_knuckle_on_a_kingpin_steers_about_it() {
     }
 }
 
-/// Where the lines of two pairs of rods meet, in A and B, and that of a leg passes through B, the knuckle turns about AB while the fifth rod
-/// moves: the virtual kingpin of textbooks.
+/// If the lines of two pairs of rods meet, in A and B, and that of a leg passes through B, the knuckle turns about AB
+/// while the fifth rod moves: the virtual kingpin of textbooks.
 #[test]
 fn five_links_whose_lines_meet_have_the_steering_axis_of_textbooks() {
     let (a, b) = ([-20.0, 690.0, 520.0], [10.0, 740.0, 170.0]);

@@ -1,4 +1,4 @@
-//! What MJCF says for many elements at once: the compiler's settings, classes of defaults, meshes; and what an element has of it.
+//! Settings of MJCF for many elements at once (compiler, classes of defaults, meshes), and their values for an element.
 
 use std::collections::HashMap;
 

@@ -6,7 +6,7 @@ use hardpoint::space::{Pose, Vec3};
 use roxmltree::Node;
 
 use super::{Frame, Model, Reader, version};
-use crate::markers::{JointSource, MarkerJoint, Marker, carrying, join, way};
+use crate::markers::{JointSource, Marker, MarkerJoint, carrying, join, way};
 use crate::mechanism::{Coordinate, Mechanism};
 use crate::turn::home;
 use crate::xml::{Vocabulary, child, children, exactly, local, named};
@@ -234,7 +234,7 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// What ties a joint to others: `mimic`, and gearboxes.
+    /// Reads the relations of a joint to others: `mimic`, and gearboxes.
     pub(super) fn relation(&mut self, joint: Node<'d, 'd>, model: &Model<'d>) {
         let (text, scope) = (model.text, &model.scope);
         let name = joint.attribute("name").unwrap_or_default().trim();
@@ -376,7 +376,7 @@ impl<'d> Reader<'d, '_> {
         self.m = crate::mjcf::extension(m, self.notes, &blocks, text, &bodies, &joints);
     }
 
-    /// What Drake adds to models.
+    /// Reads Drake's additions to models.
     pub(super) fn constraints(&mut self, model: &Model<'d>) {
         for (k, node) in named(model.node, "ball_constraint").enumerate() {
             let at = xml::at(model.text, node);

@@ -1,11 +1,11 @@
-//! What URDF has no element of its own for: joints that follow others, loops, floating links.
+//! Features without an element of their own in URDF: joints that follow others, loops, floating links.
 
 use std::collections::BTreeSet;
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 use roxmltree::Node;
 
-use super::{IRRELEVANT_IN_GAZEBO, Mimic, Reader, WITHOUT_AXIS, JointDeclaration, pose, value_as_drawn};
+use super::{IRRELEVANT_IN_GAZEBO, JointDeclaration, Mimic, Reader, WITHOUT_AXIS, pose, value_as_drawn};
 use crate::markers::JointSource;
 use crate::mechanism::Mechanism;
 use crate::robot::{self, Follower};

@@ -1,4 +1,4 @@
-//! What is wrong with a source is reported in its own words, with the place.
+//! Errors of sources are reported in the terms of the source, with their positions.
 
 use std::fmt::Write;
 

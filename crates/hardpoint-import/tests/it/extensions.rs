@@ -272,7 +272,8 @@ fn loops_of_other_conventions_are_closed_or_named() {
     let above: Vec<&str> = report.lines().take(3).collect();
     assert!(above[1].contains("`--close coupler=rocker`"), "{report}");
     assert!(
-        above[2].contains("all of its 3 motions are fixed in the design configuration") && above[2].contains("tree"),
+        above[2].contains("all of its 3 motions are fixed in the design configuration")
+            && above[2].contains("tree"),
         "{report}"
     );
     for closing in [
@@ -282,7 +283,11 @@ fn loops_of_other_conventions_are_closed_or_named() {
     ] {
         let (imported, file) = read_with("r.urdf", &text, &[closing]);
         meets(&file);
-        assert!(!imported.report.to_string().contains("fixed in the design configuration"), "{}", imported.report);
+        assert!(
+            !imported.report.to_string().contains("fixed in the design configuration"),
+            "{}",
+            imported.report
+        );
     }
     // Frames that are there for the loop: at one place, or by their names.
     let leaf = |name: &str, on: &str, at: &str| {

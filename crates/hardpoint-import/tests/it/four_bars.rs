@@ -24,7 +24,7 @@ fn rocker(crank: f64) -> f64 {
 
 #[test]
 fn a_four_bar_is_the_same_mechanism_in_every_format() {
-    /// What sixteen digits of sources leave.
+    /// Tolerance of sources with sixteen digits.
     const SAME: f64 = 1e-12;
     let files = [
         "asmt/four_bar.asmt",

@@ -1,4 +1,4 @@
-//! What joints and motions mean to the programs whose they are, against closed forms.
+//! Meaning of joints and motions in the programs that they come from, against closed forms.
 
 use hardpoint::model::BodyId;
 use hardpoint::space::Vec3;
@@ -7,11 +7,11 @@ use hardpoint_file::ModelFile;
 
 use crate::{folder, import, model};
 
-/// What sixteen digits of sources leave, in mm and rad.
+/// Tolerance of sources with sixteen digits, in mm and rad.
 const SAME: f64 = 1e-9;
-/// What a spline through two hundred points leaves, in mm.
+/// Tolerance of a spline through two hundred points, in mm.
 const SPLINED: f64 = 1e-5;
-/// How far something has to move for its motion to tell anything, in mm.
+/// Minimum displacement for a test to be meaningful, in mm.
 const MOVES: f64 = 1.0;
 
 struct Moving {
@@ -37,7 +37,7 @@ impl Moving {
         BodyId(self.file.model.bodies.iter().position(|b| b.name == name).unwrap())
     }
 
-    /// Where a point of a body's frame is, in mm.
+    /// Position of a point of a body's frame, in mm.
     fn place(&self, step: usize, body: &str, local: [f64; 3]) -> Vec3 {
         let state = self.solution.body(step, self.body(body));
         state.r * 1e3 + state.rotation * Vec3::from(local)

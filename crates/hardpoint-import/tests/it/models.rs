@@ -67,7 +67,7 @@ fn shapes_are_drawn_in_the_frames_of_their_bodies() {
 
 #[test]
 fn a_stored_motion_is_reproduced() {
-    /// What fourteen digits and angles near their jump leave.
+    /// Tolerance of fourteen digits and of angles near their jump.
     const SAME: f64 = 1e-10;
     let imported = import(&folder().join("asmt/four_bar.asmt")).unwrap();
     let series = imported.series.as_ref().unwrap();

@@ -1,4 +1,4 @@
-//! What real exporters of URDF, SDFormat and MJCF write, beyond what their documents show.
+//! Output of real exporters of URDF, SDFormat and MJCF, beyond the examples of their documents.
 
 use hardpoint::model::{BodyId, Joint};
 use hardpoint::space::Vec3;
@@ -8,7 +8,7 @@ use hardpoint_import::{ElementOutcome, ImportedModel};
 
 use crate::model;
 
-/// What sums of sixteen digits leave.
+/// Tolerance of sums of sixteen digits.
 const SAME: f64 = 1e-12;
 
 fn read_with(name: &str, bytes: &[u8], beside: &[(&str, &str)]) -> (ImportedModel, ModelFile) {
@@ -49,7 +49,7 @@ fn told(imported: &ImportedModel, fate: ElementOutcome, kind: &str) -> Vec<Strin
     imported.report.of(fate).filter(|e| e.kind == kind).map(|e| format!("{}: {}", e.name, e.why)).collect()
 }
 
-/// How far a body turns, at most, while the mechanism moves; it has to move to the end.
+/// Maximum rotation of a body while the mechanism moves; it has to move to the end.
 fn turns(file: &ModelFile, body: &str) -> f64 {
     let body = BodyId(file.model.bodies.iter().position(|b| b.name == body).unwrap());
     let solution = Analysis::new(&file.model).unwrap().solve(Run::new().without_sensitivities());

@@ -1,4 +1,4 @@
-//! What a design variable changes, in words, and its unit.
+//! Description and unit of a design variable's change.
 
 use hardpoint::joint::Quantity;
 use hardpoint::law::ParameterKind;
@@ -8,7 +8,7 @@ use hardpoint_file::Units;
 
 use crate::figures::{names, number, order_unit, rounded, symbol};
 
-/// What a variable changes, in a few words.
+/// Short description of a variable's change.
 pub(super) fn change_text(model: &Model, changes: &[Change], fixed_length: bool) -> String {
     let said = model.describe_changes(changes, &direction_text, &number);
     let said =

@@ -1,4 +1,4 @@
-//! What is known of a mechanism once it is planned and, as far as possible, solved.
+//! Facts of a mechanism that is planned and, as far as possible, solved.
 //!
 //! Built once and shown three times: as text by `hardpoint check`, as JSON, and as tables of the page.
 
@@ -33,7 +33,7 @@ use crate::figures::{count, per, rounded, symbol, unit};
 pub struct Facts {
     /// The mechanism's name.
     pub name: String,
-    /// What the file says about itself.
+    /// Description in the file.
     pub description: Option<String>,
     /// The model file, as it was given.
     pub file: String,
@@ -51,7 +51,7 @@ pub struct Facts {
     pub couplers: Vec<CouplerFact>,
     /// Drivers.
     pub drivers: Vec<DriverFact>,
-    /// What is solved together, in the order of solution.
+    /// Blocks in the order of solution.
     pub blocks: Vec<BlockFact>,
     /// Constraints that the others imply.
     pub redundant: Vec<RedundantFact>,
@@ -59,7 +59,7 @@ pub struct Facts {
     pub redundancy: Vec<RedundancyFact>,
     /// Design variables and whether the mechanism can follow them.
     pub variables: Vec<VariableFact>,
-    /// What every joint asks of a change of the design.
+    /// Conditions of every joint on a change of the design.
     pub conditions: Vec<ConditionFact>,
     /// Measures.
     pub measures: Vec<MeasureFact>,
@@ -132,7 +132,7 @@ pub struct JointFact {
 pub struct CouplerFact {
     /// Name.
     pub name: String,
-    /// What must hold, its coordinates counted from the design configuration, in these units.
+    /// Relation of the coordinates, counted from the design configuration, in these units.
     pub relation: String,
     /// The coordinates with their factors.
     pub terms: Vec<TermFact>,
@@ -156,7 +156,7 @@ pub struct TermFact {
 pub struct DriverFact {
     /// Name.
     pub name: String,
-    /// What it prescribes.
+    /// Quantity that it prescribes.
     pub drives: String,
     /// The joint that it drives, if it drives a joint.
     pub joint: Option<String>,
@@ -194,7 +194,7 @@ pub struct RedundantFact {
     pub driver: Option<String>,
     /// The coupler, if it is one.
     pub coupler: Option<String>,
-    /// What it asks for.
+    /// Constraint in words.
     pub constraint: String,
 }
 
@@ -219,15 +219,15 @@ pub struct VariableFact {
     pub name: String,
     /// Unit; `1` for a plain number.
     pub unit: String,
-    /// What changes with it.
+    /// Change per unit of the variable.
     pub change: String,
     /// Joints that open at the design configuration while all bodies stay; none: admissible there.
     pub opens_at_design: Vec<DefectFact>,
     /// The answer over the whole solved motion.
     pub answer: Answer,
-    /// Where the mechanism cannot follow: the joints that resist, with the largest defect over the motion.
+    /// If the mechanism cannot follow: the joints that resist, with the largest defect over the motion.
     pub resists: Vec<DefectFact>,
-    /// Where the mechanism cannot follow: the time of the largest defect, s.
+    /// If the mechanism cannot follow: the time of the largest defect, s.
     pub time: Option<f64>,
 }
 
@@ -249,7 +249,7 @@ pub struct DefectFact {
 pub struct MeasureFact {
     /// Name.
     pub name: String,
-    /// What it measures.
+    /// Measured quantity.
     pub what: String,
     /// Unit.
     pub unit: String,
@@ -453,7 +453,7 @@ fn drivers(model: &Model, units: Units) -> Vec<DriverFact> {
     model.drivers.iter().map(fact).collect()
 }
 
-/// What an unnamed joint represents.
+/// Description of an unnamed joint.
 fn driven_text(model: &Model, joint: &Joint, points: &Points<'_>) -> String {
     let body = |e: usize| model.bodies[joint.bodies[e].0].name.as_str();
     let place = |e: usize| {

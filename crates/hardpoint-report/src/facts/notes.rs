@@ -1,4 +1,4 @@
-//! What is worth knowing and no error: idle spins, laws that are not smooth.
+//! Notes that are no errors: idle rotations, laws that are not smooth.
 
 use hardpoint::joint::Quantity;
 use hardpoint::law::Jump;
@@ -43,7 +43,7 @@ pub(super) fn jumps(model: &Model, units: Units) -> Vec<String> {
 /// A mechanism this many of its sizes from the origin has lost four digits before anything is computed.
 const FAR: f64 = 1e4;
 
-/// Of a mechanism that is far from the origin.
+/// Note on a mechanism that is far from the origin.
 pub(super) fn far_away(model: &Model, units: Units) -> Option<String> {
     let (distance, size) = (model.distance_from_origin(), model.size());
     let lost = (distance / size).log10();

@@ -1,4 +1,4 @@
-//! Which joints, couplers and drivers say the same.
+//! Joints, couplers and drivers that share a redundancy.
 
 use std::collections::BTreeMap;
 
@@ -49,7 +49,7 @@ enum Part {
 /// All redundant constraints, those among the same parts together, in the order of the file; of a planar model without those that the
 /// plane makes.
 pub(super) fn redundancy(model: &Model, topology: &Topology, planar: bool) -> Vec<RedundancyFact> {
-    /// Where every joint is cut the sets are exact, but the search is cubic in six unknowns per body.
+    /// Maximum number of bodies for the exact search with every joint cut, which is cubic in six unknowns per body.
     const MOST_BODIES: usize = 50;
     let left_out = topology.redundant().count();
     if left_out == 0 {
@@ -87,7 +87,7 @@ pub(super) fn redundancy(model: &Model, topology: &Topology, planar: bool) -> Ve
     groups.into_iter().map(fact).collect()
 }
 
-/// What the rows of a redundancy belong to. A row over a tree speaks for all joints around its loop.
+/// Owners of the rows of a redundancy. A row over a tree represents all joints around its loop.
 fn parts(model: &Model, plan: &Topology, redundancy: &Redundancy) -> Vec<Part> {
     let mut parts = Vec::new();
     for &row in std::iter::once(&redundancy.row).chain(&redundancy.implied_by) {

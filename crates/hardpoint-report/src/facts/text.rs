@@ -11,7 +11,7 @@ use super::{
     joints_on, written_kind,
 };
 
-/// Of more conditions than this only those are listed that some variable opens.
+/// Number of conditions above which only those are listed that some variable opens.
 const MOST_CONDITIONS: usize = 400;
 
 impl Facts {
@@ -231,7 +231,7 @@ impl Facts {
     }
 }
 
-/// What can be said of a mechanism that cannot be planned: its bodies, joints, couplers and drivers.
+/// Tables of a mechanism that cannot be planned: its bodies, joints, couplers and drivers.
 pub fn outline(file: &ModelFile) -> Vec<Table> {
     let (model, units) = (&file.model, file.units);
     let body = |(b, joints): (usize, Vec<String>)| vec![model.bodies[b].name.clone(), joints.join(", ")];

@@ -24,9 +24,9 @@ const SAME: f64 = 1e-9;
 /// A design beside today's, solved over the same output times.
 #[derive(Clone, Debug)]
 pub struct ChangedDesign<'a> {
-    /// What it is called on the page.
+    /// Name on the page.
     pub name: String,
-    /// How it came about and whether the mechanism follows, in a sentence; may be empty.
+    /// Origin of the design and admissibility, in a sentence; may be empty.
     pub note: String,
     /// By how much every variable is changed, m, rad, or plain.
     pub change: &'a [f64],
@@ -56,7 +56,7 @@ impl<'a> ChangedDesign<'a> {
         if self.foreseen.is_some() { 3 } else { 1 }
     }
 
-    /// Why it has no values at the end of the motion, in a sentence, where its motion stopped early.
+    /// Reason why it has no values at the end of the motion, in a sentence, if its motion stopped early.
     pub(super) fn stopped(&self, file: &ModelFile) -> Option<String> {
         let stop = StopFact::of(file, self.exact)?;
         let (name, solved, asked) = (&self.name, self.exact.motion.len(), file.model.times.len());
@@ -117,7 +117,7 @@ fn same_or_other(round_off: f64, today: f64, other: f64) -> f64 {
 struct Beside<'a> {
     today: &'a Compose<'a>,
     changed: &'a ChangedDesign<'a>,
-    /// Of that many output times that were solved, today's solution keeps one.
+    /// Interval of the stored output times among those that were solved.
     stride: usize,
 }
 
@@ -133,7 +133,7 @@ impl Beside<'_> {
         self.today.steps.iter().map(|k| k * self.stride)
     }
 
-    /// Of value, rate and acceleration that many; the others are empty.
+    /// The first `orders` of value, rate and acceleration; the others are empty.
     fn curves(&self, orders: usize, value: impl Fn(usize, usize) -> f64) -> DesignCurves {
         let curve = |order| if order < orders { self.curve(|k| value(k, order)) } else { Curve::default() };
         DesignCurves { value: curve(0), rate: curve(1), accel: curve(2) }
@@ -334,7 +334,7 @@ impl Beside<'_> {
         variables.map(|(v, by)| self.today.units.from_si(v.quantity, *by)).collect()
     }
 
-    /// Where the bodies of the changed design are. A body that is as today has today's numbers.
+    /// Poses of the bodies of the changed design. A body that does not change has the same numbers.
     fn poses(&self) -> Vec<Curve> {
         let [far, turned] = [Dimension::LENGTH, Dimension::ANGLE].map(|of| self.today.round_off.value(of, 0));
         let pose = |k: usize, b: usize| {

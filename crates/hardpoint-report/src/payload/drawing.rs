@@ -1,5 +1,5 @@
-//! What a drawing of the mechanism needs: its bodies with their hardpoints, joints, couplers, drivers and wheels, all from the
-//! model and none of it from names.
+//! Contents of a drawing of the mechanism: bodies with their hardpoints, joints, couplers, drivers and wheels, all from
+//! the model and none of it from names.
 
 use hardpoint::constraint::Row;
 use hardpoint::joint::{Freedom, Need, Quantity as Kind};
@@ -133,7 +133,7 @@ impl Compose<'_> {
         joint.axis.filter(|_| turns && joint.axis2.is_none())?.hardpoints()
     }
 
-    /// Where a hardpoint of the design configuration is in a body's frame.
+    /// Position of a hardpoint of the design configuration in a body's frame.
     pub(super) fn in_body(&self, body: BodyId, at: HardpointId) -> Vec3 {
         self.model.bodies[body.0].frame.inverse().point(self.model.hardpoints[at.0].position)
     }
@@ -149,7 +149,7 @@ impl Compose<'_> {
         self.model.joints.iter().enumerate().filter(|(_, joint)| is_drawn(joint))
     }
 
-    /// Which of the drawn joints that is.
+    /// Index among the drawn joints.
     pub(super) fn drawn(&self, joint: JointId) -> Option<usize> {
         self.drawn_joints().position(|(j, _)| j == joint.0)
     }
@@ -245,7 +245,7 @@ impl Compose<'_> {
         self.model.couplers.iter().map(mark).collect()
     }
 
-    /// What is driven, and how far.
+    /// Driven coordinates, with their ranges.
     pub(super) fn drivers(&self) -> Vec<DriverMark> {
         let geometry = self.model.geometry(&[]);
         let mark = |(d, driver): (usize, &Driver)| {
@@ -274,7 +274,7 @@ impl Compose<'_> {
         self.model.drivers.iter().enumerate().map(mark).collect()
     }
 
-    /// How fast outputs go with one driver by itself, per length unit or radian.
+    /// Rates of outputs by one driver alone, per length unit or radian.
     fn by_driver(&self, rates: &DriverRates, driver: usize) -> Vec<Curve> {
         let DriverId(of) = rates.drivers[driver];
         let driven = self.model.driven(&self.model.drivers[of]).quantity;
@@ -289,7 +289,7 @@ impl Compose<'_> {
         rates.outputs.iter().enumerate().map(curve).collect()
     }
 
-    /// Where a point of the model is.
+    /// Location of a point of the model.
     pub(super) fn place(&self, point: PointId) -> BodyPlace {
         let of = &self.model.points[point.0];
         BodyPlace { body: of.body.0, at: self.length(self.in_body(of.body, of.at)) }

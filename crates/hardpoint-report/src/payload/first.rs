@@ -1,4 +1,4 @@
-//! What the page opens on.
+//! Quantities and variables that the page shows first.
 
 use hardpoint::model::{OutputSource, VariableId};
 
@@ -6,7 +6,7 @@ use crate::course::Course;
 
 use super::{Compose, Span};
 
-/// How much a quantity deserves to be looked at first: the greatest does.
+/// Rank of a quantity on the page; the highest is shown first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Rank {
     /// True if the design bends its curve: what only follows a driver, or is shifted as a whole, says little about the design.

@@ -1,4 +1,5 @@
-//! What must not matter to the page does not: units, names, how many output times there are, and what a model leaves out.
+//! Accidental properties that the page does not depend on: units, names, number of output times, and parts that a model
+//! leaves out.
 
 use hardpoint::Analysis;
 use hardpoint_file::ModelFile;
@@ -87,7 +88,7 @@ steps = 60
     )
 }
 
-/// How much of a curve's largest value two pages may differ by: the page holds `f32`.
+/// Tolerance of two pages, relative to a curve's largest value: the page holds `f32`.
 const SINGLE: f64 = 1e-6;
 
 /// Asserts that one curve is the other one times a factor.

@@ -1,4 +1,4 @@
-//! What the page is informed of every model of the gallery: how it is drawn, its values, and what it opens on.
+//! Contents of the page for every model of the gallery: its drawing, its values, and what it opens on.
 
 use std::path::{Path, PathBuf};
 

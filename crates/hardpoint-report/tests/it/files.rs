@@ -1,4 +1,4 @@
-//! What is written agrees with what was solved, number by number, through units converted by hand.
+//! Written files agree with the solution, number by number, through units converted by hand.
 
 use std::f64::consts::PI;
 

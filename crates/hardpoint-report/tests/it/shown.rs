@@ -1,4 +1,4 @@
-//! What is shown of mechanisms, under snapshots: couplers, drivers on points, idle spins, redundancy, margins, assemblies,
+//! Views of mechanisms, as snapshots: couplers, drivers on points, idle rotations, redundancy, margins, assemblies,
 //! jumps, and design variables of every kind.
 
 use std::fmt::Write;

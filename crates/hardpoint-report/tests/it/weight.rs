@@ -1,4 +1,4 @@
-//! How heavy a page is: light enough to be sent about and to open at once, for a suspension and for a large model.
+//! Size of a page: small enough to be sent and to open at once, for a suspension and for a large model.
 
 use std::cell::RefCell;
 use std::path::Path;

@@ -262,7 +262,7 @@ at = 90
     hardpoint_file::parse(&text, "four_bar.toml").unwrap_or_else(|e| panic!("{}", e.render(false)))
 }
 
-/// Which values of a curve are there, of that many numbers per step.
+/// Known values of a curve, with this number of values per step.
 fn known(curve: &Curve, parts: usize) -> Vec<bool> {
     curve.values().chunks(parts).map(|step| step.iter().all(|x| x.is_finite())).collect()
 }
@@ -311,7 +311,8 @@ fn a_changed_design_that_locks_has_gaps_and_the_page_says_why() {
 #[test]
 fn of_a_changed_design_that_cannot_be_assembled_the_page_has_nothing_but_the_reason() {
     let file = gallery("double_wishbone.toml");
-    let ChangedDesign { found, facts, page, .. } = changed(&file, &[("tie_rod_outer_y_fixed_length", 1000.0)]);
+    let ChangedDesign { found, facts, page, .. } =
+        changed(&file, &[("tie_rod_outer_y_fixed_length", 1000.0)]);
     assert!(found.exact.motion.is_empty() && found.is_empty());
     let [exact] = &page.designs[..] else { panic!("nothing is predicted of what is not there") };
     let nothing = |curve: &Curve, parts: usize| !known(curve, parts).contains(&true);

@@ -1,4 +1,4 @@
-//! What a page is answered is what the command gives for the same text.
+//! Replies to a page are the results of the command for the same text.
 
 use std::fs;
 use std::ops::ControlFlow;
@@ -8,9 +8,10 @@ use hardpoint::Analysis;
 use hardpoint_studio::Engine;
 use serde_json::{Value, json};
 
-/// Curves of the page are `f32`, and a design found by changes is that of the edited text but for the round-off of its digits.
+/// Curves of the page are `f32`, and an optimised design is that of the edited text but for the round-off of its
+/// digits.
 const SAME: f64 = 1e-5;
-/// What is less than this part of the largest of all quantities is its round-off.
+/// Fraction of the largest quantity below which values are round-off.
 const NOTHING: f64 = 1e-9;
 
 fn models() -> Vec<PathBuf> {

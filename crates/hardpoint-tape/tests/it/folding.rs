@@ -1,4 +1,4 @@
-//! What is folded, what is common, what is dead, and how signs and fused products are written.
+//! Folding, common subexpressions, dead code, signs and fused products.
 
 use hardpoint_tape::{Call, Counts, Instruction, Number, Operand, Options, Program, record};
 

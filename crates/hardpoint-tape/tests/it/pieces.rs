@@ -6,14 +6,14 @@ use hardpoint_tape::{
 
 use crate::random::{Formula, Random};
 
-/// What the whole program gives for these lanes.
+/// Outputs of the whole program for these lanes.
 fn whole(program: &Program, inputs: &[Lanes], uniforms: &[f64]) -> Vec<Lanes> {
     let mut outputs = vec![[0.0; 8]; program.outputs.len()];
     Interpreter::new(program).run(inputs, uniforms, &mut outputs);
     outputs
 }
 
-/// What its pieces give.
+/// Outputs of its pieces.
 fn in_pieces(pieces: &Pieces, inputs: &[Lanes], uniforms: &[f64], sizes: [usize; AREAS]) -> Vec<Lanes> {
     let mut interpreters: Vec<Interpreter> =
         pieces.shapes.iter().map(|shape| Interpreter::new(&shape.program)).collect();

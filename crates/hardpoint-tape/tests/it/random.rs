@@ -211,7 +211,8 @@ fn fusing_changes_results_by_rounding_only() {
     assert!(compared > 10_000 && fused > 2_000, "{compared} compared, {fused} products fused");
 }
 
-/// A program of instructions that no recording would come to as well: two scalars, the same operand twice, numbers nobody reads.
+/// A random program with instructions that a recording would not produce: two scalars, the same operand twice, unused
+/// numbers.
 fn random_program(random: &mut Random) -> Program {
     use Instruction::*;
     let mut program = Program {

@@ -146,7 +146,7 @@ impl Real for BoundedNumber {
     }
     fn round(self) -> Self {
         let x = self.x.round_ties_even();
-        // Nearer to another integer, some other rounding may come to that one.
+        // Nearer to another integer, some other rounding may give that one.
         Self { x, error: if (self.x - x).abs() + self.error < 0.5 { 0.0 } else { f64::INFINITY } }
     }
     fn larger(self, o: Self) -> Self {

@@ -1,4 +1,4 @@
-//! What may be recorded, and where.
+//! Rules of recording.
 
 use std::panic::catch_unwind;
 

@@ -1,4 +1,4 @@
-//! What happens to kernels like those of mechanisms: written for space, run for what is in the plane.
+//! Programs of kernels like those of mechanisms: written for space, run for planar motion.
 
 use std::array::from_fn;
 
@@ -36,8 +36,8 @@ fn rotation<T: Real>(axis: Vector<T>, s: T, c: T) -> Matrix<T> {
     })
 }
 
-/// How far the loop of a four-bar is open, for sines and cosines of its crank's, coupler's and rocker's turns and the lengths of
-/// these and of the ground.
+/// Gap of the loop of a four-bar, for sines and cosines of the angles of its crank, coupler and rocker, and the lengths
+/// of these and of the ground.
 fn four_bar<T: Real>(turns: [[T; 2]; 3], lengths: [T; 4]) -> Vector<T> {
     let [zero, one] = [0.0, 1.0].map(T::constant);
     let z = [zero, zero, one];

@@ -4,7 +4,7 @@ use hardpoint_tape::{Number, Operand, Options, Program, record};
 
 use crate::random::{Formula, Random};
 
-/// What the program gives for these scalars.
+/// Outputs of the program for these scalars.
 fn evaluate(program: &Program, inputs: &[f64], uniforms: &[f64]) -> Vec<f64> {
     let mut outputs = vec![0.0; program.outputs.len()];
     program.evaluate(inputs, uniforms, &mut Vec::new(), &mut outputs);

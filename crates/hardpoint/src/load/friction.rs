@@ -124,7 +124,8 @@ impl Friction {
             return false;
         }
         let (found, n) = (self.moments.clone(), self.rubs.len());
-        let size = |rub: &FrictionElement| rub.presses.0.iter().map(|f| f.norm()).sum::<f64>() * rub.grip.abs();
+        let size =
+            |rub: &FrictionElement| rub.presses.0.iter().map(|f| f.norm()).sum::<f64>() * rub.grip.abs();
         let scale = self.rubs.iter().map(size).chain(found.iter().map(|m| m.abs())).fold(0.0, f64::max);
         let (mut others, far) = (false, FAR * scale);
         // One far out either way, the others as they are; then all.

@@ -175,7 +175,11 @@ impl LoadGradients {
         load.d + solver.friction.misses(&acting, carried, &self.rubs).d
     }
 
-    fn acting<'s>(&'s self, solver: &'s LoadSolver<'_>, geometry: &'s Geometry<Dual>) -> AppliedLoads<'s, Dual> {
+    fn acting<'s>(
+        &'s self,
+        solver: &'s LoadSolver<'_>,
+        geometry: &'s Geometry<Dual>,
+    ) -> AppliedLoads<'s, Dual> {
         let Self { bodies, laws, near, friction, .. } = self;
         AppliedLoads { model: solver.model, geometry, bodies, laws, near, friction }
     }

@@ -122,8 +122,14 @@ impl<T: Real> Changed<T> {
         let drawn = model.bodies.iter().map(|b| MovingBody { pose: b.frame.spread(), ..MovingBody::still() });
         let bodies: Vec<MovingBody<Dual<T>>> = drawn.collect();
         let none: &[Dual<T>] = &[];
-        let acting =
-            AppliedLoads { model, geometry: &geometry, bodies: &bodies, laws: none, near: none, friction: none };
+        let acting = AppliedLoads {
+            model,
+            geometry: &geometry,
+            bodies: &bodies,
+            laws: none,
+            near: none,
+            friction: none,
+        };
         let moves = |e: &ElementId| {
             let solid = acting.solid(&model.elements[e.0].kind);
             solid.is_some_and(|Solid { mass, centre, inertia, .. }| {

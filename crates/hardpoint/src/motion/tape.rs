@@ -11,7 +11,7 @@ use crate::topology::{CoordinateId, RowId, SetBy, Topology};
 use super::execution::ProgramMemory;
 use super::forecast::{Channel, ORDERS};
 use super::kinematics::Residuals;
-use super::step_program::{CONDITIONS, Inputs, StepCheck, Outputs, PER_BLOCK, Purpose, StepProgram};
+use super::step_program::{CONDITIONS, Inputs, Outputs, PER_BLOCK, Purpose, StepCheck, StepProgram};
 use super::stepper::{LOCKED, smooth};
 
 /// Maximum number of runs; the kernel solves what has not converged then.
@@ -205,7 +205,8 @@ impl Tape {
         }
         self.refused -= 1;
         self.repeated += usize::from(self.runs > 1);
-        let residuals = [StepCheck::Residual, StepCheck::ScaledResidual].map(|which| largest(self.judged(which)));
+        let residuals =
+            [StepCheck::Residual, StepCheck::ScaledResidual].map(|which| largest(self.judged(which)));
         Ok(SolveQuality { residuals: Residuals { largest: residuals[0], scaled: residuals[1] }, pivot_ratio })
     }
 

@@ -15,7 +15,7 @@ const AGREE: f64 = 1e-11;
 /// Gradients smaller than this part of the largest of all outputs are compared with that part of it: what a plane mechanism
 /// does across its plane is round-off.
 const SMALL: f64 = 1e-2;
-/// Where no variable moves any output, all that there is to compare is round-off: mechanisms are about 1 m large.
+/// If no variable moves any output, only round-off can be compared: mechanisms are about 1 m large.
 const NOTHING: f64 = 1e-3;
 
 const BOTH: [Formulation; 2] = [Formulation::Relative, Formulation::Absolute];

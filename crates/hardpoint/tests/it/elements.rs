@@ -182,7 +182,7 @@ fn what_gives_against_a_table_gives_by_its_slope() {
     assert!((found - expected).abs() < 1e-6 * expected, "{found} {expected}");
 }
 
-/// What a body of ten tumbles with: its moments about its centre, and about another point.
+/// Moments of inertia of a body about its centre, and about another point.
 #[test]
 fn moments_about_another_point_are_those_of_the_parallel_axis_theorem() {
     let (mass, way) = (3.0, Vec3::new(0.1, -0.2, 0.15));
@@ -489,7 +489,9 @@ fn friction_of_all_kinds_follows_the_design() {
     let mut kinds = Vec::new();
     for joint in &model.joints {
         let mut element = match joint.kind.name {
-            "revolute" | "spherical" => friction(&format!("has friction at {}", joint.name), &joint.name, 0.15, 0.02),
+            "revolute" | "spherical" => {
+                friction(&format!("has friction at {}", joint.name), &joint.name, 0.15, 0.02)
+            }
             "cylindrical" | "translational" => slide_friction(&joint.name, 0.1, Some(0.2), Some(30.0)),
             _ => continue,
         };

@@ -25,7 +25,7 @@ const ROOMS: [&str; 18] = [
     "study",
 ];
 
-/// Which of our own crates each crate may depend on.
+/// Own crates that each crate may depend on.
 const CRATES: &[(&str, &[&str])] = &[
     ("hardpoint-tape", &[]),
     ("hardpoint-code", &["hardpoint-tape"]),

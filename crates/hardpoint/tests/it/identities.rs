@@ -1,4 +1,4 @@
-//! What must be equal, is: formulations, lanes, moved and turned mechanisms, swapped bodies.
+//! Identities: formulations, lanes, moved and rotated mechanisms, swapped bodies.
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 use hardpoint::topology::Formulation;
@@ -219,7 +219,7 @@ fn a_request_means_the_same_whatever_way_it_is_run() {
 
 #[test]
 fn steps_abreast_are_the_same_as_one_by_one() {
-    // Times far apart are walked one by one, times close together go eight abreast: common ones must agree.
+    // Times far apart are solved one by one, times close together in batches of eight: common ones must agree.
     for name in ["slider_crank", "macpherson", "rssr", "jansen", "double_wishbone", "elementary_chain"] {
         let mut draft = reference_draft(name);
         let end = draft.times[draft.times.len() - 1];

@@ -305,7 +305,8 @@ fn sensitivities_of_loads_are_those_of_solved_designs() {
     compare_with_solved(&press(), &LOADS);
 }
 
-/// What a driver gives is what the kinetic energy gains and what forces and weight take: by differences of the energy over time.
+/// The work of a driver is the gain of kinetic energy plus the work of forces and weight: by differences of the energy
+/// over time.
 #[test]
 fn power_is_balanced() {
     let mut draft = press();
@@ -909,7 +910,8 @@ pub fn compare_both_ways(draft: &Draft, formulation: Formulation) -> usize {
     compared
 }
 
-/// What changes less than this part of what changes most is round-off, like all that a plane mechanism carries across its plane.
+/// Change relative to the largest one below which it is round-off, like all loads of a planar mechanism across its
+/// plane.
 const LITTLE: f64 = 1e-3;
 /// Two ways to the same gradient, as a part of the largest over the motion.
 const BOTH_WAYS: f64 = 1e-10;

@@ -18,7 +18,7 @@ pub struct Case {
     results: Vec<Value>,
 }
 
-/// What a comparison found.
+/// Result of a comparison.
 #[derive(Default)]
 pub struct Comparison {
     pub count: usize,

@@ -14,7 +14,7 @@ const INBOARD = 0.12
 /** More joints than this make a ring with short arms instead of a star. */
 const STAR = 3
 
-/** What carries a wheel: spindle, bearing and arms to its joints. */
+/** Knuckle of a wheel: spindle, bearing and arms to its joints. */
 export function upright(mechanism: Mechanism, kit: Kit, body: number, wheel: WheelMark): Object3D[] {
   const s = kit.unit
   const colour = kit.body(body)

@@ -9,7 +9,7 @@ import { gears } from './coupler_gear'
 import { rack } from './coupler_rack'
 import { shafts } from './coupler_shaft'
 
-/** What a coupler is drawn with. */
+/** Drawing of a coupler. */
 export interface Coupled {
   mechanism: Mechanism
   kit: Kit

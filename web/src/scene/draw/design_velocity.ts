@@ -19,7 +19,7 @@ const STILL = 1e-9
 /** Two places nearer than this part of the size show one arrow. */
 const ONE = 1e-3
 
-/** How the hardpoints go with the chosen variable: arrows in proportion, one per place, rings where a body is turned. */
+/** Design velocity of the chosen variable: arrows in proportion, one per point, rings for rotations. */
 export const designVelocity: Draw = (mechanism, kit, choice) => {
   const variable = mechanism.report.variables[choice.variable]
   if (!variable) return []
@@ -76,7 +76,7 @@ function placeOf({ base, report }: Mechanism, body: number, at: Arrow['at']): Ve
   return point < 0 ? place : new Vector3(...report.bodies[body].skeleton[point])
 }
 
-/** Where a turn is shown: on the bearing that is drawn aside of another joint, which the ring would hide. */
+/** Position of a rotation's ring: on the bearing that is drawn aside of another joint, which the ring would hide. */
 function turnedAt(mechanism: Mechanism, body: number, at: Vector3): Vector3 {
   const aside = mechanism.report.joints.flatMap((joint) => {
     const own = joint.body_i === body ? joint.at_i : joint.body_j === body ? joint.at_j : undefined

@@ -5,7 +5,7 @@ import { square } from '../flat'
 import { place, stretch } from '../kit'
 import type { Mechanism } from '../mechanism'
 
-/** How far beside the two places the line is, its heads, how far its ends reach over, in units. */
+/** Offset of the dimension line, its heads, and the overhang of its ends, in units. */
 const BESIDE = 7
 const HEAD = 2.2
 const OVER = 1

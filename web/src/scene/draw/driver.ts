@@ -15,14 +15,14 @@ const HEAD = 2.6
 const ARC: [number, number] = [4.4, 8]
 /** Width of the line, px. */
 const LINE = 2.6
-/** How far beside a slide, a jack, a leg and a point the arrow is, and before a hinge, in units. */
+/** Offset of the arrow from a slide, a jack, a leg and a point, and in front of a hinge, in units. */
 const BESIDE = { slide: 4.2, jack: 5.4, leg: 3.6, point: 3.6, hinge: 3.2 }
-/** How far outboard of a wheel's centre, as a part of its radius. */
+/** Offset outboard of a wheel's centre, relative to its radius. */
 const OUTBOARD = 0.36
-/** Where along a leg its arrow is. */
+/** Position of the arrow along a leg. */
 const ALONG_LEG = 0.55
 
-/** What is driven, as an arrow that is the travel of this motion. */
+/** Driven coordinates, as arrows with the travel of this motion. */
 export const drivers: Draw = (mechanism, kit) =>
   mechanism.report.drivers.flatMap((driver, index): Drawn[] => {
     const travel = travelOf(driver)

@@ -15,10 +15,10 @@ export interface Foot {
   at: Vector3
   /** Axis of the hinge there; a ball or the like where there is none. */
   axis?: Vector3
-  /** Where to the rest of what is held is, in the world. */
+  /** Direction to the rest of the supported part, in the world. */
   towards: Vector3
   radius: number
-  /** How far the mesh of what is held reaches towards the plate, at least; 0 where there is none. */
+  /** Minimum reach of the supported part's mesh towards the plate; 0 without one. */
   clear?: (down: Vector3, half: number) => number
   /** One of the two of a hinge between hardpoints, which are lugs; a plate that folds has its cheeks outside its eye. */
   form?: 'lug' | 'fold'
@@ -30,7 +30,7 @@ export interface Foot {
 const HINGES = ['revolute', 'inline', 'cylindrical']
 const BALLS = ['spherical', 'universal', 'constant_velocity', 'distance', 'leg', 'point_coincident']
 
-/** What is fixed: the feet of all joints with ground, each place once. */
+/** Ground: the feet of all joints with ground, each place once. */
 export function ground(mechanism: Mechanism, kit: Kit): Drawn[] {
   const part = bodyPart(mechanism, 0)
   const kept: Foot[] = []
@@ -82,7 +82,7 @@ const mean = (points: Vector3[], none: Vector3) =>
 const square = (mechanism: Mechanism, { axis, body_i }: JointMark) =>
   axis !== null && Math.abs(mechanism.alongAt(body_i, new Vector3(...axis), 0).dot(mechanism.plane!)) > 0.9
 
-/** How much better downwards is than another way away from what is held. */
+/** Preference of the downward direction. */
 const DOWNWARDS = 0.25
 
 /** The axis of the world that points away from what is held, downwards preferred, never along the hinge. */
@@ -101,7 +101,7 @@ export function downwards(mechanism: Mechanism, { at, axis, towards }: Foot): Ve
 const VERTICES = 3000
 const EVERY = 8
 
-/** How far a body's own shape reaches from a place in some direction, within so much to the sides, over the whole motion. */
+/** Reach of a body's own shape from a point in a direction, within a lateral distance, over the whole motion. */
 function clearance(mechanism: Mechanism, body: number, at: Vector3): Foot['clear'] {
   const { mesh } = mechanism.report.bodies[body]
   if (!mesh) return undefined

@@ -6,7 +6,7 @@ import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 import { bodyPart } from '../part'
 
-/** How far places may be out of a plane, as a part of the size, for a plate through them. */
+/** Tolerance of points from a plane, relative to the size, for a plate through them. */
 const FLAT = 0.01
 /** The plate: how far round the places, how thick, how opaque. */
 const PLATE = { round: 2.5, thickness: 0.6, opacity: 0.28 }

@@ -4,7 +4,10 @@ import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 import type { Foot } from './ground'
 
-/** Of the triangle: height, half width, half width at the pin, its round head, thickness; half length of the line. */
+/**
+ * Dimensions of the triangle: height, half width, half width at the pin, its round head, thickness; half length of the
+ * line.
+ */
 const TRIANGLE = { height: 4, width: 2.5, head: 0.75, eye: 1.35, thickness: 0.5, line: 3.75 }
 /** Large models have smaller ones. */
 const SMALL = 0.8

@@ -19,5 +19,5 @@ import { wheels } from './wheel'
 /** Every kind of thing that a mechanism is made of, one file each. */
 export const matter: Draw[] = [bodies, meshes, ground, fixedLink, joints, couplers, wheels, distances, motors, paths]
 
-/** What is drawn to say something about it; made anew with every choice. `mechanism.former` is the design drawn dashed. */
+/** Marks on the mechanism; made anew with every choice. `mechanism.former` is the design drawn dashed. */
 export const marks: Draw[] = [formerDesign, trace, drivers, dimension, loads, designVelocity]

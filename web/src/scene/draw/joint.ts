@@ -21,7 +21,7 @@ import { weld } from './joint_weld'
 
 /** An object in a body's frame; in the world where there is no body. */
 export type Piece = Omit<Drawn, 'part'>
-/** How a kind of joint is drawn. */
+/** Drawing of a kind of joint. */
 export type DrawJoint = (mechanism: Mechanism, kit: Kit, joint: JointMark, index: number) => Piece[]
 
 const KINDS: Record<string, DrawJoint> = {

@@ -12,7 +12,7 @@ const BALL = 1.2
 /** Radius and height of a foot that lies flat on the plate. */
 const FOOT = [2.2, 0.8]
 
-/** What stays on a plane of the other body: a ball or a flat foot on a plate; seen along the plane, a pin in a slot. */
+/** Joint on a plane of the other body: a ball or a flat foot on a plate; seen along the plane, a pin in a slot. */
 export const onPlane: DrawJoint = (mechanism, kit, joint, index) => {
   const flat = joint.kind === 'planar'
   if (mechanism.plane && !flat) return slottedPin(mechanism, kit, joint, index)
@@ -45,7 +45,7 @@ function hatched({ plane }: Mechanism, kit: Kit, basis: Basis, outline: Flat[], 
   return seen ? [kit.hatchLine(seen[0], seen[1], basis.normal.clone().negate(), r)] : []
 }
 
-/** Where a point of body j comes to on body i. */
+/** Positions of a point of body j on body i. */
 function visited(mechanism: Mechanism, { body_i, body_j, at_i }: JointMark, place: Vector3): Vector3[] {
   const spots = mechanism.moments
     .map((step) => mechanism.placeInto(body_i, mechanism.worldAt(body_j, place, step), step))

@@ -13,7 +13,7 @@ const EYE = { radius: 1.15, pin: 0.62, height: 1, pinHeight: 1.1 }
 const HINGE = { radius: 1.5, length: 2.2, pin: 0.9, pinLength: 3.4 }
 /** A barrel is at most this part of the mean length, and never longer than the shortest less two units. */
 const BARREL = { ofMean: 0.62, ofLeast: 0.9 }
-/** How far above the links that it joins a rod of a planar mechanism lies, in layers. */
+/** Height of a rod of a planar mechanism above the links that it connects, in layers. */
 const ABOVE = 0.95
 
 /** A rod, a cylinder or what the model says, between places of two bodies. */

@@ -115,10 +115,10 @@ interface End {
   held: boolean
 }
 
-/** So near to the axis a hardpoint is on it, as a part of the mechanism's size. */
+/** Tolerance of a hardpoint on the axis, relative to the mechanism's size. */
 const ON_AXIS = 1e-3
 
-/** Of a changed design, those that were on the axis as loaded: they take it with them. */
+/** In a changed design, the hardpoints that were on the axis as loaded: they move with it. */
 function endsOf(mechanism: Mechanism, joint: JointMark, body: number, own: Slide): End[] {
   const today = mechanism.base ?? mechanism
   const slide = today.slideOf(mechanism.report.joints.indexOf(joint)) ?? own

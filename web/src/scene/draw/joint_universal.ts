@@ -3,9 +3,9 @@ import { across, Basis, square } from '../flat'
 import { towardsRest } from '../hinge'
 import { type DrawJoint, type Piece, piece } from './joint'
 
-/** Of the cross: radius of a pin, and half its length. */
+/** Pin of the cross: radius, and half its length. */
 const PIN = { radius: 0.75, half: 2.6 }
-/** Of a yoke: radius and thickness of its eyes, radius of its arms, and how far behind the cross they meet. */
+/** Yoke: radius and thickness of its eyes, radius of its arms, and the distance behind the cross at which they meet. */
 const YOKE = { eye: 1.15, thickness: 0.9, arm: 0.7, behind: 3.6 }
 /** The cross is what indicates the joint from a ball: so much larger than other glyphs, where it leaves other joints this part of the way to it and is on no block. */
 const LARGE = { units: 1.8, part: 0.09 }

@@ -15,7 +15,10 @@ const HEAD = 3
 /** Below this part of the largest force there is nothing to be seen. */
 const SEEN = 2e-3
 
-/** What joints put on their second bodies, springs on their ends, and given forces on their points, in proportion: as long as in the design as loaded. */
+/**
+ * Reactions of joints on their second bodies, forces of springs on their ends, and given forces on their points, in
+ * proportion: as long as in the design as loaded.
+ */
 export const loads: Draw = (mechanism, kit, choice) => {
   const { report, base } = mechanism
   const most = largestForce((base ?? mechanism).report.loads)
@@ -48,7 +51,7 @@ export const loads: Draw = (mechanism, kit, choice) => {
   })
 }
 
-/** How long arrows are: `longest force 1200 N`; nothing where there are none. */
+/** Scale of the arrows: `longest force 1200 N`; undefined without any. */
 export function forceText({ base, report }: Mechanism): string {
   const most = report.loads.some(({ force }: Load) => force.length > 0) ? largestForce((base?.report ?? report).loads) : 0
   return most > 0 ? `arrows of forces to ${number(most, 3)} N` : ''

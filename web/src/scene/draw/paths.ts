@@ -10,7 +10,7 @@ const LINE = { width: 1.4, opacity: 0.7 }
 /** A path that stays within this part of the size is a point. */
 const STILL = 0.01
 
-/** Where the mechanism is there for a point: the paths of its measured points, where a body is seen to reach them and no joint holds them. */
+/** Paths of measured points, where a body visibly reaches them and no joint holds them. */
 export const paths: Draw = (mechanism, kit) => {
   const { report, vehicle, large } = mechanism
   if (vehicle || large || report.wheels.length > 0) return []

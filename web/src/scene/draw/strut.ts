@@ -3,7 +3,7 @@ import type { Kit } from '../kit'
 import { stretch } from '../kit'
 import { Helix } from '../shapes/helix'
 
-/** How a massless member is drawn. */
+/** Drawing of a massless member. */
 export type Form = 'rod' | 'cylinder' | 'damper' | 'spring' | 'coilover'
 
 const FORMS: Form[] = ['rod', 'cylinder', 'damper', 'spring', 'coilover']
@@ -26,7 +26,10 @@ const ROD = 0.72
 const BARREL = { radius: 1.75, collar: 2, collarHeight: 1.1, piston: 0.8, neck: 0.9, neckLength: 1.7 }
 /** A damper is a slimmer cylinder. */
 const SLIM = 0.75
-/** Of a spring: radius of the coil and of its wire, turns; of its seats radius and thickness, and where they are along the length. */
+/**
+ * Spring: radius of the coil and of its wire, turns; radius and thickness of its seats, and their positions along the
+ * length.
+ */
 const COIL = { radius: 3.2, wire: 0.55, turns: 6.5, seat: 3.9, seatHeight: 0.7, from: 0.06, to: 0.66 }
 /** Body and rod of the damper inside a spring. */
 const INSIDE = { body: 1.7, rod: 0.7, bodyFrom: 0.5, rodTo: 0.6 }

@@ -29,7 +29,7 @@ interface Shaft {
   coefficient: number
 }
 
-/** How near to a joint's place a bevel's wide end comes, and how near to the other shaft its rim, as parts of the distance. */
+/** Distances of a bevel's wide end from the joint, and of its rim from the other shaft, relative to the distance. */
 const NEAR = 0.85
 const RIM = 0.92
 /** Sine of the least angle between shafts that still cross. */

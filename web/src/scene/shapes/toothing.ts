@@ -5,11 +5,11 @@ const FEWEST = 12
 const MOST = 48
 /** Most teeth of a gear whose mate has few enough: its teeth are as large as that one's. */
 const MATE = 144
-/** How far drawn teeth may be from the true ratio: by the end of a turn they are less than a tenth of a tooth apart. */
+/** Maximum error of the ratio of drawn teeth: after a turn they are less than a tenth of a tooth apart. */
 const RATIO_ERROR = 1e-3
 /** Height of a tooth as a part of the pitch, and its most as a part of the smaller gear's radius. */
 const HEIGHT = { ofPitch: 0.62, ofRadius: 0.16 }
-/** Where a tooth's four corners are, as parts of the pitch from its middle: its foot and its tip. */
+/** Corners of a tooth, relative to the pitch from its middle: its foot and its tip. */
 const FOOT = 0.26
 const TIP = 0.1
 

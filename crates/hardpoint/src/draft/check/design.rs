@@ -53,7 +53,8 @@ impl Checker<'_> {
                 self.fault("HP0229", here.key("bounds"), message)
                     .help("give the lower bound first, then the upper");
             } else if !(low <= 0.0 && high >= 0.0) {
-                let message = format!("the model in the design configuration is not within the bounds of `{}`", v.name);
+                let message =
+                    format!("the model in the design configuration is not within the bounds of `{}`", v.name);
                 self.fault("HP0229", here.key("bounds"), message).help(
                     "bounds of a parameter enclose its value, those of another design variable enclose 0",
                 );

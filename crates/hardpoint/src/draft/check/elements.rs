@@ -197,8 +197,7 @@ impl Checker<'_> {
                         "joint `{}` has no place where it could give",
                         self.model.joints[joint.0].name
                     );
-                    self.fault("HP0251", here.key("joint"), message)
-                        .help("name a joint that is somewhere");
+                    self.fault("HP0251", here.key("joint"), message).help("name a joint that is somewhere");
                 }
             }
             ElementKind::PointForce { at, .. } => {

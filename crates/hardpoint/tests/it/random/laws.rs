@@ -1,4 +1,4 @@
-//! What holds of every mechanism that is solved.
+//! Laws that hold for every mechanism that is solved.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -29,7 +29,7 @@ const CLOSED: f64 = 1e-11;
 /// More steps than this between a handful of output times are a walk that gets nowhere.
 const MOST_SUBSTEPS: usize = 200_000;
 
-/// What a family promises.
+/// Promise of a family.
 #[derive(Clone, Copy)]
 pub struct Promise {
     /// No row is redundant, so that any change of the design can be followed.
@@ -38,7 +38,7 @@ pub struct Promise {
     pub closed: bool,
 }
 
-/// What came of cases.
+/// Results of cases.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
     pub drawn: usize,
@@ -88,7 +88,7 @@ impl Tally {
     }
 }
 
-/// What a draft uses, if it runs to its end.
+/// Features that a draft uses, if it runs to its end.
 pub fn used_where_solved(draft: &Draft) -> BTreeSet<String> {
     let mut tally = Tally::default();
     let model = Model::from_draft(draft).unwrap_or_else(|f| panic!("{f:?}"));
@@ -277,7 +277,7 @@ impl Case<'_> {
         self.allow("residual", worst, CLOSED * model.size().max(1.0), || format!("{:?}", s.stop));
     }
 
-    /// Both formulations come to the same end, within a step.
+    /// Both formulations reach the same end, within a step.
     fn stop_alike(&mut self, a: &Solution, b: &Solution) {
         let kind = |s: &Solution| s.stop.as_ref().map(|s| s.code().to_string());
         if let Some(code) = kind(a) {
@@ -345,7 +345,7 @@ impl Case<'_> {
         });
     }
 
-    /// What of the library was at work.
+    /// Features of the library that were used.
     fn use_of(&mut self, analysis: &Analysis<'_>) {
         let (model, topology) = (analysis.model(), analysis.topology());
         let used = &mut self.tally.used;
