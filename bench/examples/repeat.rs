@@ -1,6 +1,6 @@
 //! Runs one model again and again, for profilers and instruction counters:
-//! `repeat MODEL motion|sensitivities|designs|values|all|sweep TIMES`. The first three are of bodies alone, the others of measures too:
-//! their values, all their sensitivities as well, and the values of 1,000 designs.
+//! `repeat MODEL motion|sensitivities|designs|values|all|sweep TIMES`. The first three are of bodies alone, the others
+//! of measures too: their values, all their sensitivities as well, and the values of 1,000 designs.
 
 use hardpoint::{Run, Solution};
 

@@ -1,5 +1,5 @@
-//! The designs of W4: what NumPy's `default_rng(20240101).uniform(-0.005, 0.005, (1000, 24))` draws, bit by bit, so that
-//! Hardpoint, the floor and the peers in Python move their hardpoints alike without sharing a file.
+//! The designs of W4: what NumPy's `default_rng(20240101).uniform(-0.005, 0.005, (1000, 24))` draws, bit by bit, so
+//! that Hardpoint, the floor and the peers in Python move their hardpoints alike without sharing a file.
 //!
 //! The generator is PCG XSL RR 128/64 (O'Neill 2014), seeded through NumPy's `SeedSequence`.
 

@@ -17,8 +17,8 @@ const DATA: &str = "2001 2.0 1001 10.0 0.06 0.5 0.03 0.2 1000 101 10.0
 -0.05 0.5 0.21 0.0 0.75 0.3 -0.02 0.6 0.7 -0.15 0.0 0.31
 ";
 
-/// Compiles and runs the floor; its reference files are in `folder` then. Returns its JSON lines, whose times are medians of
-/// that many repetitions.
+/// Compiles and runs the floor; its reference files are in `folder` then. Returns its JSON lines, whose times are
+/// medians of that many repetitions.
 ///
 /// # Errors
 /// Where there is no g++, or files cannot be written.

@@ -93,8 +93,8 @@ pub fn chain(n: usize, steps: usize) -> Draft {
     draft
 }
 
-/// The chain of [`chain`] with that many design variables, at most one per loop and spread evenly: each moves one of the
-/// pivots on the ground along x, which all loops from there on follow.
+/// The chain of [`chain`] with that many design variables, at most one per loop and spread evenly: each moves one of
+/// the pivots on the ground along x, which all loops from there on follow.
 pub fn chain_with_variables(n: usize, variables: usize, steps: usize) -> Draft {
     let mut draft = chain(n, steps);
     for k in (0..variables).map(|v| v * n / variables) {
@@ -106,7 +106,8 @@ pub fn chain_with_variables(n: usize, variables: usize, steps: usize) -> Draft {
     draft
 }
 
-/// A generated model as a model file of eleven steps. All of its joints are at coordinates, and nothing in it has a design variable.
+/// A generated model as a model file of eleven steps. All of its joints are at coordinates, and nothing in it has a
+/// design variable.
 pub fn text(draft: &Draft) -> String {
     let mut text = format!(
         "name = '{}'\nunits = {{ length = 'm', angle = 'rad' }}\ntime = {{ end = 0.1, steps = 10 }}\n[drivers]\n",
@@ -162,7 +163,8 @@ pub fn truss(n: usize, steps: usize) -> Draft {
     draft.joint(leg.at(flat([tip[0] + 0.3, tip[1] - 1.0])).at(flat(tip)))
 }
 
-/// The truss of [`truss`] with two design variables for each of its nodes but the first, along x and y, and its tip as a point.
+/// The truss of [`truss`] with two design variables for each of its nodes but the first, along x and y, and its tip as
+/// a point.
 pub fn truss_with_variables(n: usize, steps: usize) -> Draft {
     let mut draft = truss(n, steps);
     let at = |k: usize| Vec3::new(0.5 * k as f64, 0.8 * (k % 2) as f64, 0.0);
@@ -181,8 +183,8 @@ pub fn truss_with_variables(n: usize, steps: usize) -> Draft {
     draft.point("tip", format!("node{}", n - 1), format!("P{}", n - 1).as_str())
 }
 
-/// n x m scissors, pinned to each other at their corners, that open and close together; the first one is on the ground, and
-/// the crossing of scissor `at` is driven.
+/// n x m scissors, pinned to each other at their corners, that open and close together; the first one is on the ground,
+/// and the crossing of scissor `at` is driven.
 pub fn scissors(n: usize, m: usize, at: [usize; 2], steps: usize) -> Draft {
     let (name, crossing) = (format!("{n} x {m} scissors"), format!("cross{}_{}", at[0], at[1]));
     let mut draft = driven(name, &crossing, "0.3*sin(2*pi*t)", steps);

@@ -1,4 +1,5 @@
-//! The workloads of the comparison with other systems (`docs/performance.md`), run and timed by Hardpoint on one thread.
+//! The workloads of the comparison with other systems (`docs/performance.md`), run and timed by Hardpoint on one
+//! thread.
 
 use std::cell::{Cell, RefCell};
 use std::fmt;
@@ -115,8 +116,9 @@ impl Figures {
     }
 }
 
-/// Runs a workload until the median of its time is trustworthy, or once only, and compares its results with the files that the
-/// floor left in the folder `reference`. Chains are compared with their closed form, for which no folder is needed.
+/// Runs a workload until the median of its time is trustworthy, or once only, and compares its results with the files
+/// that the floor left in the folder `reference`. Chains are compared with their closed form, for which no folder is
+/// needed.
 ///
 /// # Errors
 /// Where a file of the reference is missing or of another size.
@@ -151,7 +153,8 @@ pub fn measure(workload: Workload, reference: Option<&Path>, once: bool) -> io::
     Ok(Figures { us_per_step, errors })
 }
 
-/// Milliseconds of CPU time that it takes to read and check the file of a chain of that many loops, and to plan its solution.
+/// Milliseconds of CPU time that it takes to read and check the file of a chain of that many loops, and to plan its
+/// solution.
 ///
 /// # Panics
 /// Where the file is refused.

@@ -28,7 +28,8 @@ fn extension(name: &str) -> String {
 const DIGITS: &[u8; 85] =
     b"0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:+=^!/*?,;_()[]{}@%$#";
 
-/// Four bytes in five characters, a sixteenth less than base64 takes: of engine and code that is 0.17 MB. Of a last few bytes, one more than these.
+/// Four bytes in five characters, a sixteenth less than base64 takes: of engine and code that is 0.17 MB. Of a last few
+/// bytes, one more than these.
 fn base85(bytes: &[u8]) -> String {
     let digits = bytes.chunks(4).flat_map(|chunk| {
         let mut four = [0; 4];

@@ -5,7 +5,8 @@ use hardpoint_file::ModelFile;
 
 use crate::failure::Failure;
 
-/// The changes, in SI, of a design: a value for every variable, NaN for what stays in the design configuration, or nothing at all.
+/// The changes, in SI, of a design: a value for every variable, NaN for what stays in the design configuration, or
+/// nothing at all.
 pub(crate) fn changes(file: &ModelFile, values: &[f64]) -> Result<Vec<f64>, Failure> {
     let model = &file.model;
     if !values.is_empty() && values.len() != model.variables.len() {

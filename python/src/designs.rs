@@ -60,9 +60,10 @@ impl Kept {
 
 #[pymethods]
 impl Model {
-    /// Solves many designs, one in each row, in a case, and keeps of them: an order of some outputs at some output times (by their
-    /// numbers) `[design, output, time]`, their derivatives `[design, output, variable, time]`, all metrics `[design, metric]` and
-    /// theirs `[design, metric, variable]`. NaN where a motion ends before, or a variable cannot be followed; `stops` says which do.
+    /// Solves many designs, one in each row, in a case, and keeps of them: an order of some outputs at some output
+    /// times (by their numbers) `[design, output, time]`, their derivatives `[design, output, variable, time]`, all
+    /// metrics `[design, metric]` and theirs `[design, metric, variable]`. NaN where a motion ends before, or a
+    /// variable cannot be followed; `stops` says which do.
     #[pyo3(signature = (case, designs, outputs, order, at, sensitivities, metrics, workers=None, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "a call of Python")]
     fn designs<'py>(
@@ -126,7 +127,8 @@ impl Model {
         Ok(found)
     }
 
-    /// Gradients of some outputs over the motion, direct, adjoint, or whichever is shorter: times and `[time, output, variable, order]`.
+    /// Gradients of some outputs over the motion, direct, adjoint, or whichever is shorter: times and
+    /// `[time, output, variable, order]`.
     fn gradients<'py>(
         &self,
         py: Python<'py>,

@@ -119,8 +119,8 @@ impl Run {
         Some(told(file, &found).to_string())
     }
 
-    /// Per variable, whether the mechanism follows it: true, or why not as the JSON of a diagnostic; nothing where no sensitivities were
-    /// solved.
+    /// Per variable, whether the mechanism follows it: true, or why not as the JSON of a diagnostic; nothing where no
+    /// sensitivities were solved.
     #[getter]
     fn followed(&self) -> PyResult<Vec<(bool, Option<String>)>> {
         let (file, model) = (self.file(), self.model.get());
@@ -156,7 +156,8 @@ impl Run {
         array(py, numbers, [outputs, 3, steps])
     }
 
-    /// Derivatives of an order of all outputs: `[output, variable, time]`; NaN by variables that the mechanism cannot follow.
+    /// Derivatives of an order of all outputs: `[output, variable, time]`; NaN by variables that the mechanism cannot
+    /// follow.
     fn sensitivities<'py>(&self, py: Python<'py>, order: usize) -> PyResult<Bound<'py, PyAny>> {
         let measured = &self.solution.measured;
         let (outputs, steps, file) = (measured.outputs.len(), measured.len(), self.file());
@@ -171,7 +172,8 @@ impl Run {
         array(py, numbers, [outputs, variables, steps])
     }
 
-    /// The motion of a body: `[time, 19]`, position, quaternion, velocity, angular velocity, acceleration, angular acceleration.
+    /// The motion of a body: `[time, 19]`, position, quaternion, velocity, angular velocity, acceleration, angular
+    /// acceleration.
     fn body<'py>(&self, py: Python<'py>, body: usize) -> PyResult<Bound<'py, PyAny>> {
         let (units, steps) = (self.units(), self.solution.motion.len());
         let mut numbers = Vec::with_capacity(19 * steps);
@@ -191,8 +193,8 @@ impl Run {
         array(py, whole, [steps, 19])
     }
 
-    /// Derivatives by a variable: `[time, 18]`, position, rotation vector, velocity, angular velocity, acceleration, angular
-    /// acceleration.
+    /// Derivatives by a variable: `[time, 18]`, position, rotation vector, velocity, angular velocity, acceleration,
+    /// angular acceleration.
     fn body_sensitivity<'py>(
         &self,
         py: Python<'py>,

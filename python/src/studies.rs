@@ -172,7 +172,8 @@ impl Model {
         Ok(outcome(&facts, &facts.tables()))
     }
 
-    /// Designs drawn within the tolerances, each by its number: `[design, variable]`. They are those of the tolerance study.
+    /// Designs drawn within the tolerances, each by its number: `[design, variable]`. They are those of the tolerance
+    /// study.
     #[pyo3(signature = (numbers, seed=None))]
     fn drawn_designs<'py>(
         &self,

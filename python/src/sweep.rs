@@ -192,7 +192,8 @@ impl Sweep {
         BLOCK
     }
 
-    /// Solves some designs: the table of designs, and that of curves. `from` is a multiple of `block`, `to` one too, or the end.
+    /// Solves some designs: the table of designs, and that of curves. `from` is a multiple of `block`, `to` one too, or
+    /// the end.
     #[pyo3(signature = (from, to, workers=None, progress=None))]
     fn part<'py>(
         &self,

@@ -29,8 +29,8 @@ pub(crate) fn set_patience(milliseconds: u64) -> u64 {
     PATIENCE.swap(milliseconds, Ordering::Relaxed)
 }
 
-/// Number of times that long work has woken up the thread that waits for it: once at its end, and once for each time that
-/// patience ran out before.
+/// Number of times that long work has woken up the thread that waits for it: once at its end, and once for each time
+/// that patience ran out before.
 #[pyfunction]
 pub(crate) fn wake_ups() -> usize {
     WAKE_UPS.load(Ordering::Relaxed)
@@ -78,8 +78,8 @@ impl Watch {
     }
 }
 
-/// Does work on a thread of its own, with the interpreter free, while this one listens. An exception that is raised meanwhile ends
-/// the work and is the outcome.
+/// Does work on a thread of its own, with the interpreter free, while this one listens. An exception that is raised
+/// meanwhile ends the work and is the outcome.
 pub(crate) fn patiently<T: Send>(
     py: Python<'_>,
     callback: Option<Py<PyAny>>,

@@ -60,13 +60,16 @@ const TURNS = 1e-4
 
 /** Below this part of its largest, a rate is that of a motion about to turn. */
 const TURNING = 0.25
-/** A rate that will be less than this part of its largest where the abscissa turns, turns with it: what is left bends on the way. */
+/**
+ * A rate that will be less than this part of its largest where the abscissa turns, turns with it: what is left bends on
+ * the way.
+ */
 const WITH_IT = 0.1
 
 /**
- * How much `y` changes per change of `x` along the motion, from the rates and accelerations of both: where `x` turns back, and
- * its rate with that of `y` is nothing, from the accelerations. NaN where neither indicates; and where `x` is about to turn while `y` goes
- * on: there `y` does not follow `x`, and what it is at a certain `x` says nothing.
+ * How much `y` changes per change of `x` along the motion, from the rates and accelerations of both: where `x` turns
+ * back, and its rate with that of `y` is nothing, from the accelerations. NaN where neither indicates; and where `x` is
+ * about to turn while `y` goes on: there `y` does not follow `x`, and what it is at a certain `x` says nothing. /
  */
 export function slope(y: readonly [Curve, Curve, Curve], x: readonly [Curve, Curve, Curve]): Curve {
   const [fastest, steepest, liveliest] = [peak(x[1]), peak(x[2]), peak(y[1])]
@@ -82,8 +85,8 @@ export function slope(y: readonly [Curve, Curve, Curve], x: readonly [Curve, Cur
 }
 
 /**
- * How much `y` changes per change of `x` while a driver moves alone, from what both do then; NaN where the driver does next to nothing to
- * `x`.
+ * How much `y` changes per change of `x` while a driver moves alone, from what both do then; NaN where the driver does
+ * next to nothing to `x`. /
  */
 export function slopeAlone(y: Curve, x: Curve): Curve {
   const least = peak(x) * TURNS

@@ -46,7 +46,9 @@ export function css(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim()
 }
 
-/** Calls back when what is drawn on a canvas needs other colours, until the signal; paper is light, whatever the screen. */
+/**
+ * Calls back when what is drawn on a canvas needs other colours, until the signal; paper is light, whatever the screen.
+ */
 export function onSchemeChange(callback: () => void, signal?: AbortSignal): void {
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', callback, { signal })
   for (const [event, printing] of [['beforeprint', true], ['afterprint', false]] as const) {
@@ -57,7 +59,9 @@ export function onSchemeChange(callback: () => void, signal?: AbortSignal): void
   }
 }
 
-/** Categorical colours that colour-blind readers can distinguishes (Okabe and Ito), tuned per scheme in the style sheet. */
+/**
+ * Categorical colours that colour-blind readers can distinguishes (Okabe and Ito), tuned per scheme in the style sheet.
+ */
 const HUES = 8
 
 export function hue(index: number): string {

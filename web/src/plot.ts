@@ -64,9 +64,9 @@ export interface Overlay {
 }
 
 /**
- * Curves over time or over another quantity, with a legend above that reads the values under the pointer, or at the moment shown;
- * dragging moves the time. Dragging along the horizontal axis, or with Shift, shows that part of the abscissa: of time in all plots
- * that share a `Zoom`, of another quantity in this one.
+ * Curves over time or over another quantity, with a legend above that reads the values under the pointer, or at the
+ * moment shown; dragging moves the time. Dragging along the horizontal axis, or with Shift, shows that part of the
+ * abscissa: of time in all plots that share a `Zoom`, of another quantity in this one. /
  */
 export class Plot {
   readonly element: HTMLElement

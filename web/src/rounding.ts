@@ -1,4 +1,6 @@
-/** Smaller is rounding: as a share of the largest of its kind, and of a size in the reader's units, whatever it is of. */
+/**
+ * Smaller is rounding: as a share of the largest of its kind, and of a size in the reader's units, whatever it is of.
+ */
 const ROUNDING = 1e-9
 
 /** Relative variation below which a quantity counts as constant. */

@@ -34,7 +34,10 @@ export class State {
   readonly changes: number[]
   /** The same of coordinates of hardpoints that no variable is, by name. */
   readonly moves = new Map<string, number>()
-  /** Solves the design that the changes make, and indicates it by `solved`. Without it changes are predicted to first order. */
+  /**
+   * Solves the design that the changes make, and indicates it by `solved`. Without it changes are predicted to first
+   * order.
+   */
   solver?: () => void
   /** The bound that keeps the design from going as far as was requested. */
   bound = ''

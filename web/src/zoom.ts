@@ -57,7 +57,10 @@ export function atLeast([low, high]: Part, whole: Part): Part {
   return [middle - half, middle + half]
 }
 
-/** The values of a curve where its abscissa is within a part: those of its steps, and those with which it enters and leaves. */
+/**
+ * The values of a curve where its abscissa is within a part: those of its steps, and those with which it enters and
+ * leaves.
+ */
 export function inside(values: ArrayLike<number | null>, abscissa: Curve, [low, high]: Part): number[] {
   const found: number[] = []
   for (let k = 0; k < abscissa.length; k++) {

@@ -69,7 +69,8 @@ test('a slope over an abscissa that turns back follows from the accelerations th
 })
 
 test('what a driver does alone stays finite where the motion of several turns the abscissa back', () => {
-  // x = a + b, y = 2 a + 3 b with a = t, b = 1 - t^2: along the motion dy/dx = (2 - 6 t) / (1 - 2 t), of the first driver alone 2.
+  // x = a + b, y = 2 a + 3 b with a = t, b = 1 - t^2: along the motion dy/dx = (2 - 6 t) / (1 - 2 t), of the first
+  // driver alone 2.
   const [y, x] = [Float32Array.of(2, 2, 2), Float32Array.of(1, 1, 1e-6)]
   expect([...slopeAlone(y, x)]).toEqual([2, 2, NaN])
 })

@@ -73,7 +73,8 @@ describe.each(Object.entries(models))('of %s', async (_, address) => {
   })
 
   test('everything stays finite and near the mechanism at every moment', () => {
-    // Four times the mechanism's own size round its middle: wheels, arrows and rails reach beyond hardpoints, but not far.
+    // Four times the mechanism's own size round its middle: wheels, arrows and rails reach beyond hardpoints, but not
+    // far.
     const room = new Box3().setFromCenterAndSize(mechanism.centre, new Vector3(4, 4, 4).multiplyScalar(mechanism.size))
     for (const { object, part } of drawn) {
       const points = vertices(object)
@@ -118,7 +119,8 @@ describe.each(Object.entries(models))('of %s', async (_, address) => {
     expect(seen.min.y).toBeGreaterThan(-1)
     // Below the buttons.
     expect(seen.max.y).toBeLessThan(1 - (2 * 34) / HEIGHT)
-    // From side to side or from top to bottom; what is nearest to the eye at another moment leaves some air at this one.
+    // From side to side or from top to bottom; what is nearest to the eye at another moment leaves some air at this
+    // one.
     expect(Math.max((seen.max.x - seen.min.x) / 2, (seen.max.y - seen.min.y) / (2 - (2 * 34) / HEIGHT))).toBeGreaterThan(0.85)
   })
 

@@ -8,7 +8,10 @@ import { answer } from '../src/engine/answer'
 import { design } from '../src/report'
 import type { Design, ModelText, Payload } from '../src/payload'
 
-/** Numbers agree to this part of the largest of their kind; what a page draws is rounded to `f32`, which leaves this much. */
+/**
+ * Numbers agree to this part of the largest of their kind; what a page draws is rounded to `f32`, which leaves this
+ * much.
+ */
 const SAME = 1e-9
 const DRAWN = 3e-7
 

@@ -7,7 +7,10 @@ import { Kit } from '../src/scene/kit'
 import { Mechanism } from '../src/scene/mechanism'
 import { CHOICE, crank, PALETTE } from './mechanisms'
 
-/** 30 N to the right all the time on the crank, which makes a quarter of a turn per step; 10 N down on its pin at the third step only. */
+/**
+ * 30 N to the right all the time on the crank, which makes a quarter of a turn per step; 10 N down on its pin at the
+ * third step only.
+ */
 const steady = Float32Array.from(Array.from({ length: 5 }, () => [30, 0, 0]).flat())
 const brief = Float32Array.from([0, 0, 0, 0, 0, 0, 0, -10, 0, NaN, NaN, NaN, NaN, NaN, NaN])
 const LOADS: Load[] = [

@@ -49,7 +49,8 @@ test('a measured distance has its dimension line and its value in the view while
   await page.context().close()
 })
 
-// Both of the paper's examples: a planar mechanism, and a spatial one that belongs to a vehicle. Without the engine, what changes is predicted.
+// Both of the paper's examples: a planar mechanism, and a spatial one that belongs to a vehicle. Without the engine,
+// what changes is predicted.
 describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
   let visited: Visit
   let page: Page

@@ -82,7 +82,8 @@ pub enum Command {
     Tolerance(Tolerance),
     /// Find the design that explains what was measured, how well it is known, and what to measure next
     Calibrate(Calibrate),
-    /// Solve many designs over the ranges of the design variables, exactly: a table of their metrics, what is best, what matters
+    /// Solve many designs over the ranges of the design variables, exactly: a table of their metrics, what is best,
+    /// what matters
     Sweep(Sweep),
     /// Open a model in the browser, from a server on this machine: save in place, follow the file, run long studies
     Studio(Studio),
@@ -206,7 +207,8 @@ pub enum Format {
     Csv,
     /// NumPy arrays, less than half as large: motion.npy and sensitivity.npy, with columns.json to name their columns
     Npy,
-    /// Apache Parquet: motion.parquet and sensitivity.parquet, with units in the names of the columns and in the metadata
+    /// Apache Parquet: motion.parquet and sensitivity.parquet, with units in the names of the columns and in the
+    /// metadata
     Parquet,
 }
 
@@ -270,7 +272,8 @@ pub struct Run {
     /// Write an animated glTF too, motion.glb, for Blender and other viewers
     #[arg(long)]
     pub gltf: bool,
-    /// Write three angles of every body into the motion too, beside its quaternion: euler (3-1-3), cardan or roll_pitch_yaw
+    /// Write three angles of every body into the motion too, beside its quaternion: euler (3-1-3), cardan or
+    /// roll_pitch_yaw
     #[arg(long, value_enum, hide_possible_values = true)]
     pub angles: Option<Orientation>,
     /// Write motion and sensitivities of all bodies, however many there are
@@ -279,8 +282,8 @@ pub struct Run {
     /// Solve the motion only
     #[arg(long)]
     pub no_sensitivities: bool,
-    /// Write motion and sensitivities as text (csv), or half as large as NumPy arrays with columns.json (npy), or as Apache Parquet
-    /// with units in its metadata (parquet)
+    /// Write motion and sensitivities as text (csv), or half as large as NumPy arrays with columns.json (npy), or as
+    /// Apache Parquet with units in its metadata (parquet)
     #[arg(long, value_enum, default_value_t = Format::Csv, hide_possible_values = true)]
     pub format: Format,
 }
@@ -472,13 +475,15 @@ pub struct Optimize {
     /// Write the model file with the design found, its comments and layout kept
     #[arg(long, value_name = "FILE")]
     pub save: Option<PathBuf>,
-    /// Start from that many designs, the one in the design configuration and others spread within the bounds [default: as the file says, or 1]
+    /// Start from that many designs, the one in the design configuration and others spread within the bounds [default:
+    /// as the file says, or 1]
     #[arg(long, value_name = "N")]
     pub starts: Option<NonZero<usize>>,
     /// End a search after that many iterations [default: as the file says, or 100]
     #[arg(long, value_name = "N")]
     pub iterations: Option<NonZero<usize>>,
-    /// Search from several starts on that many threads; what is found does not depend on it [default: one for each core]
+    /// Search from several starts on that many threads; what is found does not depend on it [default: one for each
+    /// core]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZero<usize>>,
 }
@@ -593,7 +598,8 @@ pub struct Tolerance {
     /// Draw them from this number [default: as the file says, or 1]
     #[arg(long, value_name = "N")]
     pub seed: Option<u32>,
-    /// Seek the loosest tolerances that keep the limits, by the root of the sum of squares (rss) or at worst (worst-case)
+    /// Seek the loosest tolerances that keep the limits, by the root of the sum of squares (rss) or at worst
+    /// (worst-case)
     #[arg(long, value_enum, value_name = "RULE")]
     pub allocate: Option<Allocate>,
     /// Solve designs on that many threads; what is found does not depend on it [default: one for each core]

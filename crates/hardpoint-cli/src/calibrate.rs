@@ -192,7 +192,8 @@ impl Results<'_> {
         folder.write("summary.json", |out| out.write_all(json.as_bytes()))
     }
 
-    /// The design found beside the one in the design configuration, in the model's first motion; `None` where that does not move at all.
+    /// The design found beside the one in the design configuration, in the model's first motion; `None` where that does
+    /// not move at all.
     fn page(&self, facts: &CalibrateFacts) -> Option<String> {
         let model = self.calibrated.file.model.motions().into_iter().next()?;
         let analysis = Analysis::with(&model, self.options.common.formulation()).ok()?;

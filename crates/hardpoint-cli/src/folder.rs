@@ -81,8 +81,8 @@ impl Folder {
         self.end(writing).map(|()| told)
     }
 
-    /// Puts all files in their places, the last one last; files of this family that were not written now are removed, so that
-    /// nothing is next to them that is not of the same run.
+    /// Puts all files in their places, the last one last; files of this family that were not written now are removed,
+    /// so that nothing is next to them that is not of the same run.
     pub fn commit(mut self, family: &[&str]) -> Result<(), WriteError> {
         let last = self.pending.last().map(|(_, path)| path.clone());
         for path in family.iter().map(|name| self.path.join(name)) {
@@ -160,7 +160,8 @@ pub fn of_case(whole: &Path, case: Option<&str>) -> PathBuf {
     whole.join(file_name(case))
 }
 
-/// A name as part of a file's name: what not every system allows there as `%` and its number, so that no two names become one.
+/// A name as part of a file's name: what not every system allows there as `%` and its number, so that no two names
+/// become one.
 pub fn file_name(name: &str) -> String {
     let allowed = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '+');
     let part = |c: char| if allowed(c) { c.to_string() } else { format!("%{:02X}", u32::from(c)) };

@@ -1,7 +1,7 @@
 //! Journal of a sweep on disk: a program that ends at any time loses only the block that it was writing.
 //!
-//! A journal is a head that says which sweep it is of, then blocks, each with its length and a checksum. What a killed program has left of a
-//! block does not fit to these and is cut off when the journal is opened again.
+//! A journal is a head that says which sweep it is of, then blocks, each with its length and a checksum. What a killed
+//! program has left of a block does not fit to these and is cut off when the journal is opened again.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
@@ -45,8 +45,8 @@ impl From<io::Error> for JournalError {
 }
 
 impl Journal {
-    /// The journal of a sweep: begun, or opened with all blocks that are whole; one `anew` begins from nothing, whatever is there. Without
-    /// a path it is a file that nobody else sees.
+    /// The journal of a sweep: begun, or opened with all blocks that are whole; one `anew` begins from nothing,
+    /// whatever is there. Without a path it is a file that nobody else sees.
     pub fn open(path: Option<&Path>, fingerprint: Fingerprint, anew: bool) -> Result<Self, JournalError> {
         let Some(path) = path else {
             let mut journal = Self { file: tempfile::tempfile()?, path: None, blocks: Vec::new(), end: 0 };

@@ -17,8 +17,8 @@ use parquet::schema::types::{Type, TypePtr};
 use hardpoint_report::GENERATOR;
 use hardpoint_report::cells::Cells;
 
-/// A row group of Parquet has that many rows, fewer where they would have more than that many cells, so that the table need not fit
-/// into memory.
+/// A row group of Parquet has that many rows, fewer where they would have more than that many cells, so that the table
+/// need not fit into memory.
 const GROUP_ROWS: usize = 1 << 16;
 const GROUP_CELLS: usize = 1 << 22;
 /// Columns of a table, by their names; the cells only say of which kind they are.
@@ -54,8 +54,8 @@ enum Sink<W: Write + Send> {
 }
 
 impl<W: Write + Send> TableWriter<W> {
-    /// Begins a table with these columns. `facts` about it, by key, go where the format has a place for them: into the metadata
-    /// of a Parquet file.
+    /// Begins a table with these columns. `facts` about it, by key, go where the format has a place for them: into the
+    /// metadata of a Parquet file.
     ///
     /// # Errors
     /// Where it cannot be written.
@@ -127,8 +127,8 @@ impl<W: Write + Send> TableWriter<W> {
         }
     }
 
-    /// Adds the rows of a Parquet file with these columns that are to be kept, by their cells in column `of`, which has texts. False
-    /// where it was not to go on.
+    /// Adds the rows of a Parquet file with these columns that are to be kept, by their cells in column `of`, which has
+    /// texts. False where it was not to go on.
     ///
     /// # Errors
     /// Where either cannot be read or written.

@@ -182,7 +182,8 @@ impl<'a> Search<'a> {
         self.found.best.and_then(|k| Some(&*self.found.searches[k].found.as_ref()?.design))
     }
 
-    /// The same with the searched variables at numbers of few digits in the file's units, as far as it then moves alike.
+    /// The same with the searched variables at numbers of few digits in the file's units, as far as it then moves
+    /// alike.
     pub fn to_save(&self) -> Option<Vec<f64>> {
         Some(to_save(self.file, self.motions, self.asked, self.best()?))
     }

@@ -56,7 +56,8 @@ pub struct FoundDesign<'a> {
     pub note: &'a str,
 }
 
-/// The page of one motion in the design configuration, and as found; `finish` adds what the study has to say. `None` where it does not move at all.
+/// The page of one motion in the design configuration, and as found; `finish` adds what the study has to say. `None`
+/// where it does not move at all.
 pub fn page(
     file: &ModelFile,
     analysis: &Analysis<'_>,

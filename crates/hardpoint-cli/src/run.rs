@@ -427,7 +427,8 @@ struct Results<'a> {
 }
 
 impl Results<'_> {
-    /// Compares the sensitivities with re-solved designs and says how far they can be trusted, as far as the user has patience.
+    /// Compares the sensitivities with re-solved designs and says how far they can be trusted, as far as the user has
+    /// patience.
     fn study(&mut self, session: &Session, formulation: Formulation, comparing: bool, summary: &mut Summary) {
         let (course, solution) = (self.course, &self.course.kept);
         if session.interrupted() || solution.motion.is_empty() {

@@ -52,7 +52,8 @@ pub struct Session {
 const WINDOW_BYTES: usize = 4 << 20;
 /// A window holds one output time per lane at least; where that takes more than this, the work is not begun.
 const MOST_BYTES: usize = 512 << 20;
-/// Motions that are studied as a whole may take that many bytes; longer ones are looked at every that many output times.
+/// Motions that are studied as a whole may take that many bytes; longer ones are looked at every that many output
+/// times.
 const STUDY_BYTES: usize = 96 << 20;
 
 impl Session {
@@ -131,8 +132,8 @@ impl Session {
         }
     }
 
-    /// True if what is done now ends by itself soon after a request to stop, and has something to save. What is not patient is
-    /// ended where it is.
+    /// True if what is done now ends by itself soon after a request to stop, and has something to save. What is not
+    /// patient is ended where it is.
     pub fn patient(&self, yes: bool) {
         self.patient.store(yes, Ordering::SeqCst);
     }
@@ -181,8 +182,8 @@ impl Session {
         }
     }
 
-    /// Reads the model and does a command for its motion; of a model with cases, for one case or for each of them, one after the
-    /// other. `each` is reported the case where there are several.
+    /// Reads the model and does a command for its motion; of a model with cases, for one case or for each of them, one
+    /// after the other. `each` is reported the case where there are several.
     ///
     /// # Errors
     /// Error if nothing could be started. The outcome of one case does not prevent the others.
@@ -302,7 +303,8 @@ impl Session {
         })
     }
 
-    /// Writes the model file with a changed design after a search: a failure is returned, so that the result can still be shown.
+    /// Writes the model file with a changed design after a search: a failure is returned, so that the result can still
+    /// be shown.
     ///
     /// # Errors
     /// The diagnostics, the cause in one line, and how the command ends.
@@ -398,7 +400,8 @@ impl Session {
         }))
     }
 
-    /// Solves the motion, with sensitivities or without, however long it is: `each` sees it window by window, and may end it.
+    /// Solves the motion, with sensitivities or without, however long it is: `each` sees it window by window, and may
+    /// end it.
     ///
     /// # Errors
     /// Where a single window is too large, before anything is solved.
@@ -441,7 +444,8 @@ impl Session {
         Ok(gathering.end(&whole))
     }
 
-    /// Makes the motion of a model short enough to be studied as a whole, by leaving out output times, and indicates that.
+    /// Makes the motion of a model short enough to be studied as a whole, by leaving out output times, and indicates
+    /// that.
     pub fn fits(&self, file: &mut ModelFile) {
         let most = usize::max(STUDY_BYTES / Footprint::of(&file.model, true).bytes().max(1), 2);
         let steps = file.model.times.len();

@@ -148,7 +148,8 @@ impl<'m> Plan<'m> {
 /// The columns of a variable and its unit, which come after the time.
 const VARIABLE: [&str; 2] = ["variable", "per"];
 
-/// Begins a Parquet file: time, texts, numbers. The metadata have what it is of, and the unit of each column of numbers.
+/// Begins a Parquet file: time, texts, numbers. The metadata have what it is of, and the unit of each column of
+/// numbers.
 fn parquet(
     out: PendingFile,
     columns: Columns<'_>,
@@ -272,7 +273,8 @@ impl Tables<'_> {
         Ok(())
     }
 
-    /// Ends the tables, without what turned out not to be followed. `go_on` says whether there is time to take that out.
+    /// Ends the tables, without what turned out not to be followed. `go_on` says whether there is time to take that
+    /// out.
     pub fn end(
         self,
         folder: &mut Folder,

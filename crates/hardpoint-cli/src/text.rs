@@ -17,8 +17,8 @@ const PLAIN: &str = "\x1b[0m";
 /// First error of writing to stdout.
 static FAILED: Mutex<Option<std::io::Error>> = Mutex::new(None);
 
-/// Prints to stdout; escapes are dropped where it is no terminal. A reader that closed the pipe is no error; any other failure
-/// is kept for [`failed`].
+/// Prints to stdout; escapes are dropped where it is no terminal. A reader that closed the pipe is no error; any other
+/// failure is kept for [`failed`].
 pub fn print(text: &str) {
     let mut out = anstream::stdout().lock();
     if let Err(error) = out.write_all(printable(text).as_bytes()).and_then(|()| out.flush()) {

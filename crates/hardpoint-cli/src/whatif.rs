@@ -143,7 +143,8 @@ fn whatif_in(
     Ok(outcome)
 }
 
-/// The nearest admissible change, and the model with the variables that it is of; `None` where the change is admissible.
+/// The nearest admissible change, and the model with the variables that it is of; `None` where the change is
+/// admissible.
 fn nearest_of(file: &ModelFile, options: &Whatif, change: &[f64]) -> Option<(Model, Vec<f64>)> {
     let mut model = file.model.clone();
     add_tilts(&mut model);

@@ -1,6 +1,7 @@
 //! `motion.xlsx`: a run as an Excel workbook, for those who read results there.
 //!
-//! What does not fit into a sheet, or is more than a person scrolls through, is reported on the first sheet with the file that has it.
+//! What does not fit into a sheet, or is more than a person scrolls through, is reported on the first sheet with the
+//! file that has it.
 
 use std::io::Write;
 
@@ -181,7 +182,8 @@ impl Contents<'_> {
         Ok(page.sheet)
     }
 
-    /// Every how-many-th of the output times that were kept go into that many columns, and what there is to say of that.
+    /// Every how-many-th of the output times that were kept go into that many columns, and what there is to say of
+    /// that.
     fn every(&self, columns: usize) -> (usize, Option<String>) {
         let rows = usize::min(MOST_ROWS - 1, MOST_CELLS / columns.max(1)).max(1);
         let every = self.solution().motion.len().div_ceil(rows).max(1);
@@ -228,7 +230,8 @@ impl Contents<'_> {
         })
     }
 
-    /// The curves that a chart shows together, by their columns in the sheet of the motion: measures, or else points, or bodies.
+    /// The curves that a chart shows together, by their columns in the sheet of the motion: measures, or else points,
+    /// or bodies.
     fn curves(&self) -> Vec<(String, Vec<usize>)> {
         let columns: Vec<String> = self.columns().of_motion().into_iter().map(|c| c.name).collect();
         let column = |name: &str| columns.iter().position(|c| c == name).map(|k| k + 1);

@@ -1,8 +1,9 @@
 //! Straight-line programs as machine code.
 //!
-//! A [`Program`] becomes code for x86-64: eight lanes in one register of AVX-512, or twice four in registers of AVX2. It gives bit
-//! for bit what its instructions say in IEEE arithmetic: nothing is re-associated, nothing fused that was not. A NaN is a
-//! NaN: its bits are not reported. Of zeros of either sign, [`Instruction::Larger`](hardpoint_tape::Instruction::Larger) gives any.
+//! A [`Program`] becomes code for x86-64: eight lanes in one register of AVX-512, or twice four in registers of AVX2.
+//! It gives bit for bit what its instructions say in IEEE arithmetic: nothing is re-associated, nothing fused that was
+//! not. A NaN is a NaN: its bits are not reported. Of zeros of either sign,
+//! [`Instruction::Larger`](hardpoint_tape::Instruction::Larger) gives any.
 //!
 //! ```
 //! use hardpoint_code::{Code, Scratch};
@@ -32,8 +33,8 @@
 //!
 //! This is the only crate of Hardpoint that holds `unsafe`; `docs/machine-code.md` says where, and why it is sound.
 //!
-//! Not supported: other machines than x86-64, Windows, and systems that do not let memory become executable. [`UnsupportedProgram`]
-//! says which it is.
+//! Not supported: other machines than x86-64, Windows, and systems that do not let memory become executable.
+//! [`UnsupportedProgram`] says which it is.
 
 #[cfg_attr(not(all(target_arch = "x86_64", unix)), path = "elsewhere.rs")]
 mod x86_64;
@@ -160,8 +161,8 @@ impl Code {
         Self::in_parts_with(program, [program.outputs.len(); PARTS - 1], width)
     }
 
-    /// For the widest registers of this CPU, and outputs in up to three areas of memory: part 0 is those before `ends[0]`,
-    /// part 1 those from there to `ends[1]`, part 2 the others. Parts may be empty.
+    /// For the widest registers of this CPU, and outputs in up to three areas of memory: part 0 is those before
+    /// `ends[0]`, part 1 those from there to `ends[1]`, part 2 the others. Parts may be empty.
     ///
     /// # Panics
     ///
@@ -192,13 +193,13 @@ impl Code {
     /// | `uniforms` | uniforms | |
     /// | `outputs` | groups x outputs | output `j` of group `g` at `g * outputs + j` |
     ///
-    /// Nothing is allocated, but for scratch when it has to grow. Arrays that begin at a multiple of 64 bytes are read and
-    /// written faster.
+    /// Nothing is allocated, but for scratch when it has to grow. Arrays that begin at a multiple of 64 bytes are read
+    /// and written faster.
     ///
     /// # Panics
     ///
-    /// If a length is another, or the code was made for outputs in other parts than the first. Inputs of a program without outputs
-    /// are not looked at.
+    /// If a length is another, or the code was made for outputs in other parts than the first. Inputs of a program
+    /// without outputs are not looked at.
     pub fn run(&self, scratch: &mut Scratch, inputs: &[Lanes], uniforms: &[f64], outputs: &mut [Lanes]) {
         self.run_in_parts(scratch, inputs, uniforms, [outputs, &mut [], &mut []]);
     }

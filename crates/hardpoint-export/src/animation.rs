@@ -37,9 +37,9 @@ const COLOURS: [[f32; 3]; 8] = [
     [0.25, 0.18, 0.55],
 ];
 
-/// A motion as a binary glTF file (`.glb`): under a node of the model's name, which turns z up into glTF's y up, one node for each
-/// body, in metres, with its translation and rotation at every output time, from 0 s on. Bodies are the shapes that the model names for
-/// them; others, and rods, are drawn as links between their places.
+/// A motion as a binary glTF file (`.glb`): under a node of the model's name, which turns z up into glTF's y up, one
+/// node for each body, in metres, with its translation and rotation at every output time, from 0 s on. Bodies are the
+/// shapes that the model names for them; others, and rods, are drawn as links between their places.
 ///
 /// ```
 /// let text = r#"

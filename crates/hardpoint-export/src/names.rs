@@ -6,8 +6,8 @@ use hardpoint_file::ModelFile;
 
 use crate::ExportedModel;
 
-/// The file with names that every format can hold, where some of its own cannot be: control characters, which XML has no way to write, and
-/// which would begin new lines elsewhere. What is written otherwise is named.
+/// The file with names that every format can hold, where some of its own cannot be: control characters, which XML has
+/// no way to write, and which would begin new lines elsewhere. What is written otherwise is named.
 pub fn neutral(file: &ModelFile, out: &mut ExportedModel) -> Option<ModelFile> {
     let model = &file.model;
     let names = model.bodies.iter().map(|b| &b.name).chain(model.joints.iter().map(|j| &j.name));

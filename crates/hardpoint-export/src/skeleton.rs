@@ -20,8 +20,8 @@ pub struct Skeleton<'m> {
 /// Joint that carries a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carrier {
-    /// A joint: its number, and whether the body is its first one. Then the format's joint has the opposite axis, about or along which the
-    /// first body's coordinate is the same number.
+    /// A joint: its number, and whether the body is its first one. Then the format's joint has the opposite axis, about
+    /// or along which the first body's coordinate is the same number.
     Joint(usize, bool),
     /// Nothing: it floats, and joints that close loops hold it.
     Loops,

@@ -47,7 +47,8 @@ fn csv(file: &ModelFile, out: &mut ExportedModel) {
     }
 }
 
-/// The name without its side, where that is its last word, and its side in Adams/Car. A name that begins with its side keeps the word.
+/// The name without its side, where that is its last word, and its side in Adams/Car. A name that begins with its side
+/// keeps the word.
 fn side_of(name: &str) -> (&str, &'static str) {
     // What an importer would name otherwise keeps its name whole, and has no side.
     let is_free = |short: &&str| {

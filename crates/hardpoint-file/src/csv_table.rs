@@ -1,4 +1,5 @@
-//! CSV tables whose cells spreadsheets never take for formulas: one writer for every file, and its inverse for every reader.
+//! CSV tables whose cells spreadsheets never take for formulas: one writer for every file, and its inverse for every
+//! reader.
 
 use std::borrow::Cow;
 use std::io::{self, Write};
@@ -6,8 +7,8 @@ use std::io::{self, Write};
 /// Characters with which a formula begins in the common spreadsheet programs.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
-/// Returns the cell that represents a text in a table: a text that begins like a formula gets an apostrophe before it, which
-/// spreadsheets do not show. A number is itself, whatever its sign.
+/// Returns the cell that represents a text in a table: a text that begins like a formula gets an apostrophe before it,
+/// which spreadsheets do not show. A number is itself, whatever its sign.
 pub fn neutral(text: &str) -> Cow<'_, str> {
     if text.starts_with(FORMULA) && text.parse::<f64>().is_err() {
         format!("'{text}").into()
@@ -49,8 +50,8 @@ impl<W: Write> CsvWriter<W> {
         self.0.write_field(neutral(text).as_bytes())
     }
 
-    /// Writes numbers as the next cells of the row: the shortest decimals that read back as the same double. A cell is empty where there
-    /// is no number, as for the curvature of a path at rest.
+    /// Writes numbers as the next cells of the row: the shortest decimals that read back as the same double. A cell is
+    /// empty where there is no number, as for the curvature of a path at rest.
     ///
     /// # Errors
     /// Fails where they cannot be written.

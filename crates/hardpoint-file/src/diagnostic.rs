@@ -138,8 +138,8 @@ impl Serialize for Diagnostics {
     }
 }
 
-/// A file's name and text, with its lines counted; behind it the files that it includes, so that a place in the text says in which file
-/// it is. It knows where in it a diagnostic is.
+/// A file's name and text, with its lines counted; behind it the files that it includes, so that a place in the text
+/// says in which file it is. It knows where in it a diagnostic is.
 #[derive(Clone, Debug)]
 pub struct Source {
     /// The name as it was given.

@@ -11,19 +11,19 @@ use crate::read::planar::Plane;
 use crate::units::Units;
 use crate::{Folder, ModelFile, parsed};
 
-/// A number is written with as few digits as bring it back to this many units of round-off: what the sums, products and roots between
-/// a file's number and a changed design's leave. 5.200000000000001 is written 5.2.
+/// A number is written with as few digits as bring it back to this many units of round-off: what the sums, products and
+/// roots between a file's number and a changed design's leave. 5.200000000000001 is written 5.2.
 const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
-/// The saved file's directions and lengths agree with the changed design to this, rad or part of the mechanism's size: some hundred
-/// times the round-off of their roots, far below what anything is made to.
+/// The saved file's directions and lengths agree with the changed design to this, rad or part of the mechanism's size:
+/// some hundred times the round-off of their roots, far below what anything is made to.
 const SAME: f64 = 1e-12;
 /// Part of the bounds of a change with which saving is tried: so small that expressions keep their values.
 const TRIAL: f64 = 1e-4;
 
 impl ModelFile {
-    /// The text of this file with the design changed: variable k of [`model`](Self::model) at `design[k]` (missing entries are 0)
-    /// becomes 0, the new nominal design. Comments, order, layout and untouched numbers stay as they are; what expressions give
-    /// follows them; bounds stay where they were.
+    /// The text of this file with the design changed: variable k of [`model`](Self::model) at `design[k]` (missing
+    /// entries are 0) becomes 0, the new nominal design. Comments, order, layout and untouched numbers stay as they
+    /// are; what expressions give follows them; bounds stay where they were.
     ///
     /// The new text has been read back and describes the changed design to round-off.
     ///
@@ -124,8 +124,8 @@ pub fn hardpoints_in(text: &str) -> Vec<String> {
     entries.filter(|(_, item)| is_plain(item)).map(|(name, _)| name.to_owned()).collect()
 }
 
-/// A model's text under another name and with hardpoints in other places, in the text's unit of length. Comments and layout stay; of
-/// points with two coordinates those in the plane are written.
+/// A model's text under another name and with hardpoints in other places, in the text's unit of length. Comments and
+/// layout stay; of points with two coordinates those in the plane are written.
 ///
 /// ```
 /// let text = "name = \"x\"\nplanar = \"zx\"\n[hardpoints]\nA = [0, 0] # here\n";
@@ -216,7 +216,8 @@ impl Edit<'_> {
         changed.flat_map(|(k, (v, value))| v.changes.iter().map(move |change| (k, change, *value)))
     }
 
-    /// True if a mirror makes this from something else: its numbers are written there, and are right if both change alike.
+    /// True if a mirror makes this from something else: its numbers are written there, and are right if both change
+    /// alike.
     fn is_image(&self, name: &str) -> bool {
         self.file.origins.names.contains_key(name)
     }
@@ -319,7 +320,8 @@ impl Edit<'_> {
         }
     }
 
-    /// Lengths that rods are given grow; those that are measured between hardpoints are written where these move and the rod keeps its own.
+    /// Lengths that rods are given grow; those that are measured between hardpoints are written where these move and
+    /// the rod keeps its own.
     fn lengths(&mut self) {
         let model = &self.file.model;
         let kept = model.geometry(&self.values).kept;
@@ -481,7 +483,8 @@ impl Edit<'_> {
         }
     }
 
-    /// Bounds stay where they were: [a, b] of a variable that goes to 0 from x is [a - x, b - x]. Those of parameters are not counted from it.
+    /// Bounds stay where they were: [a, b] of a variable that goes to 0 from x is [a - x, b - x]. Those of parameters
+    /// are not counted from it.
     fn bounds(&mut self) {
         let model = &self.file.model;
         let mut done: Vec<(String, f64)> = Vec::new();
@@ -653,7 +656,8 @@ fn joint_table(document: &mut DocumentMut, joint: &str, length: &str) -> bool {
     true
 }
 
-/// The number with the fewest digits that is read as `target`, or as near to it as `near`; `exact` is the same in the unit of the text.
+/// The number with the fewest digits that is read as `target`, or as near to it as `near`; `exact` is the same in the
+/// unit of the text.
 fn shortest(target: f64, near: f64, to_si: impl Fn(f64) -> f64, exact: f64) -> String {
     let tried = (0..17).map(|digits| format!("{exact:.digits$e}"));
     let found = tried

@@ -1,7 +1,8 @@
 //! The format as data: which tables a model file has, which keys these have, and what is there.
 //!
-//! Every table is declared once, beside the code that reads it. From the declarations come the keys that the reader knows, its
-//! defaults and examples, the JSON Schema (`schema.rs`), and the tables of `docs/file-format.md` (`format/docs.rs`).
+//! Every table is declared once, beside the code that reads it. From the declarations come the keys that the reader
+//! knows, its defaults and examples, the JSON Schema (`schema.rs`), and the tables of `docs/file-format.md`
+//! (`format/docs.rs`).
 
 #[cfg(test)]
 mod docs;
@@ -31,7 +32,8 @@ pub(crate) enum Need {
     Else(&'static str),
 }
 
-/// Keys as they are declared: what each means, whether it must be there, its name, what may stand there, and an example.
+/// Keys as they are declared: what each means, whether it must be there, its name, what may stand there, and an
+/// example.
 macro_rules! keys {
     (@ must) => { $crate::format::Need::Required };
     (@ may) => { $crate::format::Need::Optional };

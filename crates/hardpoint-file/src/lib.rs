@@ -21,15 +21,13 @@
 //! * The format is TOML, described in `docs/file-format.md`; [`schema`] is its JSON Schema for editors.
 //! * Units are named once per file. [`Units`] converts, here and at every other edge; inside all is SI.
 //! * This crate knows keys, types and units. Whether the mechanism makes sense is checked by
-//!   [`Model::from_draft`], whose faults are shown here at the place of the text that they are about.
-//! * Nothing stops at the first problem: [`Diagnostics`] holds all that were found. Only a file that is
-//!   not TOML is not looked at further.
-//! * No text makes this crate panic, and none keeps it busy for long: names, tables and lists have limits
-//!   far above any mechanism.
-//! * A model may include others in its folder, and be made of one side only. Both are put together of the texts' values before these
-//!   are read (`read/include.rs`, `read/mirror.rs`), so that nothing behind knows of it but what writes numbers back.
-//! * A driver's table may lie in a CSV file in the model's folder, and a body's shape in a file of triangles; that is all that is
-//!   read besides model files.
+//! [`Model::from_draft`], whose faults are shown here at the place of the text that they are about. * Nothing stops at
+//! the first problem: [`Diagnostics`] holds all that were found. Only a file that is not TOML is not looked at further.
+//! * No text makes this crate panic, and none keeps it busy for long: names, tables and lists have limits far above any
+//! mechanism. * A model may include others in its folder, and be made of one side only. Both are put together of the
+//! texts' values before these are read (`read/include.rs`, `read/mirror.rs`), so that nothing behind knows of it but
+//! what writes numbers back. * A driver's table may lie in a CSV file in the model's folder, and a body's shape in a
+//! file of triangles; that is all that is read besides model files.
 //!
 //! What is not here: coordinates of hardpoints in expressions that no change of the design moves.
 
@@ -136,9 +134,9 @@ impl ModelFile {
         self.places.find(&at)
     }
 
-    /// The designs that a CSV file lists, wherever it lies: its first line names design variables, each line below has their values, in the
-    /// file's units; of a parameter its value, of all others a change. What comes out is changes in SI, as in
-    /// [`SweepSettings`](hardpoint::model::Sweeping).
+    /// The designs that a CSV file lists, wherever it lies: its first line names design variables, each line below has
+    /// their values, in the file's units; of a parameter its value, of all others a change. What comes out is changes
+    /// in SI, as in [`SweepSettings`](hardpoint::model::Sweeping).
     ///
     /// # Errors
     /// What is wrong with it.

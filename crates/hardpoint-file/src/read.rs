@@ -55,8 +55,8 @@ pub(crate) const MODEL: Table = table! {
     may "description": Shape::Text, "\"...\"";
     /// The units of all numbers in this file. Time is always in seconds.
     must "units": Shape::Table(&UNITS), "{ length = \"mm\", angle = \"deg\" }";
-    /// Named numbers, which expressions in quotes may use wherever a number is. Each is a design variable, unless it says
-    /// otherwise or is itself given by an expression.
+    /// Named numbers, which expressions in quotes may use wherever a number is. Each is a design variable, unless it
+    /// says otherwise or is itself given by an expression.
     may "parameters": Shape::Entries("a parameter", &parameters::PARAMETER), "{ hub = { value = 60, unit = \"length\" } }";
     /// Named points of the design configuration: `name = [x, y, z]`, global, in the length unit. Expressions may use
     /// coordinates of others, like `"-left.y"`.
@@ -157,10 +157,11 @@ const BODY_SHAPE: Shape = Shape::Any(
 const BODY: Table = table! {
     /// A body; `{}` is enough.
     "Body":
-    /// Reference frame in the design configuration. Default: origin at the mean of the body's joint places, axes parallel
-    /// to the global ones. Only results expressed in the frame depend on it.
+    /// Reference frame in the design configuration. Default: origin at the mean of the body's joint places, axes
+    /// parallel to the global ones. Only results expressed in the frame depend on it.
     may "frame": Shape::Kinds(&FRAME), "{ position = [0, 0, 0] }";
-    /// Shape, for the drawing, and for masses of `type = "mesh"`: a file of triangles in the model's folder or below it, STL, OBJ or glTF.
+    /// Shape, for the drawing, and for masses of `type = "mesh"`: a file of triangles in the model's folder or below
+    /// it, STL, OBJ or glTF.
     may "mesh": mesh::MESH, "\"knuckle.stl\"";
 };
 const FRAME: Kinds = Kinds {
@@ -178,7 +179,8 @@ const FRAME_BY_POSITION: Table = table! {
     may "euler": Shape::exactly(3, &ANGLE), "[0, 0, 0]";
     /// Cardan angles instead: turn about x, then the new y, then the new z.
     may "cardan": Shape::exactly(3, &ANGLE), "[0, 0, 0]";
-    /// Roll, pitch and yaw instead: turn by the last about z, then by pitch about the new y, then by roll about the new x.
+    /// Roll, pitch and yaw instead: turn by the last about z, then by pitch about the new y, then by roll about the new
+    /// x.
     may "roll_pitch_yaw": Shape::exactly(3, &ANGLE), "[0, 0, 0]";
     /// Quaternion `[w, x, y, z]` instead, of any length.
     may "quaternion": Shape::exactly(4, &NUMBER), "[1, 0, 0, 0]";
@@ -214,13 +216,14 @@ const JOINT: Table = table! {
     may "axis": LINE, "\"z\"";
     /// The second axis: perpendicular to the first, or the axis on body j, as the joint type has it.
     may "axis2": LINE, "\"x\"";
-    /// The global axis across which the joint is the mirror image of another one, as [`[mirror]`](#mirror) writes it: where `axis2` is left
-    /// out, its default is the image of that joint's default.
+    /// The global axis across which the joint is the mirror image of another one, as [`[mirror]`](#mirror) writes it:
+    /// where `axis2` is left out, its default is the image of that joint's default.
     may "mirror": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
-    /// Length of a rod or leg, or distance of a point from its curve, in the length unit. Default: the value in the design configuration. Where it differs from
-    /// that, the mechanism is assembled to it.
+    /// Length of a rod or leg, or distance of a point from its curve, in the length unit. Default: the value in the
+    /// design configuration. Where it differs from that, the mechanism is assembled to it.
     may "length": LENGTH, "250";
-    /// Advance of a screw per turn, in the length unit; negative for a left-hand thread. A `screw` needs it, others have none.
+    /// Advance of a screw per turn, in the length unit; negative for a left-hand thread. A `screw` needs it, others
+    /// have none.
     may "lead": LENGTH, "5";
     /// The curve on body i that a point of body j follows, for the joint type `point_on_curve`.
     may "curve": Shape::Table(&CURVE), "{ points = [\"A\", \"B\", \"C\"] }";

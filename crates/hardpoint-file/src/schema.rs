@@ -28,7 +28,8 @@ pub fn schema() -> String {
     text
 }
 
-/// In a file with a mirror or included files an entry may say only what is different of an image, or of what is included.
+/// In a file with a mirror or included files an entry may say only what is different of an image, or of what is
+/// included.
 fn images(root: &mut Value, definitions: &mut Definitions) {
     let different = json!({ "type": "object", "description": "What is different of the image that the mirror makes, or of what is included." });
     definitions.0.insert("Different".to_owned(), different);

@@ -18,8 +18,8 @@ pub fn pieces(name: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// A name with every word of a side exchanged for its counterpart, if it has any. Done twice it gives the name back, so that two names
-/// never become the same one, unless two words have one counterpart.
+/// A name with every word of a side exchanged for its counterpart, if it has any. Done twice it gives the name back, so
+/// that two names never become the same one, unless two words have one counterpart.
 pub fn exchanged<W: AsRef<str>>(name: &str, words: &[(W, W)]) -> Option<String> {
     let counterpart = |piece: &str| {
         let there = words.iter().find(|(one, _)| one.as_ref() == piece).map(|w| w.1.as_ref());
@@ -29,7 +29,8 @@ pub fn exchanged<W: AsRef<str>>(name: &str, words: &[(W, W)]) -> Option<String> 
     is_sided.then(|| pieces(name).map(|piece| counterpart(piece).unwrap_or(piece)).collect())
 }
 
-/// Returns whether a name belongs to the side that is written: the first word of a side in it decides. None if it has no such word.
+/// Returns whether a name belongs to the side that is written: the first word of a side in it decides. None if it has
+/// no such word.
 pub fn is_original<W: AsRef<str>>(name: &str, words: &[(W, W)]) -> Option<bool> {
     pieces(name).find_map(|piece| {
         let is_one = words.iter().any(|(one, _)| one.as_ref() == piece);

@@ -294,7 +294,8 @@ impl Reader<'_> {
         }
     }
 
-    /// The name that was probably meant. Past the problems that anybody reads, and among more names than that, a guess would only cost time.
+    /// The name that was probably meant. Past the problems that anybody reads, and among more names than that, a guess
+    /// would only cost time.
     pub fn guess<'n>(&self, name: &str, names: impl Iterator<Item = &'n str> + Clone) -> Option<&'n str> {
         let worth = self.found.len() < GUESSED_PROBLEMS
             && names.clone().take(GUESSED_NAMES + 1).count() <= GUESSED_NAMES;

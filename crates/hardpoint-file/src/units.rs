@@ -154,8 +154,8 @@ impl Units {
         power(self.length.per_metre(), of.length_in_units()) * power(self.angle.per_radian(), of.angle)
     }
 
-    /// Number of the user's units of such a number of a mass or force make one SI unit: what loads are made of is in kg, N and N m,
-    /// and per the user's unit of length or angle.
+    /// Number of the user's units of such a number of a mass or force make one SI unit: what loads are made of is in
+    /// kg, N and N m, and per the user's unit of length or angle.
     pub fn per_si_of(self, unit: ElementUnit) -> f64 {
         let (length, angle) = (self.length.per_metre(), self.angle.per_radian());
         match unit {
@@ -203,7 +203,8 @@ impl Units {
     }
 }
 
-/// `x` to a whole power; those of nearly all quantities need no call of a library, as there is one for every number that is written.
+/// `x` to a whole power; those of nearly all quantities need no call of a library, as there is one for every number
+/// that is written.
 fn power(x: f64, exponent: i8) -> f64 {
     match exponent {
         0 => 1.0,

@@ -1,4 +1,5 @@
-//! A walk over a value as it is declared: the names, expressions and vectors in it, for those who say it in another way.
+//! A walk over a value as it is declared: the names, expressions and vectors in it, for those who say it in another
+//! way.
 
 use std::borrow::Cow;
 
@@ -139,7 +140,8 @@ fn keys_of(all: &[Shape], table: &DeTable<'_>) -> Vec<&'static Key> {
     all.iter().flat_map(keys).collect()
 }
 
-/// Says the names in an expression in another way: all that represents a number, with its coordinate behind a point, like `A.x`.
+/// Says the names in an expression in another way: all that represents a number, with its coordinate behind a point,
+/// like `A.x`.
 pub(crate) fn in_expression<'a>(text: &mut Cow<'a, str>, say: impl Fn(&str) -> Option<String>) {
     let (mut out, mut changed, mut rest) = (String::with_capacity(text.len()), false, &**text);
     let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '.';

@@ -122,7 +122,8 @@ fn units(statements: &[Statement], notes: &mut ImportLog) -> (f64, &'static str,
     out
 }
 
-/// Points of time and way over the first second, of a rate of this order: Simpson's rule in steps much shorter than the points' distance.
+/// Points of time and way over the first second, of a rate of this order: Simpson's rule in steps much shorter than the
+/// points' distance.
 fn summed(text: &str, order: usize, scale: f64, begin: f64, rate: f64) -> Result<Vec<[f64; 2]>, String> {
     const POINTS: usize = 200;
     const STEPS: usize = 10;
@@ -564,7 +565,8 @@ impl Reader<'_> {
         }
     }
 
-    /// A function with those of the variables that it names in their place: `VARVAL(3)`. What names itself stays as it is.
+    /// A function with those of the variables that it names in their place: `VARVAL(3)`. What names itself stays as it
+    /// is.
     fn written_out(&self, function: &str) -> String {
         const DEEPEST: usize = 8;
         const LONGEST: usize = 100_000;

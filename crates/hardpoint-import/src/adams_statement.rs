@@ -1,4 +1,5 @@
-//! The statements of Adams/Solver datasets: names, numbers, keys with values, and flags, over as many lines as they take.
+//! The statements of Adams/Solver datasets: names, numbers, keys with values, and flags, over as many lines as they
+//! take.
 
 use hardpoint::space::Vec3;
 
@@ -183,8 +184,8 @@ fn statement(at: SourceSpan, code: &str, label: &str) -> Option<Statement> {
 /// Flags that may stand behind a function.
 const FLAGS: [&str; 5] = ["ROTATIONAL", "TRANSLATIONAL", "DISPLACEMENT", "VELOCITY", "ACCELERATION"];
 
-/// The parts between commas outside of parentheses; a backslash parts too, and a seam before a key or a flag: the comma at the beginning
-/// of a line only continues it where it is in the middle of a list or a function.
+/// The parts between commas outside of parentheses; a backslash parts too, and a seam before a key or a flag: the comma
+/// at the beginning of a line only continues it where it is in the middle of a list or a function.
 fn parts_of(text: &str) -> Vec<String> {
     let (mut out, mut depth) = (vec![String::new()], 0_i32);
     let chars: Vec<char> = text.chars().collect();

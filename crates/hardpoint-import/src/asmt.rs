@@ -1,4 +1,5 @@
-//! Assemblies of OndselSolver (`.asmt`), which FreeCAD's Assembly workbench solves with and exports; with the motion stored in them.
+//! Assemblies of OndselSolver (`.asmt`), which FreeCAD's Assembly workbench solves with and exports; with the motion
+//! stored in them.
 
 use std::collections::BTreeMap;
 
@@ -489,7 +490,8 @@ impl Reader<'_> {
         linked(&mut self.m, self.notes, called, kinds, markers, distance.map(|[d]| d));
     }
 
-    /// A screw holds one coordinate: 2 pi z = pitch * angle, of marker J against marker I. What else holds the parts are other joints.
+    /// A screw holds one coordinate: 2 pi z = pitch * angle, of marker J against marker I. What else holds the parts
+    /// are other joints.
     fn screw(&mut self, joint: &Node<'_>) {
         let Some([i, j]) = self.pair(joint) else { return };
         let called = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
@@ -532,7 +534,8 @@ impl Reader<'_> {
             }
         } else {
             let radius = radius(self, "pitchRadius");
-            // The rack moves along the x axis of marker I, s, the pinion turns about the z axis of marker J: s = r angle.
+            // The rack moves along the x axis of marker I, s, the pinion turns about the z axis of marker J: s = r
+            // angle.
             let slide = carrying(self.joints.values(), i.body, &["translational", "cylindrical"], i.x());
             let hinge = carrying(self.joints.values(), j.body, &hinges, j.z());
             match (radius, slide, hinge) {

@@ -11,8 +11,8 @@ const RACK: f64 = 30.0;
 /// Parts of these that are tried, one after the other: a mechanism may end before.
 const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 
-/// Adds the motions that a vehicle has: of both wheels up and down together and against each other, and of the steering. A single motion
-/// needs no case.
+/// Adds the motions that a vehicle has: of both wheels up and down together and against each other, and of the
+/// steering. A single motion needs no case.
 pub fn of_vehicle(m: &mut Mechanism, notes: &mut ImportLog) {
     let mut bumps: Vec<usize> = m.wheels.iter().map(|w| w.bump).collect();
     bumps.dedup();

@@ -1,5 +1,5 @@
-//! A motion that prescribes how one frame is to another, all six coordinates of it: slides and hinges one behind the other, each
-//! driven, with bodies between them.
+//! A motion that prescribes how one frame is to another, all six coordinates of it: slides and hinges one behind the
+//! other, each driven, with bodies between them.
 
 use hardpoint::law::Law as Function;
 use hardpoint::space::{Mat3, Pose, Vec3};
@@ -21,7 +21,8 @@ struct Step {
     first: f64,
 }
 
-/// Drives frame J against frame I: along the axes of I by three expressions of the time, and then about the axes of this order by three.
+/// Drives frame J against frame I: along the axes of I by three expressions of the time, and then about the axes of
+/// this order by three.
 ///
 /// # Errors
 /// Why it cannot be.

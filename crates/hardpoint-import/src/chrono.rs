@@ -1,4 +1,5 @@
-//! Suspension templates of Project Chrono's vehicle module (JSON): one side, as the file has it, or both with their mirror image.
+//! Suspension templates of Project Chrono's vehicle module (JSON): one side, as the file has it, or both with their
+//! mirror image.
 
 use hardpoint::space::Vec3;
 
@@ -190,7 +191,8 @@ const PARTS: &[&str] = &[
     "Shock",
 ];
 
-/// The masses of the parts, on the bodies that they are of, or at the ends of rods, along the axes that Chrono gives each part.
+/// The masses of the parts, on the bodies that they are of, or at the ends of rods, along the axes that Chrono gives
+/// each part.
 fn masses(root: &Tree, m: &mut Mechanism, template: &str, corner: &Corner, notes: &mut ImportLog) {
     let point = |part: &str, key: &str| root.get(part).and_then(|p| p.get(key)?.vector()).map(Vec3::from);
     let outer = |part: &str| point(part, "Location Upright").or_else(|| point(part, "Location Arm"));

@@ -1,5 +1,5 @@
-//! Live axles of Project Chrono's vehicle module: one rigid axle between both wheels. The file has the left side; the right one is its
-//! mirror image, as Chrono makes it.
+//! Live axles of Project Chrono's vehicle module: one rigid axle between both wheels. The file has the left side; the
+//! right one is its mirror image, as Chrono makes it.
 
 use hardpoint::space::Vec3;
 
@@ -162,7 +162,8 @@ impl Axle<'_> {
         }))
     }
 
-    /// The drag link from the steering to the bell crank; the steering slides along the greater component of the drag link.
+    /// The drag link from the steering to the bell crank; the steering slides along the greater component of the drag
+    /// link.
     fn drag_link(&mut self, crank: usize) -> Option<()> {
         let part = "Draglink";
         let from = self.place(&[part], &["Location Steering", "Location Chassis"]);
@@ -357,7 +358,8 @@ impl Axle<'_> {
             let places = point(crank, "Location Axle").zip(point(crank, "Location Tierod"));
             if let Some((pivot, tie)) = places {
                 let is_solid = template == "SolidAxle";
-                // Of the axle on four links the crank's axes are those of the drag link, across the plane with the lower link.
+                // Of the axle on four links the crank's axes are those of the drag link, across the plane with the
+                // lower link.
                 let lower = point("Lower Link", "Location Axle").filter(|_| is_solid);
                 let axes = lower.and_then(|l| chrono_part::link_axes(from - to, (to - l).cross(from - l)));
                 let centre = if is_solid { (to + pivot + tie) * (1.0 / 3.0) } else { pivot };

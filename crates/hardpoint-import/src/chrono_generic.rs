@@ -1,5 +1,5 @@
-//! The template of Project Chrono whose file has its bodies and joints one by one (`GenericWheeledSuspension`): the left side, and the
-//! right one, its mirror image, where both hang on a body between them.
+//! The template of Project Chrono whose file has its bodies and joints one by one (`GenericWheeledSuspension`): the
+//! left side, and the right one, its mirror image, where both hang on a body between them.
 
 use std::collections::BTreeMap;
 

@@ -100,8 +100,8 @@ impl Masses<'_> {
         self.root.get(part).map(|t| t.at)
     }
 
-    /// The mass of a part on a body; its centre on the left, where the part has none of its own; its axes on this side, if they are not
-    /// the global ones.
+    /// The mass of a part on a body; its centre on the left, where the part has none of its own; its axes on this side,
+    /// if they are not the global ones.
     pub fn on(&mut self, part: &str, body: &str, centre: Option<Vec3>, axes: Option<Mat3>) {
         let Some(tree) = self.root.get(part) else { return };
         let Some(Inertial { mass, inertia }) = Inertial::of(tree) else { return };
@@ -268,7 +268,8 @@ fn points(list: &Tree) -> Option<Vec<[f64; 2]>> {
     (points.len() >= 2 && points.windows(2).all(|w| w[0][0] < w[1][0])).then_some(points)
 }
 
-/// Accounts for all keys of the file besides the parts that were read: those that hold something else, and keys that are not known.
+/// Accounts for all keys of the file besides the parts that were read: those that hold something else, and keys that
+/// are not known.
 pub fn account(root: &Tree, read: &[&str], notes: &mut ImportLog) {
     for (key, at, value) in root.entries() {
         match key.as_str() {

@@ -1,4 +1,5 @@
-//! Loops that a source leaves open: frames on two bodies that meet, as the user names them, or as they look like a pair.
+//! Loops that a source leaves open: frames on two bodies that meet, as the user names them, or as they look like a
+//! pair.
 
 use std::collections::BTreeSet;
 use std::str::FromStr;

@@ -1,5 +1,5 @@
-//! Meshes in COLLADA, as most robots have them: what the scene shows, as triangles in metres. The axis that a file calls up is left alone,
-//! as RViz and Gazebo do: such meshes are already in the frames of their links.
+//! Meshes in COLLADA, as most robots have them: what the scene shows, as triangles in metres. The axis that a file
+//! calls up is left alone, as RViz and Gazebo do: such meshes are already in the frames of their links.
 
 use std::collections::BTreeMap;
 

@@ -440,8 +440,8 @@ pub fn bump(
     m.driver(&format!("bump{suffix}"), note, drives, Law::Text(text))
 }
 
-/// The spin axis, outboard, of a wheel with static camber and toe-in, in rad: toe-in turns it forward, camber tilts it down. `side` is 1
-/// on the left and -1 on the right.
+/// The spin axis, outboard, of a wheel with static camber and toe-in, in rad: toe-in turns it forward, camber tilts it
+/// down. `side` is 1 on the left and -1 on the right.
 pub fn spin_axis(side: f64, camber: f64, toe: f64) -> Vec3 {
     Vec3::from([toe.sin() * camber.cos(), side * toe.cos() * camber.cos(), -camber.sin()])
 }
@@ -456,7 +456,8 @@ impl Corner {
         found.and_then(|v| <[Vec3; N]>::try_from(v).ok())
     }
 
-    /// Returns whether that many rods, with its arm and its tie rod, hold an upright with one freedom: a multi-link suspension.
+    /// Returns whether that many rods, with its arm and its tie rod, hold an upright with one freedom: a multi-link
+    /// suspension.
     pub fn is_held_by(&self, rods: usize) -> bool {
         use Role::*;
         let arm = |roles: [Role; 3]| 2 * usize::from(self.all(roles).is_some());
@@ -478,7 +479,8 @@ impl Corner {
         out
     }
 
-    /// Bodies, joints and the wheel of it; `rack` is that of the axle, once there is one. Whether its topology is known.
+    /// Bodies, joints and the wheel of it; `rack` is that of the axle, once there is one. Whether its topology is
+    /// known.
     pub fn build(&self, m: &mut Mechanism, notes: &mut ImportLog, rack: &mut Option<usize>) -> bool {
         use Role::*;
         let lower = self.all([LowerFront, LowerRear, LowerOuter]);
@@ -720,7 +722,8 @@ impl Corner {
         Some(body)
     }
 
-    /// Adds coilover, damper and spring as legs, whose lengths are worth knowing, and their forces. Returns the ends of the spring.
+    /// Adds coilover, damper and spring as legs, whose lengths are worth knowing, and their forces. Returns the ends of
+    /// the spring.
     fn springs(
         &self,
         m: &mut Mechanism,

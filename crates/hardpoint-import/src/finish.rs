@@ -30,8 +30,8 @@ const MOST_TIMES: usize = 200;
 /// Mechanisms with more motions left open than this are reported as they are.
 const MOST_HELD: usize = 400;
 
-/// Holds what nothing holds, and drives what nothing drives. What remains wrong is handed back: the model is written all the same, for
-/// the user to mend.
+/// Holds what nothing holds, and drives what nothing drives. What remains wrong is handed back: the model is written
+/// all the same, for the user to mend.
 ///
 /// Gaps of up to `closed` parts of its size are taken as closed where they stand, if what is held keeps them open.
 pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<Diagnostic> {
@@ -111,7 +111,8 @@ pub fn remark(m: &Mechanism, notes: &mut ImportLog, closes: bool) {
     ));
 }
 
-/// Takes as closed what is drawn open where it does not close, since what nothing drives is fixed in the design configuration.
+/// Takes as closed what is drawn open where it does not close, since what nothing drives is fixed in the design
+/// configuration.
 fn as_drawn(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
     let rods = ["distance", "leg", "revolute_spherical"];
     let is_open = |j: &Joint| j.length.is_some() || (j.at.len() > 1 && !rods.contains(&j.kind));
@@ -157,8 +158,8 @@ fn assembles(m: &Mechanism) -> bool {
     })
 }
 
-/// A point to look at first, where the source names none: of the last body of the longest chain of joints that move, at its place that
-/// is farthest from the joint that carries it.
+/// A point to look at first, where the source names none: of the last body of the longest chain of joints that move, at
+/// its place that is farthest from the joint that carries it.
 pub fn end_point(m: &mut Mechanism, notes: &mut ImportLog) {
     if !m.points.is_empty() || !m.wheels.is_empty() {
         return;
@@ -207,7 +208,8 @@ pub fn end_point(m: &mut Mechanism, notes: &mut ImportLog) {
     notes.approximated("point", &name, None, why);
 }
 
-/// Leaves out the design variables that the mechanism cannot follow: a plane loop, say, whose hinge would leave the plane.
+/// Leaves out the design variables that the mechanism cannot follow: a plane loop, say, whose hinge would leave the
+/// plane.
 fn unfollowed(m: &mut Mechanism, notes: &mut ImportLog) {
     let Ok(mut file) = parsed(m) else { return };
     let times = &mut file.model.times;
@@ -347,8 +349,8 @@ fn parsed(m: &Mechanism) -> Result<hardpoint_file::ModelFile, String> {
 enum FixableMotion {
     /// A coordinate of it.
     Coordinate(usize, &'static str),
-    /// Some of the angles between its bodies, these axes, together: to hold one turn of a body that else spins idly leaves as much to
-    /// hold as before.
+    /// Some of the angles between its bodies, these axes, together: to hold one turn of a body that else spins idly
+    /// leaves as much to hold as before.
     Turns(usize, &'static [usize]),
     /// One of the angles between its bodies.
     Turn(usize, usize),

@@ -1,4 +1,5 @@
-//! Documents of FreeCAD's Assembly workbench (`.FCStd`): parts where they stand, joints, grounded parts, motions of simulations.
+//! Documents of FreeCAD's Assembly workbench (`.FCStd`): parts where they stand, joints, grounded parts, motions of
+//! simulations.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Cursor, Read};
@@ -653,7 +654,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// As the solver has it, one relation of the slide and the turn; a joint of its own where no others say how its parts move.
+    /// As the solver has it, one relation of the slide and the turn; a joint of its own where no others say how its
+    /// parts move.
     fn screw(&mut self, joint: &'a str, markers: [Marker; 2], lead: Option<f64>) {
         let object = &self.objects[joint];
         let called = JointSource { kind: "Screw", name: object.label(), at: object.at() };

@@ -1,7 +1,8 @@
 //! Mechanisms of other programs as model files of Hardpoint.
 //!
-//! Each format is one file that makes a [`Mechanism`] of a source and indicates what became of each element of it ([`Report`]). One writer
-//! makes the model file; what the source leaves undriven is held, or driven where it plainly is the input, and the report says so.
+//! Each format is one file that makes a [`Mechanism`] of a source and indicates what became of each element of it
+//! ([`Report`]). One writer makes the model file; what the source leaves undriven is held, or driven where it plainly
+//! is the input, and the report says so.
 //!
 //! ```
 //! let urdf = r#"
@@ -373,7 +374,8 @@ fn decoded(bytes: &[u8]) -> String {
 }
 
 impl Input<'_> {
-    /// The bytes of a file that the source names, as it is written or without the folders before that only its author has.
+    /// The bytes of a file that the source names, as it is written or without the folders before that only its author
+    /// has.
     fn file(&self, path: &str) -> Option<Vec<u8>> {
         let local =
             ["file://", "package://", "model://"].iter().find_map(|p| path.strip_prefix(p)).unwrap_or(path);

@@ -1,5 +1,5 @@
-//! Live axles by the names of their hardpoints: rods between the body of the vehicle and one rigid axle, a Panhard rod or a Watt linkage
-//! across, springs and dampers.
+//! Live axles by the names of their hardpoints: rods between the body of the vehicle and one rigid axle, a Panhard rod
+//! or a Watt linkage across, springs and dampers.
 
 use std::collections::BTreeMap;
 
@@ -99,8 +99,8 @@ fn rods(places: &[Places; 3]) -> (BTreeMap<(usize, &str), Rod>, Option<Vec3>) {
     (rods, pivot)
 }
 
-/// Builds the axle of the places of the left and right side and of those in between; `corners` are the known hardpoints of both sides.
-/// Returns whether its rods leave it one or two freedoms.
+/// Builds the axle of the places of the left and right side and of those in between; `corners` are the known hardpoints
+/// of both sides. Returns whether its rods leave it one or two freedoms.
 pub fn build(
     m: &mut Mechanism,
     notes: &mut ImportLog,

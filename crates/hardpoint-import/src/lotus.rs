@@ -183,7 +183,8 @@ pub fn half_round([x, y, z]: [f64; 3]) -> Vec3 {
     Vec3::from([0.0 - x, 0.0 - y, z])
 }
 
-/// The ball joint of a strut's arm may have its own name; a spindle point outboard of the centre is the axis all the same.
+/// The ball joint of a strut's arm may have its own name; a spindle point outboard of the centre is the axis all the
+/// same.
 fn complete(corner: &mut Corner) {
     let [spindle, centre] = [Role::Spindle, Role::WheelCentre].map(|r| corner.points.get(&r).copied());
     if let (Some(spindle), Some(centre)) = (spindle, centre)

@@ -75,7 +75,8 @@ impl JointSource<'_> {
     }
 }
 
-/// Adds a joint of a type whose geometry follows from two markers, body i's and body j's; its number. What is drawn open is reported.
+/// Adds a joint of a type whose geometry follows from two markers, body i's and body j's; its number. What is drawn
+/// open is reported.
 pub fn join(
     m: &mut Mechanism,
     notes: &mut ImportLog,
@@ -140,7 +141,8 @@ pub fn join(
         }
         _ => {}
     }
-    // What is turned by more than digits that are missing is closed: by a frame on body i that turns, with what the joint has there.
+    // What is turned by more than digits that are missing is closed: by a frame on body i that turns, with what the
+    // joint has there.
     let turn = if awry { turn_between(kind, [&i, &j]) } else { None };
     if let Some(turn) = turn {
         let holds_point = ["revolute", "universal"].contains(&kind);
@@ -170,8 +172,8 @@ pub fn join(
     Some(m.joint(joint))
 }
 
-/// Rotation of body j that makes the axes of a joint agree and keeps the angle about them; none where no rotation does, or one
-/// that is only digits that are missing.
+/// Rotation of body j that makes the axes of a joint agree and keeps the angle about them; none where no rotation does,
+/// or one that is only digits that are missing.
 fn turn_between(kind: &str, [i, j]: [&Marker; 2]) -> Option<Mat3> {
     let turn = if ["universal", "dot1"].contains(&kind) {
         let (a, b) = (i.z(), j.z());
@@ -188,7 +190,8 @@ fn turn_between(kind: &str, [i, j]: [&Marker; 2]) -> Option<Mat3> {
     (turn.angle_to(none()) > MEANT).then_some(turn)
 }
 
-/// Numbers of a source that differ by less than this part of the mechanism's size from what is drawn say the same as that.
+/// Numbers of a source that differ by less than this part of the mechanism's size from what is drawn say the same as
+/// that.
 const SAID: f64 = 1e-6;
 
 /// True if a length that the source says is the drawn one.
@@ -196,8 +199,9 @@ pub fn is_drawn(m: &Mechanism, said: f64, drawn: f64) -> bool {
     (said - drawn).abs() <= SAID * m.size().max(said.abs())
 }
 
-/// Two joints with a link between them, which has a body of its own: the parts keep a distance from axis to axis, or from an axis to a
-/// point. The first joint, of body i, and the link's, are about z of the first marker; of the second the type is reported.
+/// Two joints with a link between them, which has a body of its own: the parts keep a distance from axis to axis, or
+/// from an axis to a point. The first joint, of body i, and the link's, are about z of the first marker; of the second
+/// the type is reported.
 pub fn linked(
     m: &mut Mechanism,
     notes: &mut ImportLog,
@@ -346,7 +350,8 @@ pub fn way(joint: &MarkerJoint, body: usize, axis: Vec3) -> f64 {
     sign * joint.markers[0].z().dot(axis).signum()
 }
 
-/// A law that counts from what it counts from in the source, made to count from the drawing; of angles, by the shorter way round.
+/// A law that counts from what it counts from in the source, made to count from the drawing; of angles, by the shorter
+/// way round.
 pub fn counted(text: &str, drawn: f64, turns: bool) -> String {
     use std::f64::consts::TAU;
     let begins = hardpoint::law::Law::parse(text).map_or(0.0_f64, |law| law.at(0.0).0[0]);

@@ -1,5 +1,5 @@
-//! Models of MuJoCo (MJCF): includes, default classes, frames, bodies with several joints, equality constraints. Read with `roxmltree`:
-//! `mjcf-rs` knows neither classes of defaults nor places in the text.
+//! Models of MuJoCo (MJCF): includes, default classes, frames, bodies with several joints, equality constraints. Read
+//! with `roxmltree`: `mjcf-rs` knows neither classes of defaults nor places in the text.
 
 mod defaults;
 mod equality;

@@ -1,5 +1,5 @@
-//! Shared parts of the robot formats: welds of frames that lie apart, joints that follow others, masses, springs, plugins. Vehicles share
-//! their masses and gravity.
+//! Shared parts of the robot formats: welds of frames that lie apart, joints that follow others, masses, springs,
+//! plugins. Vehicles share their masses and gravity.
 
 use hardpoint::space::{Mat3, Pose};
 use roxmltree::Node;
@@ -30,7 +30,8 @@ pub const BALL_ENDS: [(&str, &str); 2] =
 const PARALLEL: f64 = 1e-5;
 /// Frames nearer than this part of the mechanism's size are at one place, for the same reason.
 const SAME_PLACE: f64 = 1e-5;
-/// Excess that a principal moment of inertia may have over the sum of the two others, as a part of the largest: files have few digits.
+/// Excess that a principal moment of inertia may have over the sum of the two others, as a part of the largest: files
+/// have few digits.
 const FLAT: f64 = 5e-4;
 /// Number of links, joints and bodies of a source that are read at most.
 pub const MOST_PARTS: usize = 5000;
@@ -132,7 +133,8 @@ pub fn is_mimic_plugin(node: Node<'_, '_>) -> bool {
     FOLLOWS.iter().any(|key| child(node, key).is_some())
 }
 
-/// Reads a plugin of Gazebo that makes a joint follow another, if it is one of those: in `mimicJoint` the one that follows.
+/// Reads a plugin of Gazebo that makes a joint follow another, if it is one of those: in `mimicJoint` the one that
+/// follows.
 pub fn mimic_plugin<'a, 'i>(
     text: usize,
     node: Node<'a, 'i>,
@@ -237,8 +239,9 @@ pub fn follow(
     notes.taken("mimic", name, at);
 }
 
-/// Holds two frames on two bodies together, as a joint of type `fixed` or, but for their places, `orientation`; its number. Where they lie
-/// apart or are turned against each other in the design configuration, the mechanism is assembled so.
+/// Holds two frames on two bodies together, as a joint of type `fixed` or, but for their places, `orientation`; its
+/// number. Where they lie apart or are turned against each other in the design configuration, the mechanism is
+/// assembled so.
 pub fn weld(
     m: &mut Mechanism,
     notes: &mut ImportLog,
@@ -271,7 +274,8 @@ pub fn weld(
     Some(number)
 }
 
-/// Adds a frame on a body that turns, about its origin, from where it is drawn to where it belongs before the mechanism moves; its number.
+/// Adds a frame on a body that turns, about its origin, from where it is drawn to where it belongs before the mechanism
+/// moves; its number.
 pub fn turned_frame(
     m: &mut Mechanism,
     name: &str,
@@ -349,7 +353,8 @@ pub fn mass(
     }
 }
 
-/// Returns whether a body can have this inertia matrix about its centre: half its trace times 1, less it, has no negative eigenvalue.
+/// Returns whether a body can have this inertia matrix about its centre: half its trace times 1, less it, has no
+/// negative eigenvalue.
 fn is_possible(i: Mat3) -> bool {
     let m = |r: usize, c: usize| i.cols[c][r];
     let half = 0.5 * (m(0, 0) + m(1, 1) + m(2, 2));

@@ -1,4 +1,5 @@
-//! Models and worlds in SDFormat (Gazebo): frames, nested and included models, joints with their axes, mimic and gearbox.
+//! Models and worlds in SDFormat (Gazebo): frames, nested and included models, joints with their axes, mimic and
+//! gearbox.
 
 mod joints;
 
@@ -397,8 +398,8 @@ impl<'d> Reader<'d, '_> {
         name.unwrap_or_default().to_owned()
     }
 
-    /// Places what is in a model as its poses refer to each other. A model may be placed more than once: its own frame may depend on
-    /// another that is in it.
+    /// Places what is in a model as its poses refer to each other. A model may be placed more than once: its own frame
+    /// may depend on another that is in it.
     fn place(&mut self, k: usize, place: Pose) {
         self.placed += 1;
         if self.placed > MOST_PLACED {

@@ -23,7 +23,8 @@ pub struct Series {
 pub struct StoredPose {
     /// Pose of its frame.
     pub pose: Pose,
-    /// Velocity of the frame's origin, angular velocity, acceleration and angular acceleration, as far as they are stored.
+    /// Velocity of the frame's origin, angular velocity, acceleration and angular acceleration, as far as they are
+    /// stored.
     pub rates: [Option<Vec3>; 4],
 }
 

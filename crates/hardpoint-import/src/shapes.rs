@@ -1,4 +1,5 @@
-//! Shapes of bodies: meshes that a source names, boxes, cylinders and balls; all of a body become one file of triangles.
+//! Shapes of bodies: meshes that a source names, boxes, cylinders and balls; all of a body become one file of
+//! triangles.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;

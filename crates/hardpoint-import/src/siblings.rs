@@ -1,4 +1,5 @@
-//! Files of programs whose other files are read here, by what is in them: a message names the file to export in place of them.
+//! Files of programs whose other files are read here, by what is in them: a message names the file to export in place
+//! of them.
 
 /// A kind of file that is not read.
 pub struct Sibling {

@@ -1,4 +1,5 @@
-//! Left and right sides of a vehicle: names, mirror images across y = 0, and the test whether the right side is the image of the left one.
+//! Left and right sides of a vehicle: names, mirror images across y = 0, and the test whether the right side is the
+//! image of the left one.
 
 use std::collections::HashSet;
 
@@ -47,8 +48,8 @@ pub fn base(name: &str) -> Option<String> {
     Some(words.join("_")).filter(|base| !base.is_empty() && is_original(base, &BOTH).is_none())
 }
 
-/// The joints of the right side that are no images of their counterparts, if all else of it is the image of the left side; none if it is
-/// not, or if there are no sides.
+/// The joints of the right side that are no images of their counterparts, if all else of it is the image of the left
+/// side; none if it is not, or if there are no sides.
 pub fn symmetry(m: &Mechanism) -> Option<HashSet<&str>> {
     let is_sided = |c: &crate::mechanism::Coupler| {
         let joints = c.terms.iter().map(|(c, _)| m.joints[c.joint].name.as_str());
@@ -108,7 +109,8 @@ impl Mirror<'_> {
         left.unit().zip(right.unit()).is_some_and(|(l, r)| apart(l, r))
     }
 
-    /// Returns whether one axis is the other's image up to its sign, or both are none: an axis that turns is one either way round.
+    /// Returns whether one axis is the other's image up to its sign, or both are none: an axis that turns is one either
+    /// way round.
     fn is_axis(left: Option<Vec3>, right: Option<Vec3>) -> bool {
         match (left, right) {
             (Some(l), Some(r)) => Self::is_direction(l, r) || Self::is_direction(l, -r),

@@ -1,4 +1,5 @@
-//! Axes that are meant to be parallel: sources write angles with few digits, and a loop whose axes are off by a little cannot move.
+//! Axes that are meant to be parallel: sources write angles with few digits, and a loop whose axes are off by a little
+//! cannot move.
 
 use std::collections::BTreeSet;
 

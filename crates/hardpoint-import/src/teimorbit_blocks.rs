@@ -1,5 +1,5 @@
-//! Blocks of Adams/Car subsystems besides their hardpoints and parameters: masses of parts, and elements whose property files hold what
-//! they do.
+//! Blocks of Adams/Car subsystems besides their hardpoints and parameters: masses of parts, and elements whose property
+//! files hold what they do.
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 

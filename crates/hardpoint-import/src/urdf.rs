@@ -1,5 +1,5 @@
-//! Robots in URDF: the tree, mimic joints, loops by the usual extensions. Read with `roxmltree`: `urdf-rs` gives no places in the text
-//! and leaves out what it does not know.
+//! Robots in URDF: the tree, mimic joints, loops by the usual extensions. Read with `roxmltree`: `urdf-rs` gives no
+//! places in the text and leaves out what it does not know.
 
 mod loops;
 
@@ -441,7 +441,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// A joint of a type of URDF between two frames, whose axis is the same in both; its number, if it is more than a hold.
+    /// A joint of a type of URDF between two frames, whose axis is the same in both; its number, if it is more than a
+    /// hold.
     fn connect(
         &mut self,
         node: Node<'a, 'i>,

@@ -8,11 +8,13 @@ use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value, value};
 use crate::mechanism::{Drives, ForceOn, GROUND, Law, Mechanism, valid_name};
 use crate::sides::{self, over, with_word};
 
-/// Places nearer to each other than this part of the mechanism's size are one hardpoint; coordinates that were typed agree to about this.
+/// Places nearer to each other than this part of the mechanism's size are one hardpoint; coordinates that were typed
+/// agree to about this.
 pub(crate) const SAME_PLACE: f64 = 1e-9;
 /// Coordinates below this part of the mechanism's size are what rounding left of zero.
 const ROUND_OFF: f64 = 1e-13;
-/// A model with more hardpoints than this gets no design variables of its own accord: a page with three hundred helps nobody.
+/// A model with more hardpoints than this gets no design variables of its own accord: a page with three hundred helps
+/// nobody.
 const MOST_VARIED: usize = 24;
 /// Without output times of the source there are that many intervals in one second.
 const STEPS: i64 = 100;

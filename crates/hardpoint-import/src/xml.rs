@@ -82,8 +82,9 @@ pub fn parse_quietly(text: &str) -> Result<Document<'_>, String> {
     Document::parse_with_options(text, options()).map_err(|e| format!("it is not valid XML: {e}"))
 }
 
-/// The text as the readers of robot formats take it, every byte where it was: comments, which may hold `--`, and the declaration, which
-/// need not come first, are blank, and so is a document type that declares no entities; what has a prefix that nothing declares is written with `_`, as `controller_joint`.
+/// The text as the readers of robot formats take it, every byte where it was: comments, which may hold `--`, and the
+/// declaration, which need not come first, are blank, and so is a document type that declares no entities; what has a
+/// prefix that nothing declares is written with `_`, as `controller_joint`.
 pub fn lenient(text: &str) -> String {
     let mut out = text.as_bytes().to_vec();
     let blank = |out: &mut Vec<u8>, range: std::ops::Range<usize>| {
@@ -236,7 +237,8 @@ pub fn at(text: usize, node: Node<'_, '_>) -> Option<SourceSpan> {
     Some(SourceSpan { text, start, end: start + 1 + node.tag_name().name().len() })
 }
 
-/// The name of an element without the prefix of a program that is known: `drake:ball_constraint`, whether the prefix is declared or not.
+/// The name of an element without the prefix of a program that is known: `drake:ball_constraint`, whether the prefix is
+/// declared or not.
 pub fn local<'a>(node: Node<'a, '_>) -> &'a str {
     let name = node.tag_name().name();
     name.strip_prefix("drake_").unwrap_or(name)
@@ -253,7 +255,8 @@ pub struct Vocabulary {
     pub irrelevant: &'static [&'static str],
 }
 
-/// Lists what an element has that its reader does not know: unknown is not irrelevant. `owner` is the name of what it belongs to.
+/// Lists what an element has that its reader does not know: unknown is not irrelevant. `owner` is the name of what it
+/// belongs to.
 pub fn unknown(text: usize, node: Node<'_, '_>, owner: &str, words: Vocabulary, notes: &mut ImportLog) {
     let kind = node.tag_name().name();
     for a in node.attributes().filter(|a| !words.attributes.contains(&a.name())) {
@@ -320,7 +323,8 @@ pub fn bound(text: &str, what: &str, at: Option<SourceSpan>, notes: &mut ImportL
     value
 }
 
-/// The range between two bounds; none where it is empty or has no end: such ends stand for no limit at all, as do numbers beyond these.
+/// The range between two bounds; none where it is empty or has no end: such ends stand for no limit at all, as do
+/// numbers beyond these.
 pub fn range(low: f64, high: f64) -> Option<[f64; 2]> {
     (low < high && low.abs() < UNLIMITED && high.abs() < UNLIMITED).then_some([low, high])
 }

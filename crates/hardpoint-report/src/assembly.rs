@@ -17,8 +17,8 @@ pub struct AssemblyFact {
     pub gaps: Vec<GapFact>,
     /// The bodies that moved.
     pub moved: Vec<MovedFact>,
-    /// Number of assemblies found around the drawing, where the path from it leads to none; the nearest was taken. 0 where the gaps were
-    /// closed along the path.
+    /// Number of assemblies found around the drawing, where the path from it leads to none; the nearest was taken. 0
+    /// where the gaps were closed along the path.
     pub found_nearby: usize,
 }
 

@@ -46,7 +46,8 @@ pub struct CalibrateFacts {
     pub status: &'static str,
     /// The same in words, and what to do.
     pub message: String,
-    /// The sum of squared residuals, or of the loss, in standard deviations: in the design configuration, and of the design found.
+    /// The sum of squared residuals, or of the loss, in standard deviations: in the design configuration, and of the
+    /// design found.
     pub objective: [f64; 2],
     /// Cost of the search.
     pub evaluations: Evaluations,
@@ -56,7 +57,8 @@ pub struct CalibrateFacts {
     pub postures: usize,
     /// Readings less what they tell.
     pub freedom: usize,
-    /// Standard deviation of the residuals: in those that were given, 1 where all is as it says; else in `scatter_unit`.
+    /// Standard deviation of the residuals: in those that were given, 1 where all is as it says; else in
+    /// `scatter_unit`.
     pub scatter: Option<f64>,
     /// The unit of that; empty where standard deviations were given.
     pub scatter_unit: String,
@@ -573,7 +575,8 @@ impl CalibrateFacts {
         .collect()
     }
 
-    /// The page of the design found becomes that of the calibration: residuals as points, and what is reported here first among its checks.
+    /// The page of the design found becomes that of the calibration: residuals as points, and what is reported here
+    /// first among its checks.
     pub fn page(&self, of: &CalibrationInputs<'_>, mut page: Payload, outputs: &[Output]) -> Payload {
         let first = of.compared().next().map(|(r, _)| &of.output(r.output).name);
         page.first = first.and_then(|name| outputs.iter().position(|o| o.name == *name)).or(page.first);

@@ -1,7 +1,7 @@
 //! Columns of the result files: one rule for all of them (`docs/results.md`).
 //!
-//! A component of a vector is called after its order: `wheel.x`, `wheel.vx`, `wheel.ax`, `wheel.jx`; of an angular vector
-//! `wheel.omega_x`, `wheel.alpha_x`. What is a number by itself has the order in words: `toe`, `toe rate`,
+//! A component of a vector is called after its order: `wheel.x`, `wheel.vx`, `wheel.ax`, `wheel.jx`; of an angular
+//! vector `wheel.omega_x`, `wheel.alpha_x`. What is a number by itself has the order in words: `toe`, `toe rate`,
 //! `toe acceleration`.
 
 use hardpoint::Solution;
@@ -73,7 +73,8 @@ impl Columns<'_> {
         columns
     }
 
-    /// Those of the sensitivities by one variable, after time, variable and its unit; the unit is that of the numerator.
+    /// Those of the sensitivities by one variable, after time, variable and its unit; the unit is that of the
+    /// numerator.
     pub fn of_sensitivities(&self) -> Vec<Column> {
         let mut columns = Vec::new();
         for body in self.bodies() {

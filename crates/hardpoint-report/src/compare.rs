@@ -1,4 +1,5 @@
-//! `compare.json`, `compare.csv` and `compare.html`: two model files beside each other, what differs and what that does.
+//! `compare.json`, `compare.csv` and `compare.html`: two model files beside each other, what differs and what that
+//! does.
 
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -16,7 +17,8 @@ use crate::course::{RoundOff, settled};
 use crate::figures::{number, rounded, unit, with_unit};
 use crate::page::{Payload, Table};
 
-/// Hardpoints nearer to each other than this, m, are at the same place: numbers in different units agree to round-off only.
+/// Hardpoints nearer to each other than this, m, are at the same place: numbers in different units agree to round-off
+/// only.
 const SAME_PLACE: f64 = 1e-12;
 
 /// Two designs beside each other. Figures are in the units of the first file, times in s.
@@ -206,7 +208,8 @@ fn shown_difference(by: Option<f64>, unit: &str) -> String {
     by.map_or("-".into(), |by| format!("{}{unit}", rounded(by, 4)))
 }
 
-/// True if two mechanisms have the same bodies and outputs in the same order, so that they can be drawn beside each other.
+/// True if two mechanisms have the same bodies and outputs in the same order, so that they can be drawn beside each
+/// other.
 pub fn are_alike(both: [SolvedModel<'_>; 2]) -> bool {
     let bodies = both.map(|s| s.file.model.bodies.iter().map(|b| &b.name).collect::<Vec<_>>());
     let outputs =

@@ -15,8 +15,8 @@ const KEPT_BYTES: usize = 64 << 20;
 const ENOUGH_ROWS: usize = 512;
 /// Curves that metrics are taken from may have that many bytes.
 const METRIC_BYTES: usize = 256 << 20;
-/// The first time of a largest value is the first that comes this near to it: of the periods of a motion the first, whatever its
-/// last digits.
+/// The first time of a largest value is the first that comes this near to it: of the periods of a motion the first,
+/// whatever its last digits.
 const AS_LARGE: f64 = 1e-9;
 /// A value that exceeds the largest so far by less than this part is not reported from it.
 const SAME: f64 = 1e-12;
@@ -175,8 +175,8 @@ impl Course {
         Some(self.shifts.as_ref()?.stride(self.steps)? / self.stride)
     }
 
-    /// Place and turn of body i by variable b, to first order, SI, at an output time of those that are kept; `None` where the mechanism
-    /// cannot follow.
+    /// Place and turn of body i by variable b, to first order, SI, at an output time of those that are kept; `None`
+    /// where the mechanism cannot follow.
     ///
     /// # Panics
     /// Where that was not kept ([`shift_stride`](Self::shift_stride)).
@@ -227,7 +227,8 @@ impl MarginCourse {
             if self.start.is_none() {
                 (self.start, self.span[0]) = (Some(margin), t);
             }
-            // Of the periods of a motion the first has the least, whatever the last digits. Written so that NaN is the least of all.
+            // Of the periods of a motion the first has the least, whatever the last digits. Written so that NaN is the
+            // least of all.
             if self.least.is_none_or(|(least, _)| !(margin.value >= least.value * (1.0 - AS_LARGE))) {
                 self.least = Some((margin, t));
             }

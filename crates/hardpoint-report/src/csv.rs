@@ -1,8 +1,8 @@
 //! `motion.csv`, `sensitivity.csv` and `jerk.csv`: solved numbers in the user's units, with all their digits.
 //!
 //! Numbers are the shortest decimals that read back as the same double; where there is no number, the field is empty. A
-//! column's unit is in its header. In `sensitivity.csv` that is the unit of the numerator; that of the denominator is in
-//! column `per`. What each column is: `docs/results.md`.
+//! column's unit is in its header. In `sensitivity.csv` that is the unit of the numerator; that of the denominator is
+//! in column `per`. What each column is: `docs/results.md`.
 
 use std::borrow::Cow;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -107,8 +107,8 @@ impl<'m, W: Write> SensitivityCsv<'m, W> {
     }
 }
 
-/// Copies a `sensitivity.csv` without the rows of these variables, which are among its first `rows`: that the mechanism cannot
-/// follow them was not known when they were written. False where it was not to go on.
+/// Copies a `sensitivity.csv` without the rows of these variables, which are among its first `rows`: that the mechanism
+/// cannot follow them was not known when they were written. False where it was not to go on.
 ///
 /// # Errors
 /// Where either cannot be read or written.
@@ -155,7 +155,8 @@ pub struct JerkCsv<'m, W: Write> {
 }
 
 impl<'m, W: Write> JerkCsv<'m, W> {
-    /// With its header: time, and the third time derivatives of every body but ground, of its origin and of its orientation.
+    /// With its header: time, and the third time derivatives of every body but ground, of its origin and of its
+    /// orientation.
     ///
     /// # Errors
     /// Where `out` cannot be written.

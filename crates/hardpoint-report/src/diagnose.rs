@@ -180,7 +180,8 @@ pub(crate) fn driver_values(file: &ModelFile, stop: &Stop) -> String {
     if values.is_empty() { String::new() } else { format!(", with {}", some_of(&values, ", ")) }
 }
 
-/// A residual above this part of the shortest distance between joints is visible in the motion: no number is to be relied on.
+/// A residual above this part of the shortest distance between joints is visible in the motion: no number is to be
+/// relied on.
 const VISIBLE: f64 = 1e-3;
 /// Residuals of directions count as closed up to this, rad: below it a residual says nothing about lengths.
 const LEAST_VISIBLE: f64 = 1e-5;

@@ -1,10 +1,11 @@
 //! Encoding of a page's data: its JSON and all its curves as one deflated block in base64.
 //!
-//! A curve is one or more *tracks*: a curve that holds several numbers per step, such as the seven of a pose, has a track for each.
-//! What the page computes with is kept to the last bit of its `f32`; what it only draws and ranks, the sensitivities, to
-//! [`ERROR`] of the track's own range. Either way a track is a list of whole numbers. Curves are smooth, so of their differences
-//! of first to fourth order one has small numbers; these are written byte by byte (all lowest bytes first), which deflate takes to
-//! about half a byte per value. Zeros stay zeros and gaps stay gaps; a constant takes no values; equal tracks are written once.
+//! A curve is one or more *tracks*: a curve that holds several numbers per step, such as the seven of a pose, has a
+//! track for each. What the page computes with is kept to the last bit of its `f32`; what it only draws and ranks, the
+//! sensitivities, to [`ERROR`] of the track's own range. Either way a track is a list of whole numbers. Curves are
+//! smooth, so of their differences of first to fourth order one has small numbers; these are written byte by byte (all
+//! lowest bytes first), which deflate takes to about half a byte per value. Zeros stay zeros and gaps stay gaps; a
+//! constant takes no values; equal tracks are written once.
 //!
 //! The inflated block, little-endian:
 //!
@@ -31,7 +32,8 @@ use crate::page::{Curve, Design, Payload};
 
 /// Maximum error of a value that is only drawn, relative to the range of its track.
 pub const ERROR: f64 = 1e-5;
-/// Steps of the grid within the range: half a step is 0.83e-5 of it, which leaves some of [`ERROR`] for the rounding to `f32`.
+/// Steps of the grid within the range: half a step is 0.83e-5 of it, which leaves some of [`ERROR`] for the rounding to
+/// `f32`.
 const STEPS: f64 = 60_000.0;
 /// Maximum size of values in ranges: above it the rounding to `f32` would use the rest of [`ERROR`].
 const LARGEST: f64 = 25.0;

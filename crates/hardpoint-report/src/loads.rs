@@ -15,8 +15,8 @@ fn shown(x: f64) -> String {
     if x.is_finite() { x.to_string() } else { String::new() }
 }
 
-/// Writes a row for every output time: of every driver its force or moment, the speed that it prescribes, its power, and the work that it
-/// has done since the first output time, by the trapezoidal rule.
+/// Writes a row for every output time: of every driver its force or moment, the speed that it prescribes, its power,
+/// and the work that it has done since the first output time, by the trapezoidal rule.
 ///
 /// # Errors
 /// Where `out` cannot be written.
@@ -50,8 +50,9 @@ pub fn write_drivers(model: &Model, units: Units, loads: &Loads, out: impl Write
     Ok(())
 }
 
-/// Writes a row for every output time and joint: where it is on its second body, and the force and moment that it puts on that body, global
-/// and along the global axes in the design configuration, which have turned with the body. What redundant constraints leave open is empty.
+/// Writes a row for every output time and joint: where it is on its second body, and the force and moment that it puts
+/// on that body, global and along the global axes in the design configuration, which have turned with the body. What
+/// redundant constraints leave open is empty.
 ///
 /// # Errors
 /// Where `out` cannot be written.

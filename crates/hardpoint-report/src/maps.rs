@@ -1,4 +1,5 @@
-//! Maps: every measure over a grid of two drivers, with its sensitivities. `maps.csv`, `map_sensitivity.csv`, `maps.json`.
+//! Maps: every measure over a grid of two drivers, with its sensitivities. `maps.csv`, `map_sensitivity.csv`,
+//! `maps.json`.
 
 use std::io::Write;
 
@@ -74,7 +75,8 @@ pub struct MapGap {
     pub message: String,
 }
 
-/// A measure over a map. Tables have a row for each value of the second driver, with a number for each value of the first.
+/// A measure over a map. Tables have a row for each value of the second driver, with a number for each value of the
+/// first.
 #[derive(Clone, Debug, Serialize)]
 pub struct MapMeasure {
     /// Name.
@@ -266,7 +268,8 @@ fn measure(model: &Model, units: Units, map: &GridMap, m: usize, output: &Output
     }
 }
 
-/// `maps.csv`: one row per position of every map, with its measures; in a gap these fields are empty, and `gap` says why.
+/// `maps.csv`: one row per position of every map, with its measures; in a gap these fields are empty, and `gap` says
+/// why.
 ///
 /// # Errors
 /// Where `out` cannot be written.

@@ -10,8 +10,8 @@ use crate::facts::variable_unit;
 use crate::figures::{number, per, rounded, unit, with_unit};
 use crate::page::Table;
 
-/// An interpolation error beyond this part of the curve's range (of a slope: of the slope) is reported: metrics are read to three
-/// digits.
+/// An interpolation error beyond this part of the curve's range (of a slope: of the slope) is reported: metrics are
+/// read to three digits.
 const COARSE: f64 = 1e-3;
 
 /// The value of a metric, with its sensitivities. Figures are in the model's units.

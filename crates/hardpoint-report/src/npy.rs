@@ -1,4 +1,5 @@
-//! `motion.npy` and `sensitivity.npy`: arrays of doubles as NumPy reads them, half as large as CSV and much faster to read.
+//! `motion.npy` and `sensitivity.npy`: arrays of doubles as NumPy reads them, half as large as CSV and much faster to
+//! read.
 //!
 //! What the columns are is in `columns.json` beside them. Where there is no number, there is NaN.
 

@@ -33,20 +33,23 @@ pub struct OptimizeFacts {
     pub model: String,
     /// The model file.
     pub file: String,
-    /// Outcome of the best search: `optimal`, `stuck`, `limits_not_kept`, `iteration_limit`, `interrupted` or `no_start`; or
-    /// `not_reproduced` where the saved design does not move as the optimum does, and `not_saved` where it could not be saved.
+    /// Outcome of the best search: `optimal`, `stuck`, `limits_not_kept`, `iteration_limit`, `interrupted` or
+    /// `no_start`; or `not_reproduced` where the saved design does not move as the optimum does, and `not_saved` where
+    /// it could not be saved.
     pub status: &'static str,
     /// The same in words, and what to do.
     pub message: String,
     /// Objective, a sum over the goals without a unit: of the nominal design, and of the best design.
     pub objective: BeforeAfter,
-    /// By how much the limit is exceeded that is exceeded most, as a part of what the bounds of the variables make of it.
+    /// By how much the limit is exceeded that is exceeded most, as a part of what the bounds of the variables make of
+    /// it.
     pub violation: BeforeAfter,
     /// The least margin to a singular position in any motion: in the design configuration, and of the best design.
     pub margin: BeforeAfter,
     /// The saved design, read from the file as written and solved once more; `null` where none was saved.
     pub saved: Option<SavedFact>,
-    /// The part of the gradient that neither bounds nor limits balance, relative to the scale of the goals; 0 where all misfits vanish.
+    /// The part of the gradient that neither bounds nor limits balance, relative to the scale of the goals; 0 where all
+    /// misfits vanish.
     pub kkt: Option<f64>,
     /// The start of the best search: 0 is the nominal design.
     pub best_start: Option<usize>,
@@ -287,7 +290,8 @@ pub fn iteration_line(model: &Model, units: Units, i: &Iteration) -> String {
 /// A design is saved to this part of its variables' bounds: what is finer is the search's, and no hand's.
 const FINEST: f64 = 1e-9;
 
-/// Digits that are tried where a design of fewer digits does not move as the optimum does: parts of the bounds, down to the last bit.
+/// Digits that are tried where a design of fewer digits does not move as the optimum does: parts of the bounds, down to
+/// the last bit.
 const FINER: [f64; 3] = [FINEST, 1e-12, 1e-16];
 /// A saved design may exceed limits by this more than the optimum: what its last digit changes.
 const SAVED: f64 = 1e-7;
@@ -627,8 +631,8 @@ impl OptimizeFacts {
                 .is_some_and(|(value, objective)| squares(value, objective))
     }
 
-    /// The page of the nominal design becomes that of the search: what is reported here comes first among its checks, and it opens on what
-    /// the first goal of this motion is taken of, drawn over its abscissa.
+    /// The page of the nominal design becomes that of the search: what is reported here comes first among its checks,
+    /// and it opens on what the first goal of this motion is taken of, drawn over its abscissa.
     pub fn page(&self, mut page: Payload, model: &Model, outputs: &[Output]) -> Payload {
         let place = |of: OutputSource| outputs.iter().position(|o| o.source == of);
         let goal = |g: &GoalFact| model.metrics.iter().find(|m| m.name == g.metric);
@@ -842,8 +846,8 @@ impl SearchedVariable {
 }
 
 impl OptimizeFacts {
-    /// Takes in what solving the saved file anew has shown; a design that is not the optimum is not called one. `margin` is the one that
-    /// the search has kept.
+    /// Takes in what solving the saved file anew has shown; a design that is not the optimum is not called one.
+    /// `margin` is the one that the search has kept.
     pub fn check_saved(&mut self, to: &str, judged: Result<DesignAssessment, String>, margin: Option<f64>) {
         let mut saved = SavedFact { file: to.into(), ..SavedFact::default() };
         match judged {

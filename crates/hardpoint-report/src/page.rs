@@ -16,8 +16,8 @@ use ts_rs::TS;
 
 /// One number per output step, kept as `f32`; NaN means "no value at this step" and is drawn as a gap.
 ///
-/// In the page it is a list of tracks of the packed block, whose values follow each other in turn: see [`crate::encoding`].
-/// It cannot be serialised before it is packed.
+/// In the page it is a list of tracks of the packed block, whose values follow each other in turn: see
+/// [`crate::encoding`]. It cannot be serialised before it is packed.
 ///
 /// ```
 /// use hardpoint_report::page::Curve;
@@ -109,7 +109,8 @@ pub struct Payload {
     pub values: Vec<Value>,
     /// The quantity that the page opens on, an index into [`Payload::quantities`].
     pub first: Option<usize>,
-    /// The quantity over which the page draws that one at first, an index into [`Payload::quantities`]; over time where there is none.
+    /// The quantity over which the page draws that one at first, an index into [`Payload::quantities`]; over time where
+    /// there is none.
     pub over: Option<usize>,
     /// Other designs over the same motion, to be compared with this one: changed, predicted, re-solved.
     pub designs: Vec<Design>,
@@ -175,7 +176,8 @@ pub struct Units {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Status {
-    /// False when the motion, or that of a design beside it, stops before its last step; the page then says so in a banner.
+    /// False when the motion, or that of a design beside it, stops before its last step; the page then says so in a
+    /// banner.
     pub complete: bool,
     /// One sentence.
     pub message: String,
@@ -254,12 +256,14 @@ pub struct JointMark {
     pub at_j: [f64; 3],
     /// Unit vector along the joint's axis in the frame of body i, where the kind has one.
     pub axis: Option<[f64; 3]>,
-    /// The same in the frame of body j; in the design configuration the two agree, but for kinds with an axis on each body.
+    /// The same in the frame of body j; in the design configuration the two agree, but for kinds with an axis on each
+    /// body.
     pub axis_j: Option<[f64; 3]>,
-    /// Unit vector along the second axis, where there is one: in the frame of body j for `universal`, `constant_velocity`, `dot1` and
-    /// `angle`, in that of body i for others.
+    /// Unit vector along the second axis, where there is one: in the frame of body j for `universal`,
+    /// `constant_velocity`, `dot1` and `angle`, in that of body i for others.
     pub axis2: Option<[f64; 3]>,
-    /// The two hardpoints that the axis passes through in the design configuration, in the frame of body i, where it is given so.
+    /// The two hardpoints that the axis passes through in the design configuration, in the frame of body i, where it is
+    /// given so.
     pub hinge: Option<[[f64; 3]; 2]>,
     /// Travel per turn of a screw.
     pub lead: Option<f64>,
@@ -383,7 +387,8 @@ pub struct LoadMark {
     pub joint: Option<usize>,
     /// Point of action.
     pub at: BodyPlace,
-    /// Three numbers per step: the force in the world, N. What redundant constraints leave open is left out; not a number where nothing is known.
+    /// Three numbers per step: the force in the world, N. What redundant constraints leave open is left out; not a
+    /// number where nothing is known.
     pub force: Curve,
     /// True if something is left out of it at any time.
     pub is_part: bool,
@@ -542,7 +547,8 @@ pub struct SweepIndex {
     pub total: [f64; 2],
 }
 
-/// A case that sweeps two drivers over a grid. Tables have a row for each place of the second driver, with a number for each of the first.
+/// A case that sweeps two drivers over a grid. Tables have a row for each place of the second driver, with a number for
+/// each of the first.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct GridMap {
@@ -626,8 +632,8 @@ pub struct Variable {
     pub tolerance: Option<f64>,
     /// Least and largest change that is allowed, counted from the drawing, where the model says so.
     pub bounds: Option<[Option<f64>; 2]>,
-    /// Per body, how it moves with the variable: six numbers per step, dx dy dz in the length unit and a rotation vector in rad,
-    /// per unit of the variable; empty where that is not shown.
+    /// Per body, how it moves with the variable: six numbers per step, dx dy dz in the length unit and a rotation
+    /// vector in rad, per unit of the variable; empty where that is not shown.
     pub shifts: Vec<Curve>,
     /// Sensitivities, at most one per quantity; empty when the mechanism cannot follow.
     pub sensitivities: Vec<Sensitivity>,

@@ -1,9 +1,9 @@
 //! From a solution to everything that the page shows, in the user's units.
 //!
-//! All measures and named points, and the origins of all bodies, are offered as quantities with their
-//! sensitivities; each is compared with central differences of re-solved designs where the caller has them.
-//! Where that is too much for a page that opens at once, the bodies lose their comparison, the motion is thinned, and at last the
-//! bodies lose their sensitivities: the CSV files hold everything.
+//! All measures and named points, and the origins of all bodies, are offered as quantities with their sensitivities;
+//! each is compared with central differences of re-solved designs where the caller has them. Where that is too much for
+//! a page that opens at once, the bodies lose their comparison, the motion is thinned, and at last the bodies lose
+//! their sensitivities: the CSV files hold everything.
 
 mod designs;
 mod drawing;
@@ -39,7 +39,8 @@ use crate::validity::ValidityFact;
 const MOST_STEPS: usize = 1000;
 /// Everything but the page's code takes at most this many bytes of it.
 const MOST_BYTES: usize = 8 << 20;
-/// A value of a smooth curve takes between that many bytes of the page; measured where that leaves it open whether all fits.
+/// A value of a smooth curve takes between that many bytes of the page; measured where that leaves it open whether all
+/// fits.
 const BYTES_PER_VALUE: [f64; 2] = [0.2, 3.0];
 /// Differences are drawn as that many marks beside the curve that they are compared with.
 const MARKS: usize = 36;
@@ -302,7 +303,8 @@ pub fn stride_of_marks(steps: usize) -> usize {
     ((steps + MARKS / 2) / MARKS).max(1)
 }
 
-/// The same among the steps that are shown, each of `shown` that were kept, where differences are known at each of `known` of those.
+/// The same among the steps that are shown, each of `shown` that were kept, where differences are known at each of
+/// `known` of those.
 fn shown_stride_of_marks(known: usize, shown: usize, steps: usize) -> usize {
     // The distance of steps that are both shown and known
     let common = (1..=known).find(|n| (n * shown).is_multiple_of(known)).unwrap_or(known);
@@ -429,7 +431,8 @@ impl Span {
         self.greatest - self.least
     }
 
-    /// A value of the curve without round-off: 0 where it is no more than that, and a constant where the curve varies by no more.
+    /// A value of the curve without round-off: 0 where it is no more than that, and a constant where the curve varies
+    /// by no more.
     fn shown(self, x: f64, round_off: f64) -> f64 {
         let x =
             if x.is_finite() && self.range() <= round_off { 0.5 * (self.least + self.greatest) } else { x };

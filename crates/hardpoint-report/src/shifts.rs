@@ -1,7 +1,7 @@
 //! Motion of bodies by the design variables, stored for runs with too many sensitivities to store whole.
 //!
-//! The page draws a changed design by these six numbers per body and variable, and holds no more than `f32`; rates and accelerations,
-//! which are twice as many, are left out.
+//! The page draws a changed design by these six numbers per body and variable, and holds no more than `f32`; rates and
+//! accelerations, which are twice as many, are left out.
 
 use hardpoint::Solution;
 use hardpoint::model::{BodyId, VariableId};

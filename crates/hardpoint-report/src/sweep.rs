@@ -131,9 +131,11 @@ pub struct ExtremeDesign {
 pub struct InfluenceFact {
     /// The variable.
     pub variable: String,
-    /// Spearman's rank correlation over the designs that are drawn: 1 or -1 where one always rises or falls with the other.
+    /// Spearman's rank correlation over the designs that are drawn: 1 or -1 where one always rises or falls with the
+    /// other.
     pub rank_correlation: Option<f64>,
-    /// First-order index of Sobol: the part of the variance that is gone where the variable is known. With `method = "indices"`.
+    /// First-order index of Sobol: the part of the variance that is gone where the variable is known. With
+    /// `method = "indices"`.
     pub first: Option<f64>,
     /// Standard error.
     pub first_error: Option<f64>,
@@ -337,8 +339,8 @@ impl SweepInputs<'_> {
         }
     }
 
-    /// The designs that are drawn: as many as there are, or some of them that stand a step apart which no level of a factorial repeats
-    /// with.
+    /// The designs that are drawn: as many as there are, or some of them that stand a step apart which no level of a
+    /// factorial repeats with.
     fn drawn_numbers(&self, designs: usize) -> Vec<usize> {
         let mut step = designs.div_ceil(DRAWN).max(1);
         let repeats = |step: usize| {
@@ -679,7 +681,8 @@ impl SweepFacts {
         seconds(self.seconds)
     }
 
-    /// The page of a motion of the nominal design becomes that of the sweep: what is reported here comes first among its checks.
+    /// The page of a motion of the nominal design becomes that of the sweep: what is reported here comes first among
+    /// its checks.
     pub fn page(
         &self,
         swept: &SweepInputs<'_>,

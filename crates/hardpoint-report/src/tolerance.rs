@@ -86,7 +86,8 @@ pub struct ToleratedFact {
     pub distribution: &'static str,
     /// By how much it may be off.
     pub start: f64,
-    /// By how much it may be off with the tolerances that were found; the same where none were sought; `null` where no limit has a say.
+    /// By how much it may be off with the tolerances that were found; the same where none were sought; `null` where no
+    /// limit has a say.
     pub end: Option<f64>,
     /// Standard deviation.
     pub sigma: f64,
@@ -409,7 +410,8 @@ impl ToleranceInputs<'_> {
         Ok(())
     }
 
-    /// The page of a motion becomes that of the study: its bands beside the curves, and what is reported here first among its checks.
+    /// The page of a motion becomes that of the study: its bands beside the curves, and what is reported here first
+    /// among its checks.
     pub fn page(
         &self,
         facts: &ToleranceFacts,

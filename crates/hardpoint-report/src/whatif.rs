@@ -1,5 +1,5 @@
-//! `whatif.json`, `whatif.csv` and `whatif.html`: a changed design as it is predicted and as it is, and which variable moves
-//! which measure most.
+//! `whatif.json`, `whatif.csv` and `whatif.html`: a changed design as it is predicted and as it is, and which variable
+//! moves which measure most.
 
 use std::io::Write;
 
@@ -91,11 +91,11 @@ pub struct MeasureFact {
     pub change: Option<f64>,
     /// Time of that, s.
     pub time: Option<f64>,
-    /// Largest error of the first-order prediction, and of the second-order one; `null` where that is not known, as of a
-    /// velocity.
+    /// Largest error of the first-order prediction, and of the second-order one; `null` where that is not known, as of
+    /// a velocity.
     pub errors: Option<[Option<f64>; 2]>,
-    /// Number of times this change could be made before the second-order part is 5 % of the first-order one; `null` where
-    /// the measure is exactly linear along the change, or does not change to first order.
+    /// Number of times this change could be made before the second-order part is 5 % of the first-order one; `null`
+    /// where the measure is exactly linear along the change, or does not change to first order.
     pub linear_up_to: Option<f64>,
     /// True if the measure is exactly linear along the change: its second-order part is round-off.
     pub exactly_linear: bool,
@@ -259,7 +259,8 @@ impl WhatIfFacts {
         }
     }
 
-    /// The variables that move a measure most, the strongest first; that many of each unit, and none that does not move it.
+    /// The variables that move a measure most, the strongest first; that many of each unit, and none that does not move
+    /// it.
     pub fn ranking(&self, measure: &str, shown: usize) -> Table {
         let mut units: Vec<&str> = Vec::new();
         let of_measure = || self.influence.iter().filter(|i| i.measure == measure && i.largest != 0.0);
@@ -324,8 +325,8 @@ impl WhatIfFacts {
         Ok(())
     }
 
-    /// The page of today's design becomes that of the changed one: what is reported here comes first among its checks, and it opens
-    /// on the first of the `asked` measures, drawn over another one.
+    /// The page of today's design becomes that of the changed one: what is reported here comes first among its checks,
+    /// and it opens on the first of the `asked` measures, drawn over another one.
     pub fn page(
         &self,
         mut page: Payload,
@@ -402,8 +403,8 @@ pub(crate) fn follows(model: &Model, what_if: &WhatIf) -> String {
     format!("re-assembled: {} opens in the design configuration and is closed again by moving", names(joints))
 }
 
-/// Every measure (or every point, where there are no measures) by every variable, the strongest first within each. What depends on
-/// two names is ranked once, and what moves a measure by round-off only does not move it.
+/// Every measure (or every point, where there are no measures) by every variable, the strongest first within each. What
+/// depends on two names is ranked once, and what moves a measure by round-off only does not move it.
 fn influence(model: &Model, units: Units, today: &Solution) -> Vec<InfluenceFact> {
     let measured = &today.measured;
     let mut facts = Vec::new();

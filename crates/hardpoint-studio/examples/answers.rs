@@ -1,4 +1,5 @@
-//! Answers requests as the page's engine does: a request of JSON on each line of its input, a block in base64 on each line of its output.
+//! Answers requests as the page's engine does: a request of JSON on each line of its input, a block in base64 on each
+//! line of its output.
 
 use std::io::{BufRead, Write};
 use std::ops::ControlFlow;

@@ -1,11 +1,12 @@
 //! The engine as a page asks it: requests in, answers out, no files and no clock.
 //!
-//! An [`Engine`] keeps one model open and solves the designs of it that the reader makes: with a variable for every coordinate of its
-//! hardpoints, so that each can be taken hold of. What takes long - the whole page of a model, a search, tolerances - needs nothing that is
-//! open, and goes in an engine of its own while the first stays free.
+//! An [`Engine`] keeps one model open and solves the designs of it that the reader makes: with a variable for every
+//! coordinate of its hardpoints, so that each can be taken hold of. What takes long - the whole page of a model, a
+//! search, tolerances - needs nothing that is open, and goes in an engine of its own while the first stays free.
 //!
-//! An answer is a block of bytes: the length of its JSON as four bytes, the JSON, zeros up to a multiple of four, then the numbers of its
-//! curves, `f32`, all little-endian. A curve is in the JSON as the place of its first number and how many it has.
+//! An answer is a block of bytes: the length of its JSON as four bytes, the JSON, zeros up to a multiple of four, then
+//! the numbers of its curves, `f32`, all little-endian. A curve is in the JSON as the place of its first number and how
+//! many it has.
 
 mod offer;
 mod open;

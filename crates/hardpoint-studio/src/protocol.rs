@@ -28,8 +28,8 @@ pub enum Request {
     Design {
         /// Changed variables.
         change: Vec<VariableSetting>,
-        /// A design that is solved already: where the changed one cannot be, what is given is as far on the way from this one to it
-        /// as can be.
+        /// A design that is solved already: where the changed one cannot be, what is given is as far on the way from
+        /// this one to it as can be.
         from: Option<Vec<VariableSetting>>,
     },
     /// The text of the open model with a changed design. Answered by [`Text`].

@@ -7,8 +7,8 @@
 //! - a number carries a sign, so that negations cost nothing: `a - b` is the sum of `a` and `-b`;
 //! - the same operation of the same operands is the same node, in either order where order does not matter.
 //!
-//! Then what no output needs is left out, products are fused with the sums that take them, and the rest is written down in an order
-//! that keeps few values live. All steps are linear in the size of the recording.
+//! Then what no output needs is left out, products are fused with the sums that take them, and the rest is written down
+//! in an order that keeps few values live. All steps are linear in the size of the recording.
 
 use crate::counts::Counts;
 use crate::number::{Recording, Step, larger};
@@ -17,8 +17,9 @@ use crate::program::{Call, Instruction, Operand, Program};
 /// Options of turning a recording into a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// True if products are fused with the sums that take them, which rounds once instead of twice. Where they are not, every
-    /// operation rounds, also that of [`Number::times_plus`](crate::Number::times_plus): the program gives the bits of plain `f64`.
+    /// True if products are fused with the sums that take them, which rounds once instead of twice. Where they are not,
+    /// every operation rounds, also that of [`Number::times_plus`](crate::Number::times_plus): the program gives the
+    /// bits of plain `f64`.
     pub fuse: bool,
 }
 
@@ -31,8 +32,8 @@ impl Default for Options {
 impl Recording {
     /// The program that computes the outputs, and what became of the recorded operations.
     ///
-    /// Without [`Options::fuse`] its results are those of the same operations in `f64`, to the bit, with these exceptions, all of
-    /// them due to exact zeros that are not computed with:
+    /// Without [`Options::fuse`] its results are those of the same operations in `f64`, to the bit, with these
+    /// exceptions, all of them due to exact zeros that are not computed with:
     ///
     /// - the sign of a zero may differ, and with it what is sensitive to that: the sign of an infinity that comes from dividing by
     ///   a zero, and the half turn of `atan2(0, x)` for negative x;
@@ -111,7 +112,8 @@ const NONE: u32 = u32::MAX;
 /// Nodes of a recording, operands before the nodes that use them.
 struct Graph {
     nodes: Vec<Node>,
-    /// Open addressing: where in `nodes` a node with this hash is; a power of two of places, at most half of them taken.
+    /// Open addressing: where in `nodes` a node with this hash is; a power of two of places, at most half of them
+    /// taken.
     table: Vec<u32>,
     outputs: Vec<Signed>,
     /// Number of reads of each node by live nodes and outputs; 0 is dead.
@@ -366,12 +368,13 @@ impl Graph {
         }
     }
 
-    /// Fuses products with sums: all that are read once, by a sum; then those that are read several times, by nothing but sums that
-    /// have not taken another, since a product that is computed within all of its sums need not be computed for itself.
+    /// Fuses products with sums: all that are read once, by a sum; then those that are read several times, by nothing
+    /// but sums that have not taken another, since a product that is computed within all of its sums need not be
+    /// computed for itself.
     ///
-    /// Of two products that a sum may take it takes the one that depends on the later input, since what depends on uniforms or on
-    /// the first inputs alone may be computed elsewhere ([`Program::hoisted`], [`Program::staged`]). A product of uniforms alone
-    /// never goes into a sum that depends on inputs.
+    /// Of two products that a sum may take it takes the one that depends on the later input, since what depends on
+    /// uniforms or on the first inputs alone may be computed elsewhere ([`Program::hoisted`], [`Program::staged`]). A
+    /// product of uniforms alone never goes into a sum that depends on inputs.
     fn fuse(&mut self) {
         let size = self.nodes.len();
         // 0: constants and uniforms; k + 1: inputs up to number k.
@@ -443,8 +446,8 @@ impl Graph {
         ([a, b, other.node()], 3)
     }
 
-    /// An order from the outputs: what each needs just before it, what needs the most values first (Sethi and Ullman's numbers,
-    /// which are exact for trees and a good guess here).
+    /// An order from the outputs: what each needs just before it, what needs the most values first (Sethi and Ullman's
+    /// numbers, which are exact for trees and a good guess here).
     fn by_need(&self) -> Vec<u32> {
         let size = self.nodes.len();
         let mut need = vec![0u32; size];
@@ -568,8 +571,8 @@ enum Wanted {
     Positive,
 }
 
-/// Who wants what with which sign. A node that is wanted as its negative, and cannot be had so for nothing, passes the wish on to an
-/// operand that nobody else reads.
+/// Who wants what with which sign. A node that is wanted as its negative, and cannot be had so for nothing, passes the
+/// wish on to an operand that nobody else reads.
 fn wanted(graph: &Graph) -> Vec<Wanted> {
     let mut wanted = vec![Wanted::Either; graph.nodes.len()];
     let want = |wanted: &mut [Wanted], x: Signed| {

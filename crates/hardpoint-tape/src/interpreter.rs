@@ -1,7 +1,8 @@
 //! Runs a program without making machine code of it: portable, safe, and as fast as decoding allows.
 //!
-//! Four groups of lanes go through each instruction at a time, so that one decoding serves 32 numbers. Values live in slots that are
-//! used again after their last use: the working memory of a kernel of thousands of instructions stays in the first cache.
+//! Four groups of lanes go through each instruction at a time, so that one decoding serves 32 numbers. Values live in
+//! slots that are used again after their last use: the working memory of a kernel of thousands of instructions stays in
+//! the first cache.
 
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, dispatch, f64x8};
 
@@ -15,8 +16,8 @@ const ABREAST: usize = 4;
 
 /// A program made ready to be run, with its working memory.
 ///
-/// Arithmetic is that of `f64`, lane by lane. `MulAdd` and the like are rounded once on CPUs that have such an instruction, twice on others
-/// ([`fuses`](crate::fuses)).
+/// Arithmetic is that of `f64`, lane by lane. `MulAdd` and the like are rounded once on CPUs that have such an
+/// instruction, twice on others ([`fuses`](crate::fuses)).
 #[derive(Clone, Debug)]
 pub struct Interpreter {
     code: Vec<Code>,
@@ -96,7 +97,8 @@ impl Interpreter {
     ///
     /// # Panics
     ///
-    /// If an instruction reads what there is not: a value that is not computed before, or an input, uniform or constant beyond the last.
+    /// If an instruction reads what there is not: a value that is not computed before, or an input, uniform or constant
+    /// beyond the last.
     pub fn new(program: &Program) -> Self {
         let (code, stores, slots) = Assembler::new(program).assemble();
         let mut scalars = program.constants.clone();
@@ -461,7 +463,8 @@ impl<'a> Assembler<'a> {
                 (Op::Call(function), [a, b, 0])
             }
         };
-        // The result may take the place of an operand that is read for the last time: all lanes are read before any is written.
+        // The result may take the place of an operand that is read for the last time: all lanes are read before any is
+        // written.
         self.free.extend(lent.iter().filter(|slot| **slot != NONE));
         for operand in instruction.operands() {
             let (last, slot) = match operand {

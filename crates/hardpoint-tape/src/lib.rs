@@ -1,9 +1,9 @@
 //! Records arithmetic and runs it again as a straight-line program, for many numbers side by side.
 //!
-//! A kernel that walks a mechanism, link by link and row by row, spends most of its time on walking, and most of its arithmetic on
-//! exact zeros and ones. What it computes is the same for every output time and every design. So it is run once with [`Number`]s,
-//! which record what is done with them; what is left of that, once constants are folded and nothing is computed twice or for nothing,
-//! is a [`Program`], which the [`Interpreter`] runs for 32 numbers at a time.
+//! A kernel that walks a mechanism, link by link and row by row, spends most of its time on walking, and most of its
+//! arithmetic on exact zeros and ones. What it computes is the same for every output time and every design. So it is
+//! run once with [`Number`]s, which record what is done with them; what is left of that, once constants are folded and
+//! nothing is computed twice or for nothing, is a [`Program`], which the [`Interpreter`] runs for 32 numbers at a time.
 //!
 //! ```
 //! use hardpoint_tape::{Interpreter, Number, Options, record};
@@ -35,9 +35,9 @@
 //!
 //! # What it does not do
 //!
-//! It does not record decisions: a program has no branches. What was decided while recording must be requested again after every run,
-//! by outputs that are compared with what they may be. It does not re-arrange sums, or replace a division by a multiplication, unless
-//! that gives the same bits.
+//! It does not record decisions: a program has no branches. What was decided while recording must be requested again
+//! after every run, by outputs that are compared with what they may be. It does not re-arrange sums, or replace a
+//! division by a multiplication, unless that gives the same bits.
 
 mod counts;
 mod graph;

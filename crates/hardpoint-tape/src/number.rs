@@ -53,15 +53,16 @@ thread_local! {
     };
 }
 
-/// The next session's number: one count for all threads, so that a number that was sent to another thread is known for a stranger.
+/// The next session's number: one count for all threads, so that a number that was sent to another thread is known for
+/// a stranger.
 static NEXT: AtomicU32 = AtomicU32::new(1);
 
 /// Records what `f` does with [`Number`]s, on this thread; what it returns are the outputs, in this order.
 ///
 /// # Panics
 ///
-/// If a recording is under way on this thread, or if an output is not a number of this recording. A panic of `f` passes through
-/// and ends the recording.
+/// If a recording is under way on this thread, or if an output is not a number of this recording. A panic of `f` passes
+/// through and ends the recording.
 pub fn record<O: IntoIterator<Item = Number>>(f: impl FnOnce() -> O) -> Recording {
     /// Ends the session, also where `f` panics.
     struct Running;
@@ -181,9 +182,9 @@ fn leaf(step: impl FnOnce(&mut Recording) -> Step, value: f64) -> Number {
 
 /// A scalar that records what is done with it.
 ///
-/// It has a value, that of the run that is recorded, by which whoever records can decide what to compute: which pivot, which of two
-/// formulas. Such a decision is not recorded, and there are no comparisons that would hide one: who decides asks for
-/// [`value`](Number::value), and makes what it was decided by an output, to be tested after every run.
+/// It has a value, that of the run that is recorded, by which whoever records can decide what to compute: which pivot,
+/// which of two formulas. Such a decision is not recorded, and there are no comparisons that would hide one: who
+/// decides asks for [`value`](Number::value), and makes what it was decided by an output, to be tested after every run.
 ///
 /// Numbers belong to the [`record`] that they were made in. Elsewhere every operation with them panics.
 #[derive(Clone, Copy, Debug)]

@@ -1,9 +1,10 @@
 //! A long program in pieces that share their code.
 //!
-//! A chain of a thousand loops is recorded as a thousand times the same arithmetic with other numbers. As one program it would be
-//! megabytes of code that pass through the processor for every run. So a program is taken apart by what its inputs belong to: an
-//! instruction belongs to the last piece that any of its operands does. Pieces that do the same with other operands are one program,
-//! with what they read as its inputs and the constants that differ as its uniforms.
+//! A chain of a thousand loops is recorded as a thousand times the same arithmetic with other numbers. As one program
+//! it would be megabytes of code that pass through the processor for every run. So a program is taken apart by what its
+//! inputs belong to: an instruction belongs to the last piece that any of its operands does. Pieces that do the same
+//! with other operands are one program, with what they read as its inputs and the constants that differ as its
+//! uniforms.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -55,8 +56,9 @@ pub struct Piece {
 }
 
 impl Program {
-    /// Takes the program apart, `piece_of` saying which piece an input or uniform belongs to; outputs are in areas that end where `ends`
-    /// says. Where the outputs of a piece follow each other in the second and the third area, they are written there at once.
+    /// Takes the program apart, `piece_of` saying which piece an input or uniform belongs to; outputs are in areas that
+    /// end where `ends` says. Where the outputs of a piece follow each other in the second and the third area, they are
+    /// written there at once.
     pub fn in_pieces(&self, piece_of: impl Fn(Operand) -> usize, ends: [usize; AREAS - 1]) -> Pieces {
         let cut = Cut::of(self, piece_of, ends);
         let mut whole = Pieces { shapes: Vec::new(), pieces: Vec::new(), kept: 0 };
@@ -87,8 +89,8 @@ impl Pieces {
         self.shapes.iter().map(|shape| shape.program.instructions.len()).sum()
     }
 
-    /// Runs one piece after the other for one group of lanes: `run` is given the number of a shape, the inputs and uniforms of its program,
-    /// and where its outputs go; the outputs of the whole go to their areas.
+    /// Runs one piece after the other for one group of lanes: `run` is given the number of a shape, the inputs and
+    /// uniforms of its program, and where its outputs go; the outputs of the whole go to their areas.
     ///
     /// # Panics
     ///

@@ -5,8 +5,8 @@ use crate::program::{Operand, Program};
 impl Program {
     /// Splits off what depends on constants and uniforms alone.
     ///
-    /// The first program reads uniforms and has one output for each number that the second asks of it; the second has these as
-    /// further uniforms behind its own. Both keep the numbers of inputs and uniforms. Run the first once
+    /// The first program reads uniforms and has one output for each number that the second asks of it; the second has
+    /// these as further uniforms behind its own. Both keep the numbers of inputs and uniforms. Run the first once
     /// ([`Program::evaluate`]), the second for all lanes.
     pub fn hoisted(self) -> (Self, Self) {
         let uniforms = self.uniforms as u32;
@@ -16,11 +16,11 @@ impl Program {
         (first, rest)
     }
 
-    /// Splits off what depends on constants and those inputs and uniforms alone that `first` says: what stays the same over many runs,
-    /// as the geometry of a design does over its motion.
+    /// Splits off what depends on constants and those inputs and uniforms alone that `first` says: what stays the same
+    /// over many runs, as the geometry of a design does over its motion.
     ///
-    /// The first program has one output for each number that the second asks of it; the second has these as further inputs behind
-    /// its own. Both keep the numbers of inputs and uniforms, the first as far as the last that it reads.
+    /// The first program has one output for each number that the second asks of it; the second has these as further
+    /// inputs behind its own. Both keep the numbers of inputs and uniforms, the first as far as the last that it reads.
     pub fn staged(self, first: impl Fn(Operand) -> bool) -> (Self, Self) {
         let inputs = self.inputs as u32;
         let (first, mut rest) = self.split(first, |k| Operand::Input(inputs + k));
@@ -28,8 +28,8 @@ impl Program {
         (first, rest)
     }
 
-    /// Splits the program: what reads only leaves that are `early`, and the rest, which finds the k-th output of the first part at
-    /// `joint(k)`.
+    /// Splits the program: what reads only leaves that are `early`, and the rest, which finds the k-th output of the
+    /// first part at `joint(k)`.
     fn split(self, early: impl Fn(Operand) -> bool, joint: impl Fn(u32) -> Operand) -> (Self, Self) {
         /// Location in the rest of a value of the whole program.
         #[derive(Clone, Copy)]

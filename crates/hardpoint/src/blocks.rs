@@ -19,8 +19,8 @@ pub(crate) fn lanes_of(lines: &mut [AlignedLanes]) -> &mut [Lanes] {
 /// Results of eight output times, or of eight designs, side by side.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ResultBlock<'b> {
-    /// Per body but ground 24 numbers: position, columns of the rotation, velocity, angular velocity, acceleration, angular
-    /// acceleration.
+    /// Per body but ground 24 numbers: position, columns of the rotation, velocity, angular velocity, acceleration,
+    /// angular acceleration.
     pub states: &'b [[f64; 8]],
     /// Per variable, and body that it moves, the 18 numbers of a `BodySensitivity` in the order of its fields.
     pub derivatives: &'b [[f64; 8]],

@@ -52,8 +52,8 @@
 //!
 //! # What is not supported
 //!
-//! Forces, masses and friction: motion here follows from drivers alone. Flexible bodies. Contacts that open and close. Joint
-//! types beyond [`joint::ALL`]. The shape of a curve as a design variable.
+//! Forces, masses and friction: motion here follows from drivers alone. Flexible bodies. Contacts that open and close.
+//! Joint types beyond [`joint::ALL`]. The shape of a curve as a design variable.
 
 mod blocks;
 pub mod constraint;

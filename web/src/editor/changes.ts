@@ -6,8 +6,8 @@ export interface Change {
 }
 
 /**
- * What makes one text of another, both in lines: as little as is between what both begin and end with, line by line where both have
- * the same number of lines in between. A line break counts one.
+ * What makes one text of another, both in lines: as little as is between what both begin and end with, line by line
+ * where both have the same number of lines in between. A line break counts one. /
  */
 export function changes(before: readonly string[], after: readonly string[]): Change[] {
   const least = Math.min(before.length, after.length)

@@ -37,8 +37,9 @@ export interface Editor {
   /** As it is, valid or not. */
   readonly text: string
   /**
-   * Puts another text in its place, valid and shown by the page already, by the smallest change: the cursor, what is seen and the steps of
-   * undo stay. It is one step, or part of the one before where that came from outside too (`sameStep`), as in a drag.
+   * Puts another text in its place, valid and shown by the page already, by the smallest change: the cursor, what is
+   * seen and the steps of undo stay. It is one step, or part of the one before where that came from outside too
+   * (`sameStep`), as in a drag. /
    */
   setText(text: string, sameStep?: boolean): void
   /** Adds what solving the text reported to what checking it reported; until it changes. */
@@ -78,7 +79,10 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
     el('button', { type: 'button', title: 'Find and replace (Ctrl+F)', 'data-testid': 'model-find', onclick: () => openSearchPanel(view) }, 'Find'),
     status)
 
-  /** Typing within a while joins the step before where it is beside it; what comes from outside joins where it is reported to. */
+  /**
+   * Typing within a while joins the step before where it is beside it; what comes from outside joins where it is
+   * reported to.
+   */
   let before: { outside: boolean; time: number } = { outside: false, time: -Infinity }
   const joins = (transaction: Transaction, beside: boolean): boolean => {
     const foreign = transaction.annotation(outside)

@@ -12,7 +12,10 @@ declare global {
 
 let opened: Promise<typeof code> | undefined
 
-/** Makes the pane of the model's text. Its code is inflated and run with the first one: until then it costs the page nothing. */
+/**
+ * Makes the pane of the model's text. Its code is inflated and run with the first one: until then it costs the page
+ * nothing.
+ */
 export async function openEditor(options: code.Options): Promise<code.Editor> {
   const { editor } = await (opened ??= run())
   return editor(options)

@@ -9,7 +9,10 @@ export interface Column {
   curve: Curve
 }
 
-/** Curves side by side as comma-separated values (RFC 4180): a heading with the units, then one row per step; no number, empty field. */
+/**
+ * Curves side by side as comma-separated values (RFC 4180): a heading with the units, then one row per step; no number,
+ * empty field.
+ */
 export function csvOf(columns: Column[]): Blob {
   return new Blob([csvText(columns)], { type: 'text/csv;charset=utf-8' })
 }

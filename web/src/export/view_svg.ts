@@ -16,7 +16,10 @@ interface Picture {
   labels?: Placed[]
 }
 
-/** Longer edges than this part of the picture's diagonal are cut, so that what is nearer can be reported by the middle of a piece. */
+/**
+ * Longer edges than this part of the picture's diagonal are cut, so that what is nearer can be reported by the middle
+ * of a piece.
+ */
 const PIECE = 0.03
 /** A fold of faces sharper than this is an edge, as a cosine. */
 const FOLD = Math.cos((40 * Math.PI) / 180)
@@ -47,8 +50,8 @@ interface Stroke {
 }
 
 /**
- * What is drawn, as vectors: faces from the farthest to the nearest (painter's order), their outlines and folds, and lines.
- * Faces that cross one another are not cut; shadows and textures are left out.
+ * What is drawn, as vectors: faces from the farthest to the nearest (painter's order), their outlines and folds, and
+ * lines. Faces that cross one another are not cut; shadows and textures are left out. /
  */
 export function viewSvg(roots: Object3D[], camera: Camera, picture: Picture): Blob {
   const { width, height, view, label, labels = [] } = picture

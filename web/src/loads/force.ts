@@ -49,7 +49,10 @@ const NAMES = ['x', 'y', 'z']
 /** A component that is no more than this is none. */
 const NONE = 1e-6
 
-/** The plane across a direction of a body's frame; it begins at the frame's axis that is most across, in the order x y z. */
+/**
+ * The plane across a direction of a body's frame; it begins at the frame's axis that is most across, in the order x y
+ * z.
+ */
 export function planeAcross(normal: Vector3): Plane {
   const n = normal.clone().normalize()
   const along = n.toArray().map(Math.abs)

@@ -16,7 +16,10 @@ const TICK = 70
 /** More positions than this are not marked one by one. */
 const MOST_MARKED = 600
 
-/** A case over two drivers: a measure, or its derivative by a design variable, as areas between round values; at first the measure of that name. */
+/**
+ * A case over two drivers: a measure, or its derivative by a design variable, as areas between round values; at first
+ * the measure of that name.
+ */
 export function driverMap(map: GridMap, first: string): HTMLElement {
   return new DriverMap(map, first).element
 }
@@ -178,7 +181,10 @@ class DriverMap {
   }
 }
 
-/** The colour of each band: from blue over nothing to orange where values have both signs, from nothing on where they have one. */
+/**
+ * The colour of each band: from blue over nothing to orange where values have both signs, from nothing on where they
+ * have one.
+ */
 function shades(values: ArrayLike<number>, at: number[]): (band: number) => string {
   const scale = new Scale()
   const [low, high] = extent([values]) ?? [0, 0]

@@ -10,7 +10,9 @@ type Target = [low: number | null, high: number | null]
 /** Digits of a number on a card. */
 const DIGITS = 4
 
-/** The numbers that the design is judged by, each with its change and its target; a click selects what it is taken of. */
+/**
+ * The numbers that the design is judged by, each with its change and its target; a click selects what it is taken of.
+ */
 export function cards(state: State): HTMLElement {
   const shown = state.report.values.map((value, index) => card(state, value, index))
   const sync = () => {

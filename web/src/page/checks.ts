@@ -6,7 +6,9 @@ import type { State } from '../state'
 /** Tables up to this long are open from the start. */
 const SHORT = 12
 
-/** Checks of the run: status, figures of the solver, notes, margin from singular positions, and facts about the model. */
+/**
+ * Checks of the run: status, figures of the solver, notes, margin from singular positions, and facts about the model.
+ */
 export function checks(state: State): HTMLElement {
   const { status, summary, notes, checks, description, generator, file } = state.report
   return el(

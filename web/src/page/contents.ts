@@ -57,7 +57,10 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
   return overOther(state, over, content)
 }
 
-/** The sensitivities of the quantity: the largest of the selected variable's unit, its own, and finite differences of it. */
+/**
+ * The sensitivities of the quantity: the largest of the selected variable's unit, its own, and finite differences of
+ * it.
+ */
 export function sensitivityContent(state: State, subject: Subject): Content {
   const { senses: report, choice } = state
   const { order } = subject
@@ -125,8 +128,8 @@ interface AtAbscissa {
 }
 
 /**
- * How the sensitivities of the quantity are shown: as they are, or at a fixed abscissa; or why that cannot be. Where several drivers
- * move, the one that moves the abscissa most keeps it, and the others stand.
+ * How the sensitivities of the quantity are shown: as they are, or at a fixed abscissa; or why that cannot be. Where
+ * several drivers move, the one that moves the abscissa most keeps it, and the others stand. /
  */
 function atAbscissa({ senses: report }: State, { quantity, order, over }: Subject): AtAbscissa | string {
   if (over === undefined) return { seen: (curve) => curve, note: '' }

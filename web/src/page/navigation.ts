@@ -1,6 +1,9 @@
 import { el } from '../dom'
 
-/** On a narrow screen one section at a time, chosen by a bar at the bottom, which has the help that the bar at the top has no room for. */
+/**
+ * On a narrow screen one section at a time, chosen by a bar at the bottom, which has the help that the bar at the top
+ * has no room for.
+ */
 export function navigation(sections: { name: string; element: HTMLElement }[], help: () => void): HTMLElement {
   const buttons = sections.map(({ name }, index) =>
     el('button', { type: 'button', 'data-testid': `nav-${name}`, onclick: () => show(index) }, name),

@@ -65,7 +65,10 @@ export function cameraFor({ plane, up, size }: Mechanism): Camera {
   return camera
 }
 
-/** Puts the camera where all points fill the picture but for that many pixels at its top; the point in their middle, to be turned about. */
+/**
+ * Puts the camera where all points fill the picture but for that many pixels at its top; the point in their middle, to
+ * be turned about.
+ */
 export function fit(camera: Camera, points: Vector3[], size: number, { direction }: Look, width: number, height: number, top = TOP): Vector3 {
   camera.position.copy(direction)
   camera.lookAt(0, 0, 0)

@@ -2,7 +2,9 @@ import { Vector3 } from 'three'
 import { across, Basis, farthest, type Flat, hull } from './flat'
 import type { Mechanism } from './mechanism'
 
-/** The centre lines of a body in its frame, each once: its hull in its plane, what is inside hung on the nearest corner. */
+/**
+ * The centre lines of a body in its frame, each once: its hull in its plane, what is inside hung on the nearest corner.
+ */
 export function centreLines(mechanism: Mechanism, body: number): [Vector3, Vector3][] {
   const points = mechanism.shapePoints(body)
   if (points.length < 2) return []

@@ -13,7 +13,10 @@ const SHY = ['universal', 'constant_velocity']
 const PARALLEL = 0.999
 const SQUARE = 0.05
 
-/** A link that folds on another such link, as Sarrus' plates do: the axis of its two parallel hinges, both perpendicular to it, in its frame. */
+/**
+ * A link that folds on another such link, as Sarrus' plates do: the axis of its two parallel hinges, both perpendicular
+ * to it, in its frame.
+ */
 export function foldAxis(mechanism: Mechanism, body: number): Vector3 | undefined {
   const axis = parallelHinges(mechanism, body)
   const mates = axis ? mechanism.jointsOf(body).map(({ joint }) => (joint.body_i === body ? joint.body_j : joint.body_i)) : []
@@ -29,10 +32,16 @@ function parallelHinges(mechanism: Mechanism, body: number): Vector3 | undefined
   return Math.abs(first.dot(second)) > PARALLEL && Math.abs(first.dot(along)) < SQUARE ? first : undefined
 }
 
-/** Half the width of a link that folds, and of the part of it that its pin goes through between the eyes of another body, in units. */
+/**
+ * Half the width of a link that folds, and of the part of it that its pin goes through between the eyes of another
+ * body, in units.
+ */
 export const FOLD = { half: 3.4, inner: 1.5 }
 
-/** Axis in the body's frame of the shaft that a body without another place is: where its bearing is drawn aside of the joint there. */
+/**
+ * Axis in the body's frame of the shaft that a body without another place is: where its bearing is drawn aside of the
+ * joint there.
+ */
 export function shaftAxis(mechanism: Mechanism, body: number): Vector3 | undefined {
   const bearing = mechanism.jointsOf(body).find(({ joint }) => joint.kind === 'revolute' && (joint.body_i === 0 || joint.body_j === 0) && !joint.hinge)
   if (!bearing?.axis || mechanism.placesOf(body).length !== 1) return undefined

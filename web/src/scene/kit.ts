@@ -336,7 +336,9 @@ export function place<T extends Object3D>(object: T, at: Vector3, axis?: Vector3
   return object
 }
 
-/** Puts an object of length 1 along y, its middle at the origin, between two points; hides it where there is no length. */
+/**
+ * Puts an object of length 1 along y, its middle at the origin, between two points; hides it where there is no length.
+ */
 export function stretch<T extends Object3D>(object: T, from: Vector3, to: Vector3): T {
   const along = to.clone().sub(from)
   const length = along.length()
@@ -346,7 +348,10 @@ export function stretch<T extends Object3D>(object: T, from: Vector3, to: Vector
   return place(object, from.clone().addScaledVector(along, 0.5), along)
 }
 
-/** Puts an object made along y at a place so that y is along `axis` and z along the part of `towards` that is perpendicular to it. */
+/**
+ * Puts an object made along y at a place so that y is along `axis` and z along the part of `towards` that is
+ * perpendicular to it.
+ */
 export function orient<T extends Object3D>(object: T, at: Vector3, axis: Vector3, towards: Vector3): T {
   const y = axis.clone().normalize()
   const z = square(towards, y)

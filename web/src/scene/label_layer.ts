@@ -62,7 +62,10 @@ export class LabelLayer {
   }
 }
 
-/** Names of the hardpoints, each place once: of one body, or of all; ground's first, since they are what a reader looks for. */
+/**
+ * Names of the hardpoints, each place once: of one body, or of all; ground's first, since they are what a reader looks
+ * for.
+ */
 export function hardpointLabels(mechanism: Mechanism, frame: Frame, only?: number): Label[] {
   const labels: Label[] = []
   mechanism.report.bodies.forEach(({ skeleton, labels: names }, body) => {

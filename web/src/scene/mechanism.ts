@@ -21,7 +21,10 @@ const JUDGED = 5
 const MANY = 40
 /** The unit as a part of the distance between hardpoints, and its least and largest part of the size. */
 const UNIT = { ofDistance: 0.16, least: 0.0012, most: 0.0125 }
-/** Least and largest unit on the screen, px: half of the thinnest rod that is seen well, and where zooming in no longer thickens. By these steps it changes. */
+/**
+ * Least and largest unit on the screen, px: half of the thinnest rod that is seen well, and where zooming in no longer
+ * thickens. By these steps it changes.
+ */
 const SEEN = { least: 0.75, most: 14, step: 1.25 }
 /** Thickness of a planar link, and from one layer to the next, in units. */
 const THICKNESS = 1
@@ -32,8 +35,8 @@ const GLYPH = { ofDistance: 0.3, least: 0.35 }
 type Place = readonly [number, number, number]
 
 /**
- * A report as it is drawn: sizes, places, colours and layers, worked out once. A changed design takes sizes, colours and
- * layers from the one that it is a change of, so that only what differs is seen to differ.
+ * A report as it is drawn: sizes, places, colours and layers, worked out once. A changed design takes sizes, colours
+ * and layers from the one that it is a change of, so that only what differs is seen to differ. /
  */
 export class Mechanism {
   /** Steps at which the motion is sampled, where its extent matters. */
@@ -97,7 +100,9 @@ export class Mechanism {
     this.#slides = report.joints.map((joint) => slideOf(this, joint))
   }
 
-  /** Takes the unit that suits a picture of that many pixels per length; true where what is drawn has to be made anew. */
+  /**
+   * Takes the unit that suits a picture of that many pixels per length; true where what is drawn has to be made anew.
+   */
   sizeTo(pixelsPerLength: number): boolean {
     const seen = this.#natural * pixelsPerLength
     if (!(seen > 0 && Number.isFinite(seen))) return false

@@ -16,7 +16,9 @@ export class Pointer {
   #down?: { x: number; y: number }
   #pending = false
 
-  /** `roots` holds what can be found; `hover` is called when something else is under the pointer, `choose` on a click. */
+  /**
+   * `roots` holds what can be found; `hover` is called when something else is under the pointer, `choose` on a click.
+   */
   constructor(
     private readonly canvas: HTMLCanvasElement,
     private readonly camera: Camera,

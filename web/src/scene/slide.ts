@@ -3,7 +3,10 @@ import type { JointMark } from '../payload'
 import { across } from './flat'
 import type { Mechanism } from './mechanism'
 
-/** A joint in which one body slides along another: which is the rail, and how far the other travels on it in this motion. */
+/**
+ * A joint in which one body slides along another: which is the rail, and how far the other travels on it in this
+ * motion.
+ */
 export interface Slide {
   rail: number
   block: number

@@ -2,7 +2,10 @@ import { Vector3 } from 'three'
 import type { CouplerMark } from '../payload'
 import type { Mechanism } from './mechanism'
 
-/** Face width of gears, how far the first is from its bearing, and from one wheel on a shaft to the next; in units and face widths. */
+/**
+ * Face width of gears, how far the first is from its bearing, and from one wheel on a shaft to the next; in units and
+ * face widths.
+ */
 const FACE = 3.4
 const FIRST = 7
 const NEXT = 2.2

@@ -31,7 +31,10 @@ export interface Arc {
   heads: 'first' | 'last' | 'both'
 }
 
-/** The arc of a hinge's travel: at least `least` long, as narrow as that allows. Whole turns have one head, in the sense of the turn. */
+/**
+ * The arc of a hinge's travel: at least `least` long, as narrow as that allows. Whole turns have one head, in the sense
+ * of the turn.
+ */
 export function arcOf(low: number, high: number, onwards: boolean, least: number, [narrow, wide]: [number, number]): Arc {
   const swept = high - low
   if (swept > 2 * Math.PI - NEARLY) {

@@ -172,7 +172,10 @@ export class View {
     this.fit()
   }
 
-  /** Fits the whole motion into the picture, seen from the standard view of the moment or from where the reader turned it. */
+  /**
+   * Fits the whole motion into the picture, seen from the standard view of the moment or from where the reader turned
+   * it.
+   */
   fit(): void {
     const { width, height } = this.#extent
     if (width === 0 || height === 0) return

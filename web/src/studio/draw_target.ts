@@ -21,7 +21,10 @@ export interface Drawing {
   case?: string
 }
 
-/** A button by which the curve that is wanted is drawn over a plot, and becomes a metric of the text; `drawing` is asked when it is pressed. */
+/**
+ * A button by which the curve that is wanted is drawn over a plot, and becomes a metric of the text; `drawing` is asked
+ * when it is pressed.
+ */
 export function targetButton(plot: Plot, drawing: () => Drawing, { text, replace }: TargetHost): HTMLButtonElement {
   let sketch: Sketch | undefined
   const end = () => {

@@ -14,7 +14,10 @@ export interface Shows {
 const BACK = 'M3.5 6.5h6a3.5 3.5 0 0 1 0 7h-3M6.5 3.5l-3 3l3 3'
 const FORTH = 'M12.5 6.5h-6a3.5 3.5 0 0 0 0 7h3M9.5 3.5l3 3l-3 3'
 
-/** Buttons for undo, redo, reset and the designs that were given a name; and their keys, wherever the focus is but in a text. */
+/**
+ * Buttons for undo, redo, reset and the designs that were given a name; and their keys, wherever the focus is but in a
+ * text.
+ */
 export function historyBar(history: History, { show, compare }: Shows): HTMLElement {
   const icon = (path: string) => svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, svg('path', { d: path }))
   const undo = () => history.undo()

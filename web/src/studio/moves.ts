@@ -1,7 +1,10 @@
 import { Quaternion, type Ray, Vector3 } from 'three'
 import type { MovableHardpoint, VariableSetting } from '../engine/protocol'
 
-/** Along what a hardpoint is moved: in the plane of the picture, along an axis of the model, or in a plane of two of them. */
+/**
+ * Along what a hardpoint is moved: in the plane of the picture, along an axis of the model, or in a plane of two of
+ * them.
+ */
 export type Way = 'free' | 'x' | 'y' | 'z' | 'xy' | 'yz' | 'zx'
 export const WAYS: readonly Way[] = ['free', 'x', 'y', 'z', 'xy', 'yz', 'zx']
 export const AXES = ['x', 'y', 'z'] as const
@@ -17,8 +20,8 @@ function directions(way: Way): Vector3[] {
 }
 
 /**
- * How far a place of the world goes so that it follows the line of sight on its way; `turn` takes directions of the drawing into the world,
- * `facing` is towards the eye. Nothing where the line of sight hardly says.
+ * How far a place of the world goes so that it follows the line of sight on its way; `turn` takes directions of the
+ * drawing into the world, `facing` is towards the eye. Nothing where the line of sight hardly says. /
  */
 export function followed(ray: Ray, place: Vector3, way: Way, turn: Quaternion, facing: Vector3): Vector3 | undefined {
   const along = directions(way).map((axis) => axis.applyQuaternion(turn))
@@ -71,7 +74,10 @@ export function settingsFor(grip: MovableHardpoint, place: Vector3): { settings:
   return { settings, bound }
 }
 
-/** The axis across which hardpoints have mirror images, and whose image each is, by name; nothing where hardly any has one. */
+/**
+ * The axis across which hardpoints have mirror images, and whose image each is, by name; nothing where hardly any has
+ * one.
+ */
 export function mirrors(grips: readonly MovableHardpoint[]): { axis: number; partner: Map<string, MovableHardpoint> } | undefined {
   const size = Math.max(1e-9, ...grips.flatMap(({ place }) => place.map(Math.abs)))
   const near = MIRRORED * size

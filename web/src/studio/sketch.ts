@@ -5,7 +5,9 @@ import type { Overlay, Plot } from '../plot'
 import { at, type Point, replaced, roundedIn, smoothed, thinned, upright, written } from './stroke'
 import './studio.css'
 
-/** Distance at which a press takes hold of a point, for a mouse and a finger; and the minimum length of a stroke, px. */
+/**
+ * Distance at which a press takes hold of a point, for a mouse and a finger; and the minimum length of a stroke, px.
+ */
 const NEAR = 10
 const FINGER = 22
 const CLICK = 4
@@ -24,8 +26,9 @@ export interface Drawn {
 }
 
 /**
- * A curve drawn over a plot, with mouse, pen, touch or keys: freehand, one value at each abscissa, in a handful of points that can be moved.
- * What is drawn over a part takes its place. It is in use from when it is made until it is done, cancelled or `close`d.
+ * A curve drawn over a plot, with mouse, pen, touch or keys: freehand, one value at each abscissa, in a handful of
+ * points that can be moved. What is drawn over a part takes its place. It is in use from when it is made until it is
+ * done, cancelled or `close`d. /
  */
 export class Sketch implements Overlay {
   /** Drawn points, in the shown units. */

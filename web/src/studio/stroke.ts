@@ -61,7 +61,10 @@ export function thinned(curve: readonly Point[], off = OFF): Point[] {
   return [...thinned(curve.slice(0, farthest + 1), off).slice(0, -1), ...thinned(curve.slice(farthest), off)]
 }
 
-/** A curve with a new part in place of what it had there; beside it the curve stays, and comes back to itself within a `seen` part of the abscissa. */
+/**
+ * A curve with a new part in place of what it had there; beside it the curve stays, and comes back to itself within a
+ * `seen` part of the abscissa.
+ */
 export function replaced(curve: readonly Point[], part: readonly Point[], seen: number): Point[] {
   if (part.length === 0) return [...curve]
   const [from, to] = [part[0][0], part.at(-1)![0]]

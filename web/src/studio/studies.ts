@@ -19,7 +19,10 @@ export interface StudyHost {
 /** A study with its form, its progress and its result. */
 export interface StudyPane {
   readonly element: HTMLElement
-  /** To be called when the pane is opened, and when the text changes while it is: what can be chosen is read again, but for what was changed by hand. */
+  /**
+   * To be called when the pane is opened, and when the text changes while it is: what can be chosen is read again, but
+   * for what was changed by hand.
+   */
   refresh(): void
 }
 

@@ -27,8 +27,8 @@ import { Workers } from './workers'
 const REST = 200
 
 /**
- * The page as a studio: designs are solved by the engine as the reader makes them. What is shown is the model's text that was opened or
- * typed and the changes made since; both go into the text that is shown, exported and saved.
+ * The page as a studio: designs are solved by the engine as the reader makes them. What is shown is the model's text
+ * that was opened or typed and the changes made since; both go into the text that is shown, exported and saved. /
  */
 export class Studio {
   readonly history: History
@@ -403,7 +403,10 @@ function keepMeshes(before: Report, after: Report): void {
   for (const body of after.bodies) body.mesh ??= before.bodies.find(({ name }) => name === body.name)?.mesh ?? null
 }
 
-/** True if two reports have the same quantities and variables: the page of a what-if has variables that its text has not. */
+/**
+ * True if two reports have the same quantities and variables: the page of a what-if has variables that its text has
+ * not.
+ */
 function alike(a: Report, b: Report): boolean {
   const same = (a: readonly { name: string }[], b: readonly { name: string }[]) => a.length === b.length && a.every(({ name }, k) => name === b[k].name)
   return same(a.quantities, b.quantities) && same(a.variables, b.variables)

@@ -14,7 +14,10 @@ export interface TargetCurve {
   points: readonly (readonly [x: number, y: number])[]
 }
 
-/** Adds a metric to a model's text: how far a measure is from a curve, where that is drawn. All else of the text stays as it is. */
+/**
+ * Adds a metric to a model's text: how far a measure is from a curve, where that is drawn. All else of the text stays
+ * as it is.
+ */
 export function targetToml(text: string, curve: TargetCurve): { text: string; name: string } {
   const entries = outline(text)
   const name = free(curve.name, namesIn(entries, 'metrics'))
@@ -63,7 +66,10 @@ function place(text: string, entries: Entry[], name: string, keys: [key: string,
   return { at, piece: `${at === 0 ? '' : '\n\n'}${table}${text.length > at ? '' : '\n'}` }
 }
 
-/** The end of the line at a place, and of the lines with comments that follow it, where they stand with it and not with what comes next. */
+/**
+ * The end of the line at a place, and of the lines with comments that follow it, where they stand with it and not with
+ * what comes next.
+ */
 function endOfLines(text: string, at: number): number {
   const end = (from: number) => {
     const next = text.indexOf('\n', from)

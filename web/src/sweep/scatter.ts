@@ -14,7 +14,10 @@ const TICK = 70
 /** A design is pointed at from so far, px. */
 const REACH = 24
 
-/** Swept designs as points over two of their variables and metrics, and what Sobol's indices say of the metric that is shown. */
+/**
+ * Swept designs as points over two of their variables and metrics, and what Sobol's indices say of the metric that is
+ * shown.
+ */
 export function sweepPlot(sweep: Sweep): HTMLElement {
   return new Scatter(sweep).element
 }

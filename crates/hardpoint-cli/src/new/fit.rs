@@ -1,5 +1,5 @@
-//! Values of a template that follow from the hardpoints of a table, or contradict them: the radius of a wheel, a point of its axis, the
-//! travel of a case.
+//! Values of a template that follow from the hardpoints of a table, or contradict them: the radius of a wheel, a point
+//! of its axis, the travel of a case.
 
 use hardpoint::model::CaseId;
 use hardpoint::{Analysis, Run};
@@ -7,8 +7,8 @@ use hardpoint_file::{at_keys, hardpoint_in, with_keys};
 
 use crate::session::Session;
 
-/// A wheel's centre this much lower or higher than the template's, as factors, is on the ground at z = 0. Beyond, the table
-/// counts its heights from elsewhere.
+/// A wheel's centre this much lower or higher than the template's, as factors, is on the ground at z = 0. Beyond, the
+/// table counts its heights from elsewhere.
 const RADII: [f64; 2] = [0.5, 2.0];
 /// Heights that agree to this part were meant to be equal.
 const SAME: f64 = 1e-6;
@@ -20,7 +20,8 @@ const SIDEWAYS: f64 = 0.94;
 const SPINDLE: &str = "spindle";
 const CENTRE: &str = "wheel_centre";
 
-/// A point of the wheel's axis where the table has none: inboard of the centre as in the template, without camber and toe.
+/// A point of the wheel's axis where the table has none: inboard of the centre as in the template, without camber and
+/// toe.
 pub fn spindle(session: &Session, template: &str, wanted: &[String], places: &mut Vec<(String, [f64; 3])>) {
     let is_wanted = wanted.iter().any(|w| w == SPINDLE);
     let of = |name: &str| places.iter().find(|p| p.0 == name).map(|p| p.1);

@@ -58,7 +58,8 @@ fn sheet(path: &Path) -> Result<Vec<Vec<String>>, String> {
     Err("none of its sheets has a cell".into())
 }
 
-/// The cells of a text, which semicolons, tabs or commas keep apart. Where it is not commas, numbers may have a decimal comma.
+/// The cells of a text, which semicolons, tabs or commas keep apart. Where it is not commas, numbers may have a decimal
+/// comma.
 fn text(path: &Path) -> Result<Vec<Vec<String>>, String> {
     let text = std::fs::read_to_string(path).map_err(|e| match e.kind() {
         std::io::ErrorKind::InvalidData => "it is not a text in UTF-8".to_owned(),
@@ -95,7 +96,8 @@ fn text(path: &Path) -> Result<Vec<Vec<String>>, String> {
     Ok(cells)
 }
 
-/// The text without the `#` before the names of its columns: a line above the first row that heads columns x and y is no remark.
+/// The text without the `#` before the names of its columns: a line above the first row that heads columns x and y is
+/// no remark.
 fn with_header(text: &str, first: &str, delimiter: u8) -> String {
     let mut out = text.to_owned();
     let above = text.lines().take_while(|l| l.trim().is_empty() || l.starts_with('#'));

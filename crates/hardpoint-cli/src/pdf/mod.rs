@@ -97,7 +97,8 @@ impl Contents<'_> {
         }
     }
 
-    /// The curves of the measures, or of the points where there are none, two beside each other; says which are not here.
+    /// The curves of the measures, or of the points where there are none, two beside each other; says which are not
+    /// here.
     fn drawn(&self, paper: &mut Paper) -> Option<String> {
         let (solution, units) = (&self.course.kept, self.file.units);
         let outputs = self.shown();

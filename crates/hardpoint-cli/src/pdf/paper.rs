@@ -13,8 +13,8 @@ const LEADING: f32 = 1.35;
 const BOLD: f32 = 1.07;
 const FONTS: [(Name<'static>, Name<'static>); 2] =
     [(Name(b"F1"), Name(b"Helvetica")), (Name(b"F2"), Name(b"Helvetica-Bold"))];
-/// Widths of the letters of Helvetica from the blank to the tilde, in thousandths of the size (Adobe's font metrics). PDF readers have the
-/// font themselves.
+/// Widths of the letters of Helvetica from the blank to the tilde, in thousandths of the size (Adobe's font metrics).
+/// PDF readers have the font themselves.
 const WIDTHS: [u16; 95] = [
     278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278, 556, 556, 556, 556, 556,
     556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667, 611, 778, 722, 278,
@@ -57,7 +57,8 @@ impl Face {
         thousandths as f32 * 1e-3 * self.size * if self.is_bold { BOLD } else { 1.0 }
     }
 
-    /// The lines of a text that are no wider than this, broken at blanks; words that are wider by themselves are broken anywhere.
+    /// The lines of a text that are no wider than this, broken at blanks; words that are wider by themselves are broken
+    /// anywhere.
     pub fn lines(self, text: &str, width: f32) -> Vec<String> {
         let mut lines = Vec::new();
         for paragraph in text.lines() {
@@ -168,7 +169,8 @@ impl Paper {
         self.y -= 0.4 * HEADING.size;
     }
 
-    /// A row of a table: texts in columns that begin at these places, from the left margin, each in as many lines as it takes.
+    /// A row of a table: texts in columns that begin at these places, from the left margin, each in as many lines as it
+    /// takes.
     pub fn row(&mut self, face: Face, columns: &[f32], cells: &[&str]) {
         /// Between two columns.
         const GAP: f32 = 8.0;

@@ -45,7 +45,8 @@ impl Address {
         &self.token
     }
 
-    /// The cookie that the page of that address gets; browsers tell cookies of different ports apart by their names only.
+    /// The cookie that the page of that address gets; browsers tell cookies of different ports apart by their names
+    /// only.
     pub fn cookie(&self) -> String {
         format!("{}={}; Path=/; HttpOnly; SameSite=Strict", self.cookie_name(), self.token)
     }
@@ -83,7 +84,8 @@ impl Address {
         let in_address = uri.query().is_some_and(|q| {
             form_urlencoded::parse(q.as_bytes()).any(|(key, value)| key == "token" && self.is_token(&value))
         });
-        // Browsers say from where a request comes, also where it has no origin. Following a link with the token is allowed.
+        // Browsers say from where a request comes, also where it has no origin. Following a link with the token is
+        // allowed.
         let site = headers.get_all("sec-fetch-site").iter().all(|v| v == "same-origin" || v == "none");
         let follows_link = method == Method::GET && one(headers, "sec-fetch-mode") == Some("navigate");
         if !(site || in_address && follows_link) {

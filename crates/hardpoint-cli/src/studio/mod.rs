@@ -1,4 +1,5 @@
-//! `hardpoint studio`: the page of a model from a server on this machine, which saves, watches files and runs long studies.
+//! `hardpoint studio`: the page of a model from a server on this machine, which saves, watches files and runs long
+//! studies.
 //!
 //! | file | what |
 //! |---|---|

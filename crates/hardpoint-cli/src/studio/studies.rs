@@ -1,4 +1,5 @@
-//! Studies that take long, each in a thread of its own: requested, watched, cancelled, kept until others have been done.
+//! Studies that take long, each in a thread of its own: requested, watched, cancelled, kept until others have been
+//! done.
 
 use std::collections::VecDeque;
 use std::num::NonZero;

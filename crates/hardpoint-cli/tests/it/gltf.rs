@@ -166,7 +166,8 @@ fn a_body_with_a_mesh_is_shown_in_it() {
     let glb = Animated::open(&bench, "out/motion.glb");
     let corners = glb.corners("crank");
     assert_eq!(corners.len(), 3);
-    // In the design configuration, at t = 0: its frame put where the motion begins, the corners are where the file has them.
+    // In the design configuration, at t = 0: its frame put where the motion begins, the corners are where the file has
+    // them.
     let path = &glb.paths()["crank"];
     let placed = |c: [f32; 3]| {
         let v = turned(path.turns[0], c.map(f64::from));

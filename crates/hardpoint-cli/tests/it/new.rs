@@ -101,7 +101,8 @@ fn a_table_places_the_hardpoints_in_its_units_and_axes() {
     let told = said(&bench, &["new", "bar", "-t", "four-bar", "--hardpoints", "bar.csv", "--units", "mm"]);
     assert_eq!(told, (Some(0), String::new()));
     assert!(bench.text("bar.toml").contains("B = [35, 61] "));
-    // The same without the third coordinate, its unit in the names of the columns, decimal commas as a spreadsheet writes them.
+    // The same without the third coordinate, its unit in the names of the columns, decimal commas as a spreadsheet
+    // writes them.
     bench.put("flat.csv", "Name;x [cm];y [cm]\nA;0;0\nB;3,5;6,1\nC;25;19\nD;30;0\nP;13;20\n");
     let told = said(&bench, &["new", "flat", "-t", "four-bar", "--hardpoints", "flat.csv"]);
     assert_eq!(told, (Some(0), String::new()));
@@ -177,7 +178,8 @@ fn values_of_a_template_that_contradict_the_hardpoints_are_derived_and_told() {
 
 #[test]
 fn tables_of_hardpoints_import_again() {
-    /// Coordinates are written as short as they give the same places again; turning them half round changes signs alone.
+    /// Coordinates are written as short as they give the same places again; turning them half round changes signs
+    /// alone.
     const SAME: f64 = 1e-12;
     for model in ["double_wishbone", "macpherson", "five_link", "front_axle"] {
         let file = format!("{model}.toml");

@@ -337,7 +337,8 @@ fn a_result_that_cannot_be_written_is_still_shown() {
     assert!(text.contains("could not be saved") && text.contains("A_y"), "{text}");
 }
 
-/// A slider-crank driven by its slider, with a law from a file beside the model; the rod and the crank are in line after 10.6 mm.
+/// A slider-crank driven by its slider, with a law from a file beside the model; the rod and the crank are in line
+/// after 10.6 mm.
 const PULLED: &str = r#"
 name = "pulled"
 units = { length = "mm", angle = "deg" }

@@ -141,7 +141,8 @@ fn an_interrupted_run_leaves_the_part_that_was_solved() {
     let long =
         bench.text("slider.toml").replace("steps = 40", "steps = 1000000").replace("40*sin", "0.1*sin");
     bench.put("long.toml", &long);
-    // How long after its start a run has solved something and not yet everything depends on the machine, so it is searched for.
+    // How long after its start a run has solved something and not yet everything depends on the machine, so it is
+    // searched for.
     let mut pause = Duration::from_millis(10);
     let output = loop {
         let mut command = bench.command(&["run", "long.toml", "-o", "out"]);

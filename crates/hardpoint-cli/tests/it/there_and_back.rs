@@ -201,7 +201,8 @@ fn a_teimorbit_table_that_was_exported_is_a_suspension_again() {
     }
 }
 
-/// A linkage whose names hold what no other format can: a tab, a new line, a bell, and what becomes the same without them.
+/// A linkage whose names hold what no other format can: a tab, a new line, a bell, and what becomes the same without
+/// them.
 const NAMES: &str = r#"
 name = "tab\there"
 units = { length = "mm", angle = "deg" }
@@ -263,7 +264,8 @@ fn names_that_a_format_cannot_hold_are_written_otherwise_and_told() {
         }
         let joints: Vec<&str> = again.model.named_joints().map(|(_, j)| j.name.as_str()).collect();
         assert!(joints.contains(&"one_line") && joints.contains(&"one_line_2"), "{format}: {joints:?}");
-        // The constant of the coupler comes along: 2 third + 3 one_line = 30 deg, third = 15 deg where the other is at zero.
+        // The constant of the coupler comes along: 2 third + 3 one_line = 30 deg, third = 15 deg where the other is at
+        // zero.
         let coupler = &again.model.couplers[0];
         if format == "mjcf" {
             let first = coupler.terms[0].coefficient;

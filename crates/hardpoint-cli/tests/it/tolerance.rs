@@ -196,13 +196,15 @@ fn where_linear_statistics_are_off_the_designs_drawn_come_first_and_it_is_said_w
 
 #[test]
 fn contributions_come_from_the_model_of_the_spread() {
-    // The stroke goes with the crank and with the square of the offset: 2 a + c e^2 with c = 4 a b/(b^2 - a^2)/(2 b) ...
+    // The stroke goes with the crank and with the square of the offset: 2 a + c e^2 with c = 4 a b/(b^2 - a^2)/(2 b)
+    // ...
     let (_, drawn) = studied("tolerance_curved.toml", "4000");
     let (_, derived) = studied("tolerance_curved.toml", "0");
     for (json, from) in [(&drawn, "drawn"), (&derived, "second_order")] {
         let stroke = &json["metrics"][0];
         assert_eq!(stroke["told_by"], from);
-        // sigma of the linear part is 0.04 mm of 0.0511 mm: 61 % of the variance are the crank's, the rest the offset's.
+        // sigma of the linear part is 0.04 mm of 0.0511 mm: 61 % of the variance are the crank's, the rest the
+        // offset's.
         let (a, e) = (share(stroke, "a"), share(stroke, "e"));
         assert!((a - 0.6125).abs() < 0.05 && (e - 0.3875).abs() < 0.05, "{from}: {a} {e}");
         assert_eq!(json["metrics"][1]["told_by"], "linear");

@@ -1,8 +1,8 @@
 //! Register allocation, and the instructions that follow from it.
 //!
 //! Linear scan in the order of the program. When registers run out, the number that is read furthest ahead makes room.
-//! What has a home in memory (inputs, uniforms, constants, outputs that are known, what was spilled before) is read there and
-//! never stored again; other values are spilled to a slot of the scratch when they make room.
+//! What has a home in memory (inputs, uniforms, constants, outputs that are known, what was spilled before) is read
+//! there and never stored again; other values are spilled to a slot of the scratch when they make room.
 
 use super::calls;
 use super::encoder::{Assembler, Gpr, Memory, Opcode, Sign, Source};

@@ -9,8 +9,8 @@
 //! The parts are three addresses in memory. The entry brings those of parts that are not empty to rdx, r10 and r11;
 //! nobody reads the others.
 //!
-//! All vector registers are its own; of the general ones it changes these, rax and flags. Those with addresses point a little
-//! into what they stand for, so that short offsets reach both ways.
+//! All vector registers are its own; of the general ones it changes these, rax and flags. Those with addresses point a
+//! little into what they stand for, so that short offsets reach both ways.
 //!
 //! AVX-512 goes through the program once for each group, AVX2 twice: for the first four lanes and for the others.
 //! AVX2 has no operands of one scalar for all lanes, so that constants come four times, and uniforms are spread over

@@ -21,7 +21,8 @@ unsafe impl Sync for Executable {}
 impl Executable {
     pub fn new(code: &[u8]) -> Result<Self, Errno> {
         let length = code.len();
-        // SAFETY: the address is null and the mapping anonymous and private: the system gives fresh pages, which overlap nothing.
+        // SAFETY: the address is null and the mapping anonymous and private: the system gives fresh pages, which
+        // overlap nothing.
         let start = unsafe {
             mmap_anonymous(
                 std::ptr::null_mut(),

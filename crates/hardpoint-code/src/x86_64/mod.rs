@@ -20,8 +20,8 @@ use memory::Executable;
 
 /// Machine code as a function: inputs, uniforms, where the parts of the outputs are, scratch, constants, groups.
 ///
-/// Reads `groups` times the program's inputs, its uniforms and constants, and the addresses of parts that are not empty; writes and reads
-/// `groups` times the outputs of each such part there, and the scratch.
+/// Reads `groups` times the program's inputs, its uniforms and constants, and the addresses of parts that are not
+/// empty; writes and reads `groups` times the outputs of each such part there, and the scratch.
 type Entry = unsafe extern "sysv64" fn(
     *const Lanes,
     *const f64,

@@ -1,7 +1,7 @@
 //! The part of DXF (AutoCAD 2000) that a skeleton needs: layers, points, texts and lines in model space.
 //!
-//! A drawing of this version needs its tables, the blocks of model space and paper space, and a root dictionary, each object with a
-//! handle of its own; [`HEAD`], [`MIDDLE`] and [`TAIL`] hold those that are the same in every drawing.
+//! A drawing of this version needs its tables, the blocks of model space and paper space, and a root dictionary, each
+//! object with a handle of its own; [`HEAD`], [`MIDDLE`] and [`TAIL`] hold those that are the same in every drawing.
 
 use std::fmt::Write;
 
@@ -30,7 +30,8 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
-    /// Adds a layer and returns its name: the given one, with forbidden characters replaced, and numbered where it is taken.
+    /// Adds a layer and returns its name: the given one, with forbidden characters replaced, and numbered where it is
+    /// taken.
     pub(super) fn add_layer(&mut self, name: &str) -> String {
         let allowed = |c: char| if FORBIDDEN.contains(&c) || c.is_control() { '_' } else { c };
         let plain = single_line(&name.chars().map(allowed).collect::<String>());

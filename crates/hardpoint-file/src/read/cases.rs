@@ -27,8 +27,8 @@ pub(crate) const CASE: Table = table! {
     may "loads": LOADS, "\"static\"";
     /// Output times, as `[time]` has them. Default: those of `[time]`.
     may "time": Shape::Kinds(&TIME), "{ end = 1.0, steps = 100 }";
-    /// In place of all these, two drivers by name and where each of them is: every position of the one with every position of the
-    /// other. All others are fixed in the design configuration.
+    /// In place of all these, two drivers by name and where each of them is: every position of the one with every
+    /// position of the other. All others are fixed in the design configuration.
     may "grid": Shape::Entries("a driver", &Shape::Kinds(&SWEEP)), "{ bump = { from = -80, to = 80, steps = 8 }, steering = { from = -15, to = 15, steps = 6 } }";
 };
 pub(crate) const SWEEP: Kinds = Kinds {
@@ -218,7 +218,8 @@ impl Reader<'_> {
             self.senseless(end.value.span(), message).help = Some("give a `to` above `from`".into());
             return None;
         }
-        // Symmetric ranges meet the drawing exactly, and whole numbers stay whole: of each place, both ends in proportion.
+        // Symmetric ranges meet the drawing exactly, and whole numbers stay whole: of each place, both ends in
+        // proportion.
         Some((0..=steps as usize).map(|k| (from * (steps - k as f64) + to * k as f64) / steps).collect())
     }
 

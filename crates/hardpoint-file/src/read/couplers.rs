@@ -61,7 +61,8 @@ static TYPES: [(Table, Read); 6] = [
             "linear":
             /// Two terms or more.
             must "terms": Shape::list(&Shape::Table(&TERM)), "[{ joint = \"J1\", coefficient = 2 }, { joint = \"J2\", coefficient = -1 }]";
-            /// Value of the sum, in the file's units of coefficient x coordinate. Where it is not zero, the mechanism is assembled to it.
+            /// Value of the sum, in the file's units of coefficient x coordinate. Where it is not zero, the mechanism
+            /// is assembled to it.
             or("0.0") "constant": NUMBER, "2.5";
         },
         |r, fields, raw, _| r.linear(fields, raw),

@@ -42,8 +42,8 @@ static KINDS: &[(Table, Read)] = &[
             must "move": HARDPOINTS, "\"A\"";
             /// The direction; `"xyz"` makes three variables, NAME_x, NAME_y and NAME_z.
             must "along": Shape::Any("Along", "", &[AXES, Shape::Any("AllAxes", "", &[Shape::Words(&[("xyz", "")])]), THREE]), "\"z\"";
-            /// The global axis perpendicular to a mirror through the origin, behind which `mirrored` hardpoints move: `"y"` between left and
-            /// right.
+            /// The global axis perpendicular to a mirror through the origin, behind which `mirrored` hardpoints move:
+            /// `"y"` between left and right.
             may "mirror": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
             /// A hardpoint's name, or a list of names, that move as the mirror image of `move`.
             may "mirrored": HARDPOINTS, "\"A_right\"";
@@ -142,8 +142,8 @@ static KINDS: &[(Table, Read)] = &[
 ];
 
 const RANGE: &[Key] = keys! {
-    /// True if rods and legs keep their lengths while it moves their ends, so that the mechanism is assembled anew; else they are
-    /// made anew to fit the design configuration.
+    /// True if rods and legs keep their lengths while it moves their ends, so that the mechanism is assembled anew;
+    /// else they are made anew to fit the design configuration.
     or("false") "fixed_length": Shape::Flag, "true";
     /// The lowest and the highest value that it may have, in the variable's unit; it is 0 in the file.
     may "bounds": TWO_NUMBERS, "[-5, 5]";

@@ -111,8 +111,9 @@ static FORMS: &[(Table, Read)] = &[
     (
         driven! {
             "The measure's value over time, in its unit", ".";
-            /// The value of a measure, like wheel travel or a steer angle: a `coordinate`, `position`, `distance`, `toe` or `angle` seen
-            /// along `about`; of a wheel its `toe`, `steer_angle`, `wheel_travel` or `wheel_recession`.
+            /// The value of a measure, like wheel travel or a steer angle: a `coordinate`, `position`, `distance`,
+            /// `toe` or `angle` seen along `about`; of a wheel its `toe`, `steer_angle`, `wheel_travel` or
+            /// `wheel_recession`.
             "DrivenMeasure":
             /// The measure's name.
             must "measure": OUTPUT, "\"travel\"";

@@ -1,6 +1,7 @@
 //! Files in files: a corner in an axle, an axle in a vehicle.
 //!
-//! All files of a model are one [`Source`], whose values are put together before they are read; each keeps its place there.
+//! All files of a model are one [`Source`], whose values are put together before they are read; each keeps its place
+//! there.
 
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -36,8 +37,8 @@ pub(super) const INCLUDE_TABLE: Table = table! {
 };
 /// More files than this are surely a slip.
 const MOST_FILES: usize = 100;
-/// Each inclusion counts as that many bytes at least of what all files of a model may have together, so that files that include others over
-/// and over end somewhere.
+/// Each inclusion counts as that many bytes at least of what all files of a model may have together, so that files that
+/// include others over and over end somewhere.
 const LEAST_BYTES: u64 = 64 << 10;
 const WANTED: Wanted<'static> = Wanted {
     purpose: "model",
@@ -159,8 +160,8 @@ pub(crate) struct Files<'a> {
 }
 
 impl Reader<'_> {
-    /// All of a model in one table: what the file includes, what it says itself, and what its mirror makes of both. Where that cannot be
-    /// made, it is reported.
+    /// All of a model in one table: what the file includes, what it says itself, and what its mirror makes of both.
+    /// Where that cannot be made, it is reported.
     pub fn whole<'a>(&mut self, mut files: Files<'a>) -> Both<'a> {
         let first = &mut files.tables[0].1;
         if !["include", "mirror", "planar"].iter().any(|key| first.contains_key(*key)) {

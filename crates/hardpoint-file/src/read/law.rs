@@ -93,7 +93,8 @@ static TYPES: &[(Table, Read)] = &[
     ),
     (
         table! {
-            /// From one value to another with constant acceleration, constant speed, constant deceleration; at rest before and after.
+            /// From one value to another with constant acceleration, constant speed, constant deceleration; at rest
+            /// before and after.
             "trapezoid":
             /// The value before, in the driver's unit.
             or("0.0") "from": NUMBER, "0";

@@ -10,7 +10,8 @@ use crate::diagnostic::shown;
 /// More rows than these are surely a slip: each is a posture that is solved by itself.
 const MOST_ROWS: usize = 100_000;
 
-/// The first line's names without units, each with its unit where one is written, and the numbers below; empty cells are none.
+/// The first line's names without units, each with its unit where one is written, and the numbers below; empty cells
+/// are none.
 pub(crate) struct Readings {
     pub names: Vec<(String, Option<String>)>,
     /// With the line of each.
@@ -103,7 +104,8 @@ pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
     Ok(Readings { names, rows })
 }
 
-/// The line above the first row that begins with `#` and has as many cells: it names the columns, and is a comment by its `#`.
+/// The line above the first row that begins with `#` and has as many cells: it names the columns, and is a comment by
+/// its `#`.
 fn headed(text: &str, columns: usize) -> Option<usize> {
     let delimiter = char::from(delimiter(text));
     let above = text.lines().enumerate().take_while(|(_, l)| l.trim().is_empty() || l.starts_with('#'));

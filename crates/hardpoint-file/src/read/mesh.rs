@@ -1,5 +1,5 @@
-//! Shapes of bodies: files of triangles beside the model file, to be drawn, and for what they weigh. What they look like otherwise
-//! (materials, colours, normals) is not read.
+//! Shapes of bodies: files of triangles beside the model file, to be drawn, and for what they weigh. What they look
+//! like otherwise (materials, colours, normals) is not read.
 
 mod gltf;
 mod obj;
@@ -26,8 +26,8 @@ pub(super) const MESH: Shape = Shape::Any("Mesh", "", &[Shape::File, Shape::Tabl
 pub(super) const MESH_TABLE: Table = table! {
     /// The shape of a body.
     "MeshFile":
-    /// A file of triangles in the model's folder or below it: `.stl`, `.obj`, `.glb` or `.gltf`. Of a glTF file the transforms of
-    /// its nodes are applied, its axes are taken as they are, and its data has to be in the file itself.
+    /// A file of triangles in the model's folder or below it: `.stl`, `.obj`, `.glb` or `.gltf`. Of a glTF file the
+    /// transforms of its nodes are applied, its axes are taken as they are, and its data has to be in the file itself.
     must "file": Shape::File, "\"knuckle.stl\"";
     /// Frame of its coordinates.
     or("\"world\"") "frame": Shape::Words(MESH_FRAMES), "\"body\"";
@@ -126,7 +126,8 @@ fn triangles_of(folder: Folder<'_>, name: &str) -> Result<Triangles, DataError> 
     Ok(triangles)
 }
 
-/// The triangles in the bytes of a mesh file, whose kind the ending of its name indicates: three corners each, as they are written.
+/// The triangles in the bytes of a mesh file, whose kind the ending of its name indicates: three corners each, as they
+/// are written.
 ///
 /// # Errors
 /// Why there are none.

@@ -1,8 +1,9 @@
 //! The other side of a symmetric mechanism, made from the one that is written.
 //!
-//! It is made of the text's values before they are read: what is made so has names of its own, and the places in the text of what it
-//! was made of. Whatever moves as a mirror image then has the same joint coordinates and measures as its original: directions to go
-//! along are mirrored as arrows are, and directions to turn about the other way round, as turns are.
+//! It is made of the text's values before they are read: what is made so has names of its own, and the places in the
+//! text of what it was made of. Whatever moves as a mirror image then has the same joint coordinates and measures as
+//! its original: directions to go along are mirrored as arrows are, and directions to turn about the other way round,
+//! as turns are.
 
 mod origins;
 mod side;
@@ -27,7 +28,8 @@ pub(crate) const MIRROR: Table = table! {
     "Mirror":
     /// The global axis perpendicular to the mirror, a plane through the origin: `"y"` between left and right.
     or("\"y\"") "across": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
-    /// Words in names, and the words that stand for them on the other side. A word ends where the name does, or at `_`, `-` or a blank.
+    /// Words in names, and the words that stand for them on the other side. A word ends where the name does, or at `_`,
+    /// `-` or a blank.
     or("{ \"left\": \"right\" }") "names": Shape::Entries("a word", &Shape::Text), "{ left = \"right\" }";
     /// Design variables of mirrored entries.
     or("\"both\"") "variables": VARIABLES, "\"each\"";
@@ -95,7 +97,8 @@ impl<'n> Rule<'n> {
         if self.kept.contains(base) || self.kept.contains(name) { None } else { self.exchanged(name) }
     }
 
-    /// The names and vectors of a value on the other side; `turns` says under which keys a vector is a turn. Says whether there was any name.
+    /// The names and vectors of a value on the other side; `turns` says under which keys a vector is a turn. Says
+    /// whether there was any name.
     fn mirror(&self, shape: Shape, value: &mut Value<'n>, turns: &dyn Fn(&str) -> bool) -> bool {
         let mut named = false;
         let axes = ["x", "y", "z"];
@@ -128,7 +131,8 @@ impl<'n> Rule<'n> {
                 let turned = turns(key);
                 each(list, self.numbers, |k| (k == self.across) != turned);
             }
-            // Turns one after the other, between two mirrors: those about the mirror's axis stay, all others go the other way.
+            // Turns one after the other, between two mirrors: those about the mirror's axis stay, all others go the
+            // other way.
             Leaf::Angles(list) => each(list, self.numbers, |k| turned_about(key, k) != self.across),
             Leaf::Quaternion(list) => each(list, self.numbers, |k| k > 0 && k - 1 != self.across),
         });
@@ -136,8 +140,8 @@ impl<'n> Rule<'n> {
     }
 }
 
-/// The axis of the k-th angle under a key: Cardan angles are of x, y and z in their order, and so are roll, pitch and yaw; 3-1-3 Euler
-/// angles are of z, x and z.
+/// The axis of the k-th angle under a key: Cardan angles are of x, y and z in their order, and so are roll, pitch and
+/// yaw; 3-1-3 Euler angles are of z, x and z.
 fn turned_about(key: &str, k: usize) -> usize {
     match (key, k) {
         ("cardan" | "roll_pitch_yaw", k) => k,
@@ -223,7 +227,8 @@ fn turn_sign<'a>(value: &mut Value<'a>, numbers: &'a Opposites) {
 }
 
 impl Reader<'_> {
-    /// The table of the model with what its `mirror` makes of it; none where there is no mirror, or where that cannot be read, which is reported.
+    /// The table of the model with what its `mirror` makes of it; none where there is no mirror, or where that cannot
+    /// be read, which is reported.
     pub fn both_sides<'a>(&mut self, model: &DeTable<'a>, numbers: &'a Opposites) -> Option<Both<'a>> {
         let value = model.get("mirror")?;
         let Some(said) = value.get_ref().as_table() else {

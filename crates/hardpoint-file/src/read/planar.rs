@@ -149,7 +149,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Bodies that are lists of hardpoints: where two have the same there is a pin; what one alone has is a point of it to follow.
+    /// Bodies that are lists of hardpoints: where two have the same there is a pin; what one alone has is a point of it
+    /// to follow.
     fn bodies_by_points<'a>(&mut self, model: &mut DeTable<'a>) {
         let Some(bodies) = model.get_mut("bodies").and_then(table_of) else { return };
         /// A hardpoint, where it is listed, and the bodies on it.
@@ -234,10 +235,12 @@ struct Listed {
     at: Range<usize>,
 }
 
-/// The hinges at a point, with their names, between the bodies that have it: one has the point's name, all others that of a body besides.
+/// The hinges at a point, with their names, between the bodies that have it: one has the point's name, all others that
+/// of a body besides.
 ///
-/// `image` is what a mirror calls the image of something, if it makes one. Where the point is its own image, a body of one side has its
-/// hinge under its own name, so that its image has one as well; where bodies of one side alone meet, one of them meets its own image.
+/// `image` is what a mirror calls the image of something, if it makes one. Where the point is its own image, a body of
+/// one side has its hinge under its own name, so that its image has one as well; where bodies of one side alone meet,
+/// one of them meets its own image.
 fn hinges(point: &str, on: &[Listed], image: impl Fn(&str) -> Option<String>) -> Vec<(String, [Listed; 2])> {
     let is_shared = image(point).is_none();
     let other_side = |body: &Listed| image(&body.name).filter(|_| is_shared);

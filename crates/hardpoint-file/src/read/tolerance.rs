@@ -22,8 +22,9 @@ pub(crate) const TOLERANCE: Table = table! {
     /// Tolerances of the design, and the limits that it must keep. All design variables with a `tolerance` are
     /// included.
     "Tolerance":
-    /// Tolerances by name of the design variable, in its unit, over those that the variables have themselves. The name of an entry of
-    /// `[design]` that makes several coordinates means the point: it lies within a sphere of that radius (or a disc, of two).
+    /// Tolerances by name of the design variable, in its unit, over those that the variables have themselves. The name
+    /// of an entry of `[design]` that makes several coordinates means the point: it lies within a sphere of that radius
+    /// (or a disc, of two).
     may "variables": Shape::Entries("a design variable", &ENTRY), "{ B = 0.1, C_x = { tolerance = 0.2, distribution = \"uniform\" } }";
     /// Default distribution of deviations.
     or("\"normal\"") "distribution": DISTRIBUTION, "\"uniform\"";
@@ -43,7 +44,8 @@ pub(crate) const TOLERANCE: Table = table! {
     or("1") "seed": Shape::Count(u32::MAX), "7";
     /// The loosest tolerances are sought that keep the limits, of variables that have a `cost`.
     may "allocate": Shape::Words(&ALLOCATE), "\"rss\"";
-    /// With `allocate = "rss"`: that many standard deviations have to fit between a metric in the design configuration and its limit.
+    /// With `allocate = "rss"`: that many standard deviations have to fit between a metric in the design configuration
+    /// and its limit.
     or("3.0") "keep_sigmas": NUMBER, "4.5";
 };
 const DISTRIBUTION: Shape = Shape::Words(&[

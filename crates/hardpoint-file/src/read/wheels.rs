@@ -22,15 +22,15 @@ pub(crate) const WHEEL: Table = table! {
     "Wheel":
     /// The body that it turns on: the knuckle.
     must "body": BODY, "\"knuckle\"";
-    /// Centre in the design configuration: a hardpoint's name (and it follows the hardpoint when the design moves that), or
-    /// coordinates.
+    /// Centre in the design configuration: a hardpoint's name (and it follows the hardpoint when the design moves
+    /// that), or coordinates.
     must "centre": PLACE, "\"wheel_centre\"";
     /// Spin axis in the design configuration, pointing outboard. Or give `toe` and `camber`.
     may "spin_axis": LINE, "[0, 1, 0]";
     /// Toe in the design configuration, instead of a spin axis; positive for toe-in, in the angle unit.
     may "toe": ANGLE, "0.1";
-    /// Camber in the design configuration, instead of a spin axis; positive where the wheel's top leans outboard, in the angle
-    /// unit.
+    /// Camber in the design configuration, instead of a spin axis; positive where the wheel's top leans outboard, in
+    /// the angle unit.
     may "camber": ANGLE, "-1";
     /// From the centre to the ground in the wheel's plane: the loaded or rolling radius, in the length unit.
     must "radius": LENGTH, "310";
@@ -42,16 +42,16 @@ pub(crate) const WHEEL: Table = table! {
     may "bump": DRIVER, "\"jounce\"";
     /// The driver that steers it, for the virtual steering axis.
     may "steer": DRIVER, "\"rack\"";
-    /// The lower and the upper plane of its arms, for the instant centres of textbooks: of an arm two pivots and its ball joint, of a strut
-    /// its top mount and another point of its axis.
+    /// The lower and the upper plane of its arms, for the instant centres of textbooks: of an arm two pivots and its
+    /// ball joint, of a strut its top mount and another point of its axis.
     may "planes": Shape::exactly(2, &ARM_PLANE_SHAPE),
         "[{ body = \"lca\", at = [\"lca_front\", \"lca_rear\", \"lower_ball\"] }, { body = \"strut\", at = [\"strut_top\", \"strut_lower\"] }]";
     /// The ends of its spring, for the motion ratio.
     may "spring": Shape::exactly(2, &POINT_REF), "[{ body = \"ground\", at = \"spring_top\" }, { body = \"lca\", at = \"spring_bottom\" }]";
     /// At which end of the vehicle it is, for anti-dive and the like.
     may "end": Shape::Words(&[("front", ""), ("rear", "")]), "\"front\"";
-    /// Place where its drive torque is reacted, for anti-squat and anti-rise. Default: `"outboard"` where its body carries wheels of both
-    /// sides (a live axle), else `"inboard"`.
+    /// Place where its drive torque is reacted, for anti-squat and anti-rise. Default: `"outboard"` where its body
+    /// carries wheels of both sides (a live axle), else `"inboard"`.
     may "drive": REACTION, "\"inboard\"";
     /// Place where its brake torque is reacted, for anti-dive and anti-lift. Default: `"outboard"`.
     may "brakes": REACTION, "\"outboard\"";

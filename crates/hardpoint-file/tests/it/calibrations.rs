@@ -111,7 +111,8 @@ fn the_fit_of_a_slider_crank_is_that_of_its_closed_form() {
     assert_eq!(found.status, FitStatus::Found);
     let drawn = [0.3, 0.02, 0.1];
     let values: Vec<f64> = (0..3).map(|k| drawn[k] + found.design[k]).collect();
-    // The gradient of the sum of squares of the closed form is nothing there, and the covariance is that of its normal equations.
+    // The gradient of the sum of squares of the closed form is nothing there, and the covariance is that of its normal
+    // equations.
     let at = |b: [f64; 3]| cranks.iter().map(|a| place(b, *a)).collect::<Vec<_>>();
     let b = [values[0], values[1], values[2]];
     let step = 1e-6;
@@ -169,7 +170,8 @@ fn nothing_depends_on_the_order_of_postures_and_readings() {
 
 #[test]
 fn what_cannot_be_told_apart_is_named_and_stays() {
-    // In one posture nothing but one sum of the three is reported; of a rod between two points that both move along it, their difference.
+    // In one posture nothing but one sum of the three is reported; of a rod between two points that both move along it,
+    // their difference.
     let model = crank();
     let measured = readings(&model, &[1e-3, 0.0, 0.0], &[vec![0.3]], &[0], 1e-5, &mut || 0.0);
     let found = fitted(&model, &measured);
@@ -287,7 +289,8 @@ fn a_posture_out_of_reach_is_left_out_and_told() {
 /// Over that many seeds.
 const SEEDS: u64 = 100;
 
-/// A hidden design, drawn anew for every seed: fits over all seeds, as errors in standard deviations and as chi squares of the error.
+/// A hidden design, drawn anew for every seed: fits over all seeds, as errors in standard deviations and as chi squares
+/// of the error.
 fn recovered(
     model: &Model,
     variables: &[VariableId],
@@ -327,7 +330,8 @@ fn mahalanobis(c: &[Vec<f64>], e: &[f64]) -> f64 {
     y.iter().map(|y| y * y).sum()
 }
 
-/// Errors are those that the covariance states: chi squares have their mean and variance, and intervals cover what they should.
+/// Errors are those that the covariance states: chi squares have their mean and variance, and intervals cover what they
+/// should.
 fn assert_covered(name: &str, variables: usize, (errors, chis): (Vec<f64>, Vec<f64>)) {
     let (n, v) = (chis.len() as f64, variables as f64);
     let mean = chis.iter().sum::<f64>() / n;

@@ -174,7 +174,8 @@ fn drive_and_brakes_are_reacted_where_the_wheel_says() {
             .map(|text| solved(&text, Formulation::Relative));
     for wheel in ["w_left", "w_right"] {
         let of = |solution: &Solution, name: &str| values(solution, &format!("{wheel}.{name}"));
-        // Lower links 40 in by 4 in, upper ones 30 in by 1 in: the lines meet, and the tyre pushes along the line from the ground to there.
+        // Lower links 40 in by 4 in, upper ones 30 in by 1 in: the lines meet, and the tyre pushes along the line from
+        // the ground to there.
         let x = 9.0 / (4.0 / 40.0 - 1.0 / 30.0);
         let expected = (13.0 + x * 4.0 / 40.0) / x * 110.0 / 30.0;
         assert!((of(&given, "anti_squat")[0] - expected).abs() < 1e-9, "{expected}");
@@ -233,8 +234,8 @@ fn kinks_are_no_errors_and_wrong_derivatives_of_outputs_are() {
     assert!(failed >= 7, "{failed} of {}", report.checks.len());
 }
 
-/// A rod pushes a block along its guide at an angle: the normal force is the weight and the side thrust, which friction itself makes larger.
-/// With `mu tan(angle)` above 1 friction has two solutions.
+/// A rod pushes a block along its guide at an angle: the normal force is the weight and the side thrust, which friction
+/// itself makes larger. With `mu tan(angle)` above 1 friction has two solutions.
 #[test]
 fn friction_with_two_solutions_has_no_number() {
     for mu in [0.3, 1.0, 1.5, 2.5] {

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, parse, read};
 
-/// Positions, rates and second rates of the saved file agree with those of the changed design to this part of the largest of them (or of
-/// the mechanism's size, or 1): round-off of the closure, times how near to singular the models come.
+/// Positions, rates and second rates of the saved file agree with those of the changed design to this part of the
+/// largest of them (or of the mechanism's size, or 1): round-off of the closure, times how near to singular the models
+/// come.
 const SAME_MOTION: f64 = 1e-8;
 /// Such a part of its natural step each variable is changed by.
 const PART: f64 = 0.01;

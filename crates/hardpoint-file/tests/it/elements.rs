@@ -1,4 +1,5 @@
-//! Masses and forces in model files, type by type: tables, meshes, wheels, what a mirror, a part and a plane make of them.
+//! Masses and forces in model files, type by type: tables, meshes, wheels, what a mirror, a part and a plane make of
+//! them.
 
 use std::fmt::Write;
 use std::path::Path;

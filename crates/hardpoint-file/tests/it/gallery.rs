@@ -19,8 +19,8 @@ fn solved(name: &str) -> (ModelFile, Solution) {
     (file, solution)
 }
 
-/// Holds a motion against `tests/reference.json`, in SI: of some measures at one output time value and acceleration, and sensitivities of
-/// the acceleration. The package for Python is held against the same file.
+/// Holds a motion against `tests/reference.json`, in SI: of some measures at one output time value and acceleration,
+/// and sensitivities of the acceleration. The package for Python is held against the same file.
 fn compare(name: &str) {
     let reference: Value = serde_json::from_str(include_str!("../reference.json")).unwrap();
     let expected = &reference[name];

@@ -334,7 +334,8 @@ fn drive_shaft_turns_the_wheel_evenly(m: &Solved) {
     }
 }
 
-/// Ten turns of the motor by 2/3, by -1/4 and -1/3 on to the rack and by 3 to the screw of 4 mm, counted through all turns.
+/// Ten turns of the motor by 2/3, by -1/4 and -1/3 on to the rack and by 3 to the screw of 4 mm, counted through all
+/// turns.
 fn gear_train_keeps_its_ratios(m: &Solved) {
     for (k, t) in m.steps() {
         let u = t / 4.0;
@@ -443,8 +444,8 @@ fn double_wishbone_rods_and_spring_have_their_lengths(m: &Solved) {
     m.rod("spring", |t| sum([0.004, 0.0, 0.0], sine(0.02, TAU, t)));
 }
 
-/// The static report of Lotus Suspension Analysis v4.03 for 4x4V23.shk, to its last printed digit; then the same quantities
-/// on the way, constructed from the places of the knuckle's hardpoints.
+/// The static report of Lotus Suspension Analysis v4.03 for 4x4V23.shk, to its last printed digit; then the same
+/// quantities on the way, constructed from the places of the knuckle's hardpoints.
 fn double_wishbone_4x4_has_the_published_static_values(m: &Solved) {
     let of = |k: usize, name: &str| m.value(k, &format!("front_left.{name}"));
     const PRINTED: f64 = 0.005;
@@ -616,8 +617,8 @@ fn four_bar_inverse_carries_its_coupler_on_the_crank(m: &Solved) {
     }
 }
 
-/// The angle at C in the triangle B C D, and its derivative by each length: of the angle at the start too, from which the
-/// joint's angle counts.
+/// The angle at C in the triangle B C D, and its derivative by each length: of the angle at the start too, from which
+/// the joint's angle counts.
 fn four_bar_by_lengths_obeys_the_law_of_cosines(m: &Solved) {
     let (g, a, b, c) = (0.4, 0.1, 0.35, 0.25);
     let at = |t: f64| {
@@ -750,7 +751,8 @@ fn quick_return_rests_at_210_and_330_degrees(m: &Solved) {
     }
 }
 
-/// The right wheel does to the right what the left one does to the left; and both tie rods close, by Rodrigues' formula.
+/// The right wheel does to the right what the left one does to the left; and both tie rods close, by Rodrigues'
+/// formula.
 fn rack_steering_is_its_own_mirror_image(m: &Solved) {
     let last = m.file.model.times.len() - 1;
     for (k, t) in m.steps() {

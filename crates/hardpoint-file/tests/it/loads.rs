@@ -347,7 +347,8 @@ fn the_press_gives_over_a_turn_what_its_work_and_its_grease_take() {
     }
 }
 
-/// Masses on every moving body of a model, made up but each another one, off their places and unevenly spread; written into the file.
+/// Masses on every moving body of a model, made up but each another one, off their places and unevenly spread; written
+/// into the file.
 fn make_heavy(path: &Path) -> ModelFile {
     let mut document: DocumentMut = std::fs::read_to_string(path).unwrap().parse().unwrap();
     if document.contains_key("masses") {
@@ -484,7 +485,8 @@ fn every_model_of_the_gallery_balances_its_wrenches_and_its_power_in_both_formul
     assert!(seen > 30);
 }
 
-/// A scissor lift (legs of 2 m at 30 deg, 1000 N on the platform, 200 N of legs): F = (W + Wa/2) / tan(phi), whatever the law does.
+/// A scissor lift (legs of 2 m at 30 deg, 1000 N on the platform, 200 N of legs): F = (W + Wa/2) / tan(phi), whatever
+/// the law does.
 #[test]
 fn static_loads_have_no_inertia_in_either_formulation() {
     /// Relative error of forces of a kilonewton, over joints whose positions are solved to 1e-12.

@@ -1,5 +1,5 @@
-//! Model files as their authors meet them: what is read, what is refused and how that is said, and the models of the gallery
-//! solved and held against what is known of them.
+//! Model files as their authors meet them: what is read, what is refused and how that is said, and the models of the
+//! gallery solved and held against what is known of them.
 
 mod calibrations;
 mod cases;

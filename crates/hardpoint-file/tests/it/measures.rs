@@ -1,5 +1,5 @@
-//! Measures of every kind on several mechanisms: rates against differences over time, sensitivities against designs that are
-//! solved anew, and values by formulas.
+//! Measures of every kind on several mechanisms: rates against differences over time, sensitivities against designs
+//! that are solved anew, and values by formulas.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -65,7 +65,8 @@ type = "expression"
 expression = "v*a"
 "#;
 
-/// Per model: a moving body and the next one, and three of its hardpoints: one end, the joint between them, the other end.
+/// Per model: a moving body and the next one, and three of its hardpoints: one end, the joint between them, the other
+/// end.
 const MODELS: [(&str, [&str; 2], [&str; 3]); 4] = [
     ("watt_six_bar", ["coupler", "rocker"], ["crank_pin", "rocker_pin", "rocker_pivot"]),
     ("slider_crank", ["rod", "slider"], ["P2", "P3", "P4"]),
@@ -183,8 +184,8 @@ fn a_crank_pin_runs_on_a_circle() {
     on_every_path("crank", &parse(text, "crank.toml").unwrap().model, 1e-9);
 }
 
-/// Holds the measures of two solutions against each other: the same numbers are none, and the others differ by less than this part of
-/// the largest of their kind.
+/// Holds the measures of two solutions against each other: the same numbers are none, and the others differ by less
+/// than this part of the largest of their kind.
 fn assert_same(name: &str, a: &Solution, b: &Solution, limit: f64) {
     let (a, b) = (&a.measured, &b.measured);
     assert_eq!((a.len(), a.outputs.len(), a.variables), (b.len(), b.outputs.len(), b.variables), "{name}");
@@ -205,8 +206,8 @@ fn assert_same(name: &str, a: &Solution, b: &Solution, limit: f64) {
     }
 }
 
-/// The same on every path; gives how many outputs at how many times the formulas were requested one by one where code ran, and how
-/// many there are.
+/// The same on every path; gives how many outputs at how many times the formulas were requested one by one where code
+/// ran, and how many there are.
 fn on_every_path(name: &str, model: &Model, limit: f64) -> [usize; 2] {
     let solve = |execution| Analysis::new(model).unwrap().executed(execution).run();
     let right = solve(Execution::Kernel);
@@ -279,7 +280,8 @@ fn turns_and_poles_are_the_same_by_a_program() {
         let angle = value("angle", k)[0];
         assert!((value("square", k)[0] - angle * angle - angle.cos()).abs() < 1e-9, "{k}");
         assert!((value("faster", k)[0] - value("square", k)[1]).abs() < 1e-9, "{k}");
-        // All turns are about z: a body against another one turns the other way, and Euler's first and last angle are not distinguished.
+        // All turns are about z: a body against another one turns the other way, and Euler's first and last angle are
+        // not distinguished.
         assert!(
             (value("yaw", k)[0] - angle).abs() < 1e-9 && (value("cardan", k)[0] + angle).abs() < 1e-9,
             "{k}"

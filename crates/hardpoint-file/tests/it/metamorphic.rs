@@ -1,5 +1,6 @@
-//! Changes of a model that do not change the answer: output times, order of tables, units, size, position, unused points, a moving base,
-//! threads; over models with every joint type, law, driver, coupler, element and measure, and their mirror images.
+//! Changes of a model that do not change the answer: output times, order of tables, units, size, position, unused
+//! points, a moving base, threads; over models with every joint type, law, driver, coupler, element and measure, and
+//! their mirror images.
 //!
 //! The models are those of `sides.rs`, whose lists are those of the declarations.
 
@@ -304,7 +305,8 @@ fn place_and_motion_of_the_base_do_not_matter() {
     // Turned about the direction of gravity and lifted, loads between bodies are the same.
     let unchanged = ["swing_moment", "turned_moment", "push", "power"];
     for_each_model(sides::masses_and_forces, |_, what, text| {
-        // These act along global directions, on the spherical joint, or on wheels, which have the directions of a vehicle.
+        // These act along global directions, on the spherical joint, or on wheels, which have the directions of a
+        // vehicle.
         if ["axes = \"global\"", "left_ball", "wheel_force"].iter().any(|w| what.contains(w)) {
             return;
         }

@@ -173,7 +173,8 @@ fn metrics_of_coarse_curves_are_those_of_the_curve() {
             let off = (m.value.unwrap() - exact).abs();
             // Curves that the output times show well enough are interpolated to 1e-7 of their range.
             assert!(off <= 1e-7 * 2.0 * a, "{steps} steps, {name}: off by {off:e}");
-            // Where the motion was solved at the metric's own time there is no error to speak of, else about what it is.
+            // Where the motion was solved at the metric's own time there is no error to speak of, else about what it
+            // is.
             if let Some(told) = m.error {
                 assert!(off <= 3.0 * told + 1e-14, "{steps} steps, {name}: {off:e} {told:e}");
             }
@@ -200,8 +201,8 @@ fn simpson(f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
 /// Angle and speed of a crank at a time; at corners of the law, as `inside` of it.
 type Turn = fn(t: f64, inside: f64) -> [f64; 2];
 
-/// The integral of `f(x, y, dx/dt)` over time along the path of the end of a crank of radius a, between cuts; only the parts whose middle
-/// is at `x > least`.
+/// The integral of `f(x, y, dx/dt)` over time along the path of the end of a crank of radius a, between cuts; only the
+/// parts whose middle is at `x > least`.
 fn over_path(turn: Turn, cuts: &[f64], a: f64, least: f64, f: &dyn Fn(f64, f64, f64) -> f64) -> f64 {
     let part = |ends: &[f64]| {
         let middle = 0.5 * (ends[0] + ends[1]);
@@ -216,8 +217,8 @@ fn over_path(turn: Turn, cuts: &[f64], a: f64, least: f64, f: &dyn Fn(f64, f64, 
     cuts.windows(2).map(part).sum()
 }
 
-/// Means, integrals and root mean squares are those of the path, however it goes to and fro and whatever the output times are, and so are
-/// their derivatives, also by where the window cuts the path.
+/// Means, integrals and root mean squares are those of the path, however it goes to and fro and whatever the output
+/// times are, and so are their derivatives, also by where the window cuts the path.
 #[test]
 fn integrals_are_those_of_the_path_for_any_number_of_steps() {
     let pi = std::f64::consts::PI;
@@ -325,7 +326,8 @@ metrics.points = { of = "A.y", over = "A.x", take = "rms_at_points", target = [[
     }
 }
 
-/// The rate of an acceleration is not known, of a velocity only the rate: the stated error of an integral is not below the true one.
+/// The rate of an acceleration is not known, of a velocity only the rate: the stated error of an integral is not below
+/// the true one.
 #[test]
 fn the_error_of_integrals_without_rates_is_stated() {
     let head = &CRANK[..CRANK.find("metrics.top").unwrap()];
@@ -359,8 +361,8 @@ metrics.vx_rms = { of = "vx", take = "rms" }
     }
 }
 
-/// Ackermann's error has a kink where the axle steers across straight ahead: in bump somewhere on its way, while the axle only steers at its
-/// least value.
+/// Ackermann's error has a kink where the axle steers across straight ahead: in bump somewhere on its way, while the
+/// axle only steers at its least value.
 #[test]
 fn ackermann_extremes_and_means_do_not_depend_on_output_times() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/front_axle.toml");

@@ -8,7 +8,8 @@ use hardpoint_file::{ModelFile, parse};
 
 use crate::diagnostics::snapshot;
 
-/// Agreement of two ways to say one thing: the same numbers up to signs, and so round-off only, relative to the greatest value.
+/// Agreement of two ways to say one thing: the same numbers up to signs, and so round-off only, relative to the
+/// greatest value.
 const SAME: f64 = 1e-11;
 /// The same of sensitivities, which have the gain of the mechanism once more.
 const SAME_RATES: f64 = 1e-9;
@@ -70,8 +71,8 @@ fn the_front_axle_has_the_numbers_that_it_has_with_both_sides_written_by_hand() 
     assert_eq!(made.metrics.len(), by_hand.metrics.len());
 }
 
-/// One of nearly everything on the left side: a wishbone that is driven by its angle, a screw and a cylindrical joint with couplers, a rod
-/// of a length by an expression, a frame, curves of laws, a shared rack.
+/// One of nearly everything on the left side: a wishbone that is driven by its angle, a screw and a cylindrical joint
+/// with couplers, a rod of a length by an expression, a frame, curves of laws, a shared rack.
 const ALL: &str = r#"
 name = "everything"
 units = { length = "mm", angle = "deg" }

@@ -16,7 +16,8 @@ const COUNTS: [usize; 12] = [1, 2, 3, 5, 7, 10, 20, 50, 100, 200, 1_200, 5_000];
 const SAME_TIME: f64 = 1e-6;
 /// Numbers at common times agree to this part of the largest of their kind.
 const SAME: f64 = 1e-9;
-/// Next to a singular position, where a run stops, velocities and accelerations lose digits: there they are not compared.
+/// Next to a singular position, where a run stops, velocities and accelerations lose digits: there they are not
+/// compared.
 const NEAR_THE_END: f64 = 1e-2;
 
 /// End of a run: time and reason; `None` at the last output time.
@@ -40,7 +41,8 @@ fn verdict(solution: &Solution) -> Verdict {
     solution.stop.as_ref().map(|stop| (stop.failed_time, stop.kind))
 }
 
-/// The largest component of everything that is known at time k, by kind, and the differences to another solution's time j.
+/// The largest component of everything that is known at time k, by kind, and the differences to another solution's time
+/// j.
 fn compare(
     name: &str,
     n: usize,
@@ -114,7 +116,8 @@ impl Scales {
     }
 }
 
-/// Runs a model in all numbers of steps and holds every run to one that has all of their output times. Returns how it ended.
+/// Runs a model in all numbers of steps and holds every run to one that has all of their output times. Returns how it
+/// ended.
 fn same_in_any_number_of_steps(name: &str, model: &Model) -> Verdict {
     let (start, end) = (model.times[0], model.times[model.times.len() - 1]);
     let mut all: Vec<f64> = COUNTS.iter().flat_map(|&n| spaced(model, n)).collect();
@@ -269,9 +272,11 @@ fn whole_turns_of_an_output_are_counted() {
 
 #[test]
 fn four_bars_with_gaps_stop_at_the_same_place() {
-    // The crank passes the base line, where the coupler and rocker cannot reach: gaps of these parts of the angle driven.
+    // The crank passes the base line, where the coupler and rocker cannot reach: gaps of these parts of the angle
+    // driven.
     for gap in [1e-2, 1e-3, 1e-5] {
-        // At the crank angle pi the pins B and D are a + d apart; b + c falls short of it by what makes the gap's half width.
+        // At the crank angle pi the pins B and D are a + d apart; b + c falls short of it by what makes the gap's half
+        // width.
         let (a, d) = (1.0, 2.5);
         let half: f64 = 0.5 * gap * std::f64::consts::TAU;
         // |BD|^2 = a^2 + d^2 + 2 a d cos(x) at x from there.
@@ -625,7 +630,8 @@ fn turns_are_those_of_the_path_in_any_number_of_steps() {
                     (moment + stiffness * pin).abs() < 1e-7 * (1.0 + pin.abs()),
                     "{name}: {moment} of {pin} at {t}"
                 );
-                // The coupler of a crank-rocker swings by less than half a turn: the pin turns back by what the crank turns.
+                // The coupler of a crank-rocker swings by less than half a turn: the pin turns back by what the crank
+                // turns.
                 assert!((pin + turned).abs() < std::f64::consts::PI, "{name}: {pin} of {turned} at {t}");
             }
         }

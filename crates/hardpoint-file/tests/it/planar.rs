@@ -120,8 +120,8 @@ points.B = { body = "rod", at = "B" }
     assert!((solution.measured.value(0, m)[0] - expected).abs() < SAME);
 }
 
-/// A toggle whose sides meet on a slider, and a pair of scissors whose sides meet each other: where a hardpoint lies in the mirror, the
-/// hinges on it are made for both sides.
+/// A toggle whose sides meet on a slider, and a pair of scissors whose sides meet each other: where a hardpoint lies in
+/// the mirror, the hinges on it are made for both sides.
 #[test]
 fn bodies_by_points_are_mirrored_with_the_hinges_where_both_sides_meet() {
     let toggle = r#"
@@ -201,8 +201,9 @@ const PLANES: [(&str, [usize; 2], &str, [f64; 3]); 4] = [
     ("xz", [0, 2], "-y", [0.0, -1.0, 0.0]),
 ];
 
-/// A text in which `<1 2>` is a point or direction of the plane, `<1 2 3>` one off it, and `<axis>`, `<about>`, `<along>` and `<normal>` are
-/// keys whose value is the normal of the plane: as a planar model writes it, or with all that its shorthand leaves out.
+/// A text in which `<1 2>` is a point or direction of the plane, `<1 2 3>` one off it, and `<axis>`, `<about>`,
+/// `<along>` and `<normal>` are keys whose value is the normal of the plane: as a planar model writes it, or with all
+/// that its shorthand leaves out.
 fn written(template: &str, plane: usize, is_short: bool) -> String {
     let (word, axes, name, normal) = PLANES[plane];
     let mut parts = template.split('<');

@@ -15,7 +15,8 @@ const STAYS: f64 = 1e-10;
 /// Differences of two designs, 0.1 mm away on either side, against the sensitivity between them.
 const DIFFERENCES: f64 = 2e-6;
 
-/// The strut, driven by these two; more measures, and variables that move the points which they measure; `rest` ends the file.
+/// The strut, driven by these two; more measures, and variables that move the points which they measure; `rest` ends
+/// the file.
 fn strut([bump, steering]: [&str; 2], rest: &str) -> Model {
     let text = std::fs::read_to_string("../../models/studies/strut_toe.toml").unwrap();
     let (above, _) = text.split_once("[drivers.rack_drive]").unwrap();
@@ -145,7 +146,8 @@ fn a_driver_that_counts_from_zero_is_the_measure_of_the_same() {
     let spring = format!(r#"{points}, law = "585 + 25*t", counted_from = "zero""#);
     let position = r#"point = { body = "knuckle", at = "tie_rod_outer" }, along = { through = ["rack_centre", "tie_rod_outer"] }, law = "600", counted_from = "zero""#;
     holds([&spring, r#"measure = "rack", law = "0""#], &[("spring", |t| (585.0 + 25.0 * t) * 1e-3)]);
-    // How far along the line through two hardpoints, one of which it is itself: where it is in the design configuration, in every design.
+    // How far along the line through two hardpoints, one of which it is itself: where it is in the design
+    // configuration, in every design.
     let model = strut([r#"measure = "travel", law = "10*t""#, position], "");
     let [p, rack] = ["tie_rod_outer", "rack_centre"]
         .map(|name| model.hardpoints.iter().find(|h| h.name == name).unwrap().position);

@@ -35,7 +35,8 @@ fn near(what: &str, found: f64, printed: f64, tolerance: f64) {
     assert!(apart <= tolerance, "{what}: {found} {printed}, apart {apart:e}");
 }
 
-/// A planar linkage of hinges: hardpoints in the plane, bodies, hinges as (name, bodies, hardpoint), the driven one first.
+/// A planar linkage of hinges: hardpoints in the plane, bodies, hinges as (name, bodies, hardpoint), the driven one
+/// first.
 fn linkage(
     points: &[(&str, [f64; 2])],
     hinges: &[(&str, [&str; 2], &str)],
@@ -72,9 +73,10 @@ fn linkage(
     parse(&text, "linkage.toml").unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// OndselSolver, commit 09d6175a2ba69e7016fcecc4f384946a2f84f92d, `testapp/crank_slider.asmt`: crank 0.2, rod 0.4, offset 0.05, three
-/// hinges and a cylindrical joint, driven by 2 pi t. Series of 101 samples; here those at 0, 0.25 and 0.5 s. Against
-/// the closed form its error is 1e-13 in place, 1.3e-13 in speed, 3.7e-12 in acceleration, 3e-13 in angle.
+/// OndselSolver, commit 09d6175a2ba69e7016fcecc4f384946a2f84f92d, `testapp/crank_slider.asmt`: crank 0.2, rod 0.4,
+/// offset 0.05, three hinges and a cylindrical joint, driven by 2 pi t. Series of 101 samples; here those at 0, 0.25
+/// and 0.5 s. Against the closed form its error is 1e-13 in place, 1.3e-13 in speed, 3.7e-12 in acceleration, 3e-13 in
+/// angle.
 #[test]
 fn slider_crank_matches_ondsel() {
     let x = 0.2 + (0.4_f64.powi(2) - 0.05_f64.powi(2)).sqrt();
@@ -126,8 +128,9 @@ fn slider_crank_matches_ondsel() {
     }
 }
 
-/// The same repository, `testapp/fourbar.asmt`: crank 0.8, coupler 1.8, rocker 1.3, ground 2, driven by 2 pi t; here at 0, 0.1
-/// and 0.25 s. Its error against the closed form is 4.3e-12 in angles, 7.8e-12 in rates, 2.2e-10 in accelerations.
+/// The same repository, `testapp/fourbar.asmt`: crank 0.8, coupler 1.8, rocker 1.3, ground 2, driven by 2 pi t; here at
+/// 0, 0.1 and 0.25 s. Its error against the closed form is 4.3e-12 in angles, 7.8e-12 in rates, 2.2e-10 in
+/// accelerations.
 #[test]
 fn four_bar_matches_ondsel() {
     // The crank lies on the ground line at the start; the printed angle of the rocker is that of the way to its pivot.
@@ -175,8 +178,9 @@ fn four_bar_matches_ondsel() {
     }
 }
 
-/// PMKS+ (PMKS-Web/PMKSWeb, commit 84b8d2b903e092bff2bef0f1c3f7780b1313a57b, `src/app/app.component.spec.ts`): a six-bar near lock-up, input
-/// 10 rad/s, printed to ten digits by MATLAB. Around its start, 5 deg to either side, circles that meet give the places.
+/// PMKS+ (PMKS-Web/PMKSWeb, commit 84b8d2b903e092bff2bef0f1c3f7780b1313a57b, `src/app/app.component.spec.ts`): a
+/// six-bar near lock-up, input 10 rad/s, printed to ten digits by MATLAB. Around its start, 5 deg to either side,
+/// circles that meet give the places.
 #[test]
 fn six_bar_near_lock_up_matches_pmks() {
     let points = [
@@ -235,8 +239,9 @@ fn six_bar_near_lock_up_matches_pmks() {
     }
 }
 
-/// Altair MotionSolve 2021, help pages of the optimisation example (`optimization_optimization_input_addresponse_method_r.htm`): x of the
-/// coupler's midpoint of an RSUR four-bar every 0.05 s, mm. Their own tolerance shows: the closed form differs by up to 0.022.
+/// Altair MotionSolve 2021, help pages of the optimisation example
+/// (`optimization_optimization_input_addresponse_method_r.htm`): x of the coupler's midpoint of an RSUR four-bar every
+/// 0.05 s, mm. Their own tolerance shows: the closed form differs by up to 0.022.
 #[test]
 fn four_bar_matches_the_response_of_motionsolve() {
     let printed = [
@@ -254,9 +259,9 @@ fn four_bar_matches_the_response_of_motionsolve() {
     }
 }
 
-/// Haug, Computer Aided Kinematics and Dynamics (1989), section 12.2, as the IFToMM benchmark's initial values have it (EXUDYN,
-/// `TestModels/sliderCrank3Dbenchmark.py`): at crank angle 0 and 6 rad/s the slider has 0.24 m/s, the rod's centre (0.12, -0.24, 0),
-/// the rod turns with (1.92, -0.96, 0.48).
+/// Haug, Computer Aided Kinematics and Dynamics (1989), section 12.2, as the IFToMM benchmark's initial values have it
+/// (EXUDYN, `TestModels/sliderCrank3Dbenchmark.py`): at crank angle 0 and 6 rad/s the slider has 0.24 m/s, the rod's
+/// centre (0.12, -0.24, 0), the rod turns with (1.92, -0.96, 0.48).
 #[test]
 fn spatial_slider_crank_starts_as_haugs() {
     let file = gallery("spatial_slider_crank");
@@ -360,9 +365,10 @@ fn a_four_bar_that_starts_flat_is_refused_before_it_moves() {
     }
 }
 
-/// Front corner of a Formula Student car with pullrod. Hardpoints: simscape/Formula-Student-Vehicle-Simscape (25 February 2026),
-/// `Vehicle_data_dwpullrod.m`. Results: mathworks/Simscape-Vehicle-Templates, `testrig_susp_knc_results.html` (26 August 2025): slopes are
-/// over +-10 mm of bump, from differences of the curves' ends.
+/// Front corner of a Formula Student car with pullrod. Hardpoints: simscape/Formula-Student-Vehicle-Simscape (25
+/// February 2026), `Vehicle_data_dwpullrod.m`. Results: mathworks/Simscape-Vehicle-Templates,
+/// `testrig_susp_knc_results.html` (26 August 2025): slopes are over +-10 mm of bump, from differences of the curves'
+/// ends.
 #[test]
 fn a_formula_student_corner_matches_its_vendor() {
     let text = r#"

@@ -250,8 +250,8 @@ fn work(text: &str) -> [u64; 2] {
     [used.count_total, used.bytes_total]
 }
 
-/// Twice the entries take twice the work, with a tenth to spare. (`bench/instructions` counts instructions, of which nothing can
-/// hide.)
+/// Twice the entries take twice the work, with a tenth to spare. (`bench/instructions` counts instructions, of which
+/// nothing can hide.)
 fn grows_in_proportion(of: impl Fn(usize) -> String) {
     let [few, many] = [4000, 8000].map(|n| work(&of(n)));
     for (few, many) in few.into_iter().zip(many) {

@@ -58,7 +58,8 @@ fn best(found: &OptimizationResult) -> &SearchResult {
 /// The hardpoints of the four-bar whose motion is given, and how near they are found: parts of the crank's length.
 const KNOWN: [[f64; 2]; 4] = [[0.0, 0.0], [0.04, 0.2], [0.36, 0.6], [0.4, 0.0]];
 const FOUND: f64 = 1e-6 * 0.204;
-/// The published search ends after that many iterations, each with a motion and its derivatives at least, and is 47 mm off.
+/// The published search ends after that many iterations, each with a motion and its derivatives at least, and is 47 mm
+/// off.
 const PUBLISHED: usize = 16;
 
 fn is_known(file: &ModelFile, search: &SearchResult) -> bool {

@@ -1,4 +1,5 @@
-//! Every declared type on both sides of a mirror, in motion: what the mirror makes moves as the mirror image, and measures the same.
+//! Every declared type on both sides of a mirror, in motion: what the mirror makes moves as the mirror image, and
+//! measures the same.
 //!
 //! The lists are those of the declarations, so that a new type fails here until it has a mechanism.
 
@@ -40,7 +41,8 @@ fn mirrored(v: Vec3, across: usize) -> Vec3 {
     v - Vec3::AXES[across] * (2.0 * v.dot(Vec3::AXES[across]))
 }
 
-/// Solves a model and holds all bodies, and all measures but those with these words in their names, to their images: these are opposite.
+/// Solves a model and holds all bodies, and all measures but those with these words in their names, to their images:
+/// these are opposite.
 fn hold_both_sides(what: &str, text: &str, across: usize, opposite: &[&str]) {
     let what = format!("{what}, across {}", AXES[across]);
     let (model, solution) = solved(&what, text);
@@ -103,7 +105,8 @@ fn hold_both_sides(what: &str, text: &str, across: usize, opposite: &[&str]) {
     }
 }
 
-/// Takes what a model is about, its text, across which axis it is mirrored, and parts of the names of measures that are opposite.
+/// Takes what a model is about, its text, across which axis it is mirrored, and parts of the names of measures that are
+/// opposite.
 pub(crate) type Hold<'h> = &'h mut dyn FnMut(&str, &str, usize, &[&str]);
 
 fn model(across: usize, tables: &str) -> String {
@@ -534,7 +537,8 @@ fn loaded(across: usize, tables: &str) -> String {
     )
 }
 
-/// Measures that are opposite on the other side: the moment about the cylindrical joint's angle, and components of reactions.
+/// Measures that are opposite on the other side: the moment about the cylindrical joint's angle, and components of
+/// reactions.
 fn opposite_loads(across: usize) -> Vec<String> {
     let force = |k: usize| format!("_force_{}", AXES[k]);
     let moment = |k: usize| format!("_moment_{}", AXES[k]);

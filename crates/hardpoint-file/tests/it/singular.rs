@@ -1,5 +1,5 @@
-//! Singular places: drawings that are open where bars lie in line, grooves that turn back, change points; and laws that count from zero
-//! where the drawing does not have the length that is given.
+//! Singular places: drawings that are open where bars lie in line, grooves that turn back, change points; and laws that
+//! count from zero where the drawing does not have the length that is given.
 
 use hardpoint::model::{Model, VariableId};
 use hardpoint::motion::StopKind;
@@ -280,7 +280,8 @@ fn change_points_are_passed_where_the_file_says_so() {
             let solution = run(&model(&four_bar(crossed, 1.0, steps, "continue")), formulation);
             assert!(solution.stop.is_none(), "{steps}: {:?}", solution.stop);
             for k in 0..solution.motion.len() {
-                // tan(crank / 2) tan(rocker / 2) = (3 - 1)/(3 + 1) of a crossed linkage, angles from the ground's direction.
+                // tan(crank / 2) tan(rocker / 2) = (3 - 1)/(3 + 1) of a crossed linkage, angles from the ground's
+                // direction.
                 let crank = std::f64::consts::FRAC_PI_2 + std::f64::consts::TAU * solution.motion.times[k];
                 let drawn = f64::atan2(crossed[1][1], crossed[1][0] - 3.0);
                 let rocker = drawn + value(&solution, k, "rocker");
@@ -294,7 +295,8 @@ fn change_points_are_passed_where_the_file_says_so() {
                 assert!(least < 1e-8, "{steps} at {k}: {least}");
             }
         }
-        // At the change point itself there is no sensitivity; on both sides there is one, and the variable can be followed.
+        // At the change point itself there is no sensitivity; on both sides there is one, and the variable can be
+        // followed.
         let solution = run(&model(&four_bar(parallelogram, 1.0, 72, "continue")), formulation);
         let m = solution.measured.index("rocker").unwrap();
         let derivative = |k: usize| solution.measured.d(k, VariableId(0), m)[0];
@@ -313,7 +315,8 @@ fn a_dead_point_is_no_change_point() {
     assert_eq!(stop.map(|s| s.kind), Some(StopKind::Limit));
 }
 
-/// A parallelogram with a mass on its coupler, 1 m from the crank, driven by 360 deg/s: its bars are in line at t = 0.25 and 0.75.
+/// A parallelogram with a mass on its coupler, 1 m from the crank, driven by 360 deg/s: its bars are in line at t =
+/// 0.25 and 0.75.
 fn loaded_parallelogram(end: f64, steps: usize) -> String {
     format!(
         r#"

@@ -132,7 +132,8 @@ fn a_latin_hypercube_has_a_design_in_every_slice() {
 
 #[test]
 fn indices_of_a_mechanism_are_those_of_its_closed_form() {
-    // `first` is r cos a + sqrt(l^2 - (r sin a - e)^2): nearly a sum in r, l and e, whose indices come from quadrature of the closed form.
+    // `first` is r cos a + sqrt(l^2 - (r sin a - e)^2): nearly a sum in r, l and e, whose indices come from quadrature
+    // of the closed form.
     let text = CRANK.replace(
         "parameters.radius = { value = 100, unit = \"length\" }",
         "parameters.radius = { value = 100, unit = \"length\", bounds = [60, 140] }",
@@ -143,7 +144,8 @@ fn indices_of_a_mechanism_are_those_of_its_closed_form() {
     let values: Vec<f64> =
         swept_from(&model, &asked, 0, 2).into_iter().flat_map(|b| b.metrics[0].clone()).collect();
     let found = sobol_indices(&values, 3);
-    // Midpoints of that many slices of every range: the error of a variance falls with their square, here to 1e-3 of it.
+    // Midpoints of that many slices of every range: the error of a variance falls with their square, here to 1e-3 of
+    // it.
     const SLICES: usize = 40;
     let ranges = [[60.0, 140.0], [250.0, 350.0], [0.0, 40.0]];
     let at =

@@ -1,7 +1,7 @@
 //! Path synthesis of linkages as others have published it: the designs found here are no worse than the best of theirs.
 //!
-//! The problems are `models/synthesis/`; each file says where its numbers come from. The error is computed from the points that the
-//! found design reaches, not from what was minimised.
+//! The problems are `models/synthesis/`; each file says where its numbers come from. The error is computed from the
+//! points that the found design reaches, not from what was minimised.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -16,7 +16,8 @@ use hardpoint_file::{ModelFile, read, schema};
 
 /// Remainder of the gradient at an optimum, relative to that at the start.
 const STATIONARY: f64 = 1e-8;
-/// ... and as a part of the gradient of the goals themselves, which misfits far below those of the start make much smaller.
+/// ... and as a part of the gradient of the goals themselves, which misfits far below those of the start make much
+/// smaller.
 const SCALED: f64 = 1e-6;
 /// Tolerance of bounds, relative to their width.
 const ROUND_OFF: f64 = 1e-12;
@@ -55,8 +56,8 @@ fn search(file: &ModelFile, asked: &OptimizationSettings) -> OptimizationResult 
     optimize(&file.model, &motions, asked, searching)
 }
 
-/// The sum of the squared distances from the published points, in the file's unit, of a design; the points are the targets of the metrics
-/// `x` and `y`.
+/// The sum of the squared distances from the published points, in the file's unit, of a design; the points are the
+/// targets of the metrics `x` and `y`.
 fn published_error(file: &ModelFile, design: &[f64], points: usize) -> f64 {
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
@@ -83,7 +84,8 @@ fn links(file: &ModelFile, design: &[f64]) -> [f64; 4] {
     [["A", "D"], ["A", "B"], ["B", "C"], ["C", "D"]].map(|[a, b]| 1e3 * (place(a) - place(b)).norm())
 }
 
-/// Searches, and holds what is found against the published error, the bounds, Grashof's condition and the conditions of an optimum.
+/// Searches, and holds what is found against the published error, the bounds, Grashof's condition and the conditions of
+/// an optimum.
 fn reaches(name: &str, points: usize, published: f64) -> (ModelFile, SearchResult) {
     let file = problem(name);
     let asked = file.model.optimization.clone().unwrap();

@@ -11,11 +11,12 @@ const ROUND_OFF: f64 = 1e-10;
 /// Accelerations of measures divide by speeds, and their derivatives once more.
 const MEASURED: f64 = 1e-8;
 
-/// The same where the motion is the kernel's on every path, so that only the measures themselves differ by round-off: an acceleration
-/// that is none is a difference of squares of speeds.
+/// The same where the motion is the kernel's on every path, so that only the measures themselves differ by round-off:
+/// an acceleration that is none is a difference of squares of speeds.
 const OF_ONE_MOTION: f64 = 1e-10;
 
-/// Mechanisms that no program is recorded of: their couplers count angles by the turn that is expected, or a point follows a curve.
+/// Mechanisms that no program is recorded of: their couplers count angles by the turn that is expected, or a point
+/// follows a curve.
 const BY_THE_KERNEL: [&str; 2] = ["cam", "gear_train"];
 
 fn gallery() -> Vec<(String, Model)> {
@@ -47,8 +48,8 @@ fn derivatives(s: &BodySensitivity) -> [f64; 18] {
     std::array::from_fn(|k| [all[k / 3].x, all[k / 3].y, all[k / 3].z][k % 3])
 }
 
-/// The largest difference of two tables, column by column as a part of the largest number of its kind (six of them, of three columns
-/// each, or eight).
+/// The largest difference of two tables, column by column as a part of the largest number of its kind (six of them, of
+/// three columns each, or eight).
 fn apart<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
     assert_eq!(a.len(), b.len());
     let (mut largest, mut differs) = (vec![0.0_f64; N / 3], vec![0.0_f64; N / 3]);

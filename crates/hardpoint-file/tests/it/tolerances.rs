@@ -135,7 +135,8 @@ fn moments_of_a_slider_crank_are_those_of_its_closed_form() {
     }
 }
 
-/// Gradients are differenced for metrics, and solved exactly for curves: of the metric that is a point of a curve both must agree.
+/// Gradients are differenced for metrics, and solved exactly for curves: of the metric that is a point of a curve both
+/// must agree.
 #[test]
 fn second_derivatives_of_metrics_are_those_of_their_curves() {
     let file = crank(
@@ -195,8 +196,8 @@ fn squares_and_moments_match_re_solved_designs() {
     }
 }
 
-/// That many standard errors may be between what derivatives say and what is drawn: of all numbers of these tests none is beyond, since
-/// the seeds are fixed.
+/// That many standard errors may be between what derivatives say and what is drawn: of all numbers of these tests none
+/// is beyond, since the seeds are fixed.
 const ERRORS: f64 = 4.0;
 /// Tolerance of angles, rad.
 const ROUND_OFF: f64 = 1e-12;

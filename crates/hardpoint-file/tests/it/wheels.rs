@@ -1,5 +1,5 @@
-//! Wheels: every measure against re-solved designs and against differences over time, on several suspensions; right wheels
-//! are left ones in a mirror; angles make a spin axis. Published values are those of `gallery_models.rs`.
+//! Wheels: every measure against re-solved designs and against differences over time, on several suspensions; right
+//! wheels are left ones in a mirror; angles make a spin axis. Published values are those of `gallery_models.rs`.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -141,7 +141,8 @@ fn with_all(text: &str) -> String {
         .replace("left = \"left\"", "left = \"w\"")
 }
 
-/// Only wheels that a driver moves up and down have slopes, and only those of a vehicle that is known stand up to braking.
+/// Only wheels that a driver moves up and down have slopes, and only those of a vehicle that is known stand up to
+/// braking.
 fn is_left_out(name: &str, what: WheelMeasure) -> bool {
     match what.needs() {
         WheelRequirement::Bump
@@ -347,7 +348,8 @@ fn toe_and_camber_are_those_that_the_file_states_on_either_side() {
             assert!((value(k, "contact_z") - (0.01 * k as f64 - 0.3 * cos)).abs() < 1e-12);
         }
         assert!((value(1, "wheel_travel") - 0.01).abs() < 1e-15);
-        // What needs a kingpin is not among all that is possible; the only driver is the one that moves the wheel up and down.
+        // What needs a kingpin is not among all that is possible; the only driver is the one that moves the wheel up
+        // and down.
         let possible =
             |m: &&WheelMeasure| matches!(m.needs(), WheelRequirement::Nothing | WheelRequirement::Bump);
         assert_eq!(file.model.measures.len(), WheelMeasure::ALL.iter().filter(possible).count());
@@ -438,7 +440,8 @@ fn slopes_are_those_of_runs_whose_driver_is_shifted() {
     }
 }
 
-/// Both wheels of a live rear axle, which its two springs move: what only rear wheels have, and an axle's measures again.
+/// Both wheels of a live rear axle, which its two springs move: what only rear wheels have, and an axle's measures
+/// again.
 const REAR: &str = r#"
 [vehicle]
 wheelbase = 2700

@@ -316,7 +316,8 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// Reads extensions of models by other programs: joints that follow others by plugins, equalities of MuJoCo, joints that close loops.
+    /// Reads extensions of models by other programs: joints that follow others by plugins, equalities of MuJoCo, joints
+    /// that close loops.
     pub(super) fn extensions(&mut self, model: &Model<'d>) {
         let (text, scope) = (model.text, &model.scope);
         for node in named(model.node, "plugin") {

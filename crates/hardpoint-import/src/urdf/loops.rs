@@ -206,8 +206,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// Joints that close loops: `loop_joint`, with the places on both links as in Drake and Isaac Sim, or like a joint; ball constraints
-    /// of Drake; joints of SDF in a `gazebo` element.
+    /// Joints that close loops: `loop_joint`, with the places on both links as in Drake and Isaac Sim, or like a joint;
+    /// ball constraints of Drake; joints of SDF in a `gazebo` element.
     pub(super) fn loops(&mut self, robot: Node<'a, 'i>) {
         for node in named(robot, "loop_joint") {
             let Some(name) = self.name(node) else { continue };

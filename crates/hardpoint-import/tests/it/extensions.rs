@@ -1,4 +1,5 @@
-//! Frames of welds, constants of relations, extensions, loops that are named by hand, masses and springs: the values that they give.
+//! Frames of welds, constants of relations, extensions, loops that are named by hand, masses and springs: the values
+//! that they give.
 
 use std::f64::consts::PI;
 
@@ -367,7 +368,8 @@ fn is(found: &[(String, f64)], wanted: &[(&str, f64)]) {
 
 #[test]
 fn masses_come_along_in_the_global_axes() {
-    // A link that is turned by 90 degrees about z, its inertia by another 90 about x: x, y, z become y, -z... of the world.
+    // A link that is turned by 90 degrees about z, its inertia by another 90 about x: x, y, z become y, -z... of the
+    // world.
     let inertia =
         r#"<mass value="2"/><inertia ixx="0.3" iyy="0.4" izz="0.5" ixy="0.01" ixz="0.02" iyz="0.03"/>"#;
     let urdf = format!(
@@ -447,7 +449,8 @@ fn masses_come_along_in_the_global_axes() {
     assert!(imported.report.of(ElementOutcome::Refused).any(|e| e.kind == "inertial"), "{}", imported.report);
 }
 
-/// The force of the only driver of a model file at its first output time while it moves at 0.4 per second, with the file that gives it.
+/// The force of the only driver of a model file at its first output time while it moves at 0.4 per second, with the
+/// file that gives it.
 fn driver_torque(text: &str) -> (f64, String) {
     let driver = text.lines().find_map(|l| l.strip_prefix("[drivers.")).unwrap().trim_end_matches(']');
     let start = text.find("law = \"").unwrap();
@@ -462,7 +465,8 @@ fn driver_torque(text: &str) -> (f64, String) {
 
 #[test]
 fn springs_and_dampers_of_joints_push_as_the_source_says() {
-    // A pendulum of 2 kg, 0.5 m out along x, with a spring of 7 N m/rad that is free at 0.3 rad and a damper, held at zero.
+    // A pendulum of 2 kg, 0.5 m out along x, with a spring of 7 N m/rad that is free at 0.3 rad and a damper, held at
+    // zero.
     let urdf = r#"<robot name="r"><link name="world"/><link name="a"><inertial><origin xyz="0.5 0 0"/><mass value="2"/></inertial></link>
         <joint name="j" type="continuous"><parent link="world"/><child link="a"/><axis xyz="0 1 0"/><dynamics damping="0.6"/></joint>
         <gazebo reference="j"><springStiffness>7</springStiffness><springReference>0.3</springReference></gazebo></robot>"#;

@@ -1,5 +1,5 @@
-//! One four-bar in every format that can say it: a crank of 0.1, a coupler of 0.35 and a rocker of 0.25 m, the bearings 0.4 m apart, drawn
-//! with the crank at 60 deg.
+//! One four-bar in every format that can say it: a crank of 0.1, a coupler of 0.35 and a rocker of 0.25 m, the bearings
+//! 0.4 m apart, drawn with the crank at 60 deg.
 
 use hardpoint::model::BodyId;
 use hardpoint::{Analysis, Run};

@@ -69,7 +69,8 @@ fn ondsel_joints_hold_what_its_solver_holds() {
             // The rack depends on radius * angle.
             ("Rack", origin("Rack").x, 15.0 * angle),
         ];
-        // A path of all six coordinates: along the axes of marker I, then about its z and about the x that has turned so far.
+        // A path of all six coordinates: along the axes of marker I, then about its z and about the x that has turned
+        // so far.
         let t = m.file.model.times[k];
         let wave = (std::f64::consts::TAU * t).sin();
         let tool = origin("Tool") - Vec3::from([90.0 + 10.0 * wave, 0.0, 20.0 * t]);
@@ -180,7 +181,8 @@ fn a_chrono_suspension_told_body_by_body_moves_as_its_template() {
     assert!(most > 0.01, "{most}");
 }
 
-/// A part whose marker is turned by an angle about x, and more about z, against the marker of the ground that its joint is between.
+/// A part whose marker is turned by an angle about x, and more about z, against the marker of the ground that its joint
+/// is between.
 fn turned_joint(kind: &str, tilt: f64, about_z: f64) -> String {
     format!(
         "Adams View model name: turned\nUNITS/\n, FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = MILLIMETER\n, TIME = SECOND\n\

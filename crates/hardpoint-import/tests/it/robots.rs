@@ -110,7 +110,8 @@ fn texts_are_read_however_exporters_write_them() {
     assert!(refused("arm.urdf", &ARM.replace("name=\"flange\"", "name=\"shoulder\"")).contains("two joints"));
 }
 
-/// A plate of 2 by 1 mm as two triangles, and another turned upright and shifted by 3 mm, as a square; the file is in mm.
+/// A plate of 2 by 1 mm as two triangles, and another turned upright and shifted by 3 mm, as a square; the file is in
+/// mm.
 const PLATES: &str = r##"<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
   <asset><unit name="millimeter" meter="0.001"/><up_axis>Y_UP</up_axis></asset>
   <library_geometries><geometry id="plate"><mesh>
@@ -149,7 +150,8 @@ fn meshes_in_collada_are_shown_in_metres_in_the_frame_of_the_link() {
     assert!(why.len() == 1 && why[0].contains("it shows no triangles"), "{why:?}");
 }
 
-/// A four-bar whose last joint is yet to be closed: a crank of 0.1, a coupler of 0.3, a rocker of 0.2 upright at x = 0.3.
+/// A four-bar whose last joint is yet to be closed: a crank of 0.1, a coupler of 0.3, a rocker of 0.2 upright at x =
+/// 0.3.
 const OPEN: &str = r#"<robot name="loop">
   <link name="base"/><link name="crank"/><link name="coupler"/><link name="rocker"/>
   <joint name="A" type="continuous"><parent link="base"/><child link="crank"/><axis xyz="0 1 0"/></joint>

@@ -1,4 +1,5 @@
-//! Unknown is not irrelevant: what a reader does not know is named, never counted among what does not concern the motion.
+//! Unknown is not irrelevant: what a reader does not know is named, never counted among what does not concern the
+//! motion.
 
 use hardpoint_import::{ElementOutcome, Format};
 

@@ -1,5 +1,5 @@
-//! Vehicles: masses in their frames, springs' forces, live axles against closed forms and an independent solver, both sides, figures of
-//! the vehicle, cases, and that the report accounts for everything.
+//! Vehicles: masses in their frames, springs' forces, live axles against closed forms and an independent solver, both
+//! sides, figures of the vehicle, cases, and that the report accounts for everything.
 
 use hardpoint::model::{BodyId, CaseId};
 use hardpoint::space::{Mat3, Vec3};
@@ -147,7 +147,8 @@ fn springs_and_dampers_of_chrono_have_its_forces() {
         assert!((found[0][step] - tension).abs() < 1e-6, "{} {tension}", found[0][step]);
         assert!((found[2][step] - 2500.0 * found[3][step]).abs() < 1e-6, "{step}");
     }
-    // A curve of deformation and force: the drawn length is 0.58856..., so the table has a point 0.05 m shorter than 0.63856...
+    // A curve of deformation and force: the drawn length is 0.58856..., so the table has a point 0.05 m shorter than
+    // 0.63856...
     let length = 0.1_f64.hypot(0.58);
     let curve = format!(
         r#", "Spring": {{"Location Chassis": [0, 0.5, 0.7], "Location Arm": [0, 0.6, 0.12], "Free Length": {}, "Spring Curve Data": [[-0.1, -5200], [-0.05, -2000], [0, 0], [0.05, 1000]]}},

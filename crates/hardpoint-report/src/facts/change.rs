@@ -22,8 +22,8 @@ pub(super) fn change_text(model: &Model, changes: &[Change], fixed_length: bool)
 
 /// The unit of a design variable; `1` for a plain number.
 ///
-/// A parameter of a law that is neither a length nor an angle is a number to the core, and one of the variable is as much
-/// of the parameter as the rate of its change says: that decides whether the user's unit or the SI unit is meant.
+/// A parameter of a law that is neither a length nor an angle is a number to the core, and one of the variable is as
+/// much of the parameter as the rate of its change says: that decides whether the user's unit or the SI unit is meant.
 pub fn variable_unit(model: &Model, units: Units, variable: &DesignVariable) -> String {
     if variable.quantity != Quantity::Number {
         return symbol(units, variable.quantity).into();

@@ -295,8 +295,8 @@ impl Facts {
     }
 }
 
-/// Redundant constraints of a planar model that only say that it stays in its plane: in coordinates that lie in the plane they follow from
-/// nothing else.
+/// Redundant constraints of a planar model that only say that it stays in its plane: in coordinates that lie in the
+/// plane they follow from nothing else.
 fn made_by_plane(file: &ModelFile, topology: &Topology) -> Vec<RowId> {
     if file.plane.is_none() || topology.formulation == Formulation::Absolute {
         return Vec::new();
@@ -553,7 +553,8 @@ fn variables(model: &Model, units: Units, solution: Option<&Solution>) -> Vec<Va
     model.variables.iter().enumerate().map(fact).collect()
 }
 
-/// A condition of kinematic admissibility: an elementary constraint of a joint must stay closed with all bodies where they are.
+/// A condition of kinematic admissibility: an elementary constraint of a joint must stay closed with all bodies where
+/// they are.
 #[derive(Clone, Debug, Serialize)]
 pub struct ConditionFact {
     /// The joint.

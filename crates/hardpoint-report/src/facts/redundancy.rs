@@ -46,8 +46,8 @@ enum Part {
     Driver(usize),
 }
 
-/// All redundant constraints, those among the same parts together, in the order of the file; of a planar model without those that the
-/// plane makes.
+/// All redundant constraints, those among the same parts together, in the order of the file; of a planar model without
+/// those that the plane makes.
 pub(super) fn redundancy(model: &Model, topology: &Topology, planar: bool) -> Vec<RedundancyFact> {
     /// Maximum number of bodies for the exact search with every joint cut, which is cubic in six unknowns per body.
     const MOST_BODIES: usize = 50;
@@ -60,7 +60,8 @@ pub(super) fn redundancy(model: &Model, topology: &Topology, planar: bool) -> Ve
         .then(|| Topology::of(model, Formulation::Absolute).ok())
         .flatten()
         .filter(|t| t.redundant().count() == left_out);
-    // In a tree whose coordinates lie in the plane, a constraint that follows from nothing else is one that the plane makes.
+    // In a tree whose coordinates lie in the plane, a constraint that follows from nothing else is one that the plane
+    // makes.
     let in_plane = planar.then(|| Topology::of(model, Formulation::Relative).ok()).flatten();
     let plan = in_plane.as_ref().or(all_cut.as_ref()).unwrap_or(topology);
     let mut groups: BTreeMap<Vec<Part>, usize> = BTreeMap::new();
@@ -116,8 +117,8 @@ struct Freed {
 }
 
 impl Freed {
-    /// A joint that removes that many redundant constraints as another type, and leaves the mechanism driven as it is: tried,
-    /// together with those found before. Joints that close a loop come first.
+    /// A joint that removes that many redundant constraints as another type, and leaves the mechanism driven as it is:
+    /// tried, together with those found before. Joints that close a loop come first.
     fn instead(&mut self, topology: &Topology, joints: &[usize], redundant: usize) -> Option<Instead> {
         let is_cut = |j: &usize| matches!(topology.roles[*j], JointRole::Cut(_));
         let (cut, tree): (Vec<usize>, Vec<usize>) = joints.iter().partition(|j| is_cut(j));

@@ -79,8 +79,8 @@ impl<'a> ChangedDesign<'a> {
 }
 
 impl Compose<'_> {
-    /// The changed design, then how it is predicted. Today's solution is kept at every `stride`-th output time; `bodies`
-    /// and `values` are today's.
+    /// The changed design, then how it is predicted. Today's solution is kept at every `stride`-th output time;
+    /// `bodies` and `values` are today's.
     pub(super) fn designs(
         &self,
         changed: &ChangedDesign<'_>,
@@ -144,7 +144,8 @@ impl Beside<'_> {
         same_or_other(self.today.round_off.value(of.into(), order), today, other)
     }
 
-    /// Per body that moves and output time that is shown, place, velocity and acceleration of its origin in the changed design.
+    /// Per body that moves and output time that is shown, place, velocity and acceleration of its origin in the changed
+    /// design.
     fn origins(&self) -> Vec<Vec<[[f64; 3]; 3]>> {
         let (units, solved) = (self.today.units, self.changed.solved());
         let round_off = [0, 1, 2].map(|order| self.today.round_off.value(Dimension::LENGTH, order));
@@ -178,7 +179,8 @@ impl Beside<'_> {
         (0..outputs).map(output).chain(origins.map(|(b, axis)| origin(b, axis))).collect()
     }
 
-    /// The values that the design is judged by, in the order of today's: first the metrics, then the measures at one time.
+    /// The values that the design is judged by, in the order of today's: first the metrics, then the measures at one
+    /// time.
     fn values(
         &self,
         today: &[Value],

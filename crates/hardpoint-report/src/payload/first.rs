@@ -9,7 +9,8 @@ use super::{Compose, Span};
 /// Rank of a quantity on the page; the highest is shown first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Rank {
-    /// True if the design bends its curve: what only follows a driver, or is shifted as a whole, says little about the design.
+    /// True if the design bends its curve: what only follows a driver, or is shifted as a whole, says little about the
+    /// design.
     follows_design: bool,
     /// True if a metric sums it up: then its author asks for it.
     in_metric: bool,
@@ -18,9 +19,9 @@ struct Rank {
 }
 
 impl Compose<'_> {
-    /// The quantity that the page opens on: the one of greatest [`Rank`] among those that vary and follow the course of time (slopes
-    /// and the like follow one driver alone); of equals the first, for authors
-    /// begin with what they care for. None where nothing varies.
+    /// The quantity that the page opens on: the one of greatest [`Rank`] among those that vary and follow the course of
+    /// time (slopes and the like follow one driver alone); of equals the first, for authors begin with what they care
+    /// for. None where nothing varies.
     pub(super) fn first(&self, course: &Course) -> Option<usize> {
         let measured = &self.solution.measured;
         let over_time = |value: &dyn Fn(usize) -> f64| Span::of(self.steps.iter().map(|&k| value(k))).range();

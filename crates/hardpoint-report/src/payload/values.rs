@@ -11,7 +11,8 @@ use crate::summary::Summary;
 
 use super::Compose;
 
-/// A driver is where it was drawn if it is no farther from there than this part of the mechanism's size, or of a radian.
+/// A driver is where it was drawn if it is no farther from there than this part of the mechanism's size, or of a
+/// radian.
 const AS_DRAWN: f64 = 1e-9;
 
 impl Compose<'_> {

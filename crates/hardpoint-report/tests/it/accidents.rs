@@ -49,7 +49,8 @@ fn assert_whole(page: &Payload) {
     }
 }
 
-/// A slider-crank in a unit of length and one of angle; `per` of that length are a metre, and `turn` of that angle a full turn.
+/// A slider-crank in a unit of length and one of angle; `per` of that length are a metre, and `turn` of that angle a
+/// full turn.
 fn slider_crank(length: &str, per: f64, angle: &str, turn: f64) -> String {
     let place = |x: f64, y: f64| format!("[{}, {}, 0]", x * per, y * per);
     let (crank, rod) = (place(0.03, 0.04), place(0.18, 0.0));

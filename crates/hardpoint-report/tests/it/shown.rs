@@ -265,7 +265,8 @@ fn the_margin_is_told_in_digits_with_its_loop() {
     insta::assert_snapshot!(format!("{}\n{}", margin.line_from_start(), margin.sentence()));
 }
 
-/// One four-bar, whose crank's pin B, and pin C as given, and the angle by which its crank turns until coupler and rocker are in line.
+/// One four-bar, whose crank's pin B, and pin C as given, and the angle by which its crank turns until coupler and
+/// rocker are in line.
 fn one_four_bar(pin: Vec3, law_of: impl Fn(f64) -> String) -> ModelFile {
     let mut draft = four_bars();
     draft.joints.truncate(4);

@@ -69,7 +69,8 @@ fn shown_steps(page: &Payload, today: &Solution) -> impl Iterator<Item = usize> 
     (0..times.len()).step_by(stride)
 }
 
-/// A curve of a changed design: in the user's units, today's number where the two differ by round-off, and 0 where it is no more.
+/// A curve of a changed design: in the user's units, today's number where the two differ by round-off, and 0 where it
+/// is no more.
 fn expected(
     (units, of, order): (Units, Dimension, usize),
     magnitude: Magnitude,
@@ -298,7 +299,8 @@ fn a_changed_design_that_locks_has_gaps_and_the_page_says_why() {
     );
     assert_eq!(page.status.message, told);
 
-    // The range of a part of the curve is not that of the whole; where the crank is at 90 deg, both designs were solved.
+    // The range of a part of the curve is not that of the whole; where the crank is at 90 deg, both designs were
+    // solved.
     let exact = design(&page, DesignKind::Exact);
     let value = |name: &str| exact.values[page.values.iter().position(|v| v.name == name).unwrap()];
     assert_eq!(value("swing"), None);

@@ -105,7 +105,8 @@ impl Formula {
         x
     }
 
-    /// True if these numbers are none of those for which results may differ: all finite, and no angle hangs on the sign of a zero.
+    /// True if these numbers are none of those for which results may differ: all finite, and no angle hangs on the sign
+    /// of a zero.
     fn is_plain(&self, numbers: &[f64]) -> bool {
         let first = numbers.len() - self.steps.len();
         numbers.iter().all(|x| x.is_finite())

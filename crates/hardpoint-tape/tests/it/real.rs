@@ -1,4 +1,5 @@
-//! Formulas written once: for `f64`, for numbers that record, and for numbers that know how far round-off may have moved them.
+//! Formulas written once: for `f64`, for numbers that record, and for numbers that know how far round-off may have
+//! moved them.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

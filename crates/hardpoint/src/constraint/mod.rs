@@ -35,7 +35,8 @@ pub enum Row {
     Dot2(usize),
     /// `|d| = L + f` (paper Eq. 4.10, unsquared so that its residual is a length).
     Distance,
-    /// Angle of marker j about z_i equals f, where x_j is perpendicular to z_i (z_i parallel to z_j, or a universal joint).
+    /// Angle of marker j about z_i equals f, where x_j is perpendicular to z_i (z_i parallel to z_j, or a universal
+    /// joint).
     Angle,
     /// Angle of marker j about its own x axis equals f, where x_j is perpendicular to z_i (a universal joint).
     AngleOnJ,
@@ -47,8 +48,8 @@ pub enum Row {
     Cosine,
     /// `z_i . d` keeps its design value (paper Eq. 4.4 with a constant).
     Offset,
-    /// `y_i . d` keeps its design value, where marker i walks along a curve of its body so that it stays next to P_j: x_i
-    /// along the curve, y_i across.
+    /// `y_i . d` keeps its design value, where marker i walks along a curve of its body so that it stays next to P_j:
+    /// x_i along the curve, y_i across.
     Contact,
     /// Marker j does not turn about the line that halves the angle between z_i and z_j.
     ConstantVelocity,
@@ -70,8 +71,8 @@ pub struct MarkerPair<T> {
     pub i: Pose<T>,
     /// Marker j in the world.
     pub j: Pose<T>,
-    /// The axes of the loop's base, along which their points are compared where the base moves. As the points coincide it does not
-    /// matter how these turn.
+    /// The axes of the loop's base, along which their points are compared where the base moves. As the points coincide
+    /// it does not matter how these turn.
     pub axes: Mat3<T>,
 }
 
@@ -204,8 +205,8 @@ impl Row {
         }
     }
 
-    /// By running the wrench on markers that carry their time derivatives. (The common rows have theirs by hand: that takes fewer
-    /// instructions.)
+    /// By running the wrench on markers that carry their time derivatives. (The common rows have theirs by hand: that
+    /// takes fewer instructions.)
     #[inline(never)]
     fn rare_wrench_rates<T: Real>(self, ends: &MarkerPair<T>, rates: &MarkerPairRates<T>) -> [Wrench<T>; 2] {
         let Wrench { m, f } = self.rare_wrench(&ends.moving(rates));

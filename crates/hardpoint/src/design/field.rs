@@ -1,4 +1,5 @@
-//! Design velocity fields of markers, kept values, points and laws: what one variable, or one driver, changes to first order.
+//! Design velocity fields of markers, kept values, points and laws: what one variable, or one driver, changes to first
+//! order.
 
 use crate::design::JointConstants;
 use crate::model::{DriverId, JointId, PointId};
@@ -31,8 +32,8 @@ pub struct MarkerVelocity<T = f64> {
     pub end: usize,
     /// Body-fixed twist `[R U; V - (R U) x s]` in the body's frame.
     ///
-    /// Angular part `d(xi)/dtau` of the paper's (3.10), rad per unit; linear part the velocity of the marker's point that passes the
-    /// origin of the body's frame, m per unit, so that the marker itself has V = e_v + e_w x s.
+    /// Angular part `d(xi)/dtau` of the paper's (3.10), rad per unit; linear part the velocity of the marker's point
+    /// that passes the origin of the body's frame, m per unit, so that the marker itself has V = e_v + e_w x s.
     pub twist: Twist<T>,
 }
 

@@ -90,7 +90,8 @@ impl Formulas {
         let mut seen = vec![false; model.formulas.len()];
         let changes = &model.variables[variable.0].changes;
         let mut waiting: Vec<usize> = changes.iter().flat_map(|c| self.using(c)).collect();
-        // All that can be reached along "is used by", from the parameters and coordinates that the variable itself changes.
+        // All that can be reached along "is used by", from the parameters and coordinates that the variable itself
+        // changes.
         while let Some(k) = waiting.pop() {
             if !std::mem::replace(&mut seen[k], true) {
                 match model.formulas[k].of {

@@ -1,8 +1,10 @@
 //! Effects of design variables: the geometry of any design, and its derivative by each variable.
 //!
-//! The geometry is written once, over any [`Real`]; its derivatives are the same lines run on [`Dual`]s, at whatever design.
+//! The geometry is written once, over any [`Real`]; its derivatives are the same lines run on [`Dual`]s, at whatever
+//! design.
 //!
-//! The paper's section 3 line by line, with tau the value of one variable and `s_o`, `theta_o` those of the nominal design:
+//! The paper's section 3 line by line, with tau the value of one variable and `s_o`, `theta_o` those of the nominal
+//! design:
 //!
 //! | here | paper | what |
 //! |---|---|---|
@@ -136,7 +138,7 @@ impl<'m> DesignMap<'m> {
             DesignVelocity { laws: self.law_rates(&affected, &design), ..DesignVelocity::default() };
         for j in affected.joints {
             for end in 0..2 {
-                // e = [R U; V - (R U) x s], the twist of the marker's pose in its body                                (8)
+                // e = [R U; V - (R U) x s], the twist of the marker's pose in its body                              (8)
                 let (_, twist) = design.marker(j, end).split();
                 if !is_null(twist.w) || !is_null(twist.v) {
                     field.markers.push(MarkerVelocity { joint: JointId(j), end, twist });
@@ -287,7 +289,8 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
     fn new(design_map: &'e DesignMap<'_>, values: Vec<T>) -> Self {
         let variables = &design_map.model().variables;
         let counts = values.iter().map(|v| !v.vanishes()).collect();
-        // With b = 0 for the variables that keep lengths L = abs(d) does not follow them: L' = 0, and the mechanism re-assembles.
+        // With b = 0 for the variables that keep lengths L = abs(d) does not follow them: L' = 0, and the mechanism
+        // re-assembles.
         let follows = |(value, v): (&T, &DesignVariable)| if v.fixed_length { T::zero() } else { *value };
         let for_lengths = values.iter().zip(variables).map(follows).collect();
         let plain = |variables| Values { variables, formulas: Vec::new() };
@@ -397,7 +400,8 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
     fn marker_in_world(&self, j: usize, e: usize, values: &Values<T>) -> Pose<T> {
         let model = self.design_map.model();
         let joint = &model.joints[j];
-        // The hardpoint and the axes that it follows, then what changes this joint alone (paper 3.1, 3.4; `design/change.rs`).
+        // The hardpoint and the axes that it follows, then what changes this joint alone (paper 3.1, 3.4;
+        // `design/change.rs`).
         let drawn = Pose { rot: self.followed_frame(joint, e, values), r: self.place(joint.at[e], values) };
         self.changes_of(j)
             .fold(drawn, |marker, (k, change)| change.marker(model, marker, e, values.variables[k]))
@@ -436,7 +440,8 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
     fn kept(&self, j: usize) -> JointConstants<T> {
         let (joint, zero) = (&self.design_map.model().joints[j], T::zero());
         let [m_i, m_j] = [0, 1].map(|e| self.marker_in_world(j, e, &self.for_lengths));
-        // d = P_j - P_i of the design; what a joint keeps is measured on it: L = abs(d), z_i . d, z_i . z_j, the distance from a curve.
+        // d = P_j - P_i of the design; what a joint keeps is measured on it: L = abs(d), z_i . d, z_i . z_j, the
+        // distance from a curve.
         let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);
         let given = joint.length.map(|length| {
             let formula = self.design_map.formulas.as_ref().and_then(|f| f.of_length[j]);

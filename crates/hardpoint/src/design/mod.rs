@@ -1,8 +1,9 @@
-//! The design: the geometry of any values of the design variables, and how fast it changes with each (the paper's section 3).
+//! The design: the geometry of any values of the design variables, and how fast it changes with each (the paper's
+//! section 3).
 //!
-//! A model never changes. A design is a list of values, one per variable; [`Geometry`] is what they make of the markers, points and
-//! lengths, and a [`DesignVelocity`] the rate at which one variable, or a direction in the space of them all, changes that: the
-//! paper's design velocity field.
+//! A model never changes. A design is a list of values, one per variable; [`Geometry`] is what they make of the
+//! markers, points and lengths, and a [`DesignVelocity`] the rate at which one variable, or a direction in the space of
+//! them all, changes that: the paper's design velocity field.
 
 use crate::law::Law;
 use crate::model::{Joint, Model, VariableId};
@@ -45,8 +46,8 @@ impl Model {
         DesignMap::of(self).fields(&self.whole(design))
     }
 
-    /// The natural step of a variable: the change that moves the farthest marker by the mechanism's size, or turns it by 1 rad. Where
-    /// the variable moves no marker, the size itself.
+    /// The natural step of a variable: the change that moves the farthest marker by the mechanism's size, or turns it
+    /// by 1 rad. Where the variable moves no marker, the size itself.
     ///
     /// Steps and tolerances are given as parts of it, so that they mean the same for every variable and model.
     pub fn natural_step(&self, variable: VariableId) -> f64 {
@@ -98,7 +99,7 @@ impl Model {
 
     /// 3-1-3 Euler angles of a marker in its body's frame, and their rotation C(theta).
     fn euler_of(&self, joint: &Joint, e: usize) -> ([f64; 3], Mat3) {
-        // C = A^T (A C), theta of C = Rz(theta1) Rx(theta2) Rz(theta3)                                        (paper 2.2)
+        // C = A^T (A C), theta of C = Rz(theta1) Rx(theta2) Rz(theta3)                                      (paper 2.2)
         let in_body = self.bodies[joint.bodies[e].0].frame.rot.transpose() * joint.frames[e];
         let theta = euler_313_from_rotation(in_body);
         (theta, rotation_from_euler_313(theta))

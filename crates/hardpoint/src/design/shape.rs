@@ -20,8 +20,8 @@ pub(crate) enum ShapeField {
 }
 
 impl ShapeField {
-    /// Velocity of the point that is at s, m per unit, and the rate at which what is fixed there turns, rad per unit: half
-    /// the curl of the velocity.
+    /// Velocity of the point that is at s, m per unit, and the rate at which what is fixed there turns, rad per unit:
+    /// half the curl of the velocity.
     pub fn at(&self, s: Vec3) -> [Vec3; 2] {
         match self {
             // V(s), and w(s) = rot V / 2; of a beam that is so on its axis
@@ -46,18 +46,20 @@ impl ShapeField {
     }
 }
 
-/// Deflection and slope at x of a beam of unit length that is held at 0 and deflected by 1 at 1; straight on beyond its ends.
+/// Deflection and slope at x of a beam of unit length that is held at 0 and deflected by 1 at 1; straight on beyond its
+/// ends.
 fn cantilever(x: f64) -> (f64, f64) {
     match x {
         x if x <= 0.0 => (0.0, 0.0),
-        // y = x^2 (3 - x) / 2, y' = 3 x (2 - x) / 2:  y''(1) = 0, y''' constant: a force at the free end, no moment there
+        // y = x^2 (3 - x) / 2, y' = 3 x (2 - x) / 2: y''(1) = 0, y''' constant: a force at the free end, no moment
+        // there
         x if x < 1.0 => (0.5 * x * x * (3.0 - x), 1.5 * x * (2.0 - x)),
         x => (1.0 + 1.5 * (x - 1.0), 1.5),
     }
 }
 
-/// Radial basis functions `r^3` at given points and a linear function: the smoothest field through their velocities. Points
-/// that move as a rigid or an evenly stretched body move everything so.
+/// Radial basis functions `r^3` at given points and a linear function: the smoothest field through their velocities.
+/// Points that move as a rigid or an evenly stretched body move everything so.
 #[derive(Clone, Debug)]
 pub(crate) struct Interpolation {
     centre: Vec3,

@@ -84,8 +84,8 @@ impl Draft {
         self.joint(JointDraft::new(name, "distance", bodies).at(from).at(to))
     }
 
-    /// Adds a driver. A joint's name represents its only coordinate, `["joint", "coordinate"]` for one of several. The law is in m or rad
-    /// over s, from 0 in the design configuration.
+    /// Adds a driver. A joint's name represents its only coordinate, `["joint", "coordinate"]` for one of several. The
+    /// law is in m or rad over s, from 0 in the design configuration.
     pub fn driver(mut self, name: impl Into<String>, drives: impl Into<DrivenDraft>, law: Law) -> Self {
         self.drivers.push(DriverDraft::new(name, drives, law));
         self

@@ -25,7 +25,8 @@ macro_rules! in_drafts {
                 /// The line to turn about, by one radian per radian of the variable.
                 about: DirectionDraft,
             },
-            /// Whole bodies change their shape, and everything on them follows: joints with the markers of both bodies, axes, points.
+            /// Whole bodies change their shape, and everything on them follows: joints with the markers of both bodies,
+            /// axes, points.
             Shape {
                 /// The names of the bodies.
                 bodies: Vec<String>,
@@ -86,7 +87,8 @@ impl Known<'_, '_> {
     }
 }
 
-/// A velocity field over a body: how each of its points moves in the design configuration. Points are names of hardpoints.
+/// A velocity field over a body: how each of its points moves in the design configuration. Points are names of
+/// hardpoints.
 #[derive(Clone, Debug)]
 pub enum ShapeDraft {
     /// All the same way, along a direction of any length.

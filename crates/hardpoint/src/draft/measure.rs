@@ -12,7 +12,8 @@ use crate::space::Vec3;
 
 use super::check::MeasureCheck;
 
-/// A type of measure as model files name it, but for those of wheels and axles, which are [`WheelMeasure`] and [`AxleMeasure`].
+/// A type of measure as model files name it, but for those of wheels and axles, which are [`WheelMeasure`] and
+/// [`AxleMeasure`].
 #[derive(Debug)]
 pub struct MeasureType {
     /// Name.

@@ -94,8 +94,8 @@ pub struct Draft {
 pub struct UnreadEntries(BTreeMap<(Section, usize), Vec<&'static str>>);
 
 impl UnreadEntries {
-    /// Notes that a field of an entry could not be read: by its name in model files, an empty one for the entry as a whole. Of
-    /// [`Section::Model`] the fields are the tables of the file.
+    /// Notes that a field of an entry could not be read: by its name in model files, an empty one for the entry as a
+    /// whole. Of [`Section::Model`] the fields are the tables of the file.
     pub fn note(&mut self, section: Section, index: usize, field: &'static str) {
         self.0.entry((section, index)).or_default().push(field);
     }
@@ -228,8 +228,8 @@ pub struct JointDraft {
     pub axis: Option<DirectionDraft>,
     /// Direction of the markers' x axis.
     pub axis2: Option<DirectionDraft>,
-    /// The global axis (0, 1 or 2) across which it is the mirror image of another joint: where `axis2` is not given, its default is the
-    /// image of that joint's default.
+    /// The global axis (0, 1 or 2) across which it is the mirror image of another joint: where `axis2` is not given,
+    /// its default is the image of that joint's default.
     pub mirror: Option<usize>,
     /// Length of a rod, or a follower's distance from its curve, m; else it is measured between its places.
     pub length: Option<f64>,
@@ -361,7 +361,8 @@ impl DrivenDraft {
             Self::Distance { .. } => joint::LEG.quantity_of(None),
             Self::Orientation { .. } => joint::HEADING.quantity_of(None),
             Self::Measure(name) => match measures.iter().find(|m| m.name == *name).map(|m| &m.kind) {
-                // The measures that a wheel lists, `WHEEL.toe`, may be added after the drivers: their names say what they are.
+                // The measures that a wheel lists, `WHEEL.toe`, may be added after the drivers: their names say what
+                // they are.
                 None => quantity_at_wheel(WheelMeasure::named(name.rsplit_once('.')?.1)?),
                 Some(MeasureKindDraft::Coordinate { joint, coordinate }) => {
                     type_of(joint)?.quantity_of(coordinate.as_deref())
@@ -440,15 +441,15 @@ pub struct WheelDraft {
     pub bump: Option<String>,
     /// The name of the driver that steers it.
     pub steer: Option<String>,
-    /// The planes of the lower and the upper arm: each by two pivots and a ball joint, or by a strut's top mount and another point of its
-    /// axis.
+    /// The planes of the lower and the upper arm: each by two pivots and a ball joint, or by a strut's top mount and
+    /// another point of its axis.
     pub planes: Option<[Vec<PointRef>; 2]>,
     /// The ends of its spring.
     pub spring: Option<[PointRef; 2]>,
     /// At which end of the vehicle it is.
     pub end: Option<VehicleEnd>,
-    /// Place where its drive torque is reacted; where it is left out, outboard on a body that carries wheels of both sides (a live axle),
-    /// else inboard.
+    /// Place where its drive torque is reacted; where it is left out, outboard on a body that carries wheels of both
+    /// sides (a live axle), else inboard.
     pub drive: Option<TorqueReaction>,
     /// Place where its brake torque is reacted; where it is left out, outboard.
     pub brakes: Option<TorqueReaction>,
@@ -488,8 +489,8 @@ pub struct MeasureDraft {
     pub kind: MeasureKindDraft,
 }
 
-/// A metric; see [`Metric`](crate::model::Metric). Its numbers are in units of which that many make a metre or a radian, since what they
-/// measure follows from the measures.
+/// A metric; see [`Metric`](crate::model::Metric). Its numbers are in units of which that many make a metre or a
+/// radian, since what they measure follows from the measures.
 #[derive(Clone, Debug)]
 pub struct MetricDraft {
     /// Name.
@@ -582,8 +583,8 @@ impl Default for OptimizationSettingsDraft {
     }
 }
 
-/// A goal; see [`Goal`](crate::model::Goal). Its numbers are in units of which that many make a metre or a radian, since what they
-/// measure follows from the metric.
+/// A goal; see [`Goal`](crate::model::Goal). Its numbers are in units of which that many make a metre or a radian,
+/// since what they measure follows from the metric.
 #[derive(Clone, Debug)]
 pub struct GoalDraft {
     /// Name.
@@ -681,7 +682,8 @@ pub struct ScatterDraft {
     pub sigmas: Option<f64>,
 }
 
-/// A tolerance; see [`Tolerance`](crate::model::Tolerance). Its reach is in units of which that many make a metre or a radian.
+/// A tolerance; see [`Tolerance`](crate::model::Tolerance). Its reach is in units of which that many make a metre or a
+/// radian.
 #[derive(Clone, Debug)]
 pub struct ToleranceDraft {
     /// The name of a design variable, or the part before `_x`, `_y`, `_z` of several.
@@ -745,8 +747,8 @@ impl Default for SweepSettingsDraft {
     }
 }
 
-/// A range of a variable; see [`SweepRange`](crate::model::SweepRange). Its ends are in units of which that many make a metre or a radian;
-/// those of a parameter are its values.
+/// A range of a variable; see [`SweepRange`](crate::model::SweepRange). Its ends are in units of which that many make a
+/// metre or a radian; those of a parameter are its values.
 #[derive(Clone, Debug)]
 pub struct SweepRangeDraft {
     /// The variable's name.

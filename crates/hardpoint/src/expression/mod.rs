@@ -15,8 +15,8 @@
 //! | `step(x, x0, h0, x1, h1)` | `h0` up to `x0`, `h1` from `x1` on, between them `h0 + (h1 - h0)(3u² - 2u³)` |
 //! | `if(a < b, x, y)` | `x` where the comparison (`<`, `<=`, `>`, `>=`) holds, else `y` |
 //!
-//! Derivatives are propagated as [jets](crate::number::Jet), so they carry rounding error only, no step size; `abs`, `min`, `max`, `step`
-//! and `if` are differentiated on the side that is active.
+//! Derivatives are propagated as [jets](crate::number::Jet), so they carry rounding error only, no step size; `abs`,
+//! `min`, `max`, `step` and `if` are differentiated on the side that is active.
 
 mod parse;
 mod program;
@@ -33,8 +33,8 @@ use crate::number::Real;
 
 /// A number of a model that is written as an expression in the [language](self), without the time: `hub + shim/2`.
 ///
-/// Names that are no functions stand for parameters of the model, and those of two parts, like `ball.x`, for coordinates of
-/// its hardpoints. Angles are in radians.
+/// Names that are no functions stand for parameters of the model, and those of two parts, like `ball.x`, for
+/// coordinates of its hardpoints. Angles are in radians.
 ///
 /// ```
 /// use hardpoint::expression::Expression;
@@ -125,8 +125,8 @@ impl Expression {
         }
     }
 
-    /// True if expressions can use what has this name: letters, digits and `_`, no digit first, and none of the names that
-    /// they know already.
+    /// True if expressions can use what has this name: letters, digits and `_`, no digit first, and none of the names
+    /// that they know already.
     pub fn can_name(name: &str) -> bool {
         parse::is_free_name(name)
     }

@@ -103,7 +103,8 @@ pub(crate) fn parse(text: &str, parameters: &[&str]) -> Result<Program, Expressi
     }
 }
 
-/// The program that `text` writes, which does not know the time, and the other names in it in the order of their first use.
+/// The program that `text` writes, which does not know the time, and the other names in it in the order of their first
+/// use.
 pub(crate) fn parse_open(text: &str) -> Result<(Program, Vec<&str>), ExpressionError> {
     let mut descent = Descent::new(text, &[]);
     descent.free = Some(Free::default());

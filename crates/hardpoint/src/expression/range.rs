@@ -1,9 +1,9 @@
 //! Between which bounds an expression stays over a stretch of time.
 //!
-//! Expressions are evaluated in intervals that carry an interval for their rate: `f([a, b])` lies in the interval that the
-//! operations give, and in `f(m) + f'([a, b]) [-h/2, h/2]` about the middle m, which is the tighter one when the stretch is short
-//! (the mean value form, whose excess falls with h^2). Polynomials and splines lie within their Bernstein coefficients. All of it
-//! holds but for rounding.
+//! Expressions are evaluated in intervals that carry an interval for their rate: `f([a, b])` lies in the interval that
+//! the operations give, and in `f(m) + f'([a, b]) [-h/2, h/2]` about the middle m, which is the tighter one when the
+//! stretch is short (the mean value form, whose excess falls with h^2). Polynomials and splines lie within their
+//! Bernstein coefficients. All of it holds but for rounding.
 
 use std::f64::consts::{FRAC_PI_2, LN_10, PI, TAU};
 use std::ops::{Add, Div, Mul, Neg, Sub};

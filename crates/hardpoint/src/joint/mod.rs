@@ -254,7 +254,8 @@ impl JointType {
         Some(coordinate?.quantity)
     }
 
-    /// Returns whether a coordinate of the image of a joint is the opposite of the joint's own while both move as mirror images.
+    /// Returns whether a coordinate of the image of a joint is the opposite of the joint's own while both move as
+    /// mirror images.
     pub fn is_reversed_in_mirror(&self, coordinate: &CoordinateType) -> bool {
         let [z, axis2] = self.vector_kinds.map(VectorKind::sign);
         let x = match self.axis2 {

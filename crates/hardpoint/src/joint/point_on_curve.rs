@@ -4,8 +4,8 @@ use crate::constraint::Row;
 
 use super::{JointType, Need, VectorKind};
 
-/// Seen along z_i, body j's point keeps its distance from a curve of body i: zero for a pin in a slot, a roller's radius for a
-/// cam. One constraint. The first place carries the curve, the second is the point.
+/// Seen along z_i, body j's point keeps its distance from a curve of body i: zero for a pin in a slot, a roller's
+/// radius for a cam. One constraint. The first place carries the curve, the second is the point.
 pub static POINT_ON_CURVE: JointType = JointType {
     name: "point_on_curve",
     aliases: &["cam", "slot"],

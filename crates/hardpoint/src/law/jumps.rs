@@ -45,8 +45,8 @@ impl Break {
     }
 }
 
-/// In how many parts the time is cut to find where an expression switches. What switches there and back between two cuts
-/// is missed.
+/// In how many parts the time is cut to find where an expression switches. What switches there and back between two
+/// cuts is missed.
 const CUTS: u32 = 4096;
 
 /// Sides that change more often than this between two cuts change by rounding.

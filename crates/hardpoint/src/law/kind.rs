@@ -28,8 +28,8 @@ pub(super) trait LawKind: fmt::Display {
     /// Changes the value of a parameter, as written.
     fn set(&mut self, parameter: usize, value: f64);
 
-    /// Bounds of f and of its rate from one time to another, both included; unbounded where it is undefined, or jumps, anywhere
-    /// between them.
+    /// Bounds of f and of its rate from one time to another, both included; unbounded where it is undefined, or jumps,
+    /// anywhere between them.
     fn over(&self, from: f64, to: f64) -> Stretch;
 
     /// Appends where the value or the first two derivatives may jump between `from` and `to`.
@@ -115,7 +115,8 @@ macro_rules! parameters {
 }
 pub(super) use parameters;
 
-/// True if a time is before an instant: at the instant itself if it runs backwards. What is no number is neither before nor after.
+/// True if a time is before an instant: at the instant itself if it runs backwards. What is no number is neither before
+/// nor after.
 #[inline(always)]
 pub(super) fn is_before<T: Real, const N: usize>(time: &Jet<T, N>, instant: f64) -> bool {
     let t = time.value().value();

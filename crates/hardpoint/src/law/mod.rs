@@ -9,8 +9,8 @@
 //! [parameters](Law::parameters) by which it is [differentiated](Law::derivative), and says
 //! [where it is not smooth](Law::jumps).
 //!
-//! What is *not* here: laws of anything but the time; corners of expressions that no `abs`, `atan2`, `min`, `max`, `step` or
-//! `if` makes, such as those of `asin(sin(t))` or `sqrt(t^2)`, are not among the [jumps](Law::jumps).
+//! What is *not* here: laws of anything but the time; corners of expressions that no `abs`, `atan2`, `min`, `max`,
+//! `step` or `if` makes, such as those of `asin(sin(t))` or `sqrt(t^2)`, are not among the [jumps](Law::jumps).
 
 mod error;
 mod formula;
@@ -88,7 +88,8 @@ pub struct Law {
     as_drawn: Option<f64>,
 }
 
-/// The parameter that a law has when it [counts from zero](Law::from_zero): what is prescribed, in the design configuration.
+/// The parameter that a law has when it [counts from zero](Law::from_zero): what is prescribed, in the design
+/// configuration.
 const AS_DRAWN: &str = "as_drawn";
 
 impl Law {
@@ -125,8 +126,8 @@ impl Law {
     ///
     /// # Errors
     ///
-    /// As [`parse`](Self::parse); and when a parameter has the name of something else, no proper name, no finite value, or
-    /// is not used. The place is then all of the text.
+    /// As [`parse`](Self::parse); and when a parameter has the name of something else, no proper name, no finite value,
+    /// or is not used. The place is then all of the text.
     pub fn parse_with(text: &str, parameters: &[(&str, f64)]) -> Result<Self, ExpressionError> {
         ExpressionLaw::parse(text, parameters).map(Self::of)
     }
@@ -184,19 +185,20 @@ impl Law {
         self
     }
 
-    /// The parameter that says what is prescribed in the design configuration, and its value, where the law counts from zero.
+    /// The parameter that says what is prescribed in the design configuration, and its value, where the law counts from
+    /// zero.
     pub fn as_drawn(&self) -> Option<(usize, f64)> {
         self.as_drawn.map(|value| (self.kind.parameter_count(), value))
     }
 
-    /// The value and the first three time derivatives at time `t`: driver unit per s⁰, s, s², s³; `t` in seconds. Over any
-    /// number, such as one that carries derivatives.
+    /// The value and the first three time derivatives at time `t`: driver unit per s⁰, s, s², s³; `t` in seconds. Over
+    /// any number, such as one that carries derivatives.
     ///
-    /// Where the law is not smooth these are the derivatives of the side that is active just after `t`; of an `if` the side
-    /// whose condition holds at `t`.
+    /// Where the law is not smooth these are the derivatives of the side that is active just after `t`; of an `if` the
+    /// side whose condition holds at `t`.
     ///
-    /// Where the law is not defined (`sqrt` of a negative number, a division by zero, outside of a table) the result is not
-    /// finite; reporting that is left to whoever knows the driver's name.
+    /// Where the law is not defined (`sqrt` of a negative number, a division by zero, outside of a table) the result is
+    /// not finite; reporting that is left to whoever knows the driver's name.
     pub fn at<T: Real>(&self, t: T) -> TimeJet<T> {
         self.evaluate(Jet::time(t), None)
     }
@@ -206,8 +208,8 @@ impl Law {
         self.evaluate(Jet::time(t), None)
     }
 
-    /// The numbers in the law that may be varied: those of its kind in the order that the kind documents; of an expression
-    /// those that [`parse_with`](Self::parse_with) was given; of a sequence those of its pieces, named as in
+    /// The numbers in the law that may be varied: those of its kind in the order that the kind documents; of an
+    /// expression those that [`parse_with`](Self::parse_with) was given; of a sequence those of its pieces, named as in
     /// `piece[0].amplitude`, with `piece[0].duration` first.
     ///
     /// ```
@@ -255,8 +257,8 @@ impl Law {
 
     /// This law with another value of one of its [parameters](Self::parameters).
     ///
-    /// With a value that makes no sense, such as the end of a step before its start, the law has no finite value; nor has one
-    /// that was [scaled](Self::scaled) by zero, for a parameter in the driver's unit.
+    /// With a value that makes no sense, such as the end of a step before its start, the law has no finite value; nor
+    /// has one that was [scaled](Self::scaled) by zero, for a parameter in the driver's unit.
     ///
     /// ```
     /// use hardpoint::law::Law;
@@ -281,9 +283,9 @@ impl Law {
         law
     }
 
-    /// Bounds of value and rate from one time to another, both included, in the driver's unit and per s. They hold but for
-    /// rounding; those of the value exceed the law by no more than about the square of the time between. Where the law is
-    /// undefined anywhere there both are unbounded, where it jumps the rate is.
+    /// Bounds of value and rate from one time to another, both included, in the driver's unit and per s. They hold but
+    /// for rounding; those of the value exceed the law by no more than about the square of the time between. Where the
+    /// law is undefined anywhere there both are unbounded, where it jumps the rate is.
     ///
     /// ```
     /// use hardpoint::law::Law;
@@ -307,8 +309,8 @@ impl Law {
     /// Times between `from` and `to`, both included, at which the value, the speed or the acceleration jumps, in order.
     /// A jump counts if it exceeds 1e-9 of the largest such value, speed or acceleration there.
     ///
-    /// For expressions the time is cut into 4096 parts: an `abs`, `atan2`, `min`, `max`, `step` or `if` that switches there
-    /// and back within one of them may be missed. Where the law has no finite value it does not jump.
+    /// For expressions the time is cut into 4096 parts: an `abs`, `atan2`, `min`, `max`, `step` or `if` that switches
+    /// there and back within one of them may be missed. Where the law has no finite value it does not jump.
     ///
     /// ```
     /// use hardpoint::law::{Jump, Law};

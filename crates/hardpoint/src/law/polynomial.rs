@@ -31,7 +31,8 @@ impl Polynomial {
 }
 
 impl Law {
-    /// The polynomial c0 + c1 t + c2 t² + ... The coefficient k is in driver unit per s to the k, and is the parameter `ck`.
+    /// The polynomial c0 + c1 t + c2 t² + ... The coefficient k is in driver unit per s to the k, and is the parameter
+    /// `ck`.
     ///
     /// ```
     /// use hardpoint::law::Law;

@@ -19,8 +19,8 @@ pub struct Piece {
     pub duration: Option<f64>,
     /// Law, whose time starts at 0 when the piece does.
     pub law: Law,
-    /// True if its values count from where the piece before ended, so that the value does not jump. Without meaning in the
-    /// first piece, whose values are always its law's own.
+    /// True if its values count from where the piece before ended, so that the value does not jump. Without meaning in
+    /// the first piece, whose values are always its law's own.
     pub continued: bool,
 }
 
@@ -51,7 +51,8 @@ pub(super) struct Sequence {
     starts: Vec<f64>,
     /// Offsets that are added to the pieces' laws.
     offsets: Vec<f64>,
-    /// The index of each piece's first parameter: its duration, if it has one, and then those of its law. Then their number.
+    /// The index of each piece's first parameter: its duration, if it has one, and then those of its law. Then their
+    /// number.
     first_parameters: Vec<usize>,
 }
 
@@ -164,8 +165,8 @@ impl Sequence {
 }
 
 impl Law {
-    /// Laws one after the other, from t = 0 on. Before that, and after the end of a last piece that has one, there is no
-    /// finite value.
+    /// Laws one after the other, from t = 0 on. Before that, and after the end of a last piece that has one, there is
+    /// no finite value.
     ///
     /// ```
     /// use hardpoint::law::{Law, Piece};
@@ -181,8 +182,8 @@ impl Law {
     ///
     /// # Errors
     ///
-    /// When there is no piece, a duration is not a finite number greater than zero, a piece other than the last has none,
-    /// or a piece's law has no finite value at the piece's start or end.
+    /// When there is no piece, a duration is not a finite number greater than zero, a piece other than the last has
+    /// none, or a piece's law has no finite value at the piece's start or end.
     pub fn sequence(pieces: Vec<Piece>) -> Result<Self, LawError> {
         Sequence::new(pieces).map(Self::of)
     }

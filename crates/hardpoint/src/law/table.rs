@@ -15,9 +15,9 @@ use super::polynomial::sum_of_powers;
 
 /// A table of points, and the spline to lay through them.
 ///
-/// The parameters of its law are `f[0]`, `f[1]`, ... (in a periodic table without the last, which moves with `f[0]`), then, if
-/// the ends are clamped, `start_speed`, `end_speed`, or for a quintic `start_speed`, `start_acceleration`, `end_speed`,
-/// `end_acceleration`.
+/// The parameters of its law are `f[0]`, `f[1]`, ... (in a periodic table without the last, which moves with `f[0]`),
+/// then, if the ends are clamped, `start_speed`, `end_speed`, or for a quintic `start_speed`, `start_acceleration`,
+/// `end_speed`, `end_acceleration`.
 ///
 /// Before the first time and after the last the law has no finite value, unless the table is periodic.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,8 +46,8 @@ pub enum SplineDegree {
 /// Boundary conditions at the ends of a [`Table`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SplineEnds {
-    /// Nothing: the curve ends as a thin beam does. The acceleration of a cubic is zero there; of a quintic the jerk and its
-    /// rate are.
+    /// Nothing: the curve ends as a thin beam does. The acceleration of a cubic is zero there; of a quintic the jerk
+    /// and its rate are.
     Natural,
     /// Speed and acceleration; a cubic takes the speed only.
     Clamped {
@@ -56,8 +56,8 @@ pub enum SplineEnds {
         /// At the last point.
         end: SplineEndRates,
     },
-    /// The last point is the first again: the curve repeats for ever, and is as smooth there as elsewhere. The two values
-    /// must be equal.
+    /// The last point is the first again: the curve repeats for ever, and is as smooth there as elsewhere. The two
+    /// values must be equal.
     Periodic,
 }
 
@@ -77,8 +77,8 @@ pub struct SplineEndRates {
     pub acceleration: f64,
 }
 
-/// A time this much outside of a range, relative to the range's own times, is meant to be its end: sums of output steps do
-/// not meet the end of a table exactly.
+/// A time this much outside of a range, relative to the range's own times, is meant to be its end: sums of output steps
+/// do not meet the end of a table exactly.
 pub(super) const ROUNDING_OF_TIME: f64 = 1e-12;
 
 /// The law of a table.

@@ -11,11 +11,11 @@ use super::jumps::Break;
 use super::kind::{LawKind, is_after, is_before, one_way, parameters};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 
-/// A law that holds `from` up to `start` and `to` from `end` on; between them its speed is a trapezoid: it rises evenly for `ramp`
-/// seconds, is constant, and falls evenly for `ramp` seconds. The acceleration jumps at the four corners.
+/// A law that holds `from` up to `start` and `to` from `end` on; between them its speed is a trapezoid: it rises evenly
+/// for `ramp` seconds, is constant, and falls evenly for `ramp` seconds. The acceleration jumps at the four corners.
 ///
-/// Parameters, in this order: `from`, `to`, `start`, `end`, `ramp`. Where changed ones leave no room for both ramps the law has no
-/// finite value.
+/// Parameters, in this order: `from`, `to`, `start`, `end`, `ramp`. Where changed ones leave no room for both ramps the
+/// law has no finite value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trapezoid {
     /// The value before, in the driver's unit.

@@ -7,9 +7,9 @@ use super::sparse::SparseLu;
 
 /// Blocks with more unknowns than this are factored by [`SparseLu`].
 ///
-/// With four entries a row sparse factors are three times as fast as dense ones at 16 unknowns and seven times at 40; with full
-/// rows they are as fast up to 16. But margins of sparse blocks are not recorded (`motion/step_program.rs`), so that blocks which
-/// mechanisms commonly have stay dense.
+/// With four entries a row sparse factors are three times as fast as dense ones at 16 unknowns and seven times at 40;
+/// with full rows they are as fast up to 16. But margins of sparse blocks are not recorded (`motion/step_program.rs`),
+/// so that blocks which mechanisms commonly have stay dense.
 pub(crate) const LARGEST_DENSE: usize = 40;
 
 /// LU factors of one block's Jacobian, kept for every right-hand side of a step.

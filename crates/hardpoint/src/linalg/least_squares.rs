@@ -1,13 +1,13 @@
 //! Small dense systems with one solution, many or none: the least of those that fit best.
 
-/// A column is independent of those before it if more is left of it than this times the number of rows or columns, as a part of the
-/// largest entry: round-off leaves less.
+/// A column is independent of those before it if more is left of it than this times the number of rows or columns, as a
+/// part of the largest entry: round-off leaves less.
 const ROUND_OFF: f64 = f64::EPSILON;
 
 /// The shortest `x` of those for which `|A x - b|` is least, `x = A^+ b`, for each right-hand side `b`.
 ///
-/// `A` has m rows and n columns. With orthogonal `Q` and `V`, and columns exchanged by `P` and `N` (a complete orthogonal
-/// decomposition),
+/// `A` has m rows and n columns. With orthogonal `Q` and `V`, and columns exchanged by `P` and `N` (a complete
+/// orthogonal decomposition),
 ///
 /// ```text
 /// A P = Q (R)      as many rows in R as A has independent ones;      R^T N = V (S)      S square and triangular
@@ -54,8 +54,8 @@ pub(crate) fn least_squares(
     right.iter().map(solution).collect()
 }
 
-/// As many rows as columns, for which products of columns are those of a matrix with any number of rows: the factor R of
-/// `A P = Q R` with its columns where they were.
+/// As many rows as columns, for which products of columns are those of a matrix with any number of rows: the factor R
+/// of `A P = Q R` with its columns where they were.
 pub(crate) fn folded_rows(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let n = columns.len();
     let mut rows = vec![vec![0.0; n]; n];
@@ -97,7 +97,8 @@ impl Triangular {
             columns.swap(k, longest);
             order.swap(k, longest);
             let mut normal = columns[k][k..].to_vec();
-            // Householder: u = (a + sign(a_0) abs(a) e_0) / abs(..) mirrors a to -sign(a_0) abs(a) e_0; the sum loses no digits
+            // Householder: u = (a + sign(a_0) abs(a) e_0) / abs(..) mirrors a to -sign(a_0) abs(a) e_0; the sum loses
+            // no digits
             normal[0] += length.copysign(normal[0]);
             let size = norm(&normal);
             normal.iter_mut().for_each(|x| *x /= size);

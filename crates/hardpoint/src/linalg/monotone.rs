@@ -3,11 +3,12 @@
 use super::Segment;
 use super::spline::hermite;
 
-/// The piecewise cubic through these points, at least two with x increasing, with a continuous slope and without overshoot: between two
-/// points it stays between their values. Segments are in the distance from their first point.
+/// The piecewise cubic through these points, at least two with x increasing, with a continuous slope and without
+/// overshoot: between two points it stays between their values. Segments are in the distance from their first point.
 ///
-/// Slope at a point is the weighted harmonic mean of those of the chords beside it, and zero where these have different signs (F. N.
-/// Fritsch and J. Butland 1984); at the ends that of the parabola through three points, as far as it keeps the curve monotone.
+/// Slope at a point is the weighted harmonic mean of those of the chords beside it, and zero where these have different
+/// signs (F. N. Fritsch and J. Butland 1984); at the ends that of the parabola through three points, as far as it keeps
+/// the curve monotone.
 pub(crate) fn monotone(points: &[[f64; 2]]) -> Vec<Segment> {
     let chords: Vec<[f64; 2]> = points.windows(2).map(|p| [p[1][0] - p[0][0], p[1][1] - p[0][1]]).collect();
     let last = chords.len();

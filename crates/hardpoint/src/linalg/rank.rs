@@ -12,10 +12,10 @@ const LARGEST_COMPLETE: usize = 100;
 const STAGE: f64 = 1e-2;
 /// A sparse pivot is at least this part of the largest entry in its row, which bounds the growth of round-off.
 const THRESHOLD: f64 = 0.1;
-/// ... and this part of the largest entry in its column: rows are chosen for good, and one that says little of a column while
-/// another says more makes a bad choice. Loops that hang on each other in a row multiply it: of a 20 x 20 grid of scissors
-/// without this, rows are chosen whose least singular value is 4e-9 (with a third of it still 5e-7), with it 3e-3; all rows
-/// together have 1e-2.
+/// ... and this part of the largest entry in its column: rows are chosen for good, and one that says little of a column
+/// while another says more makes a bad choice. Loops that hang on each other in a row multiply it: of a 20 x 20 grid of
+/// scissors without this, rows are chosen whose least singular value is 4e-9 (with a third of it still 5e-7), with it
+/// 3e-3; all rows together have 1e-2.
 const CHOICE: f64 = 0.9;
 /// Remainders of the elimination below this part of the tolerance are set to zero, so that rounded redundancy does not
 /// fill the rows.
@@ -31,8 +31,8 @@ pub(crate) struct FullPivot {
 }
 
 impl FullPivot {
-    /// Complete pivoting over the rows of the matrix in `a`; a pivot below `tolerance`, or below `tolerance` times the largest, counts
-    /// as zero.
+    /// Complete pivoting over the rows of the matrix in `a`; a pivot below `tolerance`, or below `tolerance` times the
+    /// largest, counts as zero.
     pub fn of(mut a: Vec<Vec<f64>>, n: usize, tolerance: f64) -> Self {
         let m = a.len();
         let mut rows: Vec<usize> = (0..m).collect();
@@ -76,7 +76,8 @@ impl FullPivot {
         let free = (0..n)
             .filter(|&c| !used[c])
             .map(|c| {
-                // x_c = 1 and x_p = -a_kc, p the column of pivot k: the null vector that moves, besides the pivots' columns, only c
+                // x_c = 1 and x_p = -a_kc, p the column of pivot k: the null vector that moves, besides the pivots'
+                // columns, only c
                 let others = columns.iter().enumerate().map(|(k, &p)| (p, -a[k][c]));
                 others.chain([(c, 1.0)]).filter(|(_, x)| *x != 0.0).collect()
             })
@@ -160,7 +161,8 @@ impl Sparse {
         FullPivot { rows: self.pivots.into_iter().map(|(r, _)| r).collect(), free }
     }
 
-    /// The column of row r to eliminate, if any entry is large enough in row and column: the one with the fewest entries.
+    /// The column of row r to eliminate, if any entry is large enough in row and column: the one with the fewest
+    /// entries.
     fn pivot_of(&self, r: usize, stage: f64) -> Option<usize> {
         let most = self.rows[r].iter().map(|(_, x)| x.abs()).fold(0.0, f64::max);
         let enough = f64::max(THRESHOLD * most, stage);

@@ -1,12 +1,13 @@
 //! Symmetric matrices that are positive semidefinite: correlations, and the curvature of convex functions.
 
-/// A pivot below this part of the diagonal's largest is none: such a matrix of correlations has ones on its diagonal, and its
-/// coefficients are written with few digits.
+/// A pivot below this part of the diagonal's largest is none: such a matrix of correlations has ones on its diagonal,
+/// and its coefficients are written with few digits.
 const NOTHING: f64 = 1e-12;
 /// Beside such a pivot nothing may be left that is larger than this: by rounding, the root of it.
 const LEFT: f64 = 1e-6;
 
-/// The lower triangle L with L L' = A, row by row; columns without a pivot are zero. `None` where A is not positive semidefinite.
+/// The lower triangle L with L L' = A, row by row; columns without a pivot are zero. `None` where A is not positive
+/// semidefinite.
 pub(crate) fn root(a: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let n = a.len();
     let largest = (0..n).map(|k| a[k][k]).fold(0.0, f64::max);

@@ -1,4 +1,5 @@
-//! Sparse factors of a large block: an order of elimination that is chosen once, and straight loops over lists of places.
+//! Sparse factors of a large block: an order of elimination that is chosen once, and straight loops over lists of
+//! places.
 
 use std::ops::Range;
 
@@ -6,11 +7,12 @@ use crate::number::{Function, Real};
 
 use super::matrix::{Factored, MOST_GROWTH, Watched};
 
-/// A pivot is at least this part of the largest entry that its column has left. Factors are then no larger than 2, and a change of
-/// the values may double them before [`MOST_GROWTH`] asks for another order. Chains of scissors fill by a tenth more with 0.9,
-/// and solve no better.
+/// A pivot is at least this part of the largest entry that its column has left. Factors are then no larger than 2, and
+/// a change of the values may double them before [`MOST_GROWTH`] asks for another order. Chains of scissors fill by a
+/// tenth more with 0.9, and solve no better.
 const IN_COLUMN: f64 = 0.5;
-/// ... and this part of the largest entry that its row has left: so a small pivot does not stand while a large one waits.
+/// ... and this part of the largest entry that its row has left: so a small pivot does not stand while a large one
+/// waits.
 const IN_ROW: f64 = 0.1;
 /// A pivot is looked for in that many of the shortest rows and columns; more find hardly less fill, and take longer.
 const LOOKED_AT: usize = 4;
@@ -29,8 +31,9 @@ const NONE: u32 = u32::MAX;
 /// u_ij =  a_ij - sum l_im u_mj            m < i,    for j >= i
 /// ```
 ///
-/// over the places that are not always zero. The order is chosen by the values of the first factorisation ([`Choice`]) and watched
-/// by the size of the factors: from one step to the next it hardly ever changes. Until it does, nothing is allocated.
+/// over the places that are not always zero. The order is chosen by the values of the first factorisation ([`Choice`])
+/// and watched by the size of the factors: from one step to the next it hardly ever changes. Until it does, nothing is
+/// allocated.
 #[derive(Clone, Debug)]
 pub(crate) struct SparseLu<T> {
     /// By row: the columns that it has entries in, in the order in which they are filled.
@@ -58,7 +61,8 @@ struct Order {
     /// By pivot: the k of its l_ik, and the j of its u_ij, in ascending order.
     lower: Lists,
     upper: Lists,
-    /// By pivot: a power of two that brings its size to about 1 where the order was chosen; the logarithm of what that takes out.
+    /// By pivot: a power of two that brings its size to about 1 where the order was chosen; the logarithm of what that
+    /// takes out.
     units: Vec<f64>,
     logarithm: f64,
 }
@@ -197,7 +201,8 @@ impl<T: Real> SparseLu<T> {
             (inverse[i], work[i]) = (one / pivot, zero);
             most = most.larger(pivot.abs());
             least = least.larger(inverse[i].abs());
-            // abs(det) = prod abs(u_ii) = e^logarithm prod abs(u_ii units_i), the factors about 1: no power of two too large or small
+            // abs(det) = prod abs(u_ii) = e^logarithm prod abs(u_ii units_i), the factors about 1: no power of two too
+            // large or small
             product = product * (pivot * units[i]);
             if i % MULTIPLIED == MULTIPLIED - 1 || i + 1 == n {
                 let size = product.abs();
@@ -338,8 +343,8 @@ fn is_odd(permutation: &[u32]) -> bool {
     odd
 }
 
-/// The choice of an order: elimination in which each pivot is one that brings little fill (Markowitz' rule: few other entries in its row
-/// times few in its column) among those that are large enough in both.
+/// The choice of an order: elimination in which each pivot is one that brings little fill (Markowitz' rule: few other
+/// entries in its row times few in its column) among those that are large enough in both.
 ///
 /// Entries that happen to be zero remain entries of the pattern, places where others may appear.
 struct Choice {
@@ -395,7 +400,8 @@ impl Choice {
         Some(this)
     }
 
-    /// The next pivot. One that is the largest of all entries would always do, so that only zeros and NaN are left if none is found.
+    /// The next pivot. One that is the largest of all entries would always do, so that only zeros and NaN are left if
+    /// none is found.
     fn next(&mut self) -> Option<Pivot> {
         let mut best: Option<Pivot> = None;
         let mut looked_at = 0;
@@ -437,7 +443,8 @@ impl Choice {
 
     /// Takes this entry for the best pivot if it is cheaper, and large enough.
     fn consider(&mut self, row: u32, column: u32, best: &mut Option<Pivot>) {
-        // Markowitz: (entries of the row - 1) (entries of the column - 1), the most places that eliminating here may fill
+        // Markowitz: (entries of the row - 1) (entries of the column - 1), the most places that eliminating here may
+        // fill
         let cost = (self.rows[row as usize].len() - 1) * (self.columns[column as usize].len() - 1);
         if best.is_some_and(|best| cost >= best.cost) {
             return;
@@ -657,8 +664,8 @@ mod tests {
         }
     }
 
-    /// A matrix as it changes from step to step: entries at a permutation's places and some more, rows and columns scaled by up to 10^6
-    /// either way.
+    /// A matrix as it changes from step to step: entries at a permutation's places and some more, rows and columns
+    /// scaled by up to 10^6 either way.
     fn changing() -> impl Strategy<Value = Vec<Rows>> {
         (1_usize..40).prop_flat_map(|n| {
             let order = Just((0..n).collect::<Vec<_>>()).prop_shuffle();

@@ -1,10 +1,10 @@
 //! Interpolating splines of degree 3 and 5.
 //!
 //! The spline of degree 2m - 1 through given points is the curve through them with the least ∫ (f⁽ᵐ⁾)² dt. Between two
-//! knots it is the Hermite polynomial of the values and the m - 1 derivatives at both, so that integral is a quadratic form
-//! in the derivatives at the knots. Its matrix is positive definite and has entries between neighbours only: Cholesky's
-//! method needs no pivots, time and room grow with the number of knots. Ends that are free come out natural, ends that are
-//! fixed are no unknowns, and in a periodic spline the last knot *is* the first.
+//! knots it is the Hermite polynomial of the values and the m - 1 derivatives at both, so that integral is a quadratic
+//! form in the derivatives at the knots. Its matrix is positive definite and has entries between neighbours only:
+//! Cholesky's method needs no pivots, time and room grow with the number of knots. Ends that are free come out natural,
+//! ends that are fixed are no unknowns, and in a periodic spline the last knot *is* the first.
 
 use std::sync::OnceLock;
 
@@ -19,8 +19,8 @@ pub(crate) enum EndKind {
     Periodic,
 }
 
-/// The gradient of h^(2m-1)/2 ∫ (f⁽ᵐ⁾)² dt by the scaled derivatives h d, h² dd at both ends; rows and columns in the order
-/// value, derivatives, value, derivatives; the rows of the values are not needed.
+/// The gradient of h^(2m-1)/2 ∫ (f⁽ᵐ⁾)² dt by the scaled derivatives h d, h² dd at both ends; rows and columns in the
+/// order value, derivatives, value, derivatives; the rows of the values are not needed.
 ///
 /// That is K of `∫ (f⁽ᵐ⁾)² dt = y^T K y / h^(2m-1)`, y = (f, h d, h² dd) at both ends (`docs/theory.md` (33)).
 const CUBIC: [[f64; 4]; 4] = [[0.0; 4], [6.0, 4.0, -6.0, 2.0], [0.0; 4], [6.0, 2.0, -6.0, 4.0]];
@@ -41,8 +41,8 @@ enum Datum {
     Unknown(usize),
 }
 
-/// All splines with the same knots and the same kind of ends: they are linear in their data, which are the values at the
-/// knots (but the last, if periodic), then, if clamped, the derivatives at the start and those at the end.
+/// All splines with the same knots and the same kind of ends: they are linear in their data, which are the values at
+/// the knots (but the last, if periodic), then, if clamped, the derivatives at the start and those at the end.
 #[derive(Debug)]
 pub(crate) struct Basis {
     times: Vec<f64>,
@@ -129,7 +129,7 @@ impl Basis {
                 };
                 for column in 0..2 * m {
                     let scaled = if m == 2 { CUBIC[row][column] } else { QUINTIC[row][column] };
-                    // dE/d d_r / 2 = sum_c K_rc h^(r + c + 1 - 2m) d_c, r and c counting the derivatives 0, 1, 2     (33)
+                    // dE/d d_r / 2 = sum_c K_rc h^(r + c + 1 - 2m) d_c, r and c counting the derivatives 0, 1, 2   (33)
                     let power = (row % m + column % m + 1) as i32 - 2 * m as i32;
                     add(unknown, self.source(k + column / m, column % m), scaled * h.powi(power));
                 }

@@ -1,8 +1,9 @@
 //! Compliance of the mechanism: small deflections about the kinematic position, (47) of `docs/theory.md`.
 //!
-//! Every direction in which an elastic joint opens is a way to go like a change of the design: a twist of its marker. What bodies do along
-//! it solves (11) with the factors at hand, and how that changes with the design is the second derivative along both (15). Stiffnesses
-//! meet in a matrix as large as the number of ways, whatever the size of the mechanism.
+//! Every direction in which an elastic joint opens is a way to go like a change of the design: a twist of its marker.
+//! What bodies do along it solves (11) with the factors at hand, and how that changes with the design is the second
+//! derivative along both (15). Stiffnesses meet in a matrix as large as the number of ways, whatever the size of the
+//! mechanism.
 
 use crate::design::{BodyFixed, DesignMap, Geometry};
 use crate::linalg::Elimination;
@@ -57,7 +58,8 @@ pub(crate) struct Compliances<'a> {
 }
 
 impl<'a> Compliances<'a> {
-    /// For the design with these values, with derivatives by the variables if they are wanted; `None` for a model without such measures.
+    /// For the design with these values, with derivatives by the variables if they are wanted; `None` for a model
+    /// without such measures.
     pub fn new(
         design_map: &'a DesignMap<'a>,
         topology: &Topology,
@@ -243,7 +245,8 @@ impl Compliances<'_> {
     }
 }
 
-/// Returns whether no sum of these vectors, each by its own factor, is zero; of each its entries that are not zero, in the order of the rows.
+/// Returns whether no sum of these vectors, each by its own factor, is zero; of each its entries that are not zero, in
+/// the order of the rows.
 fn are_independent<'a>(vectors: impl Iterator<Item = &'a [(RowId, f64)]>) -> bool {
     let norm = |v: &[(RowId, f64)]| v.iter().map(|(_, x)| x * x).sum::<f64>().sqrt();
     let mut basis: Vec<Vec<(RowId, f64)>> = Vec::new();
@@ -271,8 +274,8 @@ fn are_independent<'a>(vectors: impl Iterator<Item = &'a [(RowId, f64)]>) -> boo
     true
 }
 
-/// Ways that differ by less than this part from a sum of others depend on them: what a mechanism's redundant constraints resist is found
-/// to some 1e-9, and typed coordinates are off by 1e-6.
+/// Ways that differ by less than this part from a sum of others depend on them: what a mechanism's redundant
+/// constraints resist is found to some 1e-9, and typed coordinates are off by 1e-6.
 const DEPENDENT: f64 = 1e-5;
 
 /// Stiffnesses whose pivots differ by more hold some way by nothing.

@@ -18,7 +18,8 @@ use super::solver::LoadSolver;
 const MOST_STEPS: usize = 40;
 /// Moments and forces are solved to this part of the largest term.
 const SOLVED: f64 = 1e-13;
-/// Other solutions are looked for from this many times the largest friction without the forces that friction itself makes.
+/// Other solutions are looked for from this many times the largest friction without the forces that friction itself
+/// makes.
 const FAR: f64 = 1e3;
 /// Solutions that differ by more than this part of the friction are two: the same one is found to 1e-13.
 const ANOTHER: f64 = 1e-6;
@@ -81,7 +82,8 @@ impl Friction {
         self.rubs.is_empty()
     }
 
-    /// Takes what joints carry without friction; `responses` say what all of them carry of a unit moment in each that has friction.
+    /// Takes what joints carry without friction; `responses` say what all of them carry of a unit moment in each that
+    /// has friction.
     pub fn set(&mut self, acting: &AppliedLoads<'_, f64>, carried: &Carried<f64>, responses: &[Vec<Wrench>]) {
         for rub in &mut self.rubs {
             [rub.grip, rub.viscous] = acting.grip(rub.element);
@@ -112,8 +114,8 @@ impl Friction {
 
     /// Searches for other solutions, and notes which friction differs between them.
     ///
-    /// `M -> -c N(T_0 + B M) - d` contracts where the sum of `abs(c B)` is below 1 in every row, and has one solution then. Elsewhere
-    /// Newton starts far out, where normal forces are as large as friction alone makes them.
+    /// `M -> -c N(T_0 + B M) - d` contracts where the sum of `abs(c B)` is below 1 in every row, and has one solution
+    /// then. Elsewhere Newton starts far out, where normal forces are as large as friction alone makes them.
     fn look_for_others(&mut self) -> bool {
         let gain = |rub: &FrictionElement| {
             let (_, count) = rub.presses;
@@ -210,7 +212,8 @@ impl Friction {
         self.rubs.iter().map(|h| h.joint)
     }
 
-    /// By how much each equation `M + c N + d = 0` counts for a load with these derivatives by the moments: `E_M^T lambda = -y_M`.
+    /// By how much each equation `M + c N + d = 0` counts for a load with these derivatives by the moments:
+    /// `E_M^T lambda = -y_M`.
     pub fn multipliers(&self, by_moments: Vec<f64>) -> Vec<f64> {
         let mut lambda: Vec<f64> = by_moments.iter().map(|x| -x).collect();
         self.matrix.clone().solve_transposed(&mut lambda);

@@ -1,8 +1,8 @@
 //! Gradient of one load by all variables: its own loads on the bodies, carried to ground once.
 //!
 //! Every load is `y = sum F . Y`, with Y what opening its joint, or moving its driver alone, makes of the bodies. So
-//! `y' = sum F' . Y + sum F . Y'` is linear in the design twists W, W., W.. and in what the frames of joints do, and its coefficients are
-//! loads like those of any output (`docs/theory.md` (48)).
+//! `y' = sum F' . Y + sum F . Y'` is linear in the design twists W, W., W.. and in what the frames of joints do, and
+//! its coefficients are loads like those of any output (`docs/theory.md` (48)).
 //!
 //! | here | theory | what |
 //! |---|---|---|
@@ -112,7 +112,8 @@ impl LoadGradients {
                 twists[order] = unit_twist(unit);
                 self.bodies[body] = changed(&solver.bodies.now.bodies[body], twists);
                 let by = self.goes(solver, &solver.constant, kind, ground, Some(body));
-                // (F . W).. = F . W.. + 2 F. . W. + F.. . W: with these in the place of F and its rates that is what W makes of y.
+                // (F . W).. = F . W.. + 2 F. . W. + F.. . W: with these in the place of F and its rates that is what W
+                // makes of y.
                 let factor = [1.0, 0.5, 1.0][order];
                 set(&mut self.loads[n].1[2 - order], unit, by * factor);
             }
@@ -162,7 +163,8 @@ impl LoadGradients {
         self.carried.shaking = found.shaking.spread();
     }
 
-    /// The load itself and the equations of friction that it counts with, from what is carried; its derivative along what has been set.
+    /// The load itself and the equations of friction that it counts with, from what is carried; its derivative along
+    /// what has been set.
     fn objective(
         &self,
         solver: &LoadSolver<'_>,

@@ -1,7 +1,8 @@
 //! Wrench that the motion of a body's masses requires, as one matrix, and its derivative by the motion.
 //!
-//! `f = M (A - [0; g0]) + ad*(V) M V` of `docs/theory.md` (43) in twists, M the spatial inertia in the world. Masses that stay where they are
-//! in their body turn with it, `M' = ad*(W) M - M ad(W)`, so that their part of F' is a few products of each body's (49), whatever they are made of.
+//! `f = M (A - [0; g0]) + ad*(V) M V` of `docs/theory.md` (43) in twists, M the spatial inertia in the world. Masses
+//! that stay where they are in their body turn with it, `M' = ad*(W) M - M ad(W)`, so that their part of F' is a few
+//! products of each body's (49), whatever they are made of.
 
 use crate::design::Geometry;
 use crate::model::{ElementId, LoadMode, Model};
@@ -93,8 +94,8 @@ impl<T: Real> SpatialInertia<T> {
     /// f'  =  ad*(W) f  +  M (W.. + ad(W.) V + [0; W_w x g0])  +  ad*(W.) M V  +  ad*(V) M W.
     /// ```
     ///
-    /// which is what somebody who turns with the body sees, whose V changes by W. and whose A by W.. + ad(W.) V, and that turned (14).
-    /// V, W. and W.. have no part in static loads.
+    /// which is what somebody who turns with the body sees, whose V changes by W. and whose A by W.. + ad(W.) V, and
+    /// that turned (14). V, W. and W.. have no part in static loads.
     pub fn changed(&self, model: &Model, body: &MovingBody<T>, [w0, w1, w2]: [Twist<T>; 3]) -> Wrench<T> {
         let MovingBody { v, .. } = *body;
         let needed = self.needed(model, body);

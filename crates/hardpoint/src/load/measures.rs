@@ -74,7 +74,8 @@ impl<T: Real> Instant<'_, T> {
     }
 }
 
-/// A reaction is known if no redundant constraint that pulls by itself adds more than this part of what it adds anywhere.
+/// A reaction is known if no redundant constraint that pulls by itself adds more than this part of what it adds
+/// anywhere.
 const KNOWN: f64 = 1e-8;
 
 impl<T: Real> Instant<'_, T> {

@@ -1,8 +1,8 @@
 //! Loads: what drives the mechanism, and what its joints carry.
 //!
-//! A mechanism whose motion is prescribed needs no integration for that (`docs/theory.md`, section 14): what its bodies need is known
-//! from where they are and how they move, and what of it comes through which joint is the response to a load, the equation of order n
-//! transposed, with the factors that the motion left.
+//! A mechanism whose motion is prescribed needs no integration for that (`docs/theory.md`, section 14): what its bodies
+//! need is known from where they are and how they move, and what of it comes through which joint is the response to a
+//! load, the equation of order n transposed, with the factors that the motion left.
 //!
 //! | here | theory | what |
 //! |---|---|---|

@@ -1,7 +1,9 @@
-//! Loads as part of a step's program: what joints and drivers carry is recorded where the position is, with its factors.
+//! Loads as part of a step's program: what joints and drivers carry is recorded where the position is, with its
+//! factors.
 //!
-//! Not recorded are joints that rub, with forces that are iterated, springs by tables, bushings that resist turning, and elements on angles that are counted along the path:
-//! these depend on the kernel. Which reactions are known is a result like others: in some positions redundant constraints share what they do not in others.
+//! Not recorded are joints that rub, with forces that are iterated, springs by tables, bushings that resist turning,
+//! and elements on angles that are counted along the path: these depend on the kernel. Which reactions are known is a
+//! result like others: in some positions redundant constraints share what they do not in others.
 
 use hardpoint_tape::Number;
 
@@ -45,9 +47,9 @@ pub(crate) fn hindrance(model: &Model, topology: &Topology) -> Option<&'static s
 
 /// Loads while they are recorded.
 ///
-/// Their derivatives depend on what each load moves (`virtual_motion.rs`): how it goes with W, W. and W.. of every body is worked out once, and
-/// a variable, whose W are there, takes a few products for each. That is less than what joints carry of each variable's F' as long as
-/// there are fewer loads than some dozen.
+/// Their derivatives depend on what each load moves (`virtual_motion.rs`): how it goes with W, W. and W.. of every body
+/// is worked out once, and a variable, whose W are there, takes a few products for each. That is less than what joints
+/// carry of each variable's F' as long as there are fewer loads than some dozen.
 pub(crate) struct RecordedLoads<'a> {
     model: &'a Model,
     bodies: Equilibrium<Number>,
@@ -59,7 +61,8 @@ pub(crate) struct RecordedLoads<'a> {
     found: Vec<Vec<Number>>,
 }
 
-/// A load, and how it goes with what bodies need, with their design twists, and with what unit twists and wrenches turn with.
+/// A load, and how it goes with what bodies need, with their design twists, and with what unit twists and wrenches turn
+/// with.
 struct RecordedLoad<'a> {
     kind: &'a MeasureKind,
     /// Per body: Y, and the wrenches that go with W, W., W...
@@ -139,7 +142,7 @@ impl<'a> RecordedLoads<'a> {
         let acting = bodies.along.acting(model, geometry);
         let instant = Instant { acting: &acting, carried: &bodies.along.found };
         let derivative = |load: &RecordedLoad<'_>| {
-            // y' = sum (P2 . W.. + P1 . W. + P0 . W) + what turns + sum F' . Y of all else + dy/db                       (48)
+            // y' = sum (P2 . W.. + P1 . W. + P0 . W) + what turns + sum F' . Y of all else + dy/db                 (48)
             let mut sum = field.work((topology, state), flow, &load.loads, &load.turning);
             for (needed, y) in bodies.along.needed.iter().zip(&load.moves) {
                 sum += Wrench { m: needed.m.map(|x| x.d), f: needed.f.map(|x| x.d) }.on(*y);

@@ -145,8 +145,9 @@ impl<'a> LoadSolver<'a> {
         place
     }
 
-    /// The force and the moment that a joint puts on its body j, along these axes, the moment about its place there; and whether each
-    /// component is known: where constraints say the same, some of what joints carry depends on how stiff they are.
+    /// The force and the moment that a joint puts on its body j, along these axes, the moment about its place there;
+    /// and whether each component is known: where constraints say the same, some of what joints carry depends on how
+    /// stiff they are.
     pub fn reaction(&self, joint: JointId, axes: Axes) -> [(Vec3, [bool; 3]); 2] {
         let acting = self.acting();
         let instant = Instant { acting: &acting, carried: self.found() };
@@ -208,7 +209,8 @@ impl<'a> LoadSolver<'a> {
         }
     }
 
-    /// The same of what a program has found in some lanes, in the order in which it is recorded ([`RecordedLoads::numbers`]).
+    /// The same of what a program has found in some lanes, in the order in which it is recorded
+    /// ([`RecordedLoads::numbers`]).
     ///
     /// [`RecordedLoads::numbers`]: super::program::RecordedLoads::numbers
     pub fn enter_recorded(&self, found: &[AlignedLanes], lanes: Range<usize>, out: &mut StepValues) {

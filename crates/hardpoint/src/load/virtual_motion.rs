@@ -121,8 +121,8 @@ impl<T: Real> VirtualMotion<T> {
         }
     }
 
-    /// `sum F . Y' = sum_k T_k . x'_a S_Y,a - sum_r mu_r l'_r . (Y_j - Y_i - C)`, as loads on the twists of the frames that x and l turn
-    /// with, and on the coordinates before them; `on` gets those on bodies.
+    /// `sum F . Y' = sum_k T_k . x'_a S_Y,a - sum_r mu_r l'_r . (Y_j - Y_i - C)`, as loads on the twists of the frames
+    /// that x and l turn with, and on the coordinates before them; `on` gets those on bodies.
     pub fn turn(
         &mut self,
         (places, transmission): (&Places, &Transmission<T>),

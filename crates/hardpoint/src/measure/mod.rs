@@ -1,10 +1,10 @@
 //! Measures and followed points: numbers that a person asks for, with rates and sensitivities.
 //!
-//! A measure is written once, over any [`Real`]; its rate, acceleration and the design derivatives of all three follow by
-//! the product and chain rules where it runs on [`Rates`].
+//! A measure is written once, over any [`Real`]; its rate, acceleration and the design derivatives of all three follow
+//! by the product and chain rules where it runs on [`Rates`].
 //!
-//! Formulas, symbols and signs are those of `docs/measures.md`; a number represents value, rate and acceleration, and for the
-//! derivative by a design variable of all three (`docs/theory.md`, section 9).
+//! Formulas, symbols and signs are those of `docs/measures.md`; a number represents value, rate and acceleration, and
+//! for the derivative by a design variable of all three (`docs/theory.md`, section 9).
 
 mod bodies;
 mod program;
@@ -98,8 +98,8 @@ impl MeasureResults {
 
     /// Value, rate and acceleration of output m at time k.
     ///
-    /// Those beyond [`KnownOrders::orders`] are NaN, and so is what has no number at that time: the curvature of a path where its
-    /// point rests, the instant centre of a body that does not turn.
+    /// Those beyond [`KnownOrders::orders`] are NaN, and so is what has no number at that time: the curvature of a path
+    /// where its point rests, the instant centre of a body that does not turn.
     pub fn value(&self, k: usize, m: usize) -> [f64; 3] {
         let row = self.values.row(k);
         std::array::from_fn(|order| finite(row.get(3 * m + order)))
@@ -176,8 +176,8 @@ impl MeasureResults {
         }
     }
 
-    /// Takes over what the walk has found of the measures that need more of a step than where the bodies are, at the eight output times
-    /// from k on. Their rates are not known; of a program they stand there as such.
+    /// Takes over what the walk has found of the measures that need more of a step than where the bodies are, at the
+    /// eight output times from k on. Their rates are not known; of a program they stand there as such.
     fn take_given(&mut self, k: usize, given: &StepValues, by_program: bool) {
         let Some(block) = given.block(k) else { return };
         let outputs = self.outputs.len();
@@ -275,8 +275,8 @@ pub(crate) struct MeasuredDesign<'a> {
     pub laws: &'a [Law],
 }
 
-/// Evaluates all outputs over a motion, and their derivatives by the variables that it has sensitivities for; by a program, if there
-/// is one, but for what it cannot tell.
+/// Evaluates all outputs over a motion, and their derivatives by the variables that it has sensitivities for; by a
+/// program, if there is one, but for what it cannot tell.
 pub(crate) fn evaluate(
     design: &MeasuredDesign<'_>,
     topology: &Topology,
@@ -293,7 +293,8 @@ pub(crate) fn evaluate(
         let times = first..usize::min(first + LANES, motion.len());
         let asked = loop {
             if let Some(run) = &mut run {
-                // Eight output times at once; what the program cannot tell is listed, and asked of the formulas one by one.
+                // Eight output times at once; what the program cannot tell is listed, and asked of the formulas one by
+                // one.
                 run.at(first, motion, sensitivities, measured);
             }
             let asked = formulas.fill(times.clone(), run.as_ref(), measured);
@@ -383,8 +384,8 @@ impl<'a> FormulaEvaluator<'a> {
         }
     }
 
-    /// Evaluates what a program does not tell at these output times, which are a block of eight, and counts all angles there; says how
-    /// many outputs that are.
+    /// Evaluates what a program does not tell at these output times, which are a block of eight, and counts all angles
+    /// there; says how many outputs that are.
     fn fill(
         &mut self,
         times: Range<usize>,
@@ -452,8 +453,8 @@ fn only(x: f64) -> Rates {
     Jet([x, f64::NAN, f64::NAN])
 }
 
-/// Derivatives of some outputs by the variables that the mechanism follows: of those that are listed, in the order of blocks of eight
-/// output times that begin there. `out` is given output time, variable, output and the derivatives.
+/// Derivatives of some outputs by the variables that the mechanism follows: of those that are listed, in the order of
+/// blocks of eight output times that begin there. `out` is given output time, variable, output and the derivatives.
 ///
 /// Variable by variable, so that what is fixed in the bodies is worked out once for each.
 pub(crate) fn derivatives(
@@ -708,7 +709,8 @@ impl<'a, T: Real> Instant<'a, T> {
             }
             MeasureKind::Angle { from, to, about } => {
                 let [a, b] = self.rays(k, [from, to]);
-                // atan2(abs(a x b), a . b);  about n, of what is seen along it:  atan2(n . (a x b), a . b - (n . a) (n . b))
+                // atan2(abs(a x b), a . b); about n, of what is seen along it: atan2(n . (a x b), a . b - (n . a) (n .
+                // b))
                 let (across, along) = (a.cross(b), a.dot(b));
                 let within = match about {
                     None => across.norm().atan2(along),
@@ -740,7 +742,8 @@ impl<'a, T: Real> Instant<'a, T> {
             MeasureKind::Curvature { point, about } => {
                 let v = self.point(*point).map(T::rate);
                 let a = v.map(T::rate);
-                // n . (v x a) / abs(v)^3,  or abs(v x a) / abs(v)^3; none where v^2 <= 1e-12 abs(a) size, a point that comes from rest
+                // n . (v x a) / abs(v)^3, or abs(v x a) / abs(v)^3; none where v^2 <= 1e-12 abs(a) size, a point that
+                // comes from rest
                 let (turn, speed) = (v.cross(a), v.norm());
                 let turn = about.map_or_else(|| turn.norm(), |about| about.spread().dot(turn));
                 let (way, far) = (speed * speed, a.norm() * T::constant(RESTS * self.fixed.size));
@@ -911,18 +914,19 @@ fn component<T: Real>(v: Vec3<T>, along: Option<Vec3>) -> T {
     along.map_or_else(|| v.norm(), |along| along.spread().dot(v))
 }
 
-/// A point that came from rest, at its acceleration, within this part of the mechanism's size rests: its speed is round-off,
-/// and its path has no curvature there.
+/// A point that came from rest, at its acceleration, within this part of the mechanism's size rests: its speed is
+/// round-off, and its path has no curvature there.
 const RESTS: f64 = 1e-12;
 
 /// A wheel that heads less into the turn than this, rad, drives straight ahead: the turning radius would be some 30 km.
 const STRAIGHT: f64 = 1e-4;
-/// A sum of headings below this is zero but for round-off, rad; and so is its rate, rad/s: of a symmetric axle in pure bump.
+/// A sum of headings below this is zero but for round-off, rad; and so is its rate, rad/s: of a symmetric axle in pure
+/// bump.
 const KINK: f64 = 1e-9;
 
-/// An axle whose wheels head less aside than this in the mean, 1 degree in rad, is not steered: static toe and bump steer are of that size,
-/// while Ackermann's difference of the two headings falls with the square of the angle (0.01 degrees here), so that its part would be
-/// a quotient of toe by next to nothing.
+/// An axle whose wheels head less aside than this in the mean, 1 degree in rad, is not steered: static toe and bump
+/// steer are of that size, while Ackermann's difference of the two headings falls with the square of the angle (0.01
+/// degrees here), so that its part would be a quotient of toe by next to nothing.
 const STEERS: f64 = std::f64::consts::PI / 180.0;
 
 /// A number for division; NaN where an angle does not exceed a limit.
@@ -930,8 +934,8 @@ fn beyond<T: Real>(x: T, angle: T, limit: f64) -> T {
     if angle.exceeds(T::constant(limit)) { x } else { T::constant(f64::NAN) }
 }
 
-/// The heading into the turn of the outer wheel that turns about the same point of the other axle's line as the inner one with heading i:
-/// `cot r = cot i + track / wheelbase`, without the poles.
+/// The heading into the turn of the outer wheel that turns about the same point of the other axle's line as the inner
+/// one with heading i: `cot r = cot i + track / wheelbase`, without the poles.
 fn outer_by_ackermann<T: Real>(i: T, track_by_wheelbase: T) -> T {
     let (sin, cos) = i.sin_cos();
     // r = atan2(sin i, cos i + sin i track / wheelbase)

@@ -1,13 +1,14 @@
-//! All outputs at eight output times as a straight-line program: from the results of the motion, where they stand side by side, to
-//! those of the measures.
+//! All outputs at eight output times as a straight-line program: from the results of the motion, where they stand side
+//! by side, to those of the measures.
 //!
-//! The formulas are recorded once, whatever the motion. How an output goes with the six ways in which a body can go, with the first two
-//! time derivatives of that, is recorded once for each body that it depends on; its derivative by a variable is then a sum of
-//! products with how the variable moves these bodies. That is six evaluations for a body instead of one for each variable, and
-//! what a formula is about does not count: a point knows three ways, a direction two or three.
+//! The formulas are recorded once, whatever the motion. How an output goes with the six ways in which a body can go,
+//! with the first two time derivatives of that, is recorded once for each body that it depends on; its derivative by a
+//! variable is then a sum of products with how the variable moves these bodies. That is six evaluations for a body
+//! instead of one for each variable, and what a formula is about does not count: a point knows three ways, a direction
+//! two or three.
 //!
-//! What formulas decide by values is recorded as a limit. Where one does not hold, or any number is none, the formulas themselves are
-//! asked again ([`MeasureRun::fits`]).
+//! What formulas decide by values is recorded as a limit. Where one does not hold, or any number is none, the formulas
+//! themselves are asked again ([`MeasureRun::fits`]).
 //!
 //! With g_k how an output y goes with way k of a body, and a_k how far the body goes that way per unit of a variable b,
 //!
@@ -278,7 +279,8 @@ struct Recorder<'a> {
 }
 
 impl Recorder<'_> {
-    /// An output that depends on these bodies and depends on what these variables move within them; none that is no arithmetic.
+    /// An output that depends on these bodies and depends on what these variables move within them; none that is no
+    /// arithmetic.
     fn output(&self, output: &Output, [bodies, variables]: &[Vec<usize>; 2]) -> Option<RecordedOutput> {
         if goes_by_step(self.model, output.source) {
             return None;
@@ -426,8 +428,8 @@ impl<'p> MeasureRun<'p> {
         Self { program, room: ProgramMemory::default(), inputs, guards }
     }
 
-    /// Evaluates all outputs at the eight output times that k is one of. The whole turns of measures that are requested are those that
-    /// were [given](Self::turns).
+    /// Evaluates all outputs at the eight output times that k is one of. The whole turns of measures that are requested
+    /// are those that were [given](Self::turns).
     pub fn at(
         &mut self,
         k: usize,
@@ -455,7 +457,8 @@ impl<'p> MeasureRun<'p> {
         self.guards[output].0[..lanes].iter().all(|x| *x <= 0.0)
     }
 
-    /// Takes the whole turns that `counted(measure, time)` gives at these output times; whether any differs from what they were.
+    /// Takes the whole turns that `counted(measure, time)` gives at these output times; whether any differs from what
+    /// they were.
     pub fn take_turns(&mut self, times: Range<usize>, counted: impl Fn(usize, usize) -> f64) -> bool {
         let mut differ = false;
         for (m, lanes) in self.turns() {

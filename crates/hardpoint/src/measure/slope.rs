@@ -1,7 +1,7 @@
 //! Measures during the motion of one driver alone: motion ratios, bump steer, instant centres, roll centres.
 //!
-//! A driver that moves by itself is a direction like a change of the design (`docs/theory.md`, section 7); how the outcome
-//! changes with the design is the second derivative along both.
+//! A driver that moves by itself is a direction like a change of the design (`docs/theory.md`, section 7); how the
+//! outcome changes with the design is the second derivative along both.
 
 use crate::design::{BodyFixed, DesignMap};
 use crate::model::{
@@ -30,8 +30,8 @@ pub(crate) struct Slopes<'a> {
 }
 
 impl<'a> Slopes<'a> {
-    /// For the design with these values, with derivatives by the variables if they are wanted; `None` for a model without
-    /// such measures.
+    /// For the design with these values, with derivatives by the variables if they are wanted; `None` for a model
+    /// without such measures.
     pub fn new(
         design_map: &'a DesignMap<'a>,
         topology: &Topology,
@@ -52,14 +52,16 @@ impl<'a> Slopes<'a> {
             .iter()
             .map(|d| PairDirection::Driver(*d))
             .chain((0..variables).map(|v| PairDirection::Design(unit(v))));
-        // Directions: first the drivers, then unit vectors of the variables; pairs: every driver u with every variable w (15).
+        // Directions: first the drivers, then unit vectors of the variables; pairs: every driver u with every variable
+        // w (15).
         let ways: Vec<PairDirection> = ways.collect();
         let pairs: Vec<[usize; 2]> = (0..variables)
             .flat_map(|v| (0..drivers.len()).map(move |d| (d, v)))
             .map(|(d, v)| [d, drivers.len() + v])
             .collect();
         let fixed = |by: usize| {
-            // With the driver none of it goes (the outer `d` is 0); along the variable what that moves in its body (the inner `d`).
+            // With the driver none of it goes (the outer `d` is 0); along the variable what that moves in its body (the
+            // inner `d`).
             let value = |k: usize| Dual::constant(Dual { v: values[k], d: f64::from(u8::from(k == by)) });
             let values: Vec<_> = (0..values.len()).map(value).collect();
             design_map.fixed(&values)

@@ -1,4 +1,5 @@
-//! Measures that need more of a step than where the bodies are: their values, as the walk through the motion finds them.
+//! Measures that need more of a step than where the bodies are: their values, as the walk through the motion finds
+//! them.
 
 use std::ops::Range;
 
@@ -7,8 +8,8 @@ use hardpoint_tape::{LANES, Lanes};
 use crate::blocks::{AlignedLanes, Blocks};
 use crate::model::Model;
 
-/// Values of the measures that need more of a step than where the bodies are, over a motion, and their derivatives by the design
-/// variables; eight output times side by side.
+/// Values of the measures that need more of a step than where the bodies are, over a motion, and their derivatives by
+/// the design variables; eight output times side by side.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StepValues {
     /// Indices of these measures, ascending; empty if there are none.
@@ -103,8 +104,8 @@ impl StepValues {
         self.places.iter().map(of)
     }
 
-    /// The values of the measures in the block of eight output times that begins with k, and after these their derivatives, variable by
-    /// variable; `None` where there are none.
+    /// The values of the measures in the block of eight output times that begins with k, and after these their
+    /// derivatives, variable by variable; `None` where there are none.
     pub fn block(&self, k: usize) -> Option<&[Lanes]> {
         (k < self.steps && !self.measures.is_empty()).then(|| self.numbers.block(k))
     }

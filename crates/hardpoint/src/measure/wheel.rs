@@ -149,12 +149,14 @@ impl<T: Real> WheelAt<T> {
 
     /// Forward along the ground: where the wheel's plane and the ground meet.
     pub fn forward(&self) -> Vec3<T> {
-        // f = (s o_y, -s o_x, 0): o turned by a right angle, to the right of a left wheel's outboard and to the left of a right one's
+        // f = (s o_y, -s o_x, 0): o turned by a right angle, to the right of a left wheel's outboard and to the left of
+        // a right one's
         let Vec3 { x, y, z } = self.outboard();
         Vec3::new(self.side * y, -self.side * x, z)
     }
 
-    /// The contact point, the lowest of the wheel: from the centre along the direction in its plane that points most downward.
+    /// The contact point, the lowest of the wheel: from the centre along the direction in its plane that points most
+    /// downward.
     pub fn contact(&self) -> Vec3<T> {
         let e = self.spin_axis;
         // C = W - R u,    u = (z - (z . e) e) / abs(z - (z . e) e)
@@ -214,7 +216,8 @@ impl<T: Real> Meet<T> {
     }
 }
 
-/// A wheel while the driver that moves it up and down, or the one that steers it, moves alone: derivatives are by that driver.
+/// A wheel while the driver that moves it up and down, or the one that steers it, moves alone: derivatives are by that
+/// driver.
 pub(super) struct TravellingWheel<T> {
     pub wheel: WheelAt<Dual<T>>,
     /// The motion of the body that it turns on.
@@ -246,7 +249,8 @@ impl<T: Real> TravellingWheel<T> {
             WheelMeasure::BumpCamber => camber(wheel.spin_axis).d / rise,
             WheelMeasure::BumpRecession => -wheel.centre.x.d / rise,
             WheelMeasure::BumpScrub => side * path.y / rise,
-            // The line from C perpendicular to its path (C_y', C_z') meets y = 0 at C_y C_y' / C_z' above C; geometric with v in place of C'.
+            // The line from C perpendicular to its path (C_y', C_z') meets y = 0 at C_y C_y' / C_z' above C; geometric
+            // with v in place of C'.
             WheelMeasure::RollCentreHeight => c.y * path.y / path.z,
             WheelMeasure::RollCentreHeightGeometric => c.y * v.y / v.z,
             // v + w x (P - C) = 0 in y and z at P_x = C_x:  v_y - w_x (P_z - C_z) = 0,  v_z + w_x (P_y - C_y) = 0
@@ -280,15 +284,17 @@ impl<T: Real> TravellingWheel<T> {
 }
 
 impl<T: Real> TravellingWheel<T> {
-    /// A component of the unit vector along the axis that the carrier turns about as the wheel rises: of a right wheel the opposite, so that
-    /// both sides are images of each other. It goes through zero with the component, and never turns around on the way.
+    /// A component of the unit vector along the axis that the carrier turns about as the wheel rises: of a right wheel
+    /// the opposite, so that both sides are images of each other. It goes through zero with the component, and never
+    /// turns around on the way.
     fn about(&self, component: T) -> T {
         let WheelAt { centre, side, .. } = &self.wheel;
         component * (side.v * centre.z.d.sign() / self.carrier.w.norm())
     }
 
-    /// `X_x' / X_z'` of the point X at which the tyre's force acts on the carrier while it is held, v the velocity of the carrier's point at C:
-    /// C where the carrier reacts the torque, for the wheel is locked to it; W where the body does, for the wheel turns freely on it.
+    /// `X_x' / X_z'` of the point X at which the tyre's force acts on the carrier while it is held, v the velocity of
+    /// the carrier's point at C: C where the carrier reacts the torque, for the wheel is locked to it; W where the body
+    /// does, for the wheel turns freely on it.
     fn reacting(&self, what: WheelMeasure, v: Vec3<T>) -> T {
         let reacted = match what.needs() {
             WheelRequirement::Braking(_) => self.brakes,
@@ -306,8 +312,8 @@ impl<T: Real> TravellingWheel<T> {
         }
     }
 
-    /// The wheel where it is, with the axis of the screw that its carrier moves about as its kingpin: the carrier turns by w, and v is the
-    /// velocity of its point that is at c.
+    /// The wheel where it is, with the axis of the screw that its carrier moves about as its kingpin: the carrier turns
+    /// by w, and v is the velocity of its point that is at c.
     fn about_its_screw(&self, w: Vec3<T>, v: Vec3<T>, c: Vec3<T>) -> WheelAt<T> {
         let WheelAt { centre, spin_axis, radius, side, .. } = &self.wheel;
         // P = C + w x v / w^2 moves along w alone;  k = w / w_z points up
@@ -325,8 +331,8 @@ impl<T: Real> TravellingWheel<T> {
     }
 }
 
-/// A body that is seen to turn by less than this part of its turn has its instant centre at infinity: some hundred metres away,
-/// on one side now and on the other a moment later.
+/// A body that is seen to turn by less than this part of its turn has its instant centre at infinity: some hundred
+/// metres away, on one side now and on the other a moment later.
 const AT_INFINITY: f64 = 1e-2;
 
 /// A component of a turn, for division; NaN where an instant centre seen along it is at infinity.
@@ -349,8 +355,8 @@ fn support<T: Real>(what: WheelMeasure, vehicle: &Vehicle) -> T {
     T::constant(known.map_or(f64::NAN, |((share, wheelbase), height)| share * wheelbase / height))
 }
 
-/// Global y of an axle's roll centre, and its height above the ground midway: where the lines meet that pass in front view
-/// through the contact points, perpendicular to their paths.
+/// Global y of an axle's roll centre, and its height above the ground midway: where the lines meet that pass in front
+/// view through the contact points, perpendicular to their paths.
 pub(super) fn axle_roll_centre<T: Real>(wheels: [TravellingWheel<T>; 2]) -> (T, T) {
     let [(p, a), (q, b)] = wheels.map(|side| {
         let contact = side.wheel.contact();

@@ -4,7 +4,8 @@ use crate::law::Law;
 
 use super::{CaseId, Change, DriverId, Formula, LimitTarget, Model, Target};
 
-/// A motion of the mechanism under laws and at times of its own: a car in bump with the rack held, or steered at one ride height.
+/// A motion of the mechanism under laws and at times of its own: a car in bump with the rack held, or steered at one
+/// ride height.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// Name.
@@ -25,8 +26,8 @@ pub enum LoadMode {
     /// Newton and Euler: forces that accelerate the masses along the motion are part of all loads.
     #[default]
     Dynamic,
-    /// Quasi-static: at each output time the mechanism is in equilibrium at rest there, under weight, springs and given forces. Forces by
-    /// speed, of dampers and friction, are those of the motion.
+    /// Quasi-static: at each output time the mechanism is in equilibrium at rest there, under weight, springs and given
+    /// forces. Forces by speed, of dampers and friction, are those of the motion.
     Static,
 }
 
@@ -50,10 +51,11 @@ impl Model {
         self.cases.iter().position(|c| c.name == name).map(CaseId)
     }
 
-    /// The mechanism in one of its cases: a model with that motion and no other, and with the metrics that are taken of it.
+    /// The mechanism in one of its cases: a model with that motion and no other, and with the metrics that are taken of
+    /// it.
     ///
-    /// All but [`metrics`](Self::metrics) and what follows the laws keep their places. A design variable that changes the law that a
-    /// driver has of its own changes nothing in a case that gives it another.
+    /// All but [`metrics`](Self::metrics) and what follows the laws keep their places. A design variable that changes
+    /// the law that a driver has of its own changes nothing in a case that gives it another.
     ///
     /// # Panics
     /// If there is no such case.
@@ -90,8 +92,8 @@ impl Model {
         self.drivers[driver.0].law.as_drawn().map_or(0.0, |(_, value)| value)
     }
 
-    /// The mechanism with one of its cases and no other: of its metrics, and of what it is to be optimised for, what is of that case or of
-    /// all.
+    /// The mechanism with one of its cases and no other: of its metrics, and of what it is to be optimised for, what is
+    /// of that case or of all.
     ///
     /// # Panics
     /// If there is no such case.

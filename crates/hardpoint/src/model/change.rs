@@ -25,9 +25,9 @@ impl End {
     }
 }
 
-/// The kinds of changes: their fields, as written and as they mean in a model; what a variable measures that has it, and how to say
-/// what it does. With its effect (`design/change.rs`) and its check (`draft/check/design.rs`) a kind is complete. The model takes its
-/// half of each line, the draft (`draft/change.rs`) the other, and the design its list.
+/// The kinds of changes: their fields, as written and as they mean in a model; what a variable measures that has it,
+/// and how to say what it does. With its effect (`design/change.rs`) and its check (`draft/check/design.rs`) a kind is
+/// complete. The model takes its half of each line, the draft (`draft/change.rs`) the other, and the design its list.
 macro_rules! changes {
     ($declare:ident) => { $declare! {
     /// A hardpoint moves; markers, axes and points on it follow.
@@ -114,8 +114,8 @@ macro_rules! changes {
             w.say(raises(*rate), name, format!(" in the law of `{}`", driver.name));
         };
 
-    /// The paper's design velocity of one marker: V of its place and U of its 3-1-3 Euler angles, both in its own body's frame
-    /// (Eqs. 3.2, 3.3).
+    /// The paper's design velocity of one marker: V of its place and U of its 3-1-3 Euler angles, both in its own
+    /// body's frame (Eqs. 3.2, 3.3).
     Field {
         /// Joint whose marker moves.
         joint: String => JointId,

@@ -12,7 +12,8 @@ const WANDERS: f64 = 1e-9;
 /// Number of samples between two points of the curve from which the search for the contact starts.
 const TRIED: usize = 8;
 
-/// Tangents that are compared between two points of the curve, whose splines bend between them once or twice at most; and of a long way.
+/// Tangents that are compared between two points of the curve, whose splines bend between them once or twice at most;
+/// and of a long way.
 const SAMPLES: f64 = 16.0;
 const MOST_SAMPLES: f64 = 1024.0;
 
@@ -62,8 +63,8 @@ impl<T: Real> Contact<T> {
         Pose { rot: Mat3 { cols: [x, z.cross(x), z] }, r: self.c[0] }
     }
 
-    /// Rate at which that frame turns about z, and the rate of that, for the first two time derivatives of p, the point that
-    /// follows, in the marker's frame: the foot of the perpendicular stays one, `(p - C) . C' = 0`.
+    /// Rate at which that frame turns about z, and the rate of that, for the first two time derivatives of p, the point
+    /// that follows, in the marker's frame: the foot of the perpendicular stays one, `(p - C) . C' = 0`.
     #[inline(always)]
     pub fn turning(&self, p: [Vec3<T>; 3]) -> [T; 2] {
         let [_, d, dd, ddd] = self.c;
@@ -144,7 +145,8 @@ impl Curve {
         self.length / self.points as f64
     }
 
-    /// Angle by which the tangent turns, to and fro, from one parameter to another, rad; NaN beyond the ends of an open curve.
+    /// Angle by which the tangent turns, to and fro, from one parameter to another, rad; NaN beyond the ends of an open
+    /// curve.
     pub(crate) fn bend(&self, from: f64, to: f64) -> f64 {
         let parts = (SAMPLES * (to - from).abs() / self.grain()).ceil().clamp(0.5 * SAMPLES, MOST_SAMPLES);
         let tangent = |k: f64| self.at(from + (to - from) * (k / parts))[1];
@@ -165,8 +167,8 @@ impl Curve {
 
     /// The parameter of the point of the curve that is next to p, from a near one.
     ///
-    /// The foot of the perpendicular, `(p - C) . C' = 0`; NaN where an open curve has none, and where none is found from there, as at the
-    /// centre of a tight bend.
+    /// The foot of the perpendicular, `(p - C) . C' = 0`; NaN where an open curve has none, and where none is found
+    /// from there, as at the centre of a tight bend.
     pub fn nearest(&self, p: [f64; 2], near: f64) -> f64 {
         let (mut u, mut last) = (near, f64::INFINITY);
         for _ in 0..MAX_STEPS {
@@ -201,8 +203,8 @@ impl Curve {
 
     /// Distance of p from the curve, positive on its left.
     ///
-    /// With its first and second derivatives where p has some: next to the nearest point, n away from it, the distance is
-    /// `n - k t^2 / (2 (1 - k n))`, t along the curve and k its curvature.
+    /// With its first and second derivatives where p has some: next to the nearest point, n away from it, the distance
+    /// is `n - k t^2 / (2 (1 - k n))`, t along the curve and k its curvature.
     pub(crate) fn distance<T: Real>(&self, p: Vec3<T>) -> T {
         let start = T::constant(self.start);
         let contact = Contact::nearest(self, p, start);

@@ -111,11 +111,12 @@ numbers! {
     Plain
 }
 
-/// The ends of a spring that are closer than this part of the mechanism's size meet: positions are solved to 1e-12 of it, so that the
-/// line between the ends would have lost three of its digits or all.
+/// The ends of a spring that are closer than this part of the mechanism's size meet: positions are solved to 1e-12 of
+/// it, so that the line between the ends would have lost three of its digits or all.
 pub const ENDS_MEET: f64 = 1e-9;
 
-/// The types of elements: their fields, as written and as they mean in a model. With a formula in `load/element.rs` a type is complete.
+/// The types of elements: their fields, as written and as they mean in a model. With a formula in `load/element.rs` a
+/// type is complete.
 macro_rules! elements {
     ($declare:ident) => {
         $declare! {
@@ -125,7 +126,8 @@ macro_rules! elements {
             centre: PointRef => PointId,
             /// Mass.
             mass: NumberDraft => Mass,
-            /// Moment of inertia about its centre, or about the point `about`: about the global x axis in the design configuration.
+            /// Moment of inertia about its centre, or about the point `about`: about the global x axis in the design
+            /// configuration.
             ixx: Option<NumberDraft> => Option<Inertia>,
             /// The same about y.
             iyy: Option<NumberDraft> => Option<Inertia>,
@@ -169,7 +171,8 @@ macro_rules! elements {
             density: NumberDraft => Density,
         }
 
-        /// A body of even density with the shape of a closed mesh. Its shape is constant: changes of the design do not bend it.
+        /// A body of even density with the shape of a closed mesh. Its shape is constant: changes of the design do not
+        /// bend it.
         Mesh "mesh" masses {
             /// The body that it belongs to.
             body: String => BodyId,
@@ -189,17 +192,18 @@ macro_rules! elements {
             stiffness: Option<NumberDraft> => Option<Stiffness>,
             /// The further force per cube of its deflection: progressive, if it is above zero.
             cubic: Option<NumberDraft> => Option<CubicStiffness>,
-            /// Force by a table: points `[way, force]` of how far it is shorter than its free length, and how hard it pushes there; or the
-            /// name of a CSV file that holds them.
+            /// Force by a table: points `[way, force]` of how far it is shorter than its free length, and how hard it
+            /// pushes there; or the name of a CSV file that holds them.
             compression: Option<Vec<[f64; 2]>> => Option<SpringTable>,
             /// The same of how far it is longer, and how hard it pulls.
             extension: Option<Vec<[f64; 2]>> => Option<SpringTable>,
             /// Factor of the forces in the table. Default: 1.
             scale: Option<NumberDraft> => Option<Plain>,
-            /// The length that its deflection counts from, at which a spring without a table has no force. Default: that of the drawing, or
-            /// what `preload` makes it.
+            /// The length that its deflection counts from, at which a spring without a table has no force. Default:
+            /// that of the drawing, or what `preload` makes it.
             free_length: Option<NumberDraft> => Option<Length>,
-            /// The force with which it pulls its ends together in the design configuration; a spring that pushes them apart has one below zero.
+            /// The force with which it pulls its ends together in the design configuration; a spring that pushes them
+            /// apart has one below zero.
             preload: Option<NumberDraft> => Option<Force>,
             /// Damping.
             damping: Option<NumberDraft> => Option<Damping>,
@@ -310,7 +314,8 @@ macro_rules! elements {
             law: Option<Law> => Option<Law>,
         }
 
-        /// A bushing: springs and dampers between two bodies at a place, along the global axes in the design configuration, which turn with the first.
+        /// A bushing: springs and dampers between two bodies at a place, along the global axes in the design
+        /// configuration, which turn with the first.
         Bushing "bushing" forces {
             /// Place on the first body.
             from: PointRef => PointId,
@@ -332,8 +337,8 @@ macro_rules! elements {
             damping: Option<NumberDraft> => Option<Damping>,
         }
 
-        /// A joint that gives along its own axes, z along its axis. It changes neither motion nor forces: measures of `compliance` say what it
-        /// deflects to.
+        /// A joint that gives along its own axes, z along its axis. It changes neither motion nor forces: measures of
+        /// `compliance` say what it deflects to.
         ElasticJoint "elastic_joint" forces {
             /// The joint.
             joint: String => JointId,
@@ -382,8 +387,8 @@ impl ElementKind {
         matches!(self, Self::Friction { .. } | Self::SlideFriction { .. })
     }
 
-    /// True if its formulas are arithmetic on where bodies are, which can be recorded. A table is looked up: which of its pieces counts is
-    /// another one as the spring moves. The turn of a bushing is a series as long as it is small.
+    /// True if its formulas are arithmetic on where bodies are, which can be recorded. A table is looked up: which of
+    /// its pieces counts is another one as the spring moves. The turn of a bushing is a series as long as it is small.
     pub fn is_arithmetic(&self) -> bool {
         match self {
             Self::Spring { .. } => self.table().is_none(),

@@ -24,8 +24,8 @@ pub enum Source {
     Parameter(ParameterId),
     /// A coordinate of a hardpoint: 0 for x, 1 for y, 2 for z.
     Coordinate(HardpointId, usize),
-    /// The design value of a coordinate of a joint, as the joint keeps it: the length of a rod or leg, given or drawn; a course. Only
-    /// laws that count from zero use it.
+    /// The design value of a coordinate of a joint, as the joint keeps it: the length of a rod or leg, given or drawn;
+    /// a course. Only laws that count from zero use it.
     Kept(JointId, usize),
 }
 

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use super::Model;
 
-/// A model that is borrowed, or owned together with others: a plan of the first kind ends with its model, one of the second keeps it.
+/// A model that is borrowed, or owned together with others: a plan of the first kind ends with its model, one of the
+/// second keeps it.
 ///
 /// ```
 /// # use hardpoint::{Analysis, draft::Draft, law::Law, model::Model};

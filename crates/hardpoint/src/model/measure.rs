@@ -26,9 +26,9 @@ pub enum OutputSource {
     Point(PointId, usize),
 }
 
-/// The types of measures: their fields, as written and as they mean in a model; their dimension, how much can be known of them, and
-/// how to say what they are. With a formula in `measure/` a type is complete. The model takes its half of each line, the draft
-/// (`draft/measure.rs`) the other.
+/// The types of measures: their fields, as written and as they mean in a model; their dimension, how much can be known
+/// of them, and how to say what they are. With a formula in `measure/` a type is complete. The model takes its half of
+/// each line, the draft (`draft/measure.rs`) the other.
 macro_rules! measures {
     ($declare:ident) => { $declare! {
     /// A joint's coordinate, counted from the design configuration; of a rod or leg the whole length.
@@ -176,7 +176,8 @@ macro_rules! measures {
         }),
         expression.text().into();
 
-    /// Toe of a wheel, positive for toe-in. It is a left wheel where its spin axis points to +y in the design configuration, else a right one.
+    /// Toe of a wheel, positive for toe-in. It is a left wheel where its spin axis points to +y in the design
+    /// configuration, else a right one.
     Toe "toe" {
         /// The body that the wheel turns on.
         body: String => BodyId,
@@ -519,8 +520,8 @@ pub enum Ray {
 }
 
 impl MeasureKind {
-    /// Returns how far a value is from where the measure has no derivative because the vector that it is the magnitude of is zero, or two directions
-    /// are parallel or perpendicular; `None` for measures that are no magnitudes.
+    /// Returns how far a value is from where the measure has no derivative because the vector that it is the magnitude
+    /// of is zero, or two directions are parallel or perpendicular; `None` for measures that are no magnitudes.
     pub(crate) fn distance_from_kink(&self, value: f64) -> Option<f64> {
         use std::f64::consts::{FRAC_PI_2, PI};
         match self {
@@ -864,7 +865,8 @@ impl Model {
         }
     }
 
-    /// True if a measure needs more of a step than where its bodies are: what happens while one driver alone moves, or loads.
+    /// True if a measure needs more of a step than where its bodies are: what happens while one driver alone moves, or
+    /// loads.
     pub fn goes_by_step(&self, measure: usize) -> bool {
         let kind = &self.measures[measure].kind;
         self.goes_by_driver(measure) || kind.is_load() || matches!(kind, MeasureKind::Compliance { .. })
@@ -878,8 +880,8 @@ impl Model {
         }
     }
 
-    /// True if an output has a number where nothing moves: what follows from positions alone, or from what happens while one driver alone
-    /// moves. Velocities, accelerations and what follows from them are those of a motion.
+    /// True if an output has a number where nothing moves: what follows from positions alone, or from what happens
+    /// while one driver alone moves. Velocities, accelerations and what follows from them are those of a motion.
     pub fn is_known_at_rest(&self, output: OutputSource) -> bool {
         let by_driver = matches!(output, OutputSource::Measure(k) if self.goes_by_driver(k));
         by_driver || self.known(output).by_position

@@ -32,13 +32,14 @@ pub enum Reduction {
     Range,
     /// The mean.
     Mean,
-    /// The integral over the abscissa, which counts down where that goes back: of a power over time, or of a force over a way, the work.
+    /// The integral over the abscissa, which counts down where that goes back: of a power over time, or of a force over
+    /// a way, the work.
     Integral,
-    /// The root of the mean square of what is left beyond a target curve: points `[abscissa, value]`, in SI, with straight lines
-    /// between and beyond them; beyond zero where there are none.
+    /// The root of the mean square of what is left beyond a target curve: points `[abscissa, value]`, in SI, with
+    /// straight lines between and beyond them; beyond zero where there are none.
     Rms(Vec<[f64; 2]>),
-    /// The root of the mean square of what is left beyond points `[abscissa, value]`, in SI, where the abscissa first is that of each: each
-    /// point counts once, and nothing between them.
+    /// The root of the mean square of what is left beyond points `[abscissa, value]`, in SI, where the abscissa first
+    /// is that of each: each point counts once, and nothing between them.
     RmsAtPoints(Vec<[f64; 2]>),
     /// The value where the abscissa first is this, in SI.
     Value(f64),
@@ -87,7 +88,8 @@ impl Reduction {
 }
 
 impl Metric {
-    /// The target curve at an abscissa, in SI; `None` where the metric has none, or where the abscissa is beyond its window.
+    /// The target curve at an abscissa, in SI; `None` where the metric has none, or where the abscissa is beyond its
+    /// window.
     pub fn target_at(&self, at: f64) -> Option<f64> {
         let counts = self.window.is_none_or(|[low, high]| low <= at && at <= high);
         self.take.target_points().filter(|_| counts).map(|target| on_target(target, at))

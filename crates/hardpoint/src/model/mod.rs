@@ -140,7 +140,8 @@ pub struct Model {
     pub times: Vec<f64>,
     /// Behaviour at change points.
     pub at_change_points: ChangePointPolicy,
-    /// Motions, in the order of the file; where there are none, that of the drivers' own laws at `times` is the only one.
+    /// Motions, in the order of the file; where there are none, that of the drivers' own laws at `times` is the only
+    /// one.
     pub cases: Vec<Case>,
     /// Cases that sweep two drivers over a grid, in the order of the file.
     pub grids: Vec<Grid>,
@@ -199,7 +200,8 @@ pub struct Joint {
     /// Orientation of marker i and marker j in the world, in the design configuration; the same unless the joint type
     /// has its second axis on body j.
     pub frames: [Mat3; 2],
-    /// Length of a rod, or a follower's distance from its curve, that is given by itself rather than by the hardpoints, m.
+    /// Length of a rod, or a follower's distance from its curve, that is given by itself rather than by the hardpoints,
+    /// m.
     pub length: Option<f64>,
     /// The curve that a point follows, in the frame of marker i.
     pub curve: Option<Curve>,
@@ -241,8 +243,8 @@ pub struct DesignVariable {
     pub tolerance: Option<f64>,
 }
 
-/// A body, or two that slide on each other, that can spin about a line without moving anything else. The spin is held at
-/// rest: one of its balls is treated as a universal joint.
+/// A body, or two that slide on each other, that can spin about a line without moving anything else. The spin is held
+/// at rest: one of its balls is treated as a universal joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IdleRotation {
     /// The bodies that spin together.
@@ -320,18 +322,19 @@ impl Model {
         self.joints.iter().enumerate().filter(|(_, j)| !j.unnamed).map(|(k, j)| (JointId(k), j))
     }
 
-    /// The size of the mechanism, m: the diagonal of the box around its joints; around all hardpoints if that is 0, and 1 if that
-    /// is 0 as well.
+    /// The size of the mechanism, m: the diagonal of the box around its joints; around all hardpoints if that is 0, and
+    /// 1 if that is 0 as well.
     ///
-    /// Lengths are compared with it wherever a tolerance must not depend on the units of the model, nor on places that have
-    /// nothing to do with its motion; within a loop the loop's own size counts.
+    /// Lengths are compared with it wherever a tolerance must not depend on the units of the model, nor on places that
+    /// have nothing to do with its motion; within a loop the loop's own size counts.
     pub fn size(&self) -> f64 {
         let joints = self.joints.iter().flat_map(|j| j.at.map(|m| self.position(m)));
         let size = Extent::of(joints).size_or_zero();
         if size > 0.0 { size } else { Extent::of(self.hardpoints.iter().map(|h| h.position)).size() }
     }
 
-    /// Returns whether a joint is drawn open: its two places lie apart, or its rod is given another length than that between them.
+    /// Returns whether a joint is drawn open: its two places lie apart, or its rod is given another length than that
+    /// between them.
     pub fn is_drawn_open(&self) -> bool {
         let near = ONE_PLACE * self.size();
         self.joints.iter().filter(|joint| joint.curve.is_none()).any(|joint| {
@@ -344,8 +347,9 @@ impl Model {
         })
     }
 
-    /// The shortest distance between two joints of a body, m: what must be exact for the motion to be that of the mechanism. Places
-    /// that are one but for round-off have none. The mechanism's size where there is no such distance.
+    /// The shortest distance between two joints of a body, m: what must be exact for the motion to be that of the
+    /// mechanism. Places that are one but for round-off have none. The mechanism's size where there is no such
+    /// distance.
     pub fn shortest(&self) -> f64 {
         let size = self.size();
         let mut shortest = size;

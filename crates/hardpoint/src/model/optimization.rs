@@ -13,7 +13,8 @@ pub struct OptimizationSettings {
     pub limits: Vec<Limit>,
     /// No motion may come nearer to a singular position than this [`Margin`](crate::motion::Margin).
     pub margin: Option<f64>,
-    /// From how many designs the search starts: the one in the design configuration, and others spread within the bounds.
+    /// From how many designs the search starts: the one in the design configuration, and others spread within the
+    /// bounds.
     pub starts: usize,
     /// After that many iterations a search ends.
     pub iterations: usize,
@@ -24,7 +25,8 @@ pub struct OptimizationSettings {
 pub struct Goal {
     /// Name.
     pub name: String,
-    /// The metric, by its place in [`Model::metrics`](super::Model::metrics). One that names no case counts in each of them.
+    /// The metric, by its place in [`Model::metrics`](super::Model::metrics). One that names no case counts in each of
+    /// them.
     pub metric: usize,
     /// Target value, in SI; `None` to minimise the metric.
     pub target: Option<f64>,
@@ -49,7 +51,8 @@ pub struct Limit {
 /// Quantity that a limit applies to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitTarget {
-    /// A metric, by its place in [`Model::metrics`](super::Model::metrics). One that names no case is limited in each of them.
+    /// A metric, by its place in [`Model::metrics`](super::Model::metrics). One that names no case is limited in each
+    /// of them.
     Metric(usize),
     /// A coordinate of a hardpoint in the design configuration: 0 for x, 1 for y, 2 for z.
     Coordinate(HardpointId, usize),

@@ -108,9 +108,9 @@ impl Solid {
     }
 }
 
-/// Moments and products of inertia about the centre, of such about a point that it is this way from: `I - m (d^2 1 - d d^T)`. Where one of
-/// the moments is left out, as in a plane, what is left out is zero about the centre; else a product that is left out is zero about the
-/// point.
+/// Moments and products of inertia about the centre, of such about a point that it is this way from:
+/// `I - m (d^2 1 - d d^T)`. Where one of the moments is left out, as in a plane, what is left out is zero about the
+/// centre; else a product that is left out is zero about the point.
 pub(crate) fn about_centre<T: Real>(
     mass: T,
     way: Vec3<T>,
@@ -146,7 +146,8 @@ mod tests {
 
     #[test]
     fn a_tetrahedron_has_a_sixth_of_its_box() {
-        // At a corner of axes: V = abc/6, centre (a, b, c)/4, integral of x x about the corner a^3 b c / 60, of x y a^2 b^2 c / 120
+        // At a corner of axes: V = abc/6, centre (a, b, c)/4, integral of x x about the corner a^3 b c / 60, of x y a^2
+        // b^2 c / 120
         let (a, b, c) = (0.3, 0.5, 0.7);
         let at = Vec3::new(10.0, -20.0, 5.0);
         let corners = [Vec3::ZERO, Vec3::new(a, 0.0, 0.0), Vec3::new(0.0, b, 0.0), Vec3::new(0.0, 0.0, c)];

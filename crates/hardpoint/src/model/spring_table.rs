@@ -3,8 +3,8 @@
 use crate::linalg::{Segment, monotone};
 use crate::number::Real;
 
-/// A force over a deflection, as a curve through points: monotone where these are, with a continuous slope; beyond the last point
-/// on either side it continues with the slope there.
+/// A force over a deflection, as a curve through points: monotone where these are, with a continuous slope; beyond the
+/// last point on either side it continues with the slope there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpringTable {
     /// Deflection, m, and force, N; both grow in tension.

@@ -7,7 +7,8 @@ use super::{Change, Model, VariableId};
 pub struct SweepSettings {
     /// Method that chooses designs within the ranges.
     pub method: SweepMethod,
-    /// The variables that change, and how far. All others stay in the design configuration. Of a list, the variables that it has.
+    /// The variables that change, and how far. All others stay in the design configuration. Of a list, the variables
+    /// that it has.
     pub ranges: Vec<SweepRange>,
     /// The designs of a list: per design, the values of the variables of `ranges`, as changes.
     pub listed: Vec<Vec<f64>>,
@@ -30,8 +31,8 @@ pub enum SweepMethod {
     LatinHypercube,
     /// Points that fill the ranges evenly, however many there are: a scrambled Sobol sequence.
     Sobol,
-    /// Pairs of such points, and for every variable the first of a pair with that variable of the second: what Sobol's indices of
-    /// sensitivity are estimated from.
+    /// Pairs of such points, and for every variable the first of a pair with that variable of the second: what Sobol's
+    /// indices of sensitivity are estimated from.
     Indices,
     /// As they are listed.
     Listed,

@@ -9,7 +9,8 @@ pub struct ToleranceSettings {
     pub tolerances: Vec<Tolerance>,
     /// Correlations of the variables.
     pub correlations: Vec<Correlation>,
-    /// The metrics that are looked at, by their places in [`Model::metrics`]. One that names no case counts in each of them.
+    /// The metrics that are looked at, by their places in [`Model::metrics`]. One that names no case counts in each of
+    /// them.
     pub metrics: Vec<usize>,
     /// The measures whose whole curves are looked at, by their places in [`Model::measures`].
     pub curves: Vec<usize>,
@@ -28,7 +29,8 @@ pub struct ToleranceSettings {
 pub struct Tolerance {
     /// Name: that of the variable, or of the design entry whose coordinates they are.
     pub name: String,
-    /// One variable, or the coordinates of one point, whose deviation as a whole stays within the reach: in a disc or a sphere.
+    /// One variable, or the coordinates of one point, whose deviation as a whole stays within the reach: in a disc or a
+    /// sphere.
     pub variables: Vec<VariableId>,
     /// Half width of the tolerance, `±`, in the variables' unit; positive.
     pub reach: f64,

@@ -98,7 +98,7 @@ pub struct Vehicle {
 }
 
 impl Vehicle {
-    /// The front wheels' part of the force that a measure is of, if it is of one: how model files call it, and what they say.
+    /// Share of the front wheels in the force that a measure uses: its key in model files, and its value.
     pub fn front_share(&self, need: WheelRequirement) -> Option<(&'static str, Option<f64>)> {
         match need {
             WheelRequirement::Braking(_) => Some(("front_brake_share", self.front_brake_share)),
@@ -306,11 +306,11 @@ wheel_measures! {
     SideCentreX "instant_centre_side_x" LENGTH WheelRequirement::Bump;
     /// Global z of the instant centre in side view, at the contact point's y.
     SideCentreZ "instant_centre_side_z" LENGTH WheelRequirement::Bump;
-    /// x component of the unit vector along the instant axis of the wheel carrier, about which a left wheel rises and a right one falls.
+    /// x component of the unit vector along the instant axis, about which a left wheel rises and a right one falls.
     InstantAxisX "instant_axis_x" NUMBER WheelRequirement::Bump;
-    /// y component of the unit vector along the instant axis of the wheel carrier, about which a left wheel rises and a right one falls.
+    /// y component of the unit vector along the instant axis, about which a left wheel rises and a right one falls.
     InstantAxisY "instant_axis_y" NUMBER WheelRequirement::Bump;
-    /// z component of the unit vector along the instant axis of the wheel carrier, about which a left wheel rises and a right one falls.
+    /// z component of the unit vector along the instant axis, about which a left wheel rises and a right one falls.
     InstantAxisZ "instant_axis_z" NUMBER WheelRequirement::Bump;
     /// Distance of the instant centre in front view inboard of the contact point.
     SwingArmFront "swing_arm_front" LENGTH WheelRequirement::Bump;
@@ -361,7 +361,7 @@ wheel_measures! {
     TotalToe "total_toe" ANGLE false;
     /// Steer angle of the outer wheel into the turn beyond what Ackermann's condition makes of the inner one's.
     AckermannError "ackermann_error" ANGLE false;
-    /// Difference of both steer angles as a part of Ackermann's, by the inner wheel; none below a mean heading of 1 degree.
+    /// Difference of both steer angles relative to Ackermann's, by the inner wheel; none below a mean of 1 degree.
     Ackermann "ackermann" NUMBER false;
     /// Radius of the path of the outer wheel's contact point, with the other axle straight ahead.
     TurningRadius "turning_radius" LENGTH false;

@@ -1,8 +1,8 @@
 //! Eight output times at once: a single design's steps side by side, by a straight-line program.
 //!
-//! Where the motion is smooth, the positions of the next eight output times are predicted so well that they can be corrected
-//! together. Every check of a single step is made at each of them, and more strictly; where one fails, nothing has happened,
-//! and the steps are walked one by one.
+//! Where the motion is smooth, the positions of the next eight output times are predicted so well that they can be
+//! corrected together. Every check of a single step is made at each of them, and more strictly; where one fails,
+//! nothing has happened, and the steps are walked one by one.
 
 use std::sync::Arc;
 
@@ -59,7 +59,8 @@ struct Laws {
 }
 
 impl<'p> TimeBatch<'p> {
-    /// By these programs, for a design with these values; `laws` are those of its drivers, if there is a program for them.
+    /// By these programs, for a design with these values; `laws` are those of its drivers, if there is a program for
+    /// them.
     pub fn new(programs: Option<ProgramOf<'p>>, design: &[f64], laws: Option<Arc<Runnable>>) -> Self {
         let limits = vec![AlignedLanes::default(); laws.as_ref().map_or(0, |laws| laws.sizes()[1])];
         let laws = Laws { program: laws, room: ProgramMemory::default(), limits };
@@ -125,8 +126,8 @@ impl<'p> TimeBatch<'p> {
         0
     }
 
-    /// Makes a tape where there is none, and another or none where it does not fit; returns whether there is one. Till `last` there are
-    /// `count` steps.
+    /// Makes a tape where there is none, and another or none where it does not fit; returns whether there is one. Till
+    /// `last` there are `count` steps.
     fn choose_tape(&mut self, one: &Stepper<'_>, [last, count]: [f64; 2]) -> bool {
         let corrections = match &self.tape {
             _ if one.selections > 0 => None,
@@ -201,8 +202,8 @@ impl<'p> TimeBatch<'p> {
 }
 
 impl Laws {
-    /// Value, speed and acceleration of every driver at these times, and the values of the laws of forces, if there is room for them; none
-    /// where one is not finite.
+    /// Value, speed and acceleration of every driver at these times, and the values of the laws of forces, if there is
+    /// room for them; none where one is not finite.
     #[inline(always)]
     fn at(&mut self, one: &Stepper<'_>, times: &Lanes, laws: &mut [Lanes]) -> Option<()> {
         let mut by_program = false;
@@ -229,9 +230,10 @@ impl Laws {
     }
 }
 
-/// By how much a forecast will miss eight steps beyond three positions that are four steps apart, rad or sizes: the remainder of
-/// Hermite's interpolation, `x^9 / 9!` times the ninth derivative, of a motion that goes like a sine. It goes as often as the fastest
-/// driver turns, or as that comes and depends on its law. Up to `last` there are `count` steps.
+/// By how much a forecast will miss eight steps beyond three positions that are four steps apart, rad or sizes: the
+/// remainder of Hermite's interpolation, `x^9 / 9!` times the ninth derivative, of a motion that goes like a sine. It
+/// goes as often as the fastest driver turns, or as that comes and depends on its law. Up to `last` there are `count`
+/// steps.
 fn missed(one: &Stepper<'_>, last: f64, count: f64) -> f64 {
     let frequency = |d: usize| {
         let speed = one.parts.fastest(d, one.time, last);
@@ -242,7 +244,8 @@ fn missed(one: &Stepper<'_>, last: f64, count: f64) -> f64 {
         f64::max(speed / one.driver_units[d], of_law)
     };
     let step = (0..one.drivers.len()).map(frequency).fold(0.0, f64::max) * (last - one.time) / count;
-    // abs(q - p) <= max abs(q(9)) / 9! prod (t - z_i), the z_i thrice 0, -4 and -8 steps h, t = 8 h:  (8 12 16)^3 (omega h)^9 / 9!
+    // abs(q - p) <= max abs(q(9)) / 9! prod (t - z_i), the z_i thrice 0, -4 and -8 steps h, t = 8 h: (8 12 16)^3 (omega
+    // h)^9 / 9!
     let far = [8.0, 12.0, 16.0].iter().map(|x: &f64| x * step).product::<f64>().powi(3);
     far / (1..=9).map(f64::from).product::<f64>()
 }
@@ -257,8 +260,8 @@ fn fastest_driver(tape: &Tape, one: &Stepper<'_>) -> f64 {
     fastest
 }
 
-/// True if no law does anything between the output times that these would not show; and, where no step indicates yet, no singular
-/// position is known to be near. Notes how far the drivers go from one output time to the next.
+/// True if no law does anything between the output times that these would not show; and, where no step indicates yet,
+/// no singular position is known to be near. Notes how far the drivers go from one output time to the next.
 #[inline(always)]
 fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, [first, last]: [usize; 2]) -> bool {
     let mut longest = times[first] - one.time;
@@ -288,8 +291,8 @@ fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, [first, last
     one.ahead == Lookahead::Even || one.around.part_of_way(&one.travel) <= PART_OF_WAY
 }
 
-/// True if every determinant changes by little from one output time to the next, and about as much as over the step before. Notes
-/// the last of these changes, and gives the length of its step.
+/// True if every determinant changes by little from one output time to the next, and about as much as over the step
+/// before. Notes the last of these changes, and gives the length of its step.
 #[inline(always)]
 fn determinants_are_even(
     tape: &Tape,

@@ -1,11 +1,11 @@
 //! Closing a mechanism whose joints are open in the drawing.
 //!
-//! Lengths and places that don't fit leave gaps in the configuration in the design configuration. The gaps are closed along a path: the part
-//! of them that is still open runs from 1 to 0 while every driver stays at zero, in steps that watch for limits and
-//! branches like those of any motion. So the mechanism closes on the branch that was drawn, and an assembled one stays as
-//! it is. Where the path ends before the gaps are closed, as it does from a drawing in a singular position (bars in line), the nominal
-//! design is also assembled from positions around the drawing, by least squares; of all assemblies found, the nearest is taken.
-//! If there is none, least squares give the smallest gaps.
+//! Lengths and places that don't fit leave gaps in the configuration in the design configuration. The gaps are closed
+//! along a path: the part of them that is still open runs from 1 to 0 while every driver stays at zero, in steps that
+//! watch for limits and branches like those of any motion. So the mechanism closes on the branch that was drawn, and an
+//! assembled one stays as it is. Where the path ends before the gaps are closed, as it does from a drawing in a
+//! singular position (bars in line), the nominal design is also assembled from positions around the drawing, by least
+//! squares; of all assemblies found, the nearest is taken. If there is none, least squares give the smallest gaps.
 
 use crate::joint::Quantity;
 use crate::linalg::Elimination;
@@ -27,14 +27,15 @@ const WORTH_TELLING: f64 = 1e-7;
 const NO_BETTER: f64 = 1e-12;
 /// ... or after that many steps.
 const MAX_SEARCH: usize = 200;
-/// A drawing counts as singular if its path ends before this part of the gaps is closed. A path that ends later ends at a limit of the
-/// mechanism, beyond which positions around the drawing are no better.
+/// A drawing counts as singular if its path ends before this part of the gaps is closed. A path that ends later ends at
+/// a limit of the mechanism, beyond which positions around the drawing are no better.
 pub(super) const SINGULAR_DRAWING: f64 = 0.05;
 /// A search that leaves no scaled residual above this has found an assembly; Newton's method closes the rest.
 const FOUND: f64 = 1e-7;
 /// Assemblies that differ by less than this, rad or sizes, are one, and so are distances from the drawing.
 const ONE_ASSEMBLY: f64 = 1e-5;
-/// Starts of a search deviate from the drawing by up to this, rad or sizes; each is tried in [`DIRECTIONS`] directions and their opposites.
+/// Starts of a search deviate from the drawing by up to this, rad or sizes; each is tried in [`DIRECTIONS`] directions
+/// and their opposites.
 const DEVIATIONS: [f64; 3] = [0.03, 0.2, 0.8];
 const DIRECTIONS: usize = 3;
 /// A search solves dense systems: larger ones are not tried, so that a failure is reported within seconds.
@@ -145,7 +146,8 @@ impl Stepper<'_> {
     /// Closes the gaps along the path from the drawing.
     fn assemble_along_path(&mut self) -> Result<(), Box<Stop>> {
         self.time = 0.0;
-        // s = 0: phi - phi_0 = 0 holds where it is drawn, and the signs of the determinants there say which branch this is.
+        // s = 0: phi - phi_0 = 0 holds where it is drawn, and the signs of the determinants there say which branch this
+        // is.
         let drawn = self.drive(Path::Assembly, 0.0).and_then(|()| {
             self.restore();
             self.solve_within(f64::INFINITY)
@@ -169,8 +171,8 @@ impl Stepper<'_> {
         self.walk(Path::Assembly, 1.0).map_err(of_assembly)
     }
 
-    /// Returns whether an assembly is searched for around the drawing: where it is singular, and the path closes its gaps of no design. A
-    /// changed design is on the branch of the nominal one, or does not assemble.
+    /// Returns whether an assembly is searched for around the drawing: where it is singular, and the path closes its
+    /// gaps of no design. A changed design is on the branch of the nominal one, or does not assemble.
     fn is_searched(&self, stop: &Stop) -> bool {
         if matches!(
             stop.kind,
@@ -187,8 +189,8 @@ impl Stepper<'_> {
         nominal.state.gap == self.state.gap || nominal.assemble_along_path().is_err()
     }
 
-    /// Assembles the mechanism from positions around the drawing, and is where the bodies are nearest to it. Returns the number of
-    /// assemblies found; 0 where there is none.
+    /// Assembles the mechanism from positions around the drawing, and is where the bodies are nearest to it. Returns
+    /// the number of assemblies found; 0 where there is none.
     fn assemble_nearby(&mut self, drawn: &(AcceptedPosition, Topology)) -> usize {
         let unknowns: Vec<CoordinateId> = self.topology.unknown_coordinates().collect();
         if unknowns.len() > LARGEST_SEARCH {
@@ -247,7 +249,8 @@ impl Stepper<'_> {
         self.state.turn_balls(&self.topology, self.topology.link_ids());
     }
 
-    /// Is where a search ended, closed, with rows that are independent there; returns whether that is a regular position.
+    /// Is where a search ended, closed, with rows that are independent there; returns whether that is a regular
+    /// position.
     fn stand_assembled(&mut self) -> bool {
         self.time = 1.0;
         if self.drive(Path::Assembly, 1.0).is_err() {
@@ -380,7 +383,8 @@ impl Stepper<'_> {
         best.map_or_else(Vec::new, |(_, gaps)| gaps)
     }
 
-    /// Moves these unknowns to where the residuals of these rows are smallest, by least squares; returns the largest scaled residual.
+    /// Moves these unknowns to where the residuals of these rows are smallest, by least squares; returns the largest
+    /// scaled residual.
     ///
     /// Levenberg's and Marquardt's method on the scaled rows; it need not be fast.
     fn search(&mut self, rows: &[RowId], unknowns: &[CoordinateId]) -> f64 {
@@ -395,7 +399,7 @@ impl Stepper<'_> {
             for k in 0..n {
                 for c in 0..n {
                     let dot: f64 = jacobian.iter().map(|row| row[k] * row[c]).sum();
-                    // (J^T J + damping I) step = -J^T phi,  in units of rows and coordinates                            (36)
+                    // (J^T J + damping I) step = -J^T phi,  in units of rows and coordinates                       (36)
                     normal.row_mut(k)[c] = dot + if k == c { damping } else { 0.0 };
                 }
                 step[k] = -jacobian.iter().zip(&residuals).map(|(row, r)| row[k] * r).sum::<f64>();
@@ -409,7 +413,8 @@ impl Stepper<'_> {
             self.state.turn_balls(&self.topology, self.topology.link_ids());
             let (now, jacobian_now) = self.scaled_rows(rows, unknowns);
             let (old, new) = (squares(&residuals), squares(&now));
-            // A step that helps makes the next one more like Newton's, one that does not more like a short one downhill.
+            // A step that helps makes the next one more like Newton's, one that does not more like a short one
+            // downhill.
             if new < old {
                 (residuals, jacobian) = (now, jacobian_now);
                 damping *= 0.3;
@@ -442,7 +447,7 @@ impl Stepper<'_> {
                 for &LoopLink { link, side } in &self.topology.closure_of(row).links {
                     for c in self.topology[link].coordinates() {
                         let unit = self.topology[c].unit;
-                        // J_ra = +- c_k l_k . x_a                                                                             (6)
+                        // J_ra = +- c_k l_k . x_a                                                                   (6)
                         *by_coordinate.entry(c).or_insert(0.0) +=
                             scale * unit * side * factor * wrench.on(s.x[0][c.0]);
                     }

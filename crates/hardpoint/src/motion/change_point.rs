@@ -1,9 +1,10 @@
 //! Passing a change point: the position where two motions meet, as where a parallelogram lies in line.
 //!
-//! There J is singular, and each of two motions goes on smoothly. With [`ChangePointPolicy::Continue`] the one is followed that continues the
-//! path: from a position b before the change point that of f behind it is predicted by q' and q'', and accepted where its own q' is the
-//! predicted one. Positions between b and f are found from the polynomials through both ends; at the change point itself, where nothing
-//! can be solved, position, velocity and acceleration are those of the polynomials, and what is solved with J has no number.
+//! There J is singular, and each of two motions goes on smoothly. With [`ChangePointPolicy::Continue`] the one is
+//! followed that continues the path: from a position b before the change point that of f behind it is predicted by q'
+//! and q'', and accepted where its own q' is the predicted one. Positions between b and f are found from the
+//! polynomials through both ends; at the change point itself, where nothing can be solved, position, velocity and
+//! acceleration are those of the polynomials, and what is solved with J has no number.
 
 use crate::linalg::{hermite, segment_at};
 use crate::model::ChangePointPolicy;
@@ -14,16 +15,16 @@ use super::stepper::{AcceptedPosition, Lookahead, StepRejection, Stepper};
 use super::walk::Path;
 use super::{Stop, StopKind};
 
-/// The stretch that is crossed at once reaches this far to both sides, rad or sizes of driver travel: near enough that the predicted
-/// position is nearer to its own motion than to the other, far enough that accelerations keep ten digits.
+/// The stretch that is crossed at once reaches this far to both sides, rad or sizes of driver travel: near enough that
+/// the predicted position is nearer to its own motion than to the other, far enough that accelerations keep ten digits.
 const REACH: f64 = 1e-2;
 /// A stretch that takes more halvings than this is left alone.
 const HALVINGS: usize = 60;
-/// Slopes q' behind the change point may differ from the predicted ones by this part of the largest, or of the drivers' own: on the other
-/// motion they differ by as much as they are.
+/// Slopes q' behind the change point may differ from the predicted ones by this part of the largest, or of the drivers'
+/// own: on the other motion they differ by as much as they are.
 const SAME_MOTION: f64 = 0.05;
-/// Output times nearer to the change point than this part of the stretch are at it: nearer by, solutions lose more digits than the
-/// polynomials.
+/// Output times nearer to the change point than this part of the stretch are at it: nearer by, solutions lose more
+/// digits than the polynomials.
 const AT_IT: f64 = 0.2;
 
 /// The first step back from the change point is no shorter than this part of the stretch.
@@ -45,15 +46,16 @@ pub(super) struct Crossing {
 }
 
 impl Stepper<'_> {
-    /// Crosses the change point that stopped the walk, where the model asks for it and the motion goes on smoothly; the stepper is
-    /// behind it then. Returns the stop where it does not.
+    /// Crosses the change point that stopped the walk, where the model asks for it and the motion goes on smoothly; the
+    /// stepper is behind it then. Returns the stop where it does not.
     pub(super) fn cross(&mut self, path: Path, stop: Box<Stop>) -> Result<(), Box<Stop>> {
         let asked = self.model.at_change_points == ChangePointPolicy::Continue && path != Path::Assembly;
         let (StopKind::BranchChange, true, Some(block)) = (stop.kind, asked, stop.block) else {
             return Err(stop);
         };
         let here = (self.saved.clone(), self.time, self.branch.clone());
-        // On a straight path the stop indicates the time of all of it; the parameter is that of the position where it ended.
+        // On a straight path the stop indicates the time of all of it; the parameter is that of the position where it
+        // ended.
         let at =
             if path == Path::Laws { stop.failed_time } else { self.nearest_ahead(path).unwrap_or(self.time) };
         match self.cross_at(path, at, block) {
@@ -83,7 +85,8 @@ impl Stepper<'_> {
         if !(from < at && at < to) {
             return None;
         }
-        // Back to b, then over to f. At a distance d, q' is known to round-off / d^2 and q'' to round-off / d^3: steps double d.
+        // Back to b, then over to f. At a distance d, q' is known to round-off / d^2 and q'' to round-off / d^3: steps
+        // double d.
         while self.time != from {
             let distance = f64::max(at - self.time, SHORTEST_BACK * h);
             let next = if distance < h { f64::max(from, self.time - distance) } else { from };
@@ -107,7 +110,8 @@ impl Stepper<'_> {
         for (b, branch) in self.branch.iter_mut().enumerate() {
             branch.0 = self.state.pivots[b].1;
         }
-        // The determinants that change their sign are those that vanish on the way; several loops may lie in line at once.
+        // The determinants that change their sign are those that vanish on the way; several loops may lie in line at
+        // once.
         let mut blocks: Vec<BlockId> = self.topology.block_ids().collect();
         blocks.retain(|b| *b == block || signs[b.0] != self.branch[b.0].0);
         let selections = self.selections;
@@ -197,7 +201,8 @@ impl Stepper<'_> {
             self.state.motion.speeds[1][c.0] = acceleration;
         }
         for (k, channel) in channels.iter().enumerate() {
-            // Of all but balls, whose speeds are no rates of their components, the polynomials of degree five know more.
+            // Of all but balls, whose speeds are no rates of their components, the polynomials of degree five know
+            // more.
             if let Channel::Coordinate(c) = channel {
                 let [a, b] = [crossing.values[0][k], crossing.values[1][k]];
                 let [_, speed, acceleration] = between([a, b], h, s);
@@ -212,8 +217,8 @@ impl Stepper<'_> {
     }
 }
 
-/// Value and first two derivatives, at a part s of a stretch h, of the polynomial through what is known at both ends: the value, and N - 1
-/// derivatives.
+/// Value and first two derivatives, at a part s of a stretch h, of the polynomial through what is known at both ends:
+/// the value, and N - 1 derivatives.
 fn between<const N: usize>(ends: [[f64; N]; 2], h: f64, s: f64) -> [f64; 3] {
     segment_at(&hermite(h, N - 1, |end, order| ends[end][order]), s * h)
 }

@@ -1,7 +1,7 @@
 //! Up to eight designs side by side, from one output time to the next, by a straight-line program.
 //!
-//! They start from where the nominal design does, and every check of a single design's step is made in every lane. Where one
-//! fails, nobody knows which design goes another way: each is then solved alone.
+//! They start from where the nominal design does, and every check of a single design's step is made in every lane.
+//! Where one fails, nobody knows which design goes another way: each is then solved alone.
 
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
@@ -56,8 +56,8 @@ pub(crate) struct DesignBatch<'m> {
     /// Per block: the last determinant, and by what part it changed.
     determinants: Vec<Lanes>,
     changes: Vec<Lanes>,
-    /// Numbers of all bodies, and the coordinates of the tree, output time after output time, or of the last one; the bodies' derivatives
-    /// at the last.
+    /// Numbers of all bodies, and the coordinates of the tree, output time after output time, or of the last one; the
+    /// bodies' derivatives at the last.
     states: Arc<Vec<AlignedLanes>>,
     coordinates: Arc<Vec<AlignedLanes>>,
     derivatives: Vec<AlignedLanes>,
@@ -72,8 +72,9 @@ pub(crate) struct BatchResults<'f> {
 }
 
 impl<'m> DesignBatch<'m> {
-    /// By these programs. None where there is none, and where the nominal design is not in the design configuration at its first output time, where
-    /// `nominal` is: designs could have gone other ways till there. `keeps` says whether the results of all output times are kept.
+    /// By these programs. None where there is none, and where the nominal design is not in the design configuration at
+    /// its first output time, where `nominal` is: designs could have gone other ways till there. `keeps` says whether
+    /// the results of all output times are kept.
     pub fn new(mut nominal: Stepper<'m>, programs: ProgramOf<'m>, keeps: bool) -> Option<Self> {
         if nominal.saved.drivers.iter().any(|f| f[0] != 0.0) {
             return None;
@@ -129,8 +130,9 @@ impl<'m> DesignBatch<'m> {
         self.tape().moved().to_vec()
     }
 
-    /// These designs at all output times, one per lane; `each(k, ...)` sees the results of output time k, and may end it. None where a
-    /// step does not go as expected in some lane, and where `each` ends it before the last output time.
+    /// These designs at all output times, one per lane; `each(k, ...)` sees the results of output time k, and may end
+    /// it. None where a step does not go as expected in some lane, and where `each` ends it before the last output
+    /// time.
     pub fn run(
         &mut self,
         designs: &[Vec<f64>],
@@ -193,7 +195,8 @@ impl<'m> DesignBatch<'m> {
         (self.times, self.count) = ([t; NODES], 1);
         let solved = self.solve(MOST_CORRECTIONS, 0, &[0.0; LANES])?;
         for b in 0..self.determinants.len() {
-            // det of the design over det of the nominal one, as in (28) over a step: what is so near is on the same branch.
+            // det of the design over det of the nominal one, as in (28) over a step: what is so near is on the same
+            // branch.
             let (now, before) = (self.tape().determinant(b), self.nominal.saved.determinants[b]);
             let factors = &self.nominal.state.factors[b];
             if !now.iter().all(|x| (MILD[0]..=MILD[1]).contains(&factors.ratio(*x, before))) {

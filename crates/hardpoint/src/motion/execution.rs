@@ -9,7 +9,8 @@ use hardpoint_tape::{Interpreter, LANES, Lanes, Operand, Pieces, PiecesRoom, Pro
 
 use crate::blocks::{AlignedLanes, lanes_of};
 
-/// A program of that many instructions does not stay in the fast memory of a core: where its pieces are alike, they share their code ...
+/// A program of that many instructions does not stay in the fast memory of a core: where its pieces are alike, they
+/// share their code ...
 const LONG: usize = 10_000;
 /// ... if that makes it shorter by this factor.
 const SHORTER: usize = 2;
@@ -195,7 +196,8 @@ impl Staged {
         Self { design: Runnable::new(design, [all; PARTS - 1], execution), step: runnable(step) }
     }
 
-    /// Works out, behind the inputs that stand in these lines, those of the second part that depend on the design alone.
+    /// Works out, behind the inputs that stand in these lines, those of the second part that depend on the design
+    /// alone.
     pub fn take_design(&self, inputs: &mut [AlignedLanes]) {
         let (given, found) = inputs.split_at_mut(inputs.len() - self.design.sizes[0]);
         let given = &lanes_of(given)[..self.design.inputs];

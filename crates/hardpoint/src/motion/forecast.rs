@@ -1,8 +1,8 @@
 //! Prediction of the next positions from the previous ones.
 //!
-//! The last three accepted positions, each with its speeds and accelerations, are nine conditions on a polynomial of degree
-//! eight per coordinate (Hermite's interpolation, in Newton's form). Newton's method then starts so near to the solution that
-//! one correction is enough, also eight output times ahead.
+//! The last three accepted positions, each with its speeds and accelerations, are nine conditions on a polynomial of
+//! degree eight per coordinate (Hermite's interpolation, in Newton's form). Newton's method then starts so near to the
+//! solution that one correction is enough, also eight output times ahead.
 //!
 //! With the nodes `t_0 t_0 t_0 t_1 t_1 t_1 t_2 t_2 t_2`, the newest first (`docs/theory.md` (27)),
 //!
@@ -250,11 +250,12 @@ pub(super) struct Weights {
 }
 
 impl Weights {
-    /// For these positions, that many of them, each so long before the newest, and times so long behind it. Returns whether they had to
-    /// be worked out.
+    /// For these positions, that many of them, each so long before the newest, and times so long behind it. Returns
+    /// whether they had to be worked out.
     #[inline(always)]
     pub fn set(&mut self, (nodes, count): ([f64; NODES], usize), ahead: &Lanes) -> bool {
-        // p(t) is linear in what is known: p = sum_j weight_j(t) known_j, and the weights are those of last time if steps are equal.
+        // p(t) is linear in what is known: p = sum_j weight_j(t) known_j, and the weights are those of last time if
+        // steps are equal.
         let near = AS_FAR * ahead.iter().fold(0.0, |most: f64, h| most.max(h.abs()));
         let mut same = self.count == count;
         for (a, b) in nodes[..count].iter().chain(ahead).zip(self.nodes[..count].iter().chain(&self.ahead)) {

@@ -11,8 +11,9 @@
 //! J q.. = f.. - l. . (V_j - V_i) - l . (A_j - A_i  as if q.. were 0)                            (10)
 //! ```
 //!
-//! which is the paper's `phi(Z, D, t) = 0` (5.1) at one time, D standing, and its first two time derivatives. The paper's Z, poses of
-//! bodies, are `pose`; q are the coordinates of the tree, all six of every body in the absolute formulation.
+//! which is the paper's `phi(Z, D, t) = 0` (5.1) at one time, D standing, and its first two time derivatives. The
+//! paper's Z, poses of bodies, are `pose`; q are the coordinates of the tree, all six of every body in the absolute
+//! formulation.
 
 use crate::constraint::{MarkerPair, MarkerPairRates};
 use crate::joint::Freedom;
@@ -70,9 +71,9 @@ pub(crate) struct State<T> {
     pub residual: Vec<T>,
     /// Per row of a coupler's term: about what its coordinate is, to count angles through whole turns.
     pub near: Vec<T>,
-    /// Per row: by how much it failed in the design configuration in the design configuration, and how much of that is still allowed, with
-    /// its rate: an assembly takes it from 1 to 0.
-    /// phi_0, and 1 - s with its rate: an assembly holds `phi - (1 - s) phi_0 = 0`.
+    /// Per row: by how much it failed in the design configuration in the design configuration, and how much of that is
+    /// still allowed, with its rate: an assembly takes it from 1 to 0. phi_0, and 1 - s with its rate: an assembly
+    /// holds `phi - (1 - s) phi_0 = 0`.
     pub gap: Vec<T>,
     pub gap_left: [f64; 2],
     /// Per curve: where the point that follows it touches.
@@ -157,12 +158,14 @@ impl<T: Real> State<T> {
             let on_ground = link.parent == GROUND;
             let mut frame = if on_ground { marker } else { self.frame[link.parent.0].compose(marker) };
             for step in &link.steps {
-                // x = [h; c x h] of a turn about h through c, [0; h] of a slide along h, times -1 where the link runs from j to i
+                // x = [h; c x h] of a turn about h through c, [0; h] of a slide along h, times -1 where the link runs
+                // from j to i
                 for (n, c) in step.coordinates().enumerate() {
                     self.x[0][c.0] = step.twist(n, &frame.rot, frame.r);
                 }
                 let q = self.q[step.first.0] * T::constant(step.sign);
-                // J(q): a turn about its own axis, R <- R Rot(axis, q); a slide, r <- r + q h; a ball, R <- R A(quaternion)
+                // J(q): a turn about its own axis, R <- R Rot(axis, q); a slide, r <- r + q h; a ball, R <- R
+                // A(quaternion)
                 match step.freedom {
                     Freedom::Turn(axis) => {
                         let (sin, cos) = q.sin_cos();
@@ -221,7 +224,8 @@ impl<T: Real> State<T> {
         let Closure { base, base_link, .. } = topology[c];
         if base != GROUND {
             self.ends[c.0].axes = match base_link {
-                // Its pose is that of the step before until the block is solved: wrenches along those axes would not go with their rates.
+                // Its pose is that of the step before until the block is solved: wrenches along those axes would not go
+                // with their rates.
                 Some(k) => self.frame[base.0].rot * parts.child_from_marker[k.0].rot,
                 None => self.pose[base.0].rot,
             };
@@ -252,7 +256,8 @@ impl<T: Real> State<T> {
         walking
     }
 
-    /// The z axis of the marker that carries curve k, and the point that follows it, seen from that marker, with its first two rates.
+    /// The z axis of the marker that carries curve k, and the point that follows it, seen from that marker, with its
+    /// first two rates.
     #[inline(always)]
     fn follower(&self, c: ClosureId, k: usize, rates: &MarkerPairRates<T>) -> (Vec3<T>, [Vec3<T>; 3]) {
         let MarkerPair { i: foot, j, .. } = &self.ends[c.0];
@@ -390,7 +395,7 @@ impl<T: Real> State<T> {
             let wrench = closure.rows[place.index].wrench(&self.ends[place.closure.0]);
             self.l[0][r.0] = wrench;
             if place.terms.is_empty() {
-                // J_ra = +- l_r . x_a, by the side of the loop on which a is                                          (6)
+                // J_ra = +- l_r . x_a, by the side of the loop on which a is                                        (6)
                 let x = &self.x[0];
                 let entries = closure.entries.iter().map(
                     #[inline(always)]
@@ -407,8 +412,9 @@ impl<T: Real> State<T> {
         self.watched[b.0] = found.watched;
     }
 
-    /// Position, velocity and acceleration of all bodies for the drivers' values and their derivatives, from the prediction in
-    /// `q` and `balls`; block by block, so that what a block has laid out is still at hand when its rates follow.
+    /// Position, velocity and acceleration of all bodies for the drivers' values and their derivatives, from the
+    /// prediction in `q` and `balls`; block by block, so that what a block has laid out is still at hand when its rates
+    /// follow.
     ///
     /// `trust` bounds the first correction (rad, or sizes): a longer one may land on another branch.
     pub fn solve(
@@ -478,7 +484,8 @@ impl<T: Real> State<T> {
                 return Err(PositionFailure::NoConvergence { block: b });
             }
             self.apply(topology, b);
-            // abs(dq_k+1) <= abs(dq_k) / 2. After abs(dq) <= 1e-8 what is left, its square, is round-off: once more only for the factors.
+            // abs(dq_k+1) <= abs(dq_k) / 2. After abs(dq) <= 1e-8 what is left, its square, is round-off: once more
+            // only for the factors.
             before = if correction <= QUADRATIC { correction } else { 0.5 * correction };
         }
         Err(PositionFailure::NoConvergence { block: b })
@@ -530,7 +537,8 @@ impl<T: Real> State<T> {
         self.motion.follow::<1>(topology, links, &self.x);
     }
 
-    /// Velocity and acceleration of the bodies of block b, with the factors that its position left (`docs/theory.md` (9), (10)).
+    /// Velocity and acceleration of the bodies of block b, with the factors that its position left (`docs/theory.md`
+    /// (9), (10)).
     #[inline(always)]
     fn rates_of_block(
         &mut self,
@@ -557,8 +565,9 @@ impl<T: Real> State<T> {
         self.solve_order::<1>(topology, b, |d| drivers[d.0][2]);
     }
 
-    /// Velocity, acceleration or jerk of the bodies of block b: (24) of `docs/theory.md` with U = V, u = q. and z = 0, where f is a
-    /// driver's speed in its row, `demand` its n-th rate; while an assembly closes its gaps, their rates in all others.
+    /// Velocity, acceleration or jerk of the bodies of block b: (24) of `docs/theory.md` with U = V, u = q. and z = 0,
+    /// where f is a driver's speed in its row, `demand` its n-th rate; while an assembly closes its gaps, their rates
+    /// in all others.
     #[inline(always)]
     fn solve_order<const N: usize>(
         &mut self,
@@ -571,15 +580,17 @@ impl<T: Real> State<T> {
             let closure = &topology[c];
             motion.ask(topology, c, closure.driver.map_or(T::zero(), &demand));
             for r in closure.row_ids().filter(|_| N == 0) {
-                // phi - (1 - s) phi_0 = 0 along s:  l . (V_j - V_i) = -phi_0, with gap_left[1] = d(1 - s)/ds = -1; no higher order
+                // phi - (1 - s) phi_0 = 0 along s: l . (V_j - V_i) = -phi_0, with gap_left[1] = d(1 - s)/ds = -1; no
+                // higher order
                 motion.demand[r.0] += gap[r.0] * T::constant(gap_left[1]);
             }
         }
         motion.solve::<N>(topology, b, Linear { x, l, factors, rhs });
     }
 
-    /// Velocity and acceleration of all bodies where they stand, and first and second rates of all twists and wrenches, for speeds of
-    /// the drivers other than those that the position was solved with; those of driven coordinates stand in `motion`.
+    /// Velocity and acceleration of all bodies where they stand, and first and second rates of all twists and wrenches,
+    /// for speeds of the drivers other than those that the position was solved with; those of driven coordinates stand
+    /// in `motion`.
     #[inline(never)]
     pub(super) fn all_rates(&mut self, topology: &Topology, parts: &PlanGeometry<T>, drivers: &[[T; 3]]) {
         self.rates_of_driven(topology);
@@ -592,8 +603,8 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// Places everything, with velocity and acceleration, where coordinates, speeds and accelerations are given: at a change point. What
-    /// is solved with the factors of singular blocks has no number there.
+    /// Places everything, with velocity and acceleration, where coordinates, speeds and accelerations are given: at a
+    /// change point. What is solved with the factors of singular blocks has no number there.
     pub(super) fn stand_with_rates(
         &mut self,
         topology: &Topology,
@@ -767,7 +778,8 @@ impl<T: Real> State<T> {
             rates = self.walk(c, k, &rates);
         }
         for (r, row) in closure.numbered_rows() {
-            // l., l.. by the product rule from the markers' first two rates, (3) for their axes and v = V at P for their points
+            // l., l.. by the product rule from the markers' first two rates, (3) for their axes and v = V at P for
+            // their points
             if order > 1 {
                 [self.l[1][r.0], self.l[2][r.0]] = row.wrench_rates(&self.ends[c.0], &rates);
             } else if topology[r].drives() {

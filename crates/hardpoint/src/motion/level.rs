@@ -1,15 +1,15 @@
 //! The equation of order n: every linear level of a position is this, solved with one set of factors.
 //!
-//! A motion and its rates, and the rates of what a change of the design makes of it, obey the same two lines, differentiated n times
-//! by the time (`docs/theory.md`, section 4, "The equation of order n"):
+//! A motion and its rates, and the rates of what a change of the design makes of it, obey the same two lines,
+//! differentiated n times by the time (`docs/theory.md`, section 4, "The equation of order n"):
 //!
 //! ```text
 //! U_c(n) = U_p(n) + z_p(n) - z_c(n) + sum_{m=0..n} C(n,m) sum_a x_a(m) u_a(n-m)          for every link,
 //! sum_{m=0..n} C(n,m) l(m) . (D_j(n-m) - D_i(n-m)) = f(n),     D = U + z                for every row.        (24)
 //! ```
 //!
-//! Wanted are U(n) of the bodies and u(n) of the unknown coordinates; all orders below are known. Its transpose carries loads to
-//! ground (`sensitivity/adjoint.rs`).
+//! Wanted are U(n) of the bodies and u(n) of the unknown coordinates; all orders below are known. Its transpose carries
+//! loads to ground (`sensitivity/adjoint.rs`).
 
 use crate::linalg::Factors;
 use crate::space::{Real, Twist, Wrench};
@@ -36,7 +36,8 @@ pub(crate) struct Linear<'s, T> {
 pub(crate) struct Flow<T> {
     /// Per order and coordinate: u. Those of driven coordinates are given.
     ///
-    /// `[n][a]`, n = 0, 1, 2: u(n) is q.(n) of a motion, S(n) along the design, n! c_n of a response; rad or m per unit.
+    /// `[n][a]`, n = 0, 1, 2: u(n) is q.(n) of a motion, S(n) along the design, n! c_n of a response; rad or m per
+    /// unit.
     pub speeds: [Vec<T>; 3],
     /// Per order and body: U.
     ///
@@ -91,7 +92,8 @@ impl<T: Real> Flow<T> {
         self.moves[n][k.0] += if end == 0 { z } else { -z };
     }
 
-    /// Enters how marker i (0) or j (1) of closure c moves in its body: what its rows ask for is less `l . (z_j - z_i)`.
+    /// Enters how marker i (0) or j (1) of closure c moves in its body: what its rows ask for is less
+    /// `l . (z_j - z_i)`.
     #[inline(always)]
     pub fn move_end(
         &mut self,
@@ -144,7 +146,8 @@ impl<T: Real> Flow<T> {
             for r in topology[c].row_ids() {
                 if topology[r].drives() {
                     for m in 1..=N {
-                        // demand = f(n) - l . (z_j(n) - z_i(n)) - C(n,m) l(m) . (D_j(n-m) - D_i(n-m)): (24), second line, likewise
+                        // demand = f(n) - l . (z_j(n) - z_i(n)) - C(n,m) l(m) . (D_j(n-m) - D_i(n-m)): (24), second
+                        // line, likewise
                         self.demand[r.0] -= l[m][r.0].on(self.apart[N - m][c.0]) * BINOMIAL[N][m];
                     }
                 }
@@ -152,7 +155,8 @@ impl<T: Real> Flow<T> {
         }
         for &r in &topology[b].coupled {
             for term in &topology[r].terms {
-                // Of a coupler it is the sum over its terms, c_k times what each has; the first term, with factor 1, is in its row.
+                // Of a coupler it is the sum over its terms, c_k times what each has; the first term, with factor 1, is
+                // in its row.
                 let x = self.demand[term.row.0];
                 self.demand[r.0] += x * T::constant(term.factor);
             }
@@ -239,8 +243,8 @@ pub(crate) fn carried<T: Real, const N: usize>(x: [Twist<T>; N], v: [Twist<T>; N
     rate
 }
 
-/// The n-th rates of a link's unit twists, each carried by the frame before its freedom; `v` are the twist and its rates of the frame
-/// that the first starts from, and `V(m) + sum_{k=0..m} C(m,k) x(k) u(m-k)` those of the next.
+/// The n-th rates of a link's unit twists, each carried by the frame before its freedom; `v` are the twist and its
+/// rates of the frame that the first starts from, and `V(m) + sum_{k=0..m} C(m,k) x(k) u(m-k)` those of the next.
 #[inline(always)]
 pub(crate) fn turn_twists<T: Real, const N: usize>(
     link: &Link,
@@ -250,7 +254,8 @@ pub(crate) fn turn_twists<T: Real, const N: usize>(
 ) {
     for (n, step) in link.steps.iter().enumerate() {
         for c in step.coordinates() {
-            // The frame behind a single freedom would do as well, since ad(x u) x = 0; the axes of a ball are those of the frame before it.
+            // The frame behind a single freedom would do as well, since ad(x u) x = 0; the axes of a ball are those of
+            // the frame before it.
             x[N][c.0] = carried(std::array::from_fn(|m| x[m][c.0]), v);
         }
         if n + 1 == link.steps.len() {
@@ -259,7 +264,7 @@ pub(crate) fn turn_twists<T: Real, const N: usize>(
         for c in step.coordinates() {
             for m in 0..N {
                 for k in (0..=m).rev() {
-                    // V(m) behind the freedom = V(m) before it + (x u)(m),    (x u)(m) = sum_{k=0..m} C(m,k) x(k) u(m-k)
+                    // V(m) behind the freedom = V(m) before it + (x u)(m),   (x u)(m) = sum_{k=0..m} C(m,k) x(k) u(m-k)
                     v[m] = x[k][c.0].times_plus(speeds[m - k][c.0] * BINOMIAL[m][k], v[m]);
                 }
             }

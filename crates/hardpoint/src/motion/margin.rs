@@ -13,11 +13,11 @@ const MOST_UNKNOWNS: usize = 200;
 
 /// Distance of the Jacobian from singularity.
 ///
-/// Every constraint is measured by the most that it could resist in any coordinate of its loop if that coordinate's axis
-/// pointed as it should: a force by its lever arm, a moment by itself, a slide by the force. The margin is the least change
-/// of the Jacobian, as a part of that, which makes it singular: `1 / |J^-1|` in the largest-row-sum norm, lengths in sizes of
-/// their loops (`docs/theory.md` (29)). For one unknown it is the sine of the transmission angle. 1 is best, 0 is a singular
-/// position, and about log10(1 / margin) digits of a velocity are lost.
+/// Every constraint is measured by the most that it could resist in any coordinate of its loop if that coordinate's
+/// axis pointed as it should: a force by its lever arm, a moment by itself, a slide by the force. The margin is the
+/// least change of the Jacobian, as a part of that, which makes it singular: `1 / |J^-1|` in the largest-row-sum norm,
+/// lengths in sizes of their loops (`docs/theory.md` (29)). For one unknown it is the sine of the transmission angle. 1
+/// is best, 0 is a singular position, and about log10(1 / margin) digits of a velocity are lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Margin {
     /// The least of all blocks.
@@ -69,8 +69,8 @@ impl<T: Real> Margins<T> {
         (margins, limits)
     }
 
-    /// 1 / |J^-1|, the inverse column by column; where constraints are redundant 1 / |J^+| of all of them, so that the margin does
-    /// not depend on which of them the block is solved with.
+    /// 1 / |J^-1|, the inverse column by column; where constraints are redundant 1 / |J^+| of all of them, so that the
+    /// margin does not depend on which of them the block is solved with.
     #[inline(always)]
     fn of_block(
         &mut self,
@@ -114,7 +114,8 @@ impl<T: Real> Margins<T> {
         one / sums.iter().fold(zero, |most, x| most.larger(*x))
     }
 
-    /// 1 / |J^+| over all rows of a block, `J^+ = (J^T J)^-1 J^T` column by column; 0 where round-off may have a part in it.
+    /// 1 / |J^+| over all rows of a block, `J^+ = (J^T J)^-1 J^T` column by column; 0 where round-off may have a part
+    /// in it.
     #[inline(always)]
     fn of_all_rows(
         &mut self,
@@ -230,7 +231,8 @@ fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: RowId) -> 
 /// The most that a force at a point, with its moment, could turn about an axis, whatever way it pointed.
 #[inline(always)]
 fn most_moment<T: Real>(l: &Wrench<T>, point: Vec3<T>, turn: &Twist<T>) -> T {
-    // x = [w; c x w]:  w x v = w x (c x w) = c - w (w . c),  the axis' point next to the origin; the arm is seen along the axis
+    // x = [w; c x w]: w x v = w x (c x w) = c - w (w . c), the axis' point next to the origin; the arm is seen along
+    // the axis
     let between = point - turn.w.cross(turn.v);
     let arm = between - turn.w * turn.w.dot(between);
     // l = [P x f + couple; f];  most = sqrt((abs(f) abs(arm))^2 + abs(couple)^2)

@@ -139,7 +139,8 @@ pub struct Motion {
     pub assembly: Option<Assembly>,
     /// The singular position next after its end, if one is near.
     pub beyond: Option<SingularPosition>,
-    /// Per output time, the angles that are counted along the path, with all turns, rad; empty where the path was not followed.
+    /// Per output time, the angles that are counted along the path, with all turns, rad; empty where the path was not
+    /// followed.
     pub(crate) counted: Vec<f64>,
     /// Statistics of the solver.
     pub effort: SolverStatistics,

@@ -1,16 +1,17 @@
 //! Distance to the nearest singular position ahead, independent of the drivers' laws.
 //!
-//! Near a singular position the response of a loop to a load, `s = J^-1 r` with r a fixed disturbance of its rows, grows like
-//! `(u* - u)^-m` along the motion: m = 1/2 at a limit, where the loop cannot be closed beyond, and m = 1 where two motions meet.
-//! However narrow a gap is, and however near a miss, s shows it from afar, where the motion itself still looks smooth. With
+//! Near a singular position the response of a loop to a load, `s = J^-1 r` with r a fixed disturbance of its rows,
+//! grows like `(u* - u)^-m` along the motion: m = 1/2 at a limit, where the loop cannot be closed beyond, and m = 1
+//! where two motions meet. However narrow a gap is, and however near a miss, s shows it from afar, where the motion
+//! itself still looks smooth. With
 //!
 //! ```text
 //! c0 = J^-1 r,   c1 = -J^-1 (J' c0),   c2 = -J^-1 (J'' c0 / 2 + J' c1)                               docs/theory.md (22)
 //! ```
 //!
-//! its series along a direction, `max(|c1| / |c0|, sqrt(|c2| / |c0|))` is the inverse of the distance to the nearest singular position,
-//! to within a factor of about two. c0, c1, c2 are levels like those of a sensitivity by a length in every row; they ask for no
-//! more of the motion than velocity and acceleration.
+//! its series along a direction, `max(|c1| / |c0|, sqrt(|c2| / |c0|))` is the inverse of the distance to the nearest
+//! singular position, to within a factor of about two. c0, c1, c2 are levels like those of a sensitivity by a length in
+//! every row; they ask for no more of the motion than velocity and acceleration.
 //!
 //! The directions are the drivers, one by one: what is near is near whether the drivers hurry, rest or turn round.
 
@@ -40,7 +41,8 @@ pub(super) struct Surroundings {
     pub angles: Vec<Vec<[f64; 2]>>,
     /// Per direction and curve: the same of the parameter where it is touched.
     pub sliding: Vec<Vec<[f64; 2]>>,
-    /// Per direction: the fastest unknown coordinate, in its unit; of curves the parameter, in lengths between their points.
+    /// Per direction: the fastest unknown coordinate, in its unit; of curves the parameter, in lengths between their
+    /// points.
     pub fastest: Vec<f64>,
     /// Number of known directions.
     known: usize,
@@ -60,8 +62,9 @@ pub(super) struct SingularityAhead {
 /// Room to work in.
 #[derive(Clone, Debug)]
 pub(super) struct Workspace {
-    /// The motion along a direction, in place of that along the time, and the rates of all twists and wrenches.
-    /// `q'`, `q''` of the coordinates and the twists of the bodies, a prime being d/du along a driver u with all others at rest.
+    /// The motion along a direction, in place of that along the time, and the rates of all twists and wrenches. `q'`,
+    /// `q''` of the coordinates and the twists of the bodies, a prime being d/du along a driver u with all others at
+    /// rest.
     motion: Flow<f64>,
     /// x', x''.
     x: [Vec<Twist<f64>>; 2],
@@ -178,8 +181,8 @@ impl Workspace {
         self.l.swap_with_slice(&mut state.l[1..]);
     }
 
-    /// Examines the position where a state is, with its factors, along that many directions. `speed(direction, driver)` is
-    /// how each driver moves along a direction, and `gap_rate` how the gaps of an assembly close.
+    /// Examines the position where a state is, with its factors, along that many directions. `speed(direction, driver)`
+    /// is how each driver moves along a direction, and `gap_rate` how the gaps of an assembly close.
     #[expect(clippy::too_many_arguments, reason = "all are borrowed from one stepper, some of them mutably")]
     pub fn examine(
         &mut self,
@@ -227,7 +230,7 @@ impl Workspace {
             for b in topology.block_ids() {
                 let mut nearness = 0.0;
                 for load in 0..LOADS {
-                    // 1/rho_b = max over the loads                                                                       (22)
+                    // 1/rho_b = max over the loads                                                                 (22)
                     nearness = nearness.larger(self.respond(topology, state, b, load));
                 }
                 found.nearness[direction][b.0] = nearness;
@@ -276,8 +279,8 @@ impl Workspace {
         state.all_rates(topology, parts, &self.drivers);
     }
 
-    /// The response of a block to a load: c0, c1 and 2 c2 of its unknowns; all bodies outside of it stand. Returns how near a
-    /// singular position is by it.
+    /// The response of a block to a load: c0, c1 and 2 c2 of its unknowns; all bodies outside of it stand. Returns how
+    /// near a singular position is by it.
     #[inline(never)]
     fn respond(&mut self, topology: &Topology, state: &mut State<f64>, b: BlockId, load: usize) -> f64 {
         let (block, response) = (&topology[b], &mut self.response);

@@ -1,13 +1,14 @@
 //! One step of a plan as a straight-line program.
 //!
-//! What [`State::solve`] computes is the same at every output time and for every design, as long as Newton's method takes as many
-//! corrections and the pivots keep their order. So it is recorded once, with a number of the tape in place of each number, together
-//! with the forecast before it and whatever is asked of the bodies after it; and what is left of it after folding is run eight lanes
-//! at a time. What was decided while recording is requested again in every run, as numbers by which a tape judges it
-//! ([`Tape::solve`](super::tape::Tape::solve)); where the answer is another, nothing has happened, and the kernel itself solves the step.
+//! What [`State::solve`] computes is the same at every output time and for every design, as long as Newton's method
+//! takes as many corrections and the pivots keep their order. So it is recorded once, with a number of the tape in
+//! place of each number, together with the forecast before it and whatever is asked of the bodies after it; and what is
+//! left of it after folding is run eight lanes at a time. What was decided while recording is requested again in every
+//! run, as numbers by which a tape judges it ([`Tape::solve`](super::tape::Tape::solve)); where the answer is another,
+//! nothing has happened, and the kernel itself solves the step.
 //!
-//! Not recorded are mechanisms with curves, and with couplers, whose angles depend on the turn that is expected; those that are so large that a
-//! program each would cost more than it saves; and margins of sparse blocks.
+//! Not recorded are mechanisms with curves, and with couplers, whose angles depend on the turn that is expected; those
+//! that are so large that a program each would cost more than it saves; and margins of sparse blocks.
 
 use std::sync::{Arc, OnceLock};
 
@@ -31,12 +32,13 @@ use super::margin::Margins;
 use super::parts::PlanGeometry;
 use super::stepper::{AcceptedPosition, Stepper};
 
-/// Newton's first correction while recording, in units of each coordinate, for programs with one correction and with two: the last
-/// of them leaves round-off.
+/// Newton's first correction while recording, in units of each coordinate, for programs with one correction and with
+/// two: the last of them leaves round-off.
 const OFFSET: [f64; MOST_CORRECTIONS] = [1e-9, 1e-5];
 /// Maximum number of corrections of a program; if more are needed, it runs again from its result.
 pub(super) const MOST_CORRECTIONS: usize = 2;
-/// Mechanisms with more links than this are not recorded: what is recorded of each takes some kilobytes until it is a program.
+/// Mechanisms with more links than this are not recorded: what is recorded of each takes some kilobytes until it is a
+/// program.
 const MOST_LINKS: usize = 4000;
 /// Nor are those whose sparse factors take more multiplications together.
 const MOST_MULTIPLICATIONS: usize = 70_000;
@@ -142,7 +144,8 @@ impl BlockProgram {
     }
 }
 
-/// An unknown coordinate, one of a ball's three included, and where its speed is among the outputs; its acceleration comes next.
+/// An unknown coordinate, one of a ball's three included, and where its speed is among the outputs; its acceleration
+/// comes next.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unknown {
     pub coordinate: CoordinateId,
@@ -152,8 +155,9 @@ pub(crate) struct Unknown {
 /// Positions of a program's inputs: weights, node values of every channel, drivers and the laws of forces, time ahead
 /// of the newest position, design variables, and what depends on these alone.
 ///
-/// Known are, of designs, the last positions of every channel, the newest first; of output times these are uniforms, and the input is
-/// what is added to the forecast: nothing, or all there is where the position was found by a run before.
+/// Known are, of designs, the last positions of every channel, the newest first; of output times these are uniforms,
+/// and the input is what is added to the forecast: nothing, or all there is where the position was found by a run
+/// before.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inputs {
     /// Number of node values of each channel.
@@ -199,7 +203,8 @@ pub(super) enum StepCheck {
     ScaledResidual,
     /// The largest pivot of a block over its smallest, of all blocks.
     Pivots,
-    /// By how much speeds differ at most from those predicted by the newest position, and the largest of all speeds; rad, or sizes.
+    /// By how much speeds differ at most from those predicted by the newest position, and the largest of all speeds;
+    /// rad, or sizes.
     Apart,
     Fastest,
 }
@@ -225,8 +230,8 @@ impl StepProgram {
         }
     }
 
-    /// Records the step that is solved where `one`, of the nominal design, is, and what `besides` makes of it; none where either cannot
-    /// be recorded.
+    /// Records the step that is solved where `one`, of the nominal design, is, and what `besides` makes of it; none
+    /// where either cannot be recorded.
     pub fn record(
         one: &Stepper<'_>,
         design_map: &DesignMap<'_>,
@@ -262,7 +267,8 @@ impl StepProgram {
             blocks = recorded.collect::<Vec<_>>();
             fits &= blocks.len() == topology.blocks.len();
 
-            // Outputs, in the order of `Outputs`: channels, what is judged, blocks, margins, defects, loads, bodies, derivatives.
+            // Outputs, in the order of `Outputs`: channels, what is judged, blocks, margins, defects, loads, bodies,
+            // derivatives.
             let mut out = moves(topology, &channels, &state);
             let bodies = BodyState::all(&state);
             let (margins, mut limits) = match purpose.margins {
@@ -412,8 +418,8 @@ fn largest_of(numbers: impl Iterator<Item = Number>) -> Number {
     numbers.reduce(Number::larger).unwrap_or_else(|| Number::constant(f64::MIN))
 }
 
-/// By how much the speeds differ at most from those that speed and acceleration at the newest position predict, so long ahead; and the
-/// fastest of both. In rad, or sizes; a ball's are twice those of its quaternion.
+/// By how much the speeds differ at most from those that speed and acceleration at the newest position predict, so long
+/// ahead; and the fastest of both. In rad, or sizes; a ball's are twice those of its quaternion.
 fn speeds(
     topology: &Topology,
     channels: &[Channel],
@@ -437,8 +443,8 @@ fn speeds(
     [apart, fastest].map(|x| largest_of(x.into_iter()))
 }
 
-/// Makes inputs of what predicts the state, `offset` beside where `at` is; returns what is known of every channel, which is the same at
-/// all of several output times.
+/// Makes inputs of what predicts the state, `offset` beside where `at` is; returns what is known of every channel,
+/// which is the same at all of several output times.
 fn foresee(
     topology: &Topology,
     channels: &[Channel],
@@ -465,8 +471,8 @@ fn foresee(
     channels.iter().map(one).collect()
 }
 
-/// Recording pays from that many steps on: it costs about as much as a few hundred of the kernel's, once, and later runs have it for
-/// nothing.
+/// Recording pays from that many steps on: it costs about as much as a few hundred of the kernel's, once, and later
+/// runs have it for nothing.
 const PAYS: usize = 100;
 
 /// The programs of a plan, each recorded when it is first requested.
@@ -527,8 +533,9 @@ impl Programs {
         self.steps.get(purpose, |_| record(self.execution))
     }
 
-    /// The drivers' laws of the nominal design at eight times: in one part value, speed and acceleration of each driver, and where loads are
-    /// requested the values of the laws of forces; in the next what must not be positive. None where a law is no plain formula.
+    /// The drivers' laws of the nominal design at eight times: in one part value, speed and acceleration of each
+    /// driver, and where loads are requested the values of the laws of forces; in the next what must not be positive.
+    /// None where a law is no plain formula.
     pub fn laws(&self, model: &Model, loads: bool) -> Option<Arc<Runnable>> {
         self.laws.get(loads, |_| {
             recording::begin();

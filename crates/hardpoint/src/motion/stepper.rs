@@ -1,8 +1,8 @@
 //! From one output time to the next: predict, correct, and make sure that it is the same branch.
 //!
-//! Where output times follow each other closely they are the walk themselves ([`Stepper::glide`]): the determinants of the blocks
-//! tell, for free, that no singular position is near. Everywhere else the path is followed in steps of its own
-//! ([`super::walk`]), however the output times are spaced.
+//! Where output times follow each other closely they are the walk themselves ([`Stepper::glide`]): the determinants of
+//! the blocks tell, for free, that no singular position is near. Everywhere else the path is followed in steps of its
+//! own ([`super::walk`]), however the output times are spaced.
 
 use crate::joint::{Freedom, Quantity};
 use crate::linalg::{FullPivot, LARGEST_DENSE};
@@ -24,21 +24,22 @@ use super::{SolverStatistics, Stop};
 pub(super) const TRUST_FLOOR: f64 = 0.02;
 /// The first correction may be this part of the predicted move: more means a prediction gone wrong.
 pub(super) const TRUST: f64 = 0.5;
-/// Speeds after a step between output times may differ from the predicted ones by this part of the fastest coordinate: on a
-/// motion that output times resolve the difference vanishes with the step.
+/// Speeds after a step between output times may differ from the predicted ones by this part of the fastest coordinate:
+/// on a motion that output times resolve the difference vanishes with the step.
 const SPEED_TRUST: f64 = 0.25;
 /// Differences below this part of the drivers' fastest speed do not count: a start from rest.
 const SPEED_FLOOR: f64 = 1e-3;
 /// The coordinates of a coupler must come within this of their prediction, rad: which turn an angle is in would
 /// otherwise be a guess.
 const TURN_TRUST: f64 = 1.0;
-/// From one output time to the next a determinant may become that many times what it was; a limit position that is nearer than 1.5
-/// such steps, or a crossing nearer than 3.5, changes it by more (405 motions into such positions, in 20 to 500 output times).
+/// From one output time to the next a determinant may become that many times what it was; a limit position that is
+/// nearer than 1.5 such steps, or a crossing nearer than 3.5, changes it by more (405 motions into such positions, in
+/// 20 to 500 output times).
 pub(super) const MILD: [f64; 2] = [0.78, 1.28];
 /// ... and that part of it may change by so much from one such step to the next.
 pub(super) const MILD_CHANGE: f64 = 0.125;
-/// Between output times the law may nowhere be faster than that many times what it moves between any two of them nearby: what rests
-/// and pulses in between is looked at closely.
+/// Between output times the law may nowhere be faster than that many times what it moves between any two of them
+/// nearby: what rests and pulses in between is looked at closely.
 pub(super) const EVEN: f64 = 2.0;
 /// A driver that moves by less than this between output times, in rad or sizes, rests.
 pub(super) const RESTS: f64 = 1e-12;
@@ -50,8 +51,8 @@ pub(super) const LONGEST: f64 = 1.0;
 /// more than this) is a contradiction: the mechanism locks. Typed coordinates have about six digits, and an
 /// axis through two of them is tilted by some times that.
 pub(crate) const LOCKED: f64 = 1e-5;
-/// When the pivot ratio has fallen to this part of its first value, other rows may serve better: redundant ones agree to the
-/// digits of the drawing only, and a weak selection magnifies what they lack.
+/// When the pivot ratio has fallen to this part of its first value, other rows may serve better: redundant ones agree
+/// to the digits of the drawing only, and a weak selection magnifies what they lack.
 const RESELECT: f64 = 0.1;
 /// If no other rows served better, they are tried again when the ratio has fallen by this factor once more.
 const LOOK_AGAIN: f64 = 0.3;
@@ -329,7 +330,8 @@ impl<'m> Stepper<'m> {
         }
         self.fastest_driver = self.driver_speed();
         let moved = self.foresee_at(h);
-        // abs(dq_0) <= max(half of the predicted move, 0.02): a correction out of proportion may lead to another branch.
+        // abs(dq_0) <= max(half of the predicted move, 0.02): a correction out of proportion may lead to another
+        // branch.
         let trust = (TRUST * moved).max(TRUST_FLOOR);
         let selections = self.selections;
         if self.state.solve(&self.topology, &self.parts, &self.drivers, trust).is_err()
@@ -364,8 +366,8 @@ impl<'m> Stepper<'m> {
         }
     }
 
-    /// True if the laws do nothing between here and the output time t that its two ends would not show, and no singular position is
-    /// known to be near. The drivers are at t already.
+    /// True if the laws do nothing between here and the output time t that its two ends would not show, and no singular
+    /// position is known to be near. The drivers are at t already.
     #[inline(always)]
     pub(super) fn is_clear(&mut self, t: f64, h: f64) -> bool {
         for d in 0..self.drivers.len() {
@@ -373,7 +375,8 @@ impl<'m> Stepper<'m> {
             let most = match self.ahead {
                 Lookahead::Even => {
                     let moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs() / unit;
-                    // Over the step h  max abs(f.) <= 2 (larger of the last two moves) / h: the law does nothing of its own between.
+                    // Over the step h max abs(f.) <= 2 (larger of the last two moves) / h: the law does nothing of its
+                    // own between.
                     (EVEN * self.moves[d].max(moved)).clamp(RESTS, LONGEST)
                 }
                 _ => LONGEST,
@@ -388,8 +391,8 @@ impl<'m> Stepper<'m> {
         self.ahead == Lookahead::Even || self.around.part_of_way(&self.travel) <= PART_OF_WAY
     }
 
-    /// By what part each determinant has changed since the saved position, a step h before; returns whether that is little, and
-    /// about as much as over the step before.
+    /// By what part each determinant has changed since the saved position, a step h before; returns whether that is
+    /// little, and about as much as over the step before.
     #[inline(always)]
     fn note_changes(&mut self, h: f64) -> bool {
         const MIDDLE: f64 = 0.5 * (MILD[0] + MILD[1]);
@@ -473,7 +476,8 @@ impl<'m> Stepper<'m> {
         self.residuals = self.state.residuals(&self.topology, &self.parts, &self.drivers);
         // On the way to being closed, redundant constraints need not agree yet.
         let half_open = self.state.gap_left[0] > 0.0;
-        // abs(phi) <= 1e-5 of the loop's size, of rows left out as well: else redundant constraints contradict each other here.
+        // abs(phi) <= 1e-5 of the loop's size, of rows left out as well: else redundant constraints contradict each
+        // other here.
         if !half_open && !(self.residuals.scaled <= LOCKED) {
             let (row, residual) = self.state.worst_row(&self.topology, &self.parts, &self.drivers);
             return Err(StepRejection::Locked { row, residual });
@@ -481,8 +485,8 @@ impl<'m> Stepper<'m> {
         self.reselect()
     }
 
-    /// Predicts the position a step h beyond the saved one, from where the mechanism has been; returns how far the largest move
-    /// goes (rad, or sizes), to second order.
+    /// Predicts the position a step h beyond the saved one, from where the mechanism has been; returns how far the
+    /// largest move goes (rad, or sizes), to second order.
     #[inline(always)]
     fn foresee_at(&mut self, h: f64) -> f64 {
         let t = self.time + h;
@@ -561,7 +565,8 @@ impl<'m> Stepper<'m> {
             .all(|((now, before), curve)| curve.bend(before.u, now.u) <= MOST_BEND)
     }
 
-    /// Accepts the position at t, a step h after the one before (0 at the start of a path). What lies ahead is not known then.
+    /// Accepts the position at t, a step h after the one before (0 at the start of a path). What lies ahead is not
+    /// known then.
     pub(super) fn save(&mut self, t: f64, h: f64) {
         let (s, saved) = (&self.state, &mut self.saved);
         if h == 0.0 {
@@ -654,8 +659,8 @@ impl<'m> Stepper<'m> {
     }
 }
 
-/// True if speeds that differ by so much from the predicted ones are still those of the same branch, with so fast a coordinate and
-/// driver at the most.
+/// True if speeds that differ by so much from the predicted ones are still those of the same branch, with so fast a
+/// coordinate and driver at the most.
 #[inline(always)]
 pub(super) fn smooth(difference: f64, fastest: f64, fastest_driver: f64) -> bool {
     // Written so that NaN is refused.

@@ -136,8 +136,8 @@ impl Stop {
         }
     }
 
-    /// Returns whether it does not assemble since it is drawn in, or next to, a singular position, around which none of the assemblies
-    /// searched for was found.
+    /// Returns whether it does not assemble since it is drawn in, or next to, a singular position, around which none of
+    /// the assemblies searched for was found.
     pub fn is_singular_drawing(&self) -> bool {
         self.closed.is_some_and(|part| part <= SINGULAR_DRAWING)
     }

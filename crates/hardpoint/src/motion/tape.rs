@@ -120,8 +120,8 @@ impl Tape {
         self.program.purpose
     }
 
-    /// Predicts times so far ahead of the newest position by these weights: by position, the newest first, and order of its derivative;
-    /// they may be the ones of last time.
+    /// Predicts times so far ahead of the newest position by these weights: by position, the newest first, and order of
+    /// its derivative; they may be the ones of last time.
     #[inline(always)]
     pub fn look_ahead(&mut self, weights: &[Lanes; CONDITIONS], are_new: bool, ahead: &Lanes) {
         let at = self.program.inputs.ahead;

@@ -1,21 +1,23 @@
-//! Angles counted through whole turns along the path: of measures, and of the coordinates of cut joints that elements act on.
+//! Angles counted through whole turns along the path: of measures, and of the coordinates of cut joints that elements
+//! act on.
 //!
-//! An angle is known within a turn only; the path indicates which turn it is in. Between output times an angle is predicted along the drivers,
-//! as every unknown is ([`super::walk`]), so that neither the output times nor what the laws do in between have a part in it. From one
-//! output time to the next of an even motion an angle moves by less than a radian, or the step is refused ([`TurnCounter::is_even`]).
+//! An angle is known within a turn only; the path indicates which turn it is in. Between output times an angle is
+//! predicted along the drivers, as every unknown is ([`super::walk`]), so that neither the output times nor what the
+//! laws do in between have a part in it. From one output time to the next of an even motion an angle moves by less than
+//! a radian, or the step is refused ([`TurnCounter::is_even`]).
 
 use hardpoint_tape::Lanes;
 
 use super::BodyState;
 use super::kinematics::State;
 
-/// An angle must come within this of its prediction, rad: which turn it is in would otherwise be a guess. Over one step it moves by no
-/// more than this to first order, so that half a turn is far away.
+/// An angle must come within this of its prediction, rad: which turn it is in would otherwise be a guess. Over one step
+/// it moves by no more than this to first order, so that half a turn is far away.
 pub(super) const TURN_TRUST: f64 = 1.0;
 /// Seen from its far end, a step may move an angle by this many times more.
 const FAR_END: f64 = 2.5;
-/// A step of the drivers below this, rad or sizes, is not refused for an angle: one that has no number on the way, as where the points of
-/// a direction meet, jumps there.
+/// A step of the drivers below this, rad or sizes, is not refused for an angle: one that has no number on the way, as
+/// where the points of a direction meet, jumps there.
 pub(super) const FINEST: f64 = 1e-6;
 
 /// One turn, rad.
@@ -41,7 +43,8 @@ pub(crate) trait CountedAngles {
     /// Per angle: its value in the design configuration; as it is measured, without a whole turn, where that is `None`.
     fn origins(&self) -> &[Option<f64>];
 
-    /// Value, within a turn, and first two derivatives of every angle, where each of [`bodies`](Self::bodies) is as `state` says.
+    /// Value, within a turn, and first two derivatives of every angle, where each of [`bodies`](Self::bodies) is as
+    /// `state` says.
     fn measure(&mut self, state: &dyn Fn(usize) -> BodyState, found: &mut [[f64; 3]]);
 }
 
@@ -107,9 +110,10 @@ impl<'m> TurnCounter<'m> {
         out.extend(self.found.iter().map(|[_, slope, bend]| [*slope, *bend]));
     }
 
-    /// Returns whether each angle, where the state is after a step, is in the turn that was predicted. `predict` is given an angle; of what it
-    /// returns the first is by how much the angle moves as seen from the accepted position, the second as seen from the new one, both to
-    /// second order, and the third the farthest that it gets as seen from there, to first order.
+    /// Returns whether each angle, where the state is after a step, is in the turn that was predicted. `predict` is
+    /// given an angle; of what it returns the first is by how much the angle moves as seen from the accepted position,
+    /// the second as seen from the new one, both to second order, and the third the farthest that it gets as seen from
+    /// there, to first order.
     pub fn follow(&mut self, state: &State<f64>, predict: impl Fn(usize) -> [f64; 3]) -> bool {
         self.look(&|b| BodyState::of(state, b));
         let mut sure = true;
@@ -127,15 +131,16 @@ impl<'m> TurnCounter<'m> {
         sure
     }
 
-    /// Returns whether a step h from one output time to the next, over which the drivers move by so much in all, leaves no doubt about the turns of
-    /// any angle where the state is then.
+    /// Returns whether a step h from one output time to the next, over which the drivers move by so much in all, leaves
+    /// no doubt about the turns of any angle where the state is then.
     pub fn is_even(&mut self, state: &State<f64>, h: f64, moved: f64) -> bool {
         self.look(&|b| BodyState::of(state, b));
         self.nearest();
         self.is_slow(h, moved)
     }
 
-    /// The same over all these output times at once, by the numbers of all bodies in lanes; `before` is the time of the accepted position.
+    /// The same over all these output times at once, by the numbers of all bodies in lanes; `before` is the time of the
+    /// accepted position.
     pub fn are_even(
         &mut self,
         states: &[Lanes],
@@ -182,7 +187,8 @@ impl<'m> TurnCounter<'m> {
         }
     }
 
-    /// Returns whether over a step h nothing turns by more than a radian: neither the drivers together, nor a body, nor an angle.
+    /// Returns whether over a step h nothing turns by more than a radian: neither the drivers together, nor a body, nor
+    /// an angle.
     fn is_slow(&self, h: f64, moved: f64) -> bool {
         let mut angles = self.ahead.iter().zip(&self.values).map(|(ahead, before)| (ahead - before).abs());
         // Written so that NaN of the motion is not slow, and an angle without a number is no matter of turns.

@@ -1,9 +1,9 @@
 //! The path between output times, followed in steps of its own.
 //!
-//! A step is as long as the nearest singular position allows ([`super::singularity`]), measured in what the drivers do on the way and
-//! not in time: the range of each law over the step is known ([`crate::law::Law::over`]), so a law that hurries, rests, turns round or
-//! pulses between two output times is followed all the same. The position is predicted along the drivers, too, so kinks of laws
-//! need no care.
+//! A step is as long as the nearest singular position allows ([`super::singularity`]), measured in what the drivers do
+//! on the way and not in time: the range of each law over the step is known ([`crate::law::Law::over`]), so a law that
+//! hurries, rests, turns round or pulses between two output times is followed all the same. The position is predicted
+//! along the drivers, too, so kinks of laws need no care.
 
 use crate::model::{Contact, DriverId};
 use crate::space::Real;
@@ -14,21 +14,22 @@ use super::stepper::{LOCKED, Lookahead, StepRejection, Stepper, TRUST, TRUST_FLO
 use super::turns::{FINEST, TURN_TRUST};
 use super::{SingularPosition, Stop, StopKind};
 
-/// A step may be this part of the estimated distance to the nearest singular position. The estimate is 0.94 to 2.17 times the true
-/// distance (`docs/theory.md`, section 4), so that no step reaches beyond.
+/// A step may be this part of the estimated distance to the nearest singular position. The estimate is 0.94 to 2.17
+/// times the true distance (`docs/theory.md`, section 4), so that no step reaches beyond.
 pub(super) const PART_OF_WAY: f64 = 0.4;
-/// Seen from its far end, a step may be this part of the distance there: an equal walk back would be 0.67 of it, and a narrow
-/// miss that symmetry hides from one end shows from the other.
+/// Seen from its far end, a step may be this part of the distance there: an equal walk back would be 0.67 of it, and a
+/// narrow miss that symmetry hides from one end shows from the other.
 const PART_FROM_FAR_END: f64 = 2.5 / (1.0 - PART_OF_WAY) * PART_OF_WAY;
-/// No driver moves by more than this in a step, rad or sizes of its loop: symmetry may hide a singular position entirely, and in
-/// uniform rotation there is none.
+/// No driver moves by more than this in a step, rad or sizes of its loop: symmetry may hide a singular position
+/// entirely, and in uniform rotation there is none.
 const LONGEST: f64 = 1.0;
 /// ... and no unknown coordinate by more than this: which turn an angle is in would be a guess.
 const LONGEST_MOVE: f64 = 2.0;
-/// A singular position nearer than this, in rad or sizes of driver travel, is where the walk ends; nearer by, round-off decides.
+/// A singular position nearer than this, in rad or sizes of driver travel, is where the walk ends; nearer by, round-off
+/// decides.
 const NEAREST: f64 = 1e-6;
-/// A law that comes within this part of the distance to a singular position reaches it: the estimate of that distance, 2e-6 rad away, is
-/// good to about 1e-4 (`docs/theory.md`, section 4).
+/// A law that comes within this part of the distance to a singular position reaches it: the estimate of that distance,
+/// 2e-6 rad away, is good to about 1e-4 (`docs/theory.md`, section 4).
 const REACHED: f64 = 0.99;
 /// Maximum number of parts of the way over which the range of a law is computed, to find out what it does first.
 const MOST_PARTS: usize = 2_000;
@@ -36,27 +37,32 @@ const MOST_PARTS: usize = 2_000;
 const SHORTEST: f64 = 1e-10;
 /// Times nearer to each other than this, relative to the times of the path, are one: what changes between them jumps.
 const ONE_TIME: f64 = 1e-14;
-/// Redundant constraints that disagree by this part of what counts as locked are looked at in the middle of a step, too.
+/// Redundant constraints that disagree by this part of what counts as locked are looked at in the middle of a step,
+/// too.
 const SUSPECT: f64 = 1e-2;
-/// The response to a load goes with this power of the distance, at most, where the loop cannot be closed beyond: 1/2; where two motions
-/// meet it is 1.
+/// The response to a load goes with this power of the distance, at most, where the loop cannot be closed beyond: 1/2;
+/// where two motions meet it is 1.
 const LIMIT: f64 = 0.75;
-/// A power this near to 1/2 or 1 indicates of what kind a singular position ahead is; farther from it, other things have their part.
+/// A power this near to 1/2 or 1 indicates of what kind a singular position ahead is; farther from it, other things
+/// have their part.
 const TELLING: f64 = 0.1;
 /// A walk gives up after that many steps without a radian, or a size, of any driver.
 const MOST_STEPS: usize = 20_000;
-/// Between two output times no driver is followed further than this, rad or sizes: what runs away would be followed for ever.
-const FARTHEST: f64 = 1e5;
-/// Between two output times a law may jump so often: each jump is followed by itself, and one that jumps without end would be followed for
+/// Between two output times no driver is followed further than this, rad or sizes: what runs away would be followed for
 /// ever.
+const FARTHEST: f64 = 1e5;
+/// Between two output times a law may jump so often: each jump is followed by itself, and one that jumps without end
+/// would be followed for ever.
 const MOST_JUMPS: usize = 1_000;
-/// ... and so often without a time at which it does not jump: one that goes on like that is faster than times can be distinguished.
+/// ... and so often without a time at which it does not jump: one that goes on like that is faster than times can be
+/// distinguished.
 const MOST_IN_A_ROW: usize = 32;
-/// A law that is not bounded over this part of a walk, however near by, and this large there, has a pole, 1e3 times what it is at
-/// the ends.
+/// A law that is not bounded over this part of a walk, however near by, and this large there, has a pole, 1e3 times
+/// what it is at the ends.
 const POLE: [f64; 2] = [1e-9, 1e3];
 
-/// A curve may be touched this far from where it was predicted, in lengths between its points, however short the predicted move.
+/// A curve may be touched this far from where it was predicted, in lengths between its points, however short the
+/// predicted move.
 const CONTACT_FLOOR: f64 = 0.1;
 /// A curve may bend by this much over a step, rad: a groove that turns back within a step would be crossed unseen.
 pub(super) const MOST_BEND: f64 = 0.4;
@@ -64,11 +70,11 @@ pub(super) const MOST_BEND: f64 = 0.4;
 /// Path of the drivers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Path {
-    /// From the configuration in the design configuration, where joints may be open, to the closed one, all drivers at zero; the
-    /// parameter runs from 0 to 1 and is the part of every gap that is closed.
+    /// From the configuration in the design configuration, where joints may be open, to the closed one, all drivers at
+    /// zero; the parameter runs from 0 to 1 and is the part of every gap that is closed.
     Assembly,
-    /// All drivers straight from one value to another, [`Stepper::line`], at one time; the parameter runs from 0 to 1. So the
-    /// mechanism comes from the design configuration to its first output time, and over the jumps of laws.
+    /// All drivers straight from one value to another, [`Stepper::line`], at one time; the parameter runs from 0 to 1.
+    /// So the mechanism comes from the design configuration to its first output time, and over the jumps of laws.
     Line {
         /// That time.
         at: f64,
@@ -83,8 +89,8 @@ impl Path {
         if self == Self::Assembly { -1.0 } else { 0.0 }
     }
 
-    /// Travel of a direction over a step h, from the values of the drivers `before` to those `now`: of a law what its driver does, of a
-    /// straight path the step itself.
+    /// Travel of a direction over a step h, from the values of the drivers `before` to those `now`: of a law what its
+    /// driver does, of a straight path the step itself.
     fn travel_of(self, direction: usize, h: f64, [before, now]: [&[[f64; 3]]; 2]) -> f64 {
         match self {
             Self::Laws => now[direction][0] - before[direction][0],
@@ -220,8 +226,8 @@ impl Stepper<'_> {
         self.ahead = Lookahead::Examined;
     }
 
-    /// Finds out how near singular positions are to where the state is: along each driver alone, or along the whole path where
-    /// all go together.
+    /// Finds out how near singular positions are to where the state is: along each driver alone, or along the whole
+    /// path where all go together.
     fn examine(&mut self, path: Path) {
         // On the laws' path one direction per driver, f_d' = 1: what is near is near whether a driver hurries or rests.
         let Self { workspace, topology, parts, state, line, beyond, drivers, turns, .. } = self;
@@ -229,7 +235,8 @@ impl Stepper<'_> {
         let directions = if path == Path::Laws { drivers.len() } else { 1 };
         let workspace = workspace
             .get_or_insert_with(|| Box::new(Workspace::new(topology, state.pose.len(), drivers.len())));
-        // df_d/du: 1 of the driver that depends on itself; the line's f(1) - f(0) of all together; 0 of an assembly, whose gaps go
+        // df_d/du: 1 of the driver that depends on itself; the line's f(1) - f(0) of all together; 0 of an assembly,
+        // whose gaps go
         let speed = |direction: usize, d: usize| match path {
             Path::Assembly => 0.0,
             Path::Line { .. } => line[d][1] - line[d][0],
@@ -268,7 +275,8 @@ impl Stepper<'_> {
         self.on_laws = path == Path::Laws;
     }
 
-    /// Measures how far each direction goes at most over a stretch of a path, as [`measure_travel`](Self::measure_travel) notes it.
+    /// Measures how far each direction goes at most over a stretch of a path, as
+    /// [`measure_travel`](Self::measure_travel) notes it.
     pub(super) fn travel_over(&mut self, path: Path, from: f64, to: f64) {
         self.measure_travel(path, to - from);
         if path == Path::Laws {
@@ -296,8 +304,8 @@ impl Stepper<'_> {
         self.travel.iter().zip(&self.driver_units).map(|(x, unit)| x / unit).fold(0.0, f64::max)
     }
 
-    /// The longest step along a path that stays clear of singular positions, `rest` or shorter, with its travel; `shortest` where
-    /// none does.
+    /// The longest step along a path that stays clear of singular positions, `rest` or shorter, with its travel;
+    /// `shortest` where none does.
     fn stride(&mut self, path: Path, rest: f64, shortest: f64) -> f64 {
         let mut h = rest;
         loop {
@@ -341,8 +349,8 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    /// Counts angles over a step h, to where the state is; whether each is in the turn that is predicted along the drivers, from both
-    /// ends.
+    /// Counts angles over a step h, to where the state is; whether each is in the turn that is predicted along the
+    /// drivers, from both ends.
     fn follow_turns(&mut self, path: Path, h: f64) -> bool {
         let is_fine = self.travelled() <= FINEST;
         let Self { turns, around, beyond, drivers, saved, travel, state, .. } = self;
@@ -381,7 +389,8 @@ impl Stepper<'_> {
         for (c, k) in self.topology.contacts() {
             let ([predicted, moved], curve) = (self.touching[k], &self.parts.curves[k]);
             let (before, now) = (self.saved.contacts[k].u, self.state.contacts[k].u);
-            // abs(u - predicted) <= max(half of the predicted move, a tenth of the length between two points of the curve); NaN fails.
+            // abs(u - predicted) <= max(half of the predicted move, a tenth of the length between two points of the
+            // curve); NaN fails.
             let near = (now - predicted).abs() <= (TRUST * moved).max(CONTACT_FLOOR * curve.grain());
             if !(near && curve.bend(before, now) <= MOST_BEND)
                 && let Some(block) = self.topology[c].block
@@ -392,8 +401,8 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    /// Predicts the position where the drivers stand now, `q + sum over the directions of q' du + q'' du^2 / 2`; returns how far the
-    /// largest move goes, rad or sizes.
+    /// Predicts the position where the drivers stand now, `q + sum over the directions of q' du + q'' du^2 / 2`;
+    /// returns how far the largest move goes, rad or sizes.
     pub(super) fn predict_along(&mut self, path: Path, h: f64) -> f64 {
         self.restore();
         let mut most = 0.0_f64;
@@ -405,7 +414,8 @@ impl Stepper<'_> {
         }
         for k in 0..directions {
             let du = path.travel_of(k, h, [&self.saved.drivers, &self.drivers]);
-            // q + sum over the drivers of (q_d' Du_d + q_d'' Du_d^2 / 2); what two drivers bend together is left to Newton.
+            // q + sum over the drivers of (q_d' Du_d + q_d'' Du_d^2 / 2); what two drivers bend together is left to
+            // Newton.
             let half = du * du * 0.5;
             let (slopes, bends) = (&self.around.slopes[k], &self.around.bends[k]);
             for (c, moved) in moves.iter_mut().enumerate() {
@@ -497,8 +507,8 @@ impl Stepper<'_> {
         !self.ahead(path).is_some_and(|ahead| ahead.distance < 0.0)
     }
 
-    /// Returns whether the laws reach the singular position ahead before they go as far the other way, on the way to `target`. Where more than one
-    /// driver moves there, they are taken to reach it.
+    /// Returns whether the laws reach the singular position ahead before they go as far the other way, on the way to
+    /// `target`. Where more than one driver moves there, they are taken to reach it.
     fn reaches(&mut self, path: Path, target: f64) -> bool {
         let from = self.time;
         let moving = |d: &usize| !(self.parts.travel(*d, from, target, self.saved.drivers[*d][0]) <= 0.0);
@@ -559,7 +569,8 @@ impl Stepper<'_> {
                     },
                 }
             }
-            // What is left of a row that was not solved with: the constraints agreed in the design configuration and do not here.
+            // What is left of a row that was not solved with: the constraints agreed in the design configuration and do
+            // not here.
             StepRejection::Locked { row, residual } => {
                 let closure = self.topology.closure_of(row);
                 let quantity = self.topology.constraint(row).into();

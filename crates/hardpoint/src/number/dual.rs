@@ -28,8 +28,8 @@ impl<T: Real> Dual<T> {
         Self { v, d: T::zero() }
     }
 
-    /// A function's value `v` with the derivative that it makes of this number's. What does not depend on the variable does
-    /// not, also where the function has a vertical tangent.
+    /// A function's value `v` with the derivative that it makes of this number's. What does not depend on the variable
+    /// does not, also where the function has a vertical tangent.
     #[inline(always)]
     fn or_constant(self, v: T, d: impl FnOnce(T) -> T) -> Self {
         Self { v, d: if self.d.vanishes() { T::zero() } else { d(self.d) } }

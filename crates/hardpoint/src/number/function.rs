@@ -2,8 +2,8 @@
 
 use super::Real;
 
-/// Rows of a variant, its name in expressions, the function of a plain number, and its first three derivatives at `x`, where its
-/// value is `y`.
+/// Rows of a variant, its name in expressions, the function of a plain number, and its first three derivatives at `x`,
+/// where its value is `y`.
 macro_rules! functions {
     (|$x:ident, $y:ident| $($(#[$doc:meta])* $function:ident $name:literal, $of:expr, $derivatives:expr;)*) => {
         /// A function of one number, which knows its name in expressions and its own derivatives.

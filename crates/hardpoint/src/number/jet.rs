@@ -7,8 +7,8 @@ use super::{Function, Real};
 
 /// A quantity's value and its first N - 1 time derivatives at one instant; N is 4 at most.
 ///
-/// In the quantity's own unit per s⁰, s, s², s³. Every operation is exact up to rounding: products follow Leibniz'
-/// rule and functions of one argument that of Faà di Bruno, no differences are taken. Where a quantity is not smooth its
+/// In the quantity's own unit per s⁰, s, s², s³. Every operation is exact up to rounding: products follow Leibniz' rule
+/// and functions of one argument that of Faà di Bruno, no differences are taken. Where a quantity is not smooth its
 /// derivatives are those of the side that is active just after the instant.
 ///
 /// ```

@@ -7,9 +7,9 @@
 //! | [`Jet`] | up to three time derivatives |
 //! | [`hardpoint_tape::Number`] | how it came about: kernels are recorded with it |
 //!
-//! All of them are [`Real`], and so are they of each other: a `Dual<Jet<f64, 3>>` is a measure with its rates, and the derivatives of
-//! all three by a design variable. What is written once over [`Real`] runs on each. A [`Function`] of one number
-//! is written down once, with its name and its derivatives.
+//! All of them are [`Real`], and so are they of each other: a `Dual<Jet<f64, 3>>` is a measure with its rates, and the
+//! derivatives of all three by a design variable. What is written once over [`Real`] runs on each. A [`Function`] of
+//! one number is written down once, with its name and its derivatives.
 
 mod dual;
 mod function;

@@ -28,8 +28,8 @@ pub trait Real:
     /// The constant `x`.
     fn constant(x: f64) -> Self;
 
-    /// One operation of a compound number over these. What records runs it in a function of its own: it runs once per model, and its
-    /// code, inlined, would be a third of the crate's.
+    /// One operation of a compound number over these. What records runs it in a function of its own: it runs once per
+    /// model, and its code, inlined, would be a third of the crate's.
     #[inline(always)]
     fn operation<R>(operation: impl FnOnce() -> R) -> R {
         operation()
@@ -47,8 +47,8 @@ pub trait Real:
         Self::constant(1.0)
     }
 
-    /// The plain value. What is recorded is no arithmetic then: a program would take what is made of it for a constant. What a
-    /// number has for a `value` of its own is another thing.
+    /// The plain value. What is recorded is no arithmetic then: a program would take what is made of it for a constant.
+    /// What a number has for a `value` of its own is another thing.
     fn value(self) -> f64;
 
     /// The plain value to decide by, where a recording is reported otherwise what must hold for the decision to stand.

@@ -21,8 +21,8 @@ pub(crate) fn begin() {
     LIMITS.take();
 }
 
-/// Records what depends on no value that is unknown: where a number that may be another is looked at and is zero by chance, it is no
-/// arithmetic.
+/// Records what depends on no value that is unknown: where a number that may be another is looked at and is zero by
+/// chance, it is no arithmetic.
 pub(crate) fn strictly<R>(f: impl FnOnce() -> R) -> R {
     STRICT.set(true);
     let result = f();
@@ -35,7 +35,8 @@ pub(crate) fn limits() -> Vec<Number> {
     LIMITS.take()
 }
 
-/// True if everything since [`begin`] is arithmetic: no value was looked at, since a program takes what is made of it for a constant.
+/// True if everything since [`begin`] is arithmetic: no value was looked at, since a program takes what is made of it
+/// for a constant.
 pub(crate) fn is_arithmetic() -> bool {
     !LOOKED_AT.get()
 }

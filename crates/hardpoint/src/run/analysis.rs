@@ -92,8 +92,8 @@ impl<'m> Analysis<'m> {
         Self { programs: Arc::new(Programs::new(execution)), formulas: Arc::default(), ..self }
     }
 
-    /// The same analysis, interruptible: once the flag is set, whatever is being solved with it, on whatever thread, ends at its next
-    /// output time. Its stop is then [`Interrupted`](StopKind::Interrupted).
+    /// The same analysis, interruptible: once the flag is set, whatever is being solved with it, on whatever thread,
+    /// ends at its next output time. Its stop is then [`Interrupted`](StopKind::Interrupted).
     pub fn ended_by(self, flag: Arc<AtomicBool>) -> Self {
         Self { end: Some(flag), ..self }
     }
@@ -118,8 +118,8 @@ impl<'m> Analysis<'m> {
         self.solve(Run::new())
     }
 
-    /// Solves the request, at all output times. Where something ends the run before, [`Solution::stop`] says what, and all that
-    /// was solved is there.
+    /// Solves the request, at all output times. Where something ends the run before, [`Solution::stop`] says what, and
+    /// all that was solved is there.
     pub fn solve(&self, mut run: Run<'_>) -> Solution {
         let (design, mut solution) = (self.prepare(run.design, run.scope), std::mem::take(&mut run.memory));
         self.walk(&design, self.model().times.len(), &mut *run.progress, &mut solution, &mut |_, _| ());
@@ -139,8 +139,8 @@ impl<'m> Analysis<'m> {
         StreamSummary { steps, admissibility: walk.admissibility(&design.opens), effort, stop }
     }
 
-    /// True if and how the mechanism follows a change of the nominal design as a whole, in which variable k depends on `change[k]`:
-    /// together, variables may be followed that are not one by one.
+    /// True if and how the mechanism follows a change of the nominal design as a whole, in which variable k depends on
+    /// `change[k]`: together, variables may be followed that are not one by one.
     pub fn admissibility_of(&self, change: &[f64]) -> Admissibility {
         let mut design = self.design(&[]);
         let along = along(&self.model().whole(change));
@@ -178,7 +178,8 @@ impl<'m> Analysis<'m> {
         }
     }
 
-    /// The same analysis at other output times, of which the first is its own: what is planned and recorded serves for these as well.
+    /// The same analysis at other output times, of which the first is its own: what is planned and recorded serves for
+    /// these as well.
     pub(super) fn at_times(&self, times: Vec<f64>) -> Analysis<'static> {
         self.with_model(Model { times, ..self.model().clone() })
     }

@@ -1,9 +1,10 @@
 //! The motion between output times, as far as metrics need it.
 //!
-//! A metric is that of the curve, not of its output times. Where these are too few to show the curve, the same motion is solved once more
-//! at more times, close enough that no driver goes far between two of them and that each law is the polynomial through its ends; and at last at
-//! the times that the metrics are taken at, or in the middle of intervals where an integral is off. At its own time a value is exact, and
-//! so is its derivative: an extremum moves with the design, but its value does not change by that, `dm/db = dy/db` at `t*`.
+//! A metric is that of the curve, not of its output times. Where these are too few to show the curve, the same motion
+//! is solved once more at more times, close enough that no driver goes far between two of them and that each law is the
+//! polynomial through its ends; and at last at the times that the metrics are taken at, or in the middle of intervals
+//! where an integral is off. At its own time a value is exact, and so is its derivative: an extremum moves with the
+//! design, but its value does not change by that, `dm/db = dy/db` at `t*`.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -20,8 +21,8 @@ use super::solution::Solution;
 use super::walk::PreparedDesign;
 use super::window::Footprint;
 
-/// Between two times at which a metric is looked for no driver moves by more than this, rad or sizes of its loop: a polynomial of degree five
-/// misses a sine over it by `0.15^6 / 46080 = 2e-10`.
+/// Between two times at which a metric is looked for no driver moves by more than this, rad or sizes of its loop: a
+/// polynomial of degree five misses a sine over it by `0.15^6 / 46080 = 2e-10`.
 const FINE: f64 = 0.15;
 /// ... and no law is off the polynomial through its ends by more than this part of its range.
 const LAW_RESOLVED: f64 = 1e-8;
@@ -31,7 +32,8 @@ const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
 const MOST_HALVINGS: u32 = 40;
 /// The times that metrics ask for are solved so often at most, each time nearer to where they are.
 const MOST_PASSES: usize = 4;
-/// Just before a jump of a law is this part of the run earlier: far more than times are distinguished by, far less than anything moves in.
+/// Just before a jump of a law is this part of the run earlier: far more than times are distinguished by, far less than
+/// anything moves in.
 const JUST_BEFORE: f64 = 1e-12;
 /// Memory for the motion between output times.
 const BYTES: usize = 128 << 20;
@@ -75,8 +77,9 @@ impl Analysis<'_> {
         })
     }
 
-    /// Solves the motion of a design between its output times, where metrics ask for it; `solution` is that at the output times, or at the
-    /// last of them: then only the whole motion, solved once more, shows whether they are enough.
+    /// Solves the motion of a design between its output times, where metrics ask for it; `solution` is that at the
+    /// output times, or at the last of them: then only the whole motion, solved once more, shows whether they are
+    /// enough.
     pub(super) fn solve_between(
         &self,
         design: &PreparedDesign,
@@ -131,8 +134,8 @@ impl Analysis<'_> {
     }
 }
 
-/// Returns the output times of a model, and those between them that its laws ask for, in steps `coarser` times as long as they might be;
-/// `None` where these are more than `most`.
+/// Returns the output times of a model, and those between them that its laws ask for, in steps `coarser` times as long
+/// as they might be; `None` where these are more than `most`.
 fn times_of(model: &Model, laws: &[(&Law, f64)], coarser: f64, most: usize) -> Option<Vec<f64>> {
     let (start, end) = (*model.times.first()?, *model.times.last()?);
     let ranges: Vec<f64> = laws
@@ -171,7 +174,8 @@ fn times_of(model: &Model, laws: &[(&Law, f64)], coarser: f64, most: usize) -> O
     Some(times)
 }
 
-/// Returns whether a law is, within so much, the polynomial of degree five that has its values, rates and accelerations at both ends.
+/// Returns whether a law is, within so much, the polynomial of degree five that has its values, rates and accelerations
+/// at both ends.
 fn is_resolved(law: &Law, [from, to]: [f64; 2], within: f64) -> bool {
     let h = to - from;
     let [a, b] = [from, to].map(|t| law.at(t).derivatives());

@@ -1,5 +1,5 @@
-//! Curves between the times at which a motion was solved: the polynomials that have the values, rates and accelerations at both ends of each
-//! interval, where they turn and where they cross a value, and how far they may be from the curve.
+//! Curves between the times at which a motion was solved: the polynomials that have the values, rates and accelerations
+//! at both ends of each interval, where they turn and where they cross a value, and how far they may be from the curve.
 
 use crate::number::Real;
 
@@ -127,7 +127,8 @@ impl<T: Real> SampledCurve<'_, T> {
         coefficients.into_iter().fold(f64::NEG_INFINITY, |most, c| most.max(sign * c))
     }
 
-    /// The coefficients of the polynomial of interval k in Bernstein's form, of a cubic the inner ones twice; none beside a kink or a gap.
+    /// The coefficients of the polynomial of interval k in Bernstein's form, of a cubic the inner ones twice; none
+    /// beside a kink or a gap.
     fn bernstein(&self, k: usize) -> Option<[f64; 6]> {
         let h = self.times[k + 1] - self.times[k];
         let [a, b] = [k, k + 1].map(|k| self.values[k].map(|x| x.value()));
@@ -210,8 +211,8 @@ fn roots(c: &[f64]) -> Vec<f64> {
     found
 }
 
-/// The polynomial with what is known at the ends of an interval and at the next output time to either side, in Newton's form:
-/// twice the degree of the interval's own. How far the two are apart is how far that may be from the curve.
+/// The polynomial with what is known at the ends of an interval and at the next output time to either side, in Newton's
+/// form: twice the degree of the interval's own. How far the two are apart is how far that may be from the curve.
 pub(super) struct WidePolynomial {
     /// Number of known values and derivatives.
     count: usize,
@@ -276,8 +277,8 @@ pub(super) fn apart(curve: &SampledCurve<'_, f64>, k: usize, t: f64) -> Option<[
 /// Bisections of an interval: to the last bit of a time.
 const HALVINGS: usize = 60;
 
-/// An abscissa this near, as a part of its span, is there: a motion that starts at the place must not be said to come by later,
-/// for its last digit.
+/// An abscissa this near, as a part of its span, is there: a motion that starts at the place must not be said to come
+/// by later, for its last digit.
 pub(super) const THERE: f64 = 1e-9;
 
 /// The intervals where the abscissa is `at`, in their order, and the time of each, which moves with the design.
@@ -301,8 +302,8 @@ pub(super) fn crossings<'c, T: Real>(
     })
 }
 
-/// The time at which the abscissa is `at` in a part of interval k where it rises or falls all along, which moves with the design; none
-/// where it is not.
+/// The time at which the abscissa is `at` in a part of interval k where it rises or falls all along, which moves with
+/// the design; none where it is not.
 pub(super) fn crossing<T: Real>(
     x: Option<&SampledCurve<'_, T>>,
     k: usize,

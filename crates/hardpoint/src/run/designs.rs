@@ -19,14 +19,15 @@ use super::solution::{Solution, StreamSummary};
 use super::walk::Scope;
 
 impl Analysis<'_> {
-    /// Solves many designs, each with variable k at its entry k (m, rad or a plain number; missing entries are 0), in the memory of
-    /// eight solutions for each thread: `visit` sees every design's number and its solution, one at a time. What it does not take away
-    /// (`std::mem::take`) is overwritten by later designs.
+    /// Solves many designs, each with variable k at its entry k (m, rad or a plain number; missing entries are 0), in
+    /// the memory of eight solutions for each thread: `visit` sees every design's number and its solution, one at a
+    /// time. What it does not take away (`std::mem::take`) is overwritten by later designs.
     ///
     /// One thread goes through them in the order given, several ([`Run::threads`]) in no certain order.
     ///
-    /// Without sensitivities, designs are solved side by side. Where one of those stops, each of them is solved again on its own, so that
-    /// every design gets its own outcome. Lanes and single runs agree to round-off (`docs/performance.md`).
+    /// Without sensitivities, designs are solved side by side. Where one of those stops, each of them is solved again
+    /// on its own, so that every design gets its own outcome. Lanes and single runs agree to round-off
+    /// (`docs/performance.md`).
     ///
     /// # Panics
     /// If `visit` does.
@@ -114,8 +115,8 @@ impl Analysis<'_> {
     /// As [`Analysis::stream`], for many designs in the order given, eight at a time: every design's results, with its
     /// sensitivities, go to a sink of its own, which `sink` makes and `end` gets back.
     ///
-    /// Results of up to eight designs come by turns. Where one of those that are solved side by side stops, each of them
-    /// begins anew with a new sink, so that every design gets its own outcome.
+    /// Results of up to eight designs come by turns. Where one of those that are solved side by side stops, each of
+    /// them begins anew with a new sink, so that every design gets its own outcome.
     pub fn stream_designs<S: Sink>(
         &self,
         run: Run<'_>,

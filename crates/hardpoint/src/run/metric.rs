@@ -1,7 +1,7 @@
 //! Metrics of a solved motion, with their exact derivatives by the design variables.
 //!
-//! A metric is written once over any number; its derivatives are the same lines run on duals. Between output times, curves
-//! are the polynomials that have their values, rates and accelerations at both ends.
+//! A metric is written once over any number; its derivatives are the same lines run on duals. Between output times,
+//! curves are the polynomials that have their values, rates and accelerations at both ends.
 
 use super::curve::{SampledCurve, THERE, WidePolynomial, abscissa_at, along, apart, crossings};
 use super::quadrature::{PathIntegral, coarse_middles, path_error, path_nodes, travel};
@@ -17,11 +17,11 @@ pub struct MetricValue {
     pub value: Option<f64>,
     /// When it is taken, s; `None` for what is taken of the whole curve.
     pub time: Option<f64>,
-    /// Estimate of the error of interpolation between output times, in SI; `None` where the metric was solved at its own time, and where there
-    /// are not enough output times to estimate it.
+    /// Estimate of the error of interpolation between output times, in SI; `None` where the metric was solved at its
+    /// own time, and where there are not enough output times to estimate it.
     pub error: Option<f64>,
-    /// Scale of the error, in SI: greatest less least value of the curve, for an integral times the travel of its abscissa, for a slope
-    /// its own size.
+    /// Scale of the error, in SI: greatest less least value of the curve, for an integral times the travel of its
+    /// abscissa, for a slope its own size.
     pub range: f64,
     /// Derivative by every design variable; NaN for those that the mechanism cannot follow, and all of them where no
     /// sensitivities were solved.
@@ -33,8 +33,8 @@ pub fn metrics(model: &Model, solution: &Solution) -> Vec<MetricValue> {
     model.metrics.iter().map(|metric| metric_value(model, solution, metric)).collect()
 }
 
-/// The values of another design's metrics, to be compared with today's. Where its motion ends before today's, what a metric takes of the
-/// whole curve is not known: a part of the curve says nothing of the rest.
+/// The values of another design's metrics, to be compared with today's. Where its motion ends before today's, what a
+/// metric takes of the whole curve is not known: a part of the curve says nothing of the rest.
 pub fn metrics_beside(model: &Model, today: &Solution, other: &Solution) -> Vec<Option<f64>> {
     let whole = other.motion.len() >= today.motion.len();
     let known = |metric: &Metric| {
@@ -112,11 +112,14 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
     }
 }
 
-/// A turn of a curve within this part of its range of the farthest one may be the farthest where the curve was not solved at either.
+/// A turn of a curve within this part of its range of the farthest one may be the farthest where the curve was not
+/// solved at either.
 const ALIKE: f64 = 1e-4;
-/// An interpolation error below this part of the curve's range counts for nothing where the motion was solved between output times ...
+/// An interpolation error below this part of the curve's range counts for nothing where the motion was solved between
+/// output times ...
 const RESOLVED: f64 = 1e-10;
-/// ... and where the output times show the curve by themselves: metrics are read to some digits, and many designs are solved for them.
+/// ... and where the output times show the curve by themselves: metrics are read to some digits, and many designs are
+/// solved for them.
 const RESOLVED_BY_OUTPUTS: f64 = 1e-7;
 
 /// The greatest less the least value of a curve at its times.
@@ -143,8 +146,9 @@ pub(crate) fn window_times(metric: &Metric) -> Vec<f64> {
     metric.window.into_iter().flatten().chain(at).collect()
 }
 
-/// The times between those of a solution that a metric needs: those that it is taken at by interpolation that may be off, and for an
-/// integral those that halve the intervals where it is off; `finer` says that the solution has times between the output times.
+/// The times between those of a solution that a metric needs: those that it is taken at by interpolation that may be
+/// off, and for an integral those that halve the intervals where it is off; `finer` says that the solution has times
+/// between the output times.
 pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool) -> Vec<f64> {
     let Some((y, x)) = curves_at(solution, metric) else { return Vec::new() };
     let range = range_of(&y);
@@ -176,8 +180,8 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
     located.into_iter().filter(unresolved).collect()
 }
 
-/// The time of the greatest (sign 1) or the least value (-1); where the motion is known at `finer` times, those of all turns and ends of
-/// the window that are about as far out, too: of a motion that repeats itself, any may be the one.
+/// The time of the greatest (sign 1) or the least value (-1); where the motion is known at `finer` times, those of all
+/// turns and ends of the window that are about as far out, too: of a motion that repeats itself, any may be the one.
 fn far_out_times(
     metric: &Metric,
     y: &SampledCurve<'_, f64>,
@@ -225,7 +229,8 @@ fn curves_at<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f
     Some((now(metric.of)?, abscissa(metric, now)?))
 }
 
-/// The same with their derivatives by a variable; `None` where the mechanism cannot follow it or no sensitivities were solved.
+/// The same with their derivatives by a variable; `None` where the mechanism cannot follow it or no sensitivities were
+/// solved.
 fn varied_curves<'s>(
     solution: &'s Solution,
     metric: &Metric,
@@ -277,8 +282,9 @@ impl MetricParts {
     }
 }
 
-/// The differences from the target of an `rms` metric, one part for each node of the integral or each point of the target, so weighted that
-/// the sum of their squares is that of the metric; `None` for other metrics, and where the metric has no value.
+/// The differences from the target of an `rms` metric, one part for each node of the integral or each point of the
+/// target, so weighted that the sum of their squares is that of the metric; `None` for other metrics, and where the
+/// metric has no value.
 ///
 /// ```text
 /// r_g = sqrt(abs(dx_g) / sum abs(dx_g)) (y_g - target(x_g)),        r_p = sqrt(1 / points) (y(x_p) - y_p)
@@ -311,8 +317,9 @@ pub fn misfits(model: &Model, solution: &Solution, metric: &Metric) -> Option<Me
     MetricParts::of(model, solution, metric, |curves| parts(curves, metric), |curves| parts(curves, metric))
 }
 
-/// The greatest value (for `sign` 1) or the least (for -1) of the curve of a metric in each interval between output times; in those beyond
-/// its window, the value of the metric's whole curve at the other end, which has no say, and no derivative.
+/// The greatest value (for `sign` 1) or the least (for -1) of the curve of a metric in each interval between output
+/// times; in those beyond its window, the value of the metric's whole curve at the other end, which has no say, and no
+/// derivative.
 pub fn peaks(model: &Model, solution: &Solution, metric: &Metric, sign: f64) -> Option<MetricParts> {
     fn parts<T: Real>((y, x): &Curves<'_, T>, ends: &[f64], metric: &Metric, sign: f64) -> Vec<T> {
         let values = y.values.iter().map(|v| v[0].value());
@@ -364,7 +371,8 @@ fn abscissa<C>(metric: &Metric, curve: impl Fn(OutputSource) -> Option<C>) -> Op
     metric.over.map_or(Some(None), |over| curve(over).map(Some))
 }
 
-/// Estimate of the error of the value at a time of interval k that the abscissa decides about: its error moves the time, and that the value.
+/// Estimate of the error of the value at a time of interval k that the abscissa decides about: its error moves the
+/// time, and that the value.
 fn time_error(y: &SampledCurve<'_, f64>, x: &Option<SampledCurve<'_, f64>>, k: usize, t: f64) -> Option<f64> {
     let late = match x {
         Some(x) => (apart(x, k, t)?[0] / x.at(k, t)[1]).abs(),
@@ -525,8 +533,8 @@ fn take_at_single_time<T: Real>(
     }
 }
 
-/// The differences from a target at each of its points within the window, where the abscissa first is there; `None` where there is no such
-/// point, or one that is not reached.
+/// The differences from a target at each of its points within the window, where the abscissa first is there; `None`
+/// where there is no such point, or one that is not reached.
 fn left_at_points<T: Real>(
     metric: &Metric,
     points: &[[f64; 2]],

@@ -1,6 +1,7 @@
 //! The whole walk for one model: plan, motion, sensitivities, measures.
 //!
-//! A [`Run`] says the request, an [`Analysis`] answers it: at once, window by window, into a [`Sink`], or for many designs.
+//! A [`Run`] says the request, an [`Analysis`] answers it: at once, window by window, into a [`Sink`], or for many
+//! designs.
 
 mod analysis;
 mod between;

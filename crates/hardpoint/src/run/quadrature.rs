@@ -1,7 +1,9 @@
-//! Integrals over the path of a curve: of its polynomials between the times that were solved, over the way of the abscissa.
+//! Integrals over the path of a curve: of its polynomials between the times that were solved, over the way of the
+//! abscissa.
 //!
-//! The path is cut where the window ends (these cuts move with the design), where the abscissa turns, and where the target of an `rms` has
-//! a corner; between the cuts all is smooth. Kinks and jumps of laws are times that were solved (`between.rs`).
+//! The path is cut where the window ends (these cuts move with the design), where the abscissa turns, and where the
+//! target of an `rms` has a corner; between the cuts all is smooth. Kinks and jumps of laws are times that were solved
+//! (`between.rs`).
 
 use super::curve::{Polynomial, SampledCurve, WidePolynomial, crossing};
 use crate::model::{Metric, Reduction, on_target};
@@ -193,8 +195,9 @@ pub(super) fn path_stretches<T: Real>(
     stretches
 }
 
-/// The middles of those parts of the path that contribute most to the error of an integral, if that is more than `tolerance` (of `rms` and
-/// `mean`; of `integral` as a part of the travel). None where rates are unknown: there the error falls with the square of the steps only.
+/// The middles of those parts of the path that contribute most to the error of an integral, if that is more than
+/// `tolerance` (of `rms` and `mean`; of `integral` as a part of the travel). None where rates are unknown: there the
+/// error falls with the square of the steps only.
 pub(super) fn coarse_middles(
     metric: &Metric,
     y: &SampledCurve<'_, f64>,
@@ -224,8 +227,8 @@ pub(super) fn coarse_middles(
     large.map(|(stretch, _)| 0.5 * (y.times[stretch.k] + y.times[stretch.k + 1])).collect()
 }
 
-/// Parts of the path with at least this part of the largest contribution to the error of an integral are halved: of a smooth curve many,
-/// of one with a kink the one where that is.
+/// Parts of the path with at least this part of the largest contribution to the error of an integral are halved: of a
+/// smooth curve many, of one with a kink the one where that is.
 const COARSE: f64 = 1.0 / 64.0;
 
 /// Contributions of the parts of the path to the error of an integral; `None` if too little is known.
@@ -251,7 +254,8 @@ impl OtherPolynomial {
     }
 }
 
-/// The polynomial of interval k without the highest order that is known at its ends: farther from the curve than its own.
+/// The polynomial of interval k without the highest order that is known at its ends: farther from the curve than its
+/// own.
 fn lower(curve: &SampledCurve<'_, f64>, k: usize) -> Option<OtherPolynomial> {
     let known = usize::min(curve.known(k), curve.known(k + 1));
     (known > 1).then(|| OtherPolynomial::Lower(curve.polynomial_of(k, known - 1)))
@@ -262,8 +266,8 @@ fn wide(curve: &SampledCurve<'_, f64>, k: usize) -> Option<OtherPolynomial> {
     WidePolynomial::new(curve, k).map(OtherPolynomial::Wide)
 }
 
-/// The contribution of each part of the path to the error of an integral: the difference between other polynomials ([`wide`] or
-/// [`lower`]) and the interval's own.
+/// The contribution of each part of the path to the error of an integral: the difference between other polynomials
+/// ([`wide`] or [`lower`]) and the interval's own.
 fn integral_errors(
     of: PathIntegral<'_>,
     (y, x): (&SampledCurve<'_, f64>, &Option<SampledCurve<'_, f64>>),
@@ -306,7 +310,8 @@ pub(super) fn travel<T: Real>(
     path_nodes(metric, y, x).fold(T::zero(), |sum, node| sum + node.dx.abs())
 }
 
-/// The estimate of the error of an integral with that value, from the polynomials through more times; `None` if too little is known.
+/// The estimate of the error of an integral with that value, from the polynomials through more times; `None` if too
+/// little is known.
 pub(super) fn path_error(
     metric: &Metric,
     y: &SampledCurve<'_, f64>,

@@ -9,8 +9,9 @@ use super::walk::Scope;
 
 /// Request of a run: the design, and the results to compute.
 ///
-/// Without further words it is everything, for the nominal design: the motion at all output times, its sensitivities by all design
-/// variables, and measures. Not every way to run has a use for every word; what it has no use for changes nothing.
+/// Without further words it is everything, for the nominal design: the motion at all output times, its sensitivities by
+/// all design variables, and measures. Not every way to run has a use for every word; what it has no use for changes
+/// nothing.
 ///
 /// | | [`solve`] | [`solve_in_windows`] | [`solve_designs`] | [`stream`] | [`stream_designs`] |
 /// |---|---|---|---|---|---|
@@ -71,8 +72,8 @@ impl<'r> Run<'r> {
         }
     }
 
-    /// The changed design with variable k at `design[k]` (m, rad or a plain number; missing entries are 0, further ones count for
-    /// nothing): its motion, solved exactly, and its sensitivities there.
+    /// The changed design with variable k at `design[k]` (m, rad or a plain number; missing entries are 0, further ones
+    /// count for nothing): its motion, solved exactly, and its sensitivities there.
     ///
     /// True if joints open under a further change is answered for the nominal design.
     pub fn at(self, design: &'r [f64]) -> Self {
@@ -95,13 +96,14 @@ impl<'r> Run<'r> {
         Self { progress: Box::new(progress), ..self }
     }
 
-    /// Writes the results into the memory of a former solution, of whatever model: fresh pages from the system cost as much as solving.
+    /// Writes the results into the memory of a former solution, of whatever model: fresh pages from the system cost as
+    /// much as solving.
     pub fn reusing(self, memory: Solution) -> Self {
         Self { memory, ..self }
     }
 
-    /// Solves designs on that many threads. The same designs share their lanes however many there are, so that every solution is the same
-    /// to the last bit.
+    /// Solves designs on that many threads. The same designs share their lanes however many there are, so that every
+    /// solution is the same to the last bit.
     pub fn threads(self, threads: NonZero<usize>) -> Self {
         Self { threads, ..self }
     }

@@ -9,8 +9,8 @@ use crate::sensitivity::BodySensitivity;
 
 /// Takes the results of a run as they are found, so that nothing need be stored that is not wanted.
 ///
-/// Results come in groups of up to eight output times; within a group the bodies' states come first, then variable by variable
-/// the sensitivities of those bodies that the variable moves. All others are zero.
+/// Results come in groups of up to eight output times; within a group the bodies' states come first, then variable by
+/// variable the sensitivities of those bodies that the variable moves. All others are zero.
 pub trait Sink {
     /// True if this body's results are wanted: what is not is not even worked out.
     fn wants(&self, body: BodyId) -> bool {
@@ -27,20 +27,21 @@ pub trait Sink {
     /// [`Admissibility`](crate::sensitivity::Admissibility) at the end indicates.
     fn sensitivity(&mut self, k: usize, variable: VariableId, body: BodyId, derivatives: &BodySensitivity);
 
-    /// Memory for eight output times, k to k + 7, that are found at once, those of every number side by side. First, per body but
-    /// ground, position, columns of the rotation, velocity, angular velocity, acceleration, angular acceleration (24 numbers); second,
-    /// per variable and body that it moves, a [`BodySensitivity`] in the order of its fields (18).
+    /// Memory for eight output times, k to k + 7, that are found at once, those of every number side by side. First,
+    /// per body but ground, position, columns of the rotation, velocity, angular velocity, acceleration, angular
+    /// acceleration (24 numbers); second, per variable and body that it moves, a [`BodySensitivity`] in the order of
+    /// its fields (18).
     ///
-    /// What is written to it comes no other way, and means nothing beyond the last output time. Where there is none, as here, or of
-    /// another size, results come one by one.
+    /// What is written to it comes no other way, and means nothing beyond the last output time. Where there is none, as
+    /// here, or of another size, results come one by one.
     fn room(&mut self, k: usize) -> Option<[&mut [[f64; 8]]; 2]> {
         let _ = k;
         None
     }
 }
 
-/// Gives the results of wanted bodies, lane by lane, to one of the sinks each, as those of an output time: `of(lane)` says which
-/// sink, and which time. `moved` says which variable moves which body, in the order of the derivatives.
+/// Gives the results of wanted bodies, lane by lane, to one of the sinks each, as those of an output time: `of(lane)`
+/// says which sink, and which time. `moved` says which variable moves which body, in the order of the derivatives.
 #[inline(always)]
 pub(super) fn hand_over<S: Sink>(
     block: &ResultBlock<'_>,

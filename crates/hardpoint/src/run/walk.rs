@@ -112,7 +112,8 @@ impl<'a> Walk<'a> {
         walk
     }
 
-    /// To the last output time, or to what stops it, for those who take what they want from the stepper: nothing is stored.
+    /// To the last output time, or to what stops it, for those who take what they want from the stepper: nothing is
+    /// stored.
     pub fn each(&mut self, mut then: impl FnMut(&mut Stepper<'a>)) -> Option<Stop> {
         self.all(&mut NullSink, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
             if let SolvedSteps::One(one, _) = solved {
@@ -121,8 +122,8 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// To the last output time, or to what stops it. `then` sees what was solved, how many output times of it count, and what is known
-    /// of the variables.
+    /// To the last output time, or to what stops it. `then` sees what was solved, how many output times of it count,
+    /// and what is known of the variables.
     pub fn all<S: Sink>(
         &mut self,
         sink: &mut S,
@@ -176,7 +177,8 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// Indicates the progress of that many output times; how many of them count, and the stop of a run that is reported to end.
+    /// Indicates the progress of that many output times; how many of them count, and the stop of a run that is reported
+    /// to end.
     fn tell(
         &self,
         solved: usize,

@@ -59,12 +59,12 @@ impl Footprint {
 }
 
 impl Analysis<'_> {
-    /// As [`Analysis::solve`], window by window, each of about that many bytes: `each` sees the window's solution, and the
-    /// number of its first output time. What comes back are the facts of the whole run (stop, effort, assembly,
+    /// As [`Analysis::solve`], window by window, each of about that many bytes: `each` sees the window's solution, and
+    /// the number of its first output time. What comes back are the facts of the whole run (stop, effort, assembly,
     /// admissibility), with the last window.
     ///
-    /// A window knows which variables the mechanism could not follow up to its end. One that resists later has numbers in the
-    /// windows before, which mean nothing.
+    /// A window knows which variables the mechanism could not follow up to its end. One that resists later has numbers
+    /// in the windows before, which mean nothing.
     pub fn solve_in_windows(
         &self,
         mut run: Run<'_>,

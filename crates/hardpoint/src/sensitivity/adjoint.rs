@@ -1,8 +1,9 @@
-//! Sensitivities of a few outputs by many variables: one transposed solution for each output instead of one for each variable.
+//! Sensitivities of a few outputs by many variables: one transposed solution for each output instead of one for each
+//! variable.
 //!
-//! How an output goes with the design twists of the bodies is a load on them, a wrench each. Carried to ground like a load in
-//! statics, it says what every joint transmits; that, on the design twists of the joint's markers, is the output's
-//! derivative. What is transmitted does not know of any variable (`docs/theory.md` (17) to (20)).
+//! How an output goes with the design twists of the bodies is a load on them, a wrench each. Carried to ground like a
+//! load in statics, it says what every joint transmits; that, on the design twists of the joint's markers, is the
+//! output's derivative. What is transmitted does not know of any variable (`docs/theory.md` (17) to (20)).
 //!
 //! | here | theory | what |
 //! |---|---|---|
@@ -25,7 +26,8 @@ use super::transmission::{Transmission, Transposed, Way};
 /// A wrench with its first two time derivatives, about the world origin.
 pub(crate) type Load = [Wrench; 3];
 
-/// Loads on the twists D of the frames that unit twists and wrenches turn with, W of a body and z of its marker together.
+/// Loads on the twists D of the frames that unit twists and wrenches turn with, W of a body and z of its marker
+/// together.
 #[derive(Clone, Debug)]
 pub(crate) struct Turning<T = f64> {
     /// Per link: on that of its parent's marker.
@@ -138,7 +140,8 @@ impl Support {
         v: usize,
         field: &PlanVelocity<f64>,
     ) {
-        // What a link transmits pushes its child: it works on z_p - z_c; that of a closure pushes j, and works on z_j - z_i.
+        // What a link transmits pushes its child: it works on z_p - z_c; that of a closure pushes j, and works on z_j -
+        // z_i.
         for m in field.links.iter().filter(|m| links[m.at.0]) {
             let index = 2 * m.at.0 + m.end;
             self.places.push(MarkerPlace { index, joint: Transmitter::Link(m.at), body: m.body });
@@ -222,8 +225,8 @@ impl Adjoint {
         self.work(topology, state, support, orders, gradient);
     }
 
-    /// The same of a functional `sum F . W.. + 2 F. . W. + F.. . W`, whose wrenches need not be each other's rates, and of loads on frames and
-    /// coordinates; it is what each variable's third number in `gradient` gets.
+    /// The same of a functional `sum F . W.. + 2 F. . W. + F.. . W`, whose wrenches need not be each other's rates, and
+    /// of loads on frames and coordinates; it is what each variable's third number in `gradient` gets.
     pub fn add_turning_work(
         &mut self,
         topology: &Topology,
@@ -245,8 +248,8 @@ impl Adjoint {
         self.fields[v].law_rate(driver, order)
     }
 
-    /// Wrenches on the markers that variables move, seen from their bodies: there the markers' twists stand still, and time
-    /// derivatives are those of the components (`docs/theory.md` (20)).
+    /// Wrenches on the markers that variables move, seen from their bodies: there the markers' twists stand still, and
+    /// time derivatives are those of the components (`docs/theory.md` (20)).
     fn see(&mut self, state: &State<f64>, support: &Support, orders: usize) {
         let [v, a, _] = &state.motion.twists;
         for place in &support.places {
@@ -319,8 +322,9 @@ impl Adjoint {
     }
 }
 
-/// Watches the rows that were left out, as [`DirectDifferentiation::worst_defect`](super::DirectDifferentiation::worst_defect) does: each
-/// side of each row is a load of its own.
+/// Watches the rows that were left out, as
+/// [`DirectDifferentiation::worst_defect`](super::DirectDifferentiation::worst_defect) does: each side of each row is a
+/// load of its own.
 pub(crate) struct DefectWatch {
     /// Per body that such a row is on: what loads on it are felt by.
     supports: Vec<Option<Support>>,
@@ -378,7 +382,7 @@ impl DefectWatch {
                 let support =
                     self.supports[body.0].get_or_insert_with(|| adjoint.support(topology, &[body.0]));
                 self.side.fill([zero; 3]);
-                // l . W_i and l . W_j as outputs: the load F = l on that one body                                     (17)
+                // l . W_i and l . W_j as outputs: the load F = l on that one body                                  (17)
                 let load = [(body.0, [state.l[0][row.0], none, none])];
                 adjoint.add_work(topology, state, support, &load, 1, &mut self.side);
                 for (v, [term, ..]) in self.side.iter().enumerate() {
@@ -388,7 +392,7 @@ impl DefectWatch {
             for (v, field) in adjoint.fields.iter().enumerate() {
                 let (sum, most) = (&mut self.sum[v], &mut self.most[v]);
                 for m in field.closures.iter().filter(|m| m.at == topology[row].closure) {
-                    // l . (z_j - z_i),    z = Ad(X) e                                                                     (8)
+                    // l . (z_j - z_i),    z = Ad(X) e                                                               (8)
                     let z = state.l[0][row.0].on(state.pose[m.body].carry(m.e));
                     enter(sum, most, if m.end == 1 { z * factor } else { z * -factor });
                 }

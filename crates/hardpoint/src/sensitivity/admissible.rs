@@ -54,8 +54,8 @@ pub struct Condition {
     pub value: f64,
 }
 
-/// The conditions of all joints that a variable touches: `l . (z_j - z_i) - L' = 0` for each of their elementary constraints
-/// (`docs/theory.md` (8), paper section 4: Dot-1, Dot-2, spherical, distance).
+/// The conditions of all joints that a variable touches: `l . (z_j - z_i) - L' = 0` for each of their elementary
+/// constraints (`docs/theory.md` (8), paper section 4: Dot-1, Dot-2, spherical, distance).
 pub fn conditions_at_design(model: &Model, field: &DesignVelocity) -> Vec<Condition> {
     let twists = |k: usize| {
         [0, 1].map(|end| {
@@ -97,8 +97,8 @@ pub fn conditions_at_design(model: &Model, field: &DesignVelocity) -> Vec<Condit
     conditions
 }
 
-/// The joints that a variable opens at the design configuration while all bodies stay, each with the condition that fails
-/// most. None means admissible there.
+/// The joints that a variable opens at the design configuration while all bodies stay, each with the condition that
+/// fails most. None means admissible there.
 pub fn admissibility_at_design(model: &Model, field: &DesignVelocity) -> Vec<JointDefect> {
     // A joint opens if abs(l . (z_j - z_i) - L') > 1e-7 of the field's largest speed.
     let scale = field.markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max);

@@ -12,8 +12,8 @@
 //! | `state.l[n]` | l, l., l.. | a row of `phi_z` (5.3a) and of `phi_D` (5.3b) | wrench of each row |
 //! | `kept`, `law_rates` | L', df/dp | in `phi_D dD/dtau` | what a row keeps, and what a driver asks for, change |
 //!
-//! To a row it is the same whether a body takes its marker along or the marker moves in its body, so one wrench is the row of
-//! `phi_z` and of `phi_D`, and the paper's `phi_z Y = -phi_D dD/dtau` (5.6) reads
+//! To a row it is the same whether a body takes its marker along or the marker moves in its body, so one wrench is the
+//! row of `phi_z` and of `phi_D`, and the paper's `phi_z Y = -phi_D dD/dtau` (5.6) reads
 //!
 //! ```text
 //! l . (W_j - W_i)  =  L' - l . (z_j - z_i)                                                     docs/theory.md (11)
@@ -163,7 +163,8 @@ impl<T: Real> PlanVelocity<T> {
             }
             let Some(rates) = field.kept_rate(closure.joint) else { continue };
             for (r, row) in closure.numbered_rows() {
-                // L' of this row: `u . (V_j - V_i)` of a rod, the change of what else a row keeps; 0 of a row that keeps nothing.
+                // L' of this row: `u . (V_j - V_i)` of a rod, the change of what else a row keeps; 0 of a row that
+                // keeps nothing.
                 let rate = rates.by(row);
                 if rate.abs().decisive() > 0.0 {
                     kept.push((r, rate));
@@ -471,7 +472,8 @@ impl<T: Real> DirectDifferentiation<T> {
         worst
     }
 
-    /// The left-out rows under the change that was solved last: each with the size of its defect and what of it may be round-off.
+    /// The left-out rows under the change that was solved last: each with the size of its defect and what of it may be
+    /// round-off.
     pub fn judged_defects(
         &self,
         topology: &Topology,
@@ -501,7 +503,8 @@ impl<T: Real> DirectDifferentiation<T> {
     #[inline(always)]
     fn row_defect(&self, topology: &Topology, state: &State<T>, field: &PlanVelocity<T>, r: RowId) -> (T, T) {
         let zero = T::zero();
-        // l . (W_j - W_i) + l . (z_j - z_i) - (L' + df/dp), summed over a coupler's terms: (11) of a row that it was not solved with
+        // l . (W_j - W_i) + l . (z_j - z_i) - (L' + df/dp), summed over a coupler's terms: (11) of a row that it was
+        // not solved with
         let (mut sum, mut most) = (zero, zero);
         for RowTerm { row, factor } in topology.parts_of_row(r) {
             let closure = topology.closure_of(row);

@@ -119,7 +119,8 @@ impl Sensitivities {
         self.places[variable.0 * self.bodies + body.0].is_some()
     }
 
-    /// Copies those of a body by a variable that moves it, at the eight output times that k is one of, in the order of the fields.
+    /// Copies those of a body by a variable that moves it, at the eight output times that k is one of, in the order of
+    /// the fields.
     #[inline(always)]
     pub(crate) fn gather(&self, k: usize, variable: usize, body: usize, to: &mut [Lanes]) {
         let place = self.places[variable * self.bodies + body].expect("the variable moves the body");

@@ -1,7 +1,8 @@
 //! Second design derivatives of positions: one more solution with the factors at hand for every pair of directions.
 //!
-//! The first-order condition of every row, `l . D_u = L_u`, holds in the design that a second direction w leads to as well;
-//! differentiated along w it is the equation of order 1, w in the place of the time (`docs/theory.md` (15), (24)).
+//! The first-order condition of every row, `l . D_u = L_u`, holds in the design that a second direction w leads to as
+//! well; differentiated along w it is the equation of order 1, w in the place of the time (`docs/theory.md` (15),
+//! (24)).
 //!
 //! | here | theory | what, per unit of a direction (or of both) |
 //! |---|---|---|
@@ -32,7 +33,8 @@ pub enum PairDirection {
     Design(Vec<f64>),
     /// The design stays, and one driver moves by one unit per unit while the others stand.
     Driver(DriverId),
-    /// Marker i of a joint moves by this twist, along the joint's own axes, while the joint keeps holding its bodies to it.
+    /// Marker i of a joint moves by this twist, along the joint's own axes, while the joint keeps holding its bodies to
+    /// it.
     Opening(JointId, Twist),
 }
 
@@ -215,8 +217,8 @@ impl Seconds {
         std::mem::swap(&mut self.l, &mut state.l[1]);
     }
 
-    /// Defects of the redundant rows under a direction alone, where [`solve`](Self::solve) was called last; none where the mechanism
-    /// follows it.
+    /// Defects of the redundant rows under a direction alone, where [`solve`](Self::solve) was called last; none where
+    /// the mechanism follows it.
     pub fn resistance(&self, stepper: &Stepper<'_>, direction: usize) -> Vec<(RowId, f64)> {
         let (topology, state) = (&stepper.topology, &stepper.state);
         let FirstOrder { field, direct, .. } = &self.firsts[direction];
@@ -299,7 +301,8 @@ impl Pair {
         self.law_rates.iter().find(|(d, _)| *d == driver).map_or(0.0, |(_, rate)| *rate)
     }
 
-    /// (24) of `docs/theory.md` with n = 1, but differentiated along w: what u does is known, and changes by `W_uw` and `S_uw` (15).
+    /// (24) of `docs/theory.md` with n = 1, but differentiated along w: what u does is known, and changes by `W_uw` and
+    /// `S_uw` (15).
     fn solve(&mut self, topology: &Topology, state: &mut State<f64>, firsts: &mut [FirstOrder]) {
         let ([u, w], reach) = (self.of, &self.field.reach);
         let first = &firsts[w];

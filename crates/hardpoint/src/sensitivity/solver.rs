@@ -62,8 +62,8 @@ impl SensitivitySolver {
         fields.flat_map(|(v, field)| field.reach.bodies.iter().map(move |b| (VariableId(v), BodyId(*b))))
     }
 
-    /// The output time t, where a stepper is with velocity and acceleration: `found` gets the sensitivities of wanted bodies, and
-    /// `each` all that is known of a variable before the next one.
+    /// The output time t, where a stepper is with velocity and acceleration: `found` gets the sensitivities of wanted
+    /// bodies, and `each` all that is known of a variable before the next one.
     pub fn step(
         &mut self,
         one: &mut Stepper<'_>,
@@ -74,7 +74,8 @@ impl SensitivitySolver {
         let Self { fields, direct, wanted, resisting, .. } = self;
         // Where nothing can be solved a variable has no number, which says nothing about what resists it.
         let solved = !one.at_change_point;
-        // x., x.., l., l.. of all coordinates and rows once; then three right-hand sides for each variable: (11), (12), (13).
+        // x., x.., l., l.. of all coordinates and rows once; then three right-hand sides for each variable: (11), (12),
+        // (13).
         let (topology, state, parts) = (&one.topology, &mut one.state, &one.parts);
         state.finish_rates(topology);
         for (v, field) in fields.iter_mut().enumerate() {
@@ -164,8 +165,8 @@ fn components<T: Real>(flow: &Flow<T>, state: &State<T>, body: usize) -> [T; Bod
     [p.x, p.y, p.z, q.x, q.y, q.z, u.x, u.y, u.z, o.x, o.y, o.z, n.x, n.y, n.z, e.x, e.y, e.z]
 }
 
-/// Records the derivatives of all bodies by all variables with these fields, where the state is, and what `each` makes of all that
-/// is known of a variable before the next one; none where a law changes, which no program knows.
+/// Records the derivatives of all bodies by all variables with these fields, where the state is, and what `each` makes
+/// of all that is known of a variable before the next one; none where a law changes, which no program knows.
 pub(crate) fn record_derivatives(
     model: &Model,
     fields: &[DesignVelocity<Number>],

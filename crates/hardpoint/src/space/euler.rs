@@ -53,7 +53,7 @@ impl Angles {
         let [x, y, z] = Vec3::AXES;
         let [a, b, c] = angles;
         match self {
-            // Rz(t1) Rx(t2) Rz(t3)                                                                             (paper 2.2)
+            // Rz(t1) Rx(t2) Rz(t3)                                                                          (paper 2.2)
             Self::Euler => rotation_from_euler_313(angles),
             // Rx(a) Ry(b) Rz(c)
             Self::Cardan => Mat3::about(x, a) * Mat3::about(y, b) * Mat3::about(z, c),
@@ -62,8 +62,8 @@ impl Angles {
         }
     }
 
-    /// The angles of a rotation, rad: the first one and the last one in (-pi, pi], the middle one in [0, pi] of Euler's and in
-    /// [-pi/2, pi/2] of the others. NaN where only the sum or difference of the first and the last is known.
+    /// The angles of a rotation, rad: the first one and the last one in (-pi, pi], the middle one in [0, pi] of Euler's
+    /// and in [-pi/2, pi/2] of the others. NaN where only the sum or difference of the first and the last is known.
     pub fn of<T: Real>(self, rotation: Mat3<T>) -> [T; 3] {
         let [f, g, h] = rotation.cols;
         let length = |a: T, b: T| (a * a + b * b).sqrt();

@@ -69,7 +69,8 @@ impl<T: Real> Pose<T> {
 }
 
 impl<T: Real> Pose<Dual<T>> {
-    /// The pose, and the twist at which it changes, fixed in the outer frame: `[w; v]` with v at the outer frame's origin.
+    /// The pose, and the twist at which it changes, fixed in the outer frame: `[w; v]` with v at the outer frame's
+    /// origin.
     pub fn split(self) -> (Pose<T>, Twist<T>) {
         let value =
             Pose { rot: Mat3 { cols: self.rot.cols.map(|c| c.map(|x| x.v)) }, r: self.r.map(|x| x.v) };

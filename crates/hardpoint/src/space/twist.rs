@@ -1,7 +1,7 @@
 //! Twists and wrenches, all at the world origin and in world components.
 //!
-//! `docs/theory.md`, section 1: W = [w; v] and l = [m; f]. A body's point at p goes with `v + w x p`; a wrench is the same at any
-//! point, so that sums over bodies and joints need no lever arms.
+//! `docs/theory.md`, section 1: W = [w; v] and l = [m; f]. A body's point at p goes with `v + w x p`; a wrench is the
+//! same at any point, so that sums over bodies and joints need no lever arms.
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 

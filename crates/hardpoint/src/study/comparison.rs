@@ -16,7 +16,8 @@ const NEGLIGIBLE: f64 = 1e-3;
 pub struct StepError {
     /// The step, m, rad, or units of tau.
     pub step: f64,
-    /// Largest deviation over all times of the difference, relative as [`Comparison::of`] says; infinite where there is no sensitivity.
+    /// Largest deviation over all times of the difference, relative as [`Comparison::of`] says; infinite where there is
+    /// no sensitivity.
     pub error: f64,
     /// The quantity: `knuckle acceleration`, `toe rate`, ...
     pub quantity: String,
@@ -24,7 +25,8 @@ pub struct StepError {
     pub time: f64,
 }
 
-/// The largest relative deviation of every quantity at its step: of each body but ground six kinds of motion, of each output its orders.
+/// The largest relative deviation of every quantity at its step: of each body but ground six kinds of motion, of each
+/// output its orders.
 #[derive(Clone, Debug, Default)]
 pub struct Comparison {
     /// The six [`KINDS`], each of all bodies but ground; then value, rate and acceleration of every output.
@@ -63,7 +65,8 @@ const KINDS: [Kind; 6] = [
 ];
 
 impl Comparison {
-    /// Compares the sensitivities of a complete solution with a difference over the same output times; empty where nothing was solved.
+    /// Compares the sensitivities of a complete solution with a difference over the same output times; empty where
+    /// nothing was solved.
     ///
     /// A deviation is relative to the largest sensitivity of its kind over all bodies and times, or, where
     /// the design hardly matters, to what one natural step would have to change for one part in a thousand of
@@ -103,8 +106,8 @@ impl Comparison {
         [0, 2, 4].map(|kind| self.errors[kind * self.bodies + body.0 - 1].error)
     }
 
-    /// Errors of value, rate and acceleration of output m, a column of [`MeasureResults`](crate::measure::Measured); 0 for orders that it does
-    /// not have.
+    /// Errors of value, rate and acceleration of output m, a column of [`MeasureResults`](crate::measure::Measured); 0
+    /// for orders that it does not have.
     pub fn of_output(&self, m: usize) -> [f64; 3] {
         let first = KINDS.len() * self.bodies + self.orders[..m].iter().sum::<usize>();
         [0, 1, 2].map(|order| if order < self.orders[m] { self.errors[first + order].error } else { 0.0 })
@@ -112,8 +115,9 @@ impl Comparison {
 
     /// Reduces the error of outputs that agree at no step by the spread of the differences themselves, time by time.
     ///
-    /// The spread s of the three steps in a row that differ least bounds truncation and round-off there: truncation falls by a factor of
-    /// 10 (one-sided of 3) from each to the next. A derivative that is wrong by more than s stays wrong by the rest.
+    /// The spread s of the three steps in a row that differ least bounds truncation and round-off there: truncation
+    /// falls by a factor of 10 (one-sided of 3) from each to the next. A derivative that is wrong by more than s stays
+    /// wrong by the rest.
     pub(super) fn allow_for_spread(
         &mut self,
         model: &Model,
@@ -186,8 +190,9 @@ pub(super) struct UndecidedOutputs {
 const KINK: f64 = 1e-4;
 
 impl UndecidedOutputs {
-    /// Decides by the difference with the finest step: undecided are magnitudes that reach zero within the step, where `abs(v)` has a kink and no derivative
-    /// at v = 0; and outputs that the moved designs have no number for. `None` where nothing was solved.
+    /// Decides by the difference with the finest step: undecided are magnitudes that reach zero within the step, where
+    /// `abs(v)` has a kink and no derivative at v = 0; and outputs that the moved designs have no number for. `None`
+    /// where nothing was solved.
     pub fn by(model: &Model, solution: &Solution, finest: Option<&Difference>) -> Self {
         let Some(d) = finest else { return Self::default() };
         let measured = &solution.measured;

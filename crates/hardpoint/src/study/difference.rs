@@ -42,13 +42,13 @@ pub struct Difference {
     pub bodies: Vec<BodySensitivity>,
     /// `outputs[k * m + j]`: of value, rate and acceleration of output j in row k.
     pub outputs: Vec<[f64; 3]>,
-    /// `bends[k * m + j]`: of the value of output j in row k `y(b + h) - 2 y(b) + y(b - h)`, which is far above h^2 where it has a kink
-    /// between the moved designs; NaN of one-sided differences.
+    /// `bends[k * m + j]`: of the value of output j in row k `y(b + h) - 2 y(b) + y(b - h)`, which is far above h^2
+    /// where it has a kink between the moved designs; NaN of one-sided differences.
     pub bends: Vec<f64>,
 }
 
-/// Re-solves the designs that a scheme asks for, for each variable and step, eight at a time, and divides. `nominal` is the
-/// complete solution of the nominal design.
+/// Re-solves the designs that a scheme asks for, for each variable and step, eight at a time, and divides. `nominal` is
+/// the complete solution of the nominal design.
 ///
 /// # Errors
 /// Per entry: the [`Stop`] of the moved design that did not run to the end.

@@ -29,8 +29,8 @@ const ROW_COST: usize = 1;
 /// Method of gradients. All methods give the same numbers, to round-off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GradientMethod {
-    /// Whichever is expected to be faster: adjoint where there are more variables than redundant rows, three times the outputs and six
-    /// times the loads together.
+    /// Whichever is expected to be faster: adjoint where there are more variables than redundant rows, three times the
+    /// outputs and six times the loads together.
     #[default]
     Auto,
     /// Variable by variable: the cost grows with the variables, and outputs are nearly free.
@@ -59,8 +59,8 @@ pub struct Gradients {
 }
 
 impl Gradients {
-    /// Derivatives by every variable, at fixed t, of value, rate and acceleration of the m-th output requested, at time k; in
-    /// the output's unit, per s, per s^2, per unit of the variable.
+    /// Derivatives by every variable, at fixed t, of value, rate and acceleration of the m-th output requested, at time
+    /// k; in the output's unit, per s, per s^2, per unit of the variable.
     ///
     /// Those of a variable that the mechanism cannot follow are NaN: [`Gradients::admissibility`] says why.
     pub fn at(&self, k: usize, m: usize) -> &[[f64; 3]] {
@@ -73,11 +73,11 @@ impl Analysis<'_> {
     /// Gradients of some outputs, by their indices in [`outputs`], by all variables at the design with variable k at
     /// `design[k]`.
     ///
-    /// The adjoint way costs one transposed solution for each output and time, with its first two time derivatives, and a few
-    /// products for each marker that a variable moves (`docs/theory.md`, section 8).
+    /// The adjoint way costs one transposed solution for each output and time, with its first two time derivatives, and
+    /// a few products for each marker that a variable moves (`docs/theory.md`, section 8).
     ///
-    /// Of loads it is one solution more. Velocities, slopes over a driver, compliances and formulas over other measures always go the
-    /// direct way.
+    /// Of loads it is one solution more. Velocities, slopes over a driver, compliances and formulas over other measures
+    /// always go the direct way.
     ///
     /// # Panics
     /// If there is no such output.
@@ -342,7 +342,7 @@ impl<'a> AdjointSolver<'a> {
         for ((_, load), by) in loads.iter_mut().zip(by_twists.chunks_exact(6)) {
             for (order, load) in load.iter_mut().enumerate() {
                 let part = |first: usize| Vec3::from([0, 1, 2].map(|k| by[first + k][order]));
-                // F_i = (dy/d(turn about x, y, z), dy/d(slide along x, y, z)) of body i, and its rates                (17)
+                // F_i = (dy/d(turn about x, y, z), dy/d(slide along x, y, z)) of body i, and its rates             (17)
                 *load = Wrench { m: part(0), f: part(3) };
             }
         }

@@ -11,7 +11,8 @@ use crate::topology::{Formulation, TopologyError};
 
 use super::evaluation::StudyCost;
 
-/// A solved grid. Positions are counted row by row: in a row the first driver goes from position to position while the second is.
+/// A solved grid. Positions are counted row by row: in a row the first driver goes from position to position while the
+/// second is.
 #[derive(Clone, Debug)]
 pub struct GridMap {
     /// The grid.
@@ -57,8 +58,9 @@ pub(super) const STANDS: [f64; 2] = [0.0, 1.0];
 impl GridMap {
     /// Solves a grid at the design with variable k at `design[k]`; `more` is asked at every position, and may end it.
     ///
-    /// Each row is reached from the drawn position: first the second driver goes to where it is in that row, then the first one goes up,
-    /// and in a motion of its own down. So a position beyond a limit on one side says nothing of the other side.
+    /// Each row is reached from the drawn position: first the second driver goes to where it is in that row, then the
+    /// first one goes up, and in a motion of its own down. So a position beyond a limit on one side says nothing of the
+    /// other side.
     ///
     /// # Errors
     /// A [`TopologyError`] where the mechanism cannot be driven.
@@ -82,7 +84,8 @@ impl GridMap {
         };
         for row in 0..second.len() {
             for sign in [1.0, -1.0] {
-                // Each side from the middle outwards; where the first driver is in the design configuration counts as the upper side.
+                // Each side from the middle outwards; where the first driver is in the design configuration counts as
+                // the upper side.
                 let mut places: Vec<usize> =
                     (0..first.len()).filter(|k| (first[*k] >= 0.0) == (sign > 0.0)).collect();
                 if sign < 0.0 {
@@ -148,14 +151,14 @@ impl GridMap {
         numbers
     }
 
-    /// True if output m has numbers in a map: what follows from positions, or from what happens while one driver alone moves. Velocities,
-    /// accelerations and what follows from them are those of a motion, and there is none.
+    /// True if output m has numbers in a map: what follows from positions, or from what happens while one driver alone
+    /// moves. Velocities, accelerations and what follows from them are those of a motion, and there is none.
     pub fn has(&self, m: usize) -> bool {
         self.still[m]
     }
 
-    /// Output m where the first driver is at its value i, the second at its value j; `None` where that was not reached, or where
-    /// there is no such number.
+    /// Output m where the first driver is at its value i, the second at its value j; `None` where that was not reached,
+    /// or where there is no such number.
     pub fn value(&self, [i, j]: [usize; 2], m: usize) -> Option<f64> {
         self.number([i, j], m)
     }
@@ -220,7 +223,8 @@ fn from_drawing(model: &Model, grid: &Grid) -> [Vec<f64>; 2] {
     })
 }
 
-/// The mechanism in one half of a row: the first driver goes as far as the first number, the second as far as the second.
+/// The mechanism in one half of a row: the first driver goes as far as the first number, the second as far as the
+/// second.
 fn row_model(model: &Model, grid: &Grid, ways: [f64; 2], places: impl Iterator<Item = f64>) -> Model {
     let mut laws = vec![Some(Law::constant(0.0)); model.drivers.len()];
     let mut formulas = Vec::new();
@@ -242,8 +246,9 @@ fn row_model(model: &Model, grid: &Grid, ways: [f64; 2], places: impl Iterator<I
     Model { cases: vec![case], metrics: Vec::new(), ..model.clone() }.in_case(CaseId(0))
 }
 
-/// A law written here. Where the driver's laws count from zero and the drawing follows the design, the driver has gone back by what the
-/// drawing has moved before the first place is passed, so that it is where the grid says in every design.
+/// A law written here. Where the driver's laws count from zero and the drawing follows the design, the driver has gone
+/// back by what the drawing has moved before the first place is passed, so that it is where the grid says in every
+/// design.
 pub(super) fn law_of(model: &Model, driver: DriverId, text: String) -> (Law, Option<Formula>) {
     let [_, stands] = STANDS;
     let law =

@@ -32,7 +32,8 @@ impl Analysis<'_> {
         self.jerks_in(&design, usize::MAX, &mut |_| ())
     }
 
-    /// As [`Analysis::jerks`] of the nominal design, that many output times at a time: `each` sees them one part after the other.
+    /// As [`Analysis::jerks`] of the nominal design, that many output times at a time: `each` sees them one part after
+    /// the other.
     pub fn jerks_in_windows(&self, rows: usize, mut each: impl FnMut(&Jerks)) {
         let design = self.design(&[]);
         let last = self.jerks_in(&design, rows, &mut each);

@@ -46,7 +46,8 @@ pub struct Loads {
     pub joints: Vec<JointLoad>,
     /// `drivers[k * n + d]` at time k of driver d, of n.
     pub drivers: Vec<DriverLoad>,
-    /// `pushes[k * n + i]` at time k of [`Model::pushed`](crate::model::Model::pushed)'s place i, of n: the force on its body there, global, N.
+    /// `pushes[k * n + i]` at time k of [`Model::pushed`](crate::model::Model::pushed)'s place i, of n: the force on
+    /// its body there, global, N.
     pub pushes: Vec<Vec3>,
     /// Friction elements that are not determined at some time, because redundant constraints share their normal force:
     /// then no load is determined.
@@ -78,8 +79,8 @@ impl Loads {
 }
 
 impl Analysis<'_> {
-    /// Loads of all joints and drivers over the motion of the design with variable k at `design[k]`; of a model in which nothing has mass
-    /// and nothing pushes they are all zero.
+    /// Loads of all joints and drivers over the motion of the design with variable k at `design[k]`; of a model in
+    /// which nothing has mass and nothing pushes they are all zero.
     pub fn loads(&self, design: &[f64]) -> Loads {
         let (model, design) = (self.model(), self.design(design));
         let mut solver = LoadSolver::new(self.design_map(), self.topology(), &design.values, false).judging();

@@ -7,7 +7,8 @@ use crate::motion::Motion;
 /// change the quantity by less than this part of the whole motion.
 const NOTHING: f64 = 1e-10;
 
-/// The magnitude of a motion at orders 0, 1 and 2. Of itself a mechanism has that of its size, turns of 1 rad, and no rates.
+/// The magnitude of a motion at orders 0, 1 and 2. Of itself a mechanism has that of its size, turns of 1 rad, and no
+/// rates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Magnitude {
     /// Size of the mechanism, m.
@@ -44,8 +45,8 @@ impl Magnitude {
         }
     }
 
-    /// The same, but for orders that are round-off: where a motion is at rest or runs at a steady speed all the `span`, s, the next order
-    /// counts as if the one before were gone through once in that time.
+    /// The same, but for orders that are round-off: where a motion is at rest or runs at a steady speed all the `span`,
+    /// s, the next order counts as if the one before were gone through once in that time.
     #[must_use]
     pub fn or_once_in(mut self, span: f64) -> Self {
         /// An order that changes the one before it by less than this part during the run is round-off.

@@ -8,8 +8,8 @@ use crate::space::Vec3;
 
 /// Conditions that the motion adds are taken at that many of its output times, evenly.
 const TIMES: usize = 24;
-/// A condition is met where its defect is below this part of what the largest change makes of the strongest condition: some
-/// hundred times the round-off of typed coordinates.
+/// A condition is met where its defect is below this part of what the largest change makes of the strongest condition:
+/// some hundred times the round-off of typed coordinates.
 const MET: f64 = 1e-7;
 /// A variable that was requested moves by this part of what others do: it is kept where they can make up for it.
 const KEPT: f64 = 1e-9;
@@ -25,13 +25,13 @@ pub struct NearestAdmissible {
     pub defects: [f64; 2],
 }
 
-/// The change nearest to `change` that keeps all joints closed with all bodies where they are (paper, section 4), and over the
-/// motion meets what redundant constraints ask for; to first order.
+/// The change nearest to `change` that keeps all joints closed with all bodies where they are (paper, section 4), and
+/// over the motion meets what redundant constraints ask for; to first order.
 ///
-/// It is the least-squares projection onto the null space of these conditions, over the variables requested and all others of
-/// the model that move one coordinate of a hardpoint or tilt one joint ([`add_coordinates`](super::add_coordinates),
-/// [`add_tilts`](super::add_tilts)), each measured by its [natural step](crate::model::Model::natural_step); what was requested is
-/// kept as long as others can make up for it.
+/// It is the least-squares projection onto the null space of these conditions, over the variables requested and all
+/// others of the model that move one coordinate of a hardpoint or tilt one joint
+/// ([`add_coordinates`](super::add_coordinates), [`add_tilts`](super::add_tilts)), each measured by its
+/// [natural step](crate::model::Model::natural_step); what was requested is kept as long as others can make up for it.
 pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> NearestAdmissible {
     let model = analysis.model();
     let change = model.whole(change);
@@ -142,7 +142,7 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
                             numbers.len() - 1
                         });
                         let unit = if topology.constraint(r).is_length() { size } else { 1.0 };
-                        // l . (D_j - D_i) - L' of a left-out row at this output time                                 (11)
+                        // l . (D_j - D_i) - L' of a left-out row at this output time                               (11)
                         rows[first + at][v] = value * scales[v] / unit;
                     }
                 }

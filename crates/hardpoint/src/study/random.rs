@@ -1,5 +1,5 @@
-//! Deviations drawn at random, and the moments of what they are drawn from. A deviation of `m` coordinates of one point scatters alike
-//! in all directions: in a disc or a sphere (`docs/theory.md`, section on tolerances).
+//! Deviations drawn at random, and the moments of what they are drawn from. A deviation of `m` coordinates of one point
+//! scatters alike in all directions: in a disc or a sphere (`docs/theory.md`, section on tolerances).
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -7,8 +7,8 @@ use rand_distr::{Distribution, StandardNormal, StandardUniform};
 
 use crate::model::Scatter;
 
-/// Below that many standard deviations a cut-off normal is drawn from within its reach, above from the normal: either way at least a third
-/// of the trials count.
+/// Below that many standard deviations a cut-off normal is drawn from within its reach, above from the normal: either
+/// way at least a third of the trials count.
 const NARROW: f64 = 1.5;
 /// Terms of the series for even narrower ones: each is less than `k^2 / 2 / j` of the one before.
 const TERMS: i32 = 60;
@@ -44,8 +44,8 @@ pub fn moments(scatter: Scatter, m: usize, reach: f64) -> Moments {
     }
 }
 
-/// `int_0^k r^n exp(-r^2/2) dr`, as the series `exp(-k^2/2) k^(n+1) (1/(n+1) + k^2/((n+1)(n+3)) + ...)`, whose terms are all positive; for
-/// a far `k` by parts from the first two.
+/// `int_0^k r^n exp(-r^2/2) dr`, as the series `exp(-k^2/2) k^(n+1) (1/(n+1) + k^2/((n+1)(n+3)) + ...)`, whose terms
+/// are all positive; for a far `k` by parts from the first two.
 fn radial(n: usize, k: f64) -> f64 {
     let end = (-0.5 * k * k).exp();
     if k < 5.0 {

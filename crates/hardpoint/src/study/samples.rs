@@ -1,7 +1,8 @@
 //! Many designs in all motions, each by its number: what Monte Carlo, sweeps and their like have in common.
 //!
-//! Designs go in blocks of fixed size, and eight of a block side by side. A block is the same whoever solves it and however many are
-//! requested, so that no result depends on threads, and the first designs of many are those of few, to the last bit.
+//! Designs go in blocks of fixed size, and eight of a block side by side. A block is the same whoever solves it and
+//! however many are requested, so that no result depends on threads, and the first designs of many are those of few, to
+//! the last bit.
 
 use std::collections::BTreeMap;
 use std::num::NonZero;
@@ -15,13 +16,14 @@ use crate::run::{Run, Solution};
 
 use super::evaluation::Motions;
 
-/// Designs of one block: enough that what begins a block counts for nothing beside it, few enough that an interruption is soon heard.
+/// Designs of one block: enough that what begins a block counts for nothing beside it, few enough that an interruption
+/// is soon heard.
 pub const BLOCK: usize = 512;
 
 /// Designs to solve, and options.
 pub struct SampleRun<'w> {
-    /// The numbers of the designs. They begin with a multiple of 512, or the first designs are not solved beside those that
-    /// they would be beside in a longer run.
+    /// The numbers of the designs. They begin with a multiple of 512, or the first designs are not solved beside those
+    /// that they would be beside in a longer run.
     pub numbers: Range<usize>,
     /// The values of all variables of the design of a number.
     pub design: &'w (dyn Fn(usize) -> Vec<f64> + Sync),
@@ -41,9 +43,10 @@ pub struct SampleBlock<A> {
 }
 
 impl Motions<'_> {
-    /// Solves many designs in all motions, without sensitivities. Of every block `see` gathers what is wanted: it is shown each design of
-    /// it, by its number and the motion, motion by motion and in the order of their numbers. `done` is given the blocks in order, and may
-    /// end the work; what was given to it then are all designs up to some number.
+    /// Solves many designs in all motions, without sensitivities. Of every block `see` gathers what is wanted: it is
+    /// shown each design of it, by its number and the motion, motion by motion and in the order of their numbers.
+    /// `done` is given the blocks in order, and may end the work; what was given to it then are all designs up to some
+    /// number.
     ///
     /// # Panics
     /// If `see` or `done` does.

@@ -1,4 +1,5 @@
-//! Second design derivatives over a motion: Hessians, their products with vectors, and how a curve bends along a change.
+//! Second design derivatives over a motion: Hessians, their products with vectors, and how a curve bends along a
+//! change.
 
 use crate::design::BodyFixed;
 use crate::measure::{Instant, Output, bodies_asked_for, outputs};
@@ -49,12 +50,13 @@ impl SecondDerivatives {
 }
 
 impl Analysis<'_> {
-    /// Second derivatives at the design with variable k at `design[k]`, for pairs of directions, each given by its index.
+    /// Second derivatives at the design with variable k at `design[k]`, for pairs of directions, each given by its
+    /// index.
     ///
-    /// A direction says how fast every variable goes (missing entries are 0). With the unit vectors and all pairs of them this
-    /// is the Hessian; with one direction v more and the pairs of it with every unit vector the Hessian times v; with
-    /// one direction and the pair of it with itself, how much the curves bend along a change. Each pair costs one solution
-    /// with the factors that the motion leaves.
+    /// A direction says how fast every variable goes (missing entries are 0). With the unit vectors and all pairs of
+    /// them this is the Hessian; with one direction v more and the pairs of it with every unit vector the Hessian times
+    /// v; with one direction and the pair of it with itself, how much the curves bend along a change. Each pair costs
+    /// one solution with the factors that the motion leaves.
     ///
     /// Directions that the mechanism cannot follow give numbers that mean nothing: ask
     /// [`Sensitivities::admissibility`](crate::sensitivity::Sensitivities::admissibility) first.

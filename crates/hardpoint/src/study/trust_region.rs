@@ -1,5 +1,5 @@
-//! Bounded least squares by basin's trust region, for all who can give residuals and their derivatives; and what solvers that step back ask
-//! for again.
+//! Bounded least squares by basin's trust region, for all who can give residuals and their derivatives; and what
+//! solvers that step back ask for again.
 
 use std::cell::RefCell;
 use std::convert::Infallible;
@@ -91,7 +91,8 @@ pub(super) struct TrustRegion<'p>(
 );
 
 impl<'p> TrustRegion<'p> {
-    /// From a point on, every coordinate of which stays between the same bounds; `None` where there is nothing to begin with.
+    /// From a point on, every coordinate of which stays between the same bounds; `None` where there is nothing to begin
+    /// with.
     pub fn new(
         start: Vec<f64>,
         [low, high]: [f64; 2],

@@ -7,12 +7,12 @@ use super::magnitude::Magnitude;
 
 /// The second-order part may be this part of the first-order one where a linear prediction is still trusted.
 const LINEAR: f64 = 0.05;
-/// Over a natural step a second-order part below this part of the first-order one is round-off: the output is linear in the
-/// variable. Second derivatives hold to some 1e-13 of the terms that cancel in them, and these may be a thousand times larger
-/// than the first-order part; what bends at all in a mechanism bends by far more.
+/// Over a natural step a second-order part below this part of the first-order one is round-off: the output is linear in
+/// the variable. Second derivatives hold to some 1e-13 of the terms that cancel in them, and these may be a thousand
+/// times larger than the first-order part; what bends at all in a mechanism bends by far more.
 const ROUND_OFF: f64 = 1e-10;
-/// A variable that moves an output by less than this part of what the strongest does is not judged by it: next to nothing, any
-/// bend is large.
+/// A variable that moves an output by less than this part of what the strongest does is not judged by it: next to
+/// nothing, any bend is large.
 const SLIGHT: f64 = 1e-2;
 /// Second derivatives of that many bytes are held at once; between such parts the work can be ended.
 const MOST_BYTES: usize = 8 << 20;
@@ -20,21 +20,22 @@ const MOST_BYTES: usize = 8 << 20;
 /// Linear range of the sensitivities by one design variable.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Validity {
-    /// Per output: how far the variable may go, m, rad or plain, before the largest second-order part over the motion is 5 % of the
-    /// largest first-order one; infinite where it is exactly linear, `None` where there is no sensitivity to speak of or no second
-    /// derivative ([`KnownOrders::by_position`](crate::model::KnownOrders::by_position)).
+    /// Per output: how far the variable may go, m, rad or plain, before the largest second-order part over the motion
+    /// is 5 % of the largest first-order one; infinite where it is exactly linear, `None` where there is no sensitivity
+    /// to speak of or no second derivative ([`KnownOrders::by_position`](crate::model::KnownOrders::by_position)).
     pub linear_up_to: Vec<Option<f64>>,
 }
 
-/// Number of times a change may be made until its second-order part is 5 % of its first-order part; infinite where that is
-/// exactly linear. Both parts are those of a natural step.
+/// Number of times a change may be made until its second-order part is 5 % of its first-order part; infinite where that
+/// is exactly linear. Both parts are those of a natural step.
 pub(super) fn linear_up_to(first: f64, second: f64) -> f64 {
-    // y(b + s) = y + y_b s + y_bb s^2 / 2:  abs(y_bb s^2 / 2) = 0.05 abs(y_b s)  at  s = 0.05 abs(y_b) / abs(y_bb / 2)  (34)
+    // y(b + s) = y + y_b s + y_bb s^2 / 2: abs(y_bb s^2 / 2) = 0.05 abs(y_b s) at s = 0.05 abs(y_b) / abs(y_bb / 2)
+    // (34)
     if second <= ROUND_OFF * first { f64::INFINITY } else { LINEAR * first / second }
 }
 
-/// The validity of the sensitivities of a solution of the nominal design, variable by variable; nothing is said of variables
-/// that the mechanism cannot follow. `more` is asked before every part of the work, and may end it.
+/// The validity of the sensitivities of a solution of the nominal design, variable by variable; nothing is said of
+/// variables that the mechanism cannot follow. `more` is asked before every part of the work, and may end it.
 pub fn validity(
     analysis: &Analysis<'_>,
     solution: &Solution,

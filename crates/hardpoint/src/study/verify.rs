@@ -1,5 +1,5 @@
-//! The paper's section 6 for any model: analytic sensitivities against re-solved designs, over a sweep of
-//! steps. The error must fall with the square of the step (central differences) or with the step itself (one-sided ones), then
+//! The paper's section 6 for any model: analytic sensitivities against re-solved designs, over a sweep of steps. The
+//! error must fall with the square of the step (central differences) or with the step itself (one-sided ones), then
 //! rise by round-off.
 
 use std::ops::ControlFlow;
@@ -11,14 +11,14 @@ use crate::sensitivity::Admissibility;
 use super::comparison::{Comparison, StepError, UndecidedOutputs};
 use super::difference::{DifferenceScheme, finite_differences};
 
-/// A quantity passes if central differences agree to this at some step of the sweep, relative to the largest sensitivity of its
-/// kind. The best that they can reach in a well-conditioned mechanism is about (machine epsilon)^(2/3) = 4e-11;
-/// accelerations near a limit lose four digits of it. Where differences do not agree with one another to this, because of truncation or
-/// round-off, by how much they do not is allowed besides.
+/// A quantity passes if central differences agree to this at some step of the sweep, relative to the largest
+/// sensitivity of its kind. The best that they can reach in a well-conditioned mechanism is about (machine
+/// epsilon)^(2/3) = 4e-11; accelerations near a limit lose four digits of it. Where differences do not agree with one
+/// another to this, because of truncation or round-off, by how much they do not is allowed besides.
 pub const PASS: f64 = 1e-6;
 
-/// The same for one-sided differences. Truncation grows with the step itself, so that they reach
-/// (machine epsilon)^(1/2) = 1.5e-8 at best: 400 times more than central ones, and the tolerance is as many times larger.
+/// The same for one-sided differences. Truncation grows with the step itself, so that they reach (machine
+/// epsilon)^(1/2) = 1.5e-8 at best: 400 times more than central ones, and the tolerance is as many times larger.
 pub const PASS_ONE_SIDED: f64 = 4e-4;
 
 /// Options of a verification.
@@ -70,8 +70,8 @@ pub struct VariableCheck {
     pub variable: VariableId,
     /// Outcome of the check.
     pub outcome: CheckOutcome,
-    /// Every quantity at the step where it agrees best. Truncation and round-off are not the same for all of them, so that no one
-    /// step suits all.
+    /// Every quantity at the step where it agrees best. Truncation and round-off are not the same for all of them, so
+    /// that no one step suits all.
     pub quantities: Comparison,
     /// At every step that could be solved, the quantity that agrees worst there.
     pub sweep: Vec<StepError>,

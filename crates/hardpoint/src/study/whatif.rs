@@ -22,8 +22,8 @@ pub struct WhatIf {
     bend: SecondDerivatives,
     /// The change as part of a natural one, of the variable that goes farthest.
     part: f64,
-    /// The joints that the change opens in the design configuration, so that the mechanism re-assembles; none where it is
-    /// admissible as a whole.
+    /// The joints that the change opens in the design configuration, so that the mechanism re-assembles; none where it
+    /// is admissible as a whole.
     pub opens: Vec<JointDefect>,
     /// Changed variables that the mechanism cannot follow, not even together: then nothing is predicted.
     pub cannot_follow: Vec<VariableId>,
@@ -37,8 +37,8 @@ pub struct PredictionQuality {
     /// Largest error of the first-order prediction, and of the second-order one, which follows for positions alone
     /// ([`KnownOrders::by_position`](crate::model::KnownOrders::by_position)).
     pub errors: [Option<f64>; 2],
-    /// Number of times the change could be made before its second-order part is 5 % of the first-order one; infinite where
-    /// it is exactly linear, `None` where the first-order part is nothing or the second-order one is not known.
+    /// Number of times the change could be made before its second-order part is 5 % of the first-order one; infinite
+    /// where it is exactly linear, `None` where the first-order part is nothing or the second-order one is not known.
     pub linear_up_to: Option<f64>,
 }
 
@@ -129,7 +129,8 @@ impl WhatIf {
             (first, second) = (first.max(self.first(k, m).abs()), second.max(self.second(k, m).abs()));
         }
         let natural = |first: f64, second: f64| {
-            // Per natural step: the first-order part goes with the size of the change, the second-order part with its square.
+            // Per natural step: the first-order part goes with the size of the change, the second-order part with its
+            // square.
             linear_up_to(first / self.part, second / (self.part * self.part)) / self.part
         };
         let linear_up_to = (bends && first > 0.0).then(|| natural(first, second));
@@ -137,8 +138,8 @@ impl WhatIf {
     }
 }
 
-/// The value of output m at time k of another design; an angle that is counted through turns is counted through the same ones as
-/// today's.
+/// The value of output m at time k of another design; an angle that is counted through turns is counted through the
+/// same ones as today's.
 pub fn value_beside(today: &Solution, other: &Solution, k: usize, m: usize) -> f64 {
     const TURN: f64 = 2.0 * std::f64::consts::PI;
     let [x, now] = [other, today].map(|s| s.measured.value(k, m)[0]);
@@ -148,9 +149,9 @@ pub fn value_beside(today: &Solution, other: &Solution, k: usize, m: usize) -> f
     }
 }
 
-/// A variable that a name represents: one of the model's, or else `HARDPOINT.x`, `.y`, `.z`, or `JOINT.tilt_x`, `.tilt_y`,
-/// `.tilt_z` (about a global axis through the joint's place), which the model is given as a new variable. A coordinate that
-/// one of the model's variables is already represents that variable.
+/// A variable that a name represents: one of the model's, or else `HARDPOINT.x`, `.y`, `.z`, or `JOINT.tilt_x`,
+/// `.tilt_y`, `.tilt_z` (about a global axis through the joint's place), which the model is given as a new variable. A
+/// coordinate that one of the model's variables is already represents that variable.
 pub fn variable_named(model: &mut Model, name: &str) -> Option<VariableId> {
     if let Some(known) = model.variable(name) {
         return Some(known);
@@ -183,8 +184,8 @@ pub fn variable_named(model: &mut Model, name: &str) -> Option<VariableId> {
     Some(VariableId(model.variables.len() - 1))
 }
 
-/// The coordinate that a variable is, if it moves one hardpoint along one global axis and does nothing else, and how much of it
-/// a unit is: -1 where the variable goes against the axis.
+/// The coordinate that a variable is, if it moves one hardpoint along one global axis and does nothing else, and how
+/// much of it a unit is: -1 where the variable goes against the axis.
 fn coordinate_of(variable: &DesignVariable) -> Option<(HardpointId, usize, f64)> {
     let Change::Move(change::Move { hardpoint, .. }) = *variable.changes.first()? else { return None };
     let mut velocity = Vec3::ZERO;
@@ -200,8 +201,8 @@ fn coordinate_of(variable: &DesignVariable) -> Option<(HardpointId, usize, f64)>
     Some((hardpoint, axis, part(axis)))
 }
 
-/// The variable that a coordinate of a hardpoint is, and by how much the coordinate goes with a unit of it: 1 or -1 where the variable is
-/// plainly that coordinate.
+/// The variable that a coordinate of a hardpoint is, and by how much the coordinate goes with a unit of it: 1 or -1
+/// where the variable is plainly that coordinate.
 pub fn coordinate(model: &Model, hardpoint: HardpointId, axis: usize) -> Option<(VariableId, f64)> {
     let of = |(k, v): (usize, &DesignVariable)| {
         coordinate_of(v)
@@ -211,8 +212,8 @@ pub fn coordinate(model: &Model, hardpoint: HardpointId, axis: usize) -> Option<
     model.variables.iter().enumerate().find_map(of)
 }
 
-/// True if a variable is a hardpoint's coordinate under the hardpoint's name, and an earlier variable is the same coordinate, up
-/// to sign and unit.
+/// True if a variable is a hardpoint's coordinate under the hardpoint's name, and an earlier variable is the same
+/// coordinate, up to sign and unit.
 pub fn repeats_coordinate(model: &Model, variable: VariableId) -> bool {
     let own = &model.variables[variable.0];
     let Some((hardpoint, axis, _)) = coordinate_of(own) else { return false };

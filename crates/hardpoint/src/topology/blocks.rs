@@ -25,8 +25,8 @@ pub(super) const RANK_TOLERANCE: f64 = 1e-8;
 /// their loops.
 pub(super) type SparseRow = Vec<(CoordinateId, f64)>;
 
-/// The Jacobian of all rows of all closures at the design configuration; empty for the further terms of a coupler, which
-/// are summed in its row.
+/// The Jacobian of all rows of all closures at the design configuration; empty for the further terms of a coupler,
+/// which are summed in its row.
 pub(super) fn design_jacobian(model: &Model, topology: &Topology) -> Vec<SparseRow> {
     let parts = jacobian_of_parts(model, topology);
     let sum = |r: RowId| -> SparseRow {
@@ -50,8 +50,8 @@ pub(super) fn design_jacobian(model: &Model, topology: &Topology) -> Vec<SparseR
 
 /// The Jacobian of all rows, each by itself.
 ///
-/// Scaled so that a row of a length is per size of its loop. A coupler between lengths and angles keeps its own proportions: its
-/// row as a whole is scaled like its first term.
+/// Scaled so that a row of a length is per size of its loop. A coupler between lengths and angles keeps its own
+/// proportions: its row as a whole is scaled like its first term.
 fn jacobian_of_parts(model: &Model, topology: &Topology) -> Vec<SparseRow> {
     let mut rows = Vec::with_capacity(topology.rows.len());
     for closure in &topology.closures {
@@ -67,7 +67,7 @@ fn jacobian_of_parts(model: &Model, topology: &Topology) -> Vec<SparseRow> {
                 for step in &link.steps {
                     for (k, c) in step.coordinates().enumerate() {
                         let unit = topology[c].unit;
-                        // J_ra = +- l_r . x_a, per unit of the row and times that of the coordinate: a number without dimension      (6)
+                        // J_ra = +- l_r . x_a, per unit of the row and times that of the coordinate: a number without dimension (6)
                         let entry = side * scale * unit * wrench.on(step.twist(k, &frame.rot, frame.r));
                         entries.push((c, entry));
                     }
@@ -86,7 +86,8 @@ pub(super) fn split(model: &Model, topology: &mut Topology) -> Result<(), Topolo
         Ok(groups) => groups,
         Err(free) => {
             let nearby = freedoms_nearby(model, topology);
-            // A drawing that is open and singular by chance, like bars in line, is assembled elsewhere: what holds nearby holds there.
+            // A drawing that is open and singular by chance, like bars in line, is assembled elsewhere: what holds
+            // nearby holds there.
             let elsewhere = (model.is_drawn_open() && nearby < free.len())
                 .then(|| design_jacobian(&shifted(model), topology))
                 .and_then(|jacobian| groups_of(topology, &jacobian).ok());
@@ -167,8 +168,8 @@ fn independent_groups(topology: &Topology, jacobian: &[SparseRow]) -> Option<Vec
 /// Number of free motions in a slightly perturbed mechanism without accidental alignment: every point is shifted by up
 /// to 3 % of the size, every axis keeps its direction.
 ///
-/// Fewer than in the drawing mean that the drawing is a singular position, not that a driver is missing. Planar mechanisms keep their
-/// redundancy under such a shift.
+/// Fewer than in the drawing mean that the drawing is a singular position, not that a driver is missing. Planar
+/// mechanisms keep their redundancy under such a shift.
 fn freedoms_nearby(model: &Model, topology: &Topology) -> usize {
     let unknowns: Vec<CoordinateId> = topology.unknown_coordinates().collect();
     let column_of = columns(topology, &unknowns);
@@ -296,7 +297,8 @@ fn assign(
         let rows = topology.rows_of_block(b);
         let width = topology[b].unknowns.len();
         let in_block = rows.iter().map(|r| columns_in_block(topology, &jacobian[r.0], b).collect()).collect();
-        // Rank = unknowns: as many independent rows as the block has columns. Less, and the null vectors are motions left free.
+        // Rank = unknowns: as many independent rows as the block has columns. Less, and the null vectors are motions
+        // left free.
         let pivots = FullPivot::of_sparse(in_block, width, RANK_TOLERANCE);
         let mut selected: Vec<RowId> = pivots.rows.iter().map(|&k| rows[k]).collect();
         selected.sort_unstable();

@@ -21,7 +21,8 @@ pub enum TopologyError {
         /// Names of the bodies that move in them.
         bodies: Vec<String>,
     },
-    /// The configuration in the design configuration is singular: motions are free there that are not free nearby (HP0304).
+    /// The configuration in the design configuration is singular: motions are free there that are not free nearby
+    /// (HP0304).
     #[error("the mechanism is drawn in a singular position ({})", dozen(.bodies))]
     Singular {
         /// Number of motions that are free in that position only.

@@ -1,4 +1,5 @@
-//! Ids of what a plan is made of, one kind for each of its lists: `topology[link]` is the link, and a block's id finds no row.
+//! Ids of what a plan is made of, one kind for each of its lists: `topology[link]` is the link, and a block's id finds
+//! no row.
 
 use std::ops::{Index, IndexMut, Range};
 

@@ -445,8 +445,8 @@ impl Coordinate {
 }
 
 impl Link {
-    /// The coordinate of this freedom of its joint, which counts from body i: a link that begins at body j has its steps the other way
-    /// round.
+    /// The coordinate of this freedom of its joint, which counts from body i: a link that begins at body j has its
+    /// steps the other way round.
     pub fn coordinate_of(&self, freedom: usize) -> CoordinateId {
         let step = if self.parent_end == 0 { freedom } else { self.steps.len() - 1 - freedom };
         self.steps[step].first
@@ -488,7 +488,8 @@ impl LinkStep {
         r: crate::space::Vec3<T>,
     ) -> Twist<T> {
         match self.freedom {
-            // x = [h; c x h] of a turn about h through c, [0; h] of a slide; backwards, from j to i, with its sign turned (4)
+            // x = [h; c x h] of a turn about h through c, [0; h] of a slide; backwards, from j to i, with its sign
+            // turned (4)
             Freedom::Turn(axis) => Twist::turn(rot.cols[axis] * T::constant(self.sign), r),
             Freedom::Slide(axis) => Twist::slide(rot.cols[axis] * T::constant(self.sign)),
             Freedom::Ball => Twist::turn(rot.cols[k], r),

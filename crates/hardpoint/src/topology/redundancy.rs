@@ -13,8 +13,8 @@ const PART: f64 = 1e-7;
 /// Blocks with more unknowns than this are not taken apart: the search is cubic in them.
 const MOST_UNKNOWNS: usize = 300;
 
-/// A redundant constraint and the constraints that imply it in the design configuration. Any one of all of them could be
-/// left out, and the others would still say the same.
+/// A redundant constraint and the constraints that imply it in the design configuration. Any one of all of them could
+/// be left out, and the others would still say the same.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Redundancy {
     /// The redundant row.
@@ -33,8 +33,8 @@ impl Topology {
             .collect()
     }
 
-    /// The selected rows of which a row is a combination: block by block from the last, what is left of the row over the
-    /// block's unknowns is a combination of the block's own rows.
+    /// The selected rows of which a row is a combination: block by block from the last, what is left of the row over
+    /// the block's unknowns is a combination of the block's own rows.
     fn implied_by(
         &self,
         row: RowId,

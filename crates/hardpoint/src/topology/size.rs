@@ -57,7 +57,8 @@ fn joints_of_bodies(model: &Model) -> Vec<Vec<usize>> {
     joints
 }
 
-/// The extent of a loop's joints; where these are at one place, or the bodies move freely, that of all joints of its bodies.
+/// The extent of a loop's joints; where these are at one place, or the bodies move freely, that of all joints of its
+/// bodies.
 fn loop_size(
     model: &Model,
     topology: &Topology,

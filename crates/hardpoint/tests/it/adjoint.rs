@@ -12,8 +12,8 @@ use crate::workbench::*;
 
 /// Two ways to the same gradient, as a part of the largest such gradient over the motion.
 const AGREE: f64 = 1e-11;
-/// Gradients smaller than this part of the largest of all outputs are compared with that part of it: what a plane mechanism
-/// does across its plane is round-off.
+/// Gradients smaller than this part of the largest of all outputs are compared with that part of it: what a plane
+/// mechanism does across its plane is round-off.
 const SMALL: f64 = 1e-2;
 /// If no variable moves any output, only round-off can be compared: mechanisms are about 1 m large.
 const NOTHING: f64 = 1e-3;

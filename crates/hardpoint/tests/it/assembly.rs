@@ -47,7 +47,8 @@ fn a_rod_that_is_too_long_turns_the_rocker_to_where_it_fits() {
         let analysis = Analysis::with(&model, formulation).unwrap();
         let solution = analysis.run();
         assert!(solution.stop.is_none(), "{:?}", solution.stop);
-        // At t = 0 the crank is in the design configuration: C is 0.4 from B = (0, 0.1) and 0.25 from D = (0.3, 0), on the upper side.
+        // At t = 0 the crank is in the design configuration: C is 0.4 from B = (0, 0.1) and 0.25 from D = (0.3, 0), on
+        // the upper side.
         let c = point(&solution, 0, "C");
         assert!(((c - Vec3::new(0.0, 0.1, 0.0)).norm() - 0.4).abs() < 1e-12);
         assert!(((c - Vec3::new(0.3, 0.0, 0.0)).norm() - 0.25).abs() < 1e-12 && c.y > 0.2);

@@ -105,7 +105,8 @@ fn a_progressive_spring_follows_its_free_length_and_its_scale() {
 
 #[test]
 fn a_point_of_a_table_has_the_force_that_stands_there() {
-    // The lever's spring, 0.3 m long in the design configuration, gets 0.05 m shorter: it pushes with what the table says there.
+    // The lever's spring, 0.3 m long in the design configuration, gets 0.05 m shorter: it pushes with what the table
+    // says there.
     let mut draft = Draft::new("bump stop")
         .body("piston")
         .translational("slide", ["ground", "piston"], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0])

@@ -28,8 +28,9 @@ fn parameter(draft: &mut Draft, name: &str, value: f64, quantity: Quantity) {
         .push(VariableDraft::new(name, [ChangeDraft::Parameter { parameter: name.into(), rate: 1.0 }]));
 }
 
-/// A crank-rocker with a rod as coupler, given by its lengths and angles; a point of the rocker is written as an expression,
-/// the rod may have a length of its own, and the law names a parameter. Everything depends on something in a nonlinear way.
+/// A crank-rocker with a rod as coupler, given by its lengths and angles; a point of the rocker is written as an
+/// expression, the rod may have a length of its own, and the law names a parameter. Everything depends on something in
+/// a nonlinear way.
 fn crank_rocker(own_length: bool) -> Draft {
     let law = Law::parse_with("swing*sin(2*t)", &[("swing", 0.5)]).unwrap();
     let mut draft = Draft { times: times(1.0, 8), ..Draft::default() };

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-/// The rooms of the core, in the order of the walk: each may use those before it only. What somebody wrote (`draft`) knows the model that
-/// it means, and so comes after it; results are kept in `blocks`.
+/// The rooms of the core, in the order of the walk: each may use those before it only. What somebody wrote (`draft`)
+/// knows the model that it means, and so comes after it; results are kept in `blocks`.
 const ROOMS: [&str; 18] = [
     "number",
     "linalg",
@@ -152,7 +152,8 @@ fn crates_depend_towards_the_core_only() {
     assert_eq!(packages.len(), CRATES.len());
 }
 
-/// Published crates have what a registry shows, depend on published crates only, and embed no file from outside their folder.
+/// Published crates have what a registry shows, depend on published crates only, and embed no file from outside their
+/// folder.
 #[test]
 fn published_crates_are_complete() {
     let all = manifests();
@@ -222,7 +223,8 @@ fn the_table_of_dependencies_is_complete() {
     assert_eq!(listed, declared, "docs/development.md is not up to date");
 }
 
-/// The crate that may hold `unsafe`, and where in it (`docs/machine-code.md`). The page's engine only exports functions by name.
+/// The crate that may hold `unsafe`, and where in it (`docs/machine-code.md`). The page's engine only exports functions
+/// by name.
 #[test]
 fn unsafe_stands_where_the_safety_argument_says() {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();

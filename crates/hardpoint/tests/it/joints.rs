@@ -142,7 +142,8 @@ pub fn cam_and_slot() -> Draft {
         [x, 0.15 + 0.2 * (x - 0.08) * (x - 0.08), 0.0]
     });
     let z = Some([0.0, 0.0, 1.0]);
-    // The pitch curve of the roller's centre passes through its place in the design configuration: sqrt(0.04^2 - 0.01^2) above the axis.
+    // The pitch curve of the roller's centre passes through its place in the design configuration: sqrt(0.04^2 -
+    // 0.01^2) above the axis.
     let roller = [[0.0; 3], [0.0, 0.0015_f64.sqrt(), 0.01]];
     let cam = joint("cam", "point_on_curve", ["disc", "lifter"], &roller, z).curve(circle, true);
     let pin = joint("pin", "slot", ["lever", "lifter"], &[[0.0, 0.15, 0.0], [0.08, 0.15, 0.0]], z)
@@ -211,7 +212,8 @@ fn a_cam_and_a_slot_move_as_they_must_and_match_resolved_designs() {
             let (s, c) = (9.0 * t + 0.1 * (3.0 * t).sin()).sin_cos();
             let lift = 0.01 * s + (0.0016 - 1e-4 * c * c).sqrt() - 0.0015_f64.sqrt();
             assert!((solution.measured.value(k, slide)[0] - lift).abs() < 1e-8, "t = {t}");
-            // The pin rises with the lifter; the lever turns until its slot, y = 0.2 (x - 0.08)^2 on it, passes through it.
+            // The pin rises with the lifter; the lever turns until its slot, y = 0.2 (x - 0.08)^2 on it, passes through
+            // it.
             let (sin, cos) = solution.measured.value(k, lever)[0].sin_cos();
             let (x, y) = (0.08 * cos + lift * sin, -0.08 * sin + lift * cos);
             assert!((y - 0.2 * (x - 0.08).powi(2)).abs() < 1e-7, "t = {t}");
@@ -247,7 +249,8 @@ fn assert_as_resolved(analysis: &Analysis<'_>, solution: &Solution, within: f64)
     }
 }
 
-/// A Whitworth quick return: the pin of a crank of 60 mm slides in the slot of an arm whose bearing lies 30 mm below the crank's.
+/// A Whitworth quick return: the pin of a crank of 60 mm slides in the slot of an arm whose bearing lies 30 mm below
+/// the crank's.
 fn quick_return() -> Draft {
     let z = [0.0, 0.0, 1.0];
     Draft::new("quick return")

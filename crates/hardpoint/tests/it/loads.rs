@@ -351,7 +351,8 @@ fn made_heavy(mut draft: Draft) -> Draft {
     draft
 }
 
-/// Newton and Euler for a body of [`heavy`], classically, about its own centre: the force and the moment that it needs besides its weight.
+/// Newton and Euler for a body of [`heavy`], classically, about its own centre: the force and the moment that it needs
+/// besides its weight.
 fn newton_euler(
     draft: &Draft,
     model: &Model,
@@ -777,9 +778,10 @@ fn a_balance_is_held_by_the_difference_and_a_governor_by_its_speed() {
     }
 }
 
-/// The single-cylinder engine of every textbook on machines (Shigley and Uicker, *Theory of Machines and Mechanisms*, "Dynamics of
-/// reciprocating engines"): of a piston of mass m at x = r cos(theta) + l cos(phi), sin(phi) = (r/l) sin(theta), the cylinder's wall takes
-/// `m x.. tan(phi)`, the rod `m x.. / cos(phi)`, and the crank needs `-m x.. x tan(phi)`; exactly, with x.. not of a series.
+/// The single-cylinder engine of every textbook on machines (Shigley and Uicker, *Theory of Machines and Mechanisms*,
+/// "Dynamics of reciprocating engines"): of a piston of mass m at x = r cos(theta) + l cos(phi), sin(phi) = (r/l)
+/// sin(theta), the cylinder's wall takes `m x.. tan(phi)`, the rod `m x.. / cos(phi)`, and the crank needs
+/// `-m x.. x tan(phi)`; exactly, with x.. not of a series.
 #[test]
 fn a_piston_pushes_its_wall_its_rod_and_its_crank_as_in_the_textbooks() {
     let (r, l, mass, speed) = (0.05, 0.18, 0.9, 120.0);
@@ -825,9 +827,9 @@ fn a_piston_pushes_its_wall_its_rod_and_its_crank_as_in_the_textbooks() {
     }
 }
 
-/// A four-bar whose rocker is held back by a moment: its coupler, which has no mass, pulls along itself with M/(c sin(gamma)), and the crank
-/// needs `M a sin(beta)/(c sin(gamma))`, with beta between coupler and crank and gamma the transmission angle (Shigley and Uicker,
-/// "Mechanical advantage").
+/// A four-bar whose rocker is held back by a moment: its coupler, which has no mass, pulls along itself with M/(c
+/// sin(gamma)), and the crank needs `M a sin(beta)/(c sin(gamma))`, with beta between coupler and crank and gamma the
+/// transmission angle (Shigley and Uicker, "Mechanical advantage").
 #[test]
 fn a_four_bar_has_the_mechanical_advantage_of_the_textbooks() {
     let z = [0.0, 0.0, 1.0];

@@ -270,8 +270,8 @@ fn large_blocks_run_as_programs_that_agree_with_the_kernel() {
     }
 }
 
-/// n x m scissors of unit cells, pinned to each other at their corners; the first one is on the ground, and the one at `at` is
-/// driven open.
+/// n x m scissors of unit cells, pinned to each other at their corners; the first one is on the ground, and the one at
+/// `at` is driven open.
 fn scissors(n: usize, m: usize, at: [usize; 2]) -> Draft {
     let z = Some([0.0, 0.0, 1.0]);
     let (mut bodies, mut joints) = (Vec::new(), Vec::new());

@@ -1,7 +1,7 @@
 //! Mechanisms that nobody thought of: drawn at random, and held to what must be true of every mechanism.
 //!
-//! A case is a number. `HARDPOINT_CASES=1 HARDPOINT_FIRST=123 cargo test -p hardpoint --test it random -- --ignored` runs
-//! case 123 of every family.
+//! A case is a number. `HARDPOINT_CASES=1 HARDPOINT_FIRST=123 cargo test -p hardpoint --test it random -- --ignored`
+//! runs case 123 of every family.
 
 mod draw;
 mod laws;

@@ -22,8 +22,9 @@ use crate::workbench::*;
 const SCHEMES: [DifferenceScheme; 3] =
     [DifferenceScheme::Central, DifferenceScheme::Forward, DifferenceScheme::Backward];
 
-/// Two solved positions differ by this part from the exact ones, at the most: some times what Newton's last correction leaves, where
-/// the motion magnifies it. A variable that moves nothing has only this, and by chance none of it at some step.
+/// Two solved positions differ by this part from the exact ones, at the most: some times what Newton's last correction
+/// leaves, where the motion magnifies it. A variable that moves nothing has only this, and by chance none of it at some
+/// step.
 const NOISE: f64 = 1e-12;
 
 fn verified(analysis: &Analysis<'_>, solution: &Solution, scheme: DifferenceScheme) -> Verification {
@@ -91,7 +92,8 @@ fn sensitivities_match_resolved_designs_and_the_error_falls_as_it_must() {
                 }
                 assert_eq!(check.outcome, CheckOutcome::Passed, "{name} {variable}: {:?}", check.sweep);
                 worst = worst.max(check.worst().unwrap().error);
-                // Where truncation rules, well above the best agreement, a step 10 times finer errs that many times less.
+                // Where truncation rules, well above the best agreement, a step 10 times finer errs that many times
+                // less.
                 let best = check.sweep.iter().min_by(|a, b| a.error.total_cmp(&b.error)).unwrap();
                 let noise = |step: f64| f64::max(best.error, NOISE / step);
                 let coarse = check

@@ -8,7 +8,10 @@ import { flatLink, thinLink } from './body_planar'
 import { spatialBody } from './body_spatial'
 import { upright } from './body_upright'
 
-/** Every moving body by its hardpoints, those that a coupler or a curve shapes left to them; a mesh of its own represents all that. */
+/**
+ * Every moving body by its hardpoints, those that a coupler or a curve shapes left to them; a mesh of its own
+ * represents all that.
+ */
 export function bodies(mechanism: Mechanism, kit: Kit): Drawn[] {
   const { report } = mechanism
   return report.bodies.flatMap(({ mesh }, body): Drawn[] => {

@@ -3,7 +3,10 @@ import { area, Basis, farthest, type Flat, hull, inset, round } from '../flat'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 
-/** Radius of a link's ends, of those of a link with a slot, of what carries wheels, of a disc, and of a link in a large model. */
+/**
+ * Radius of a link's ends, of those of a link with a slot, of what carries wheels, of a disc, and of a link in a large
+ * model.
+ */
 const END = 1.55
 const SLOTTED = 2.6
 const CARRIER = 3.2

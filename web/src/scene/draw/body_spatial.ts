@@ -12,13 +12,19 @@ const FLAT = 0.03
 const POINT = 2.4
 /** Radii of a rod at its ends, and the greatest as a part of its length. */
 const ROD = { thick: 1.15, thin: 0.98, slender: 0.12 }
-/** A flat bar: half width, that of one whose hinges are across one another, half thickness, how much narrower in the middle, its eyes. */
+/**
+ * A flat bar: half width, that of one whose hinges are across one another, half thickness, how much narrower in the
+ * middle, its eyes.
+ */
 const BAR = { width: 1.45, twisted: 2.3, thickness: 0.62, waist: 0.28, eye: 1.75, height: 1.9, end: 1.3, sections: 16 }
 /** Cosine of the least angle between hinges that are across one another. */
 const TWISTED = 0.98
 /** A plate that folds: its thickness, its eyes' radius, and how far from the pins it ends. */
 const FOLDED = { thickness: 0.9, eye: 1.5, clear: 2 }
-/** Tubes of a plate: at free corners, at the hinge, along the hinge; how opaque its web is with three corners and with more. */
+/**
+ * Tubes of a plate: at free corners, at the hinge, along the hinge; how opaque its web is with three corners and with
+ * more.
+ */
 const PLATE = { corner: 0.85, hinge: 1.15, along: 0.75, web: 0.38, platform: 0.6 }
 /** Edges and corners of a hull, and how opaque it is. */
 const HULL = { edge: 0.55, corner: 0.95, opacity: 0.45 }
@@ -58,7 +64,10 @@ function onShaft(mechanism: Mechanism, kit: Kit, body: number, points: Vector3[]
   })
 }
 
-/** A plate between two parallel hinges; where both bodies of a hinge are plates or one is ground, their eyes take turns along the pin. */
+/**
+ * A plate between two parallel hinges; where both bodies of a hinge are plates or one is ground, their eyes take turns
+ * along the pin.
+ */
 function folding(mechanism: Mechanism, kit: Kit, body: number, a: Vector3, b: Vector3, axis: Vector3): Object3D[] {
   const s = kit.unit
   const colour = kit.body(body)
@@ -97,7 +106,9 @@ function axisAt(mechanism: Mechanism, body: number, at: Vector3): Vector3 | unde
   return hinges.find((hinge) => hinge.axis && mechanism.same(hinge.at, at))?.axis
 }
 
-/** A tapered rod; with a hinge perpendicular to it at an end a flat bar, twisted from one hinge's axis to the other's. */
+/**
+ * A tapered rod; with a hinge perpendicular to it at an end a flat bar, twisted from one hinge's axis to the other's.
+ */
 function straight(mechanism: Mechanism, kit: Kit, body: number, a: Vector3, b: Vector3): Object3D[] {
   const s = kit.unit
   const colour = kit.body(body)

@@ -8,7 +8,10 @@ import type { Draw, Drawn } from '../drawn'
 import { hingePlaces } from '../hinge'
 import type { Mechanism } from '../mechanism'
 
-/** The longest arrow as a part of the mechanism's size and of its height across its longest side, but long enough to be seen, in units. */
+/**
+ * The longest arrow as a part of the mechanism's size and of its height across its longest side, but long enough to be
+ * seen, in units.
+ */
 const LONGEST = { ofSize: 0.11, ofHeight: 0.75, least: 9 }
 /** Radius of the shaft, length of the head, radius of a ring, in units. */
 const SHAFT = 0.5

@@ -20,7 +20,9 @@ export interface Foot {
   radius: number
   /** Minimum reach of the supported part's mesh towards the plate; 0 without one. */
   clear?: (down: Vector3, half: number) => number
-  /** One of the two of a hinge between hardpoints, which are lugs; a plate that folds has its cheeks outside its eye. */
+  /**
+   * One of the two of a hinge between hardpoints, which are lugs; a plate that folds has its cheeks outside its eye.
+   */
   form?: 'lug' | 'fold'
   /** In front of a cam that would cover it. */
   front: boolean

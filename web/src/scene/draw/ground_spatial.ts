@@ -7,7 +7,10 @@ import { downwards, type Foot } from './ground'
 /** From the pin to the plate, and the plate's side. */
 const DOWN = 3.6
 const PLATE = 5.4
-/** A lug is smaller than other feet, by this factor; of a plate that folds the cheeks' distance from the middle, and the plate's side. */
+/**
+ * A lug is smaller than other feet, by this factor; of a plate that folds the cheeks' distance from the middle, and the
+ * plate's side.
+ */
 const LUG = 0.72
 const FOLD = { aside: 2.1, plate: 7.4 }
 /** Two cheeks: distance from the middle and thickness in units, eye and half width at the plate in radii. */
@@ -49,7 +52,10 @@ export function ballFoot(mechanism: Mechanism, kit: Kit, foot: Foot): Object3D[]
   ]
 }
 
-/** A mesh that reaches farther than a foot is usually high has a higher one, up to some times as high: a plate must not cut into it. */
+/**
+ * A mesh that reaches farther than a foot is usually high has a higher one, up to some times as high: a plate must not
+ * cut into it.
+ */
 function heightOf({ clear, radius }: Foot, down: Vector3, usual: number, plate: number): number {
   const reach = clear?.(down, 0.75 * plate) ?? 0
   return reach > usual - radius ? Math.min(reach + radius, HIGHEST * usual) : usual

@@ -10,7 +10,9 @@ const BELL = 3
 const OPENING = 0.52
 /** Rings of the boot: how many, the first's radius, by how much each is smaller, their thickness and distance. */
 const BOOT = { rings: 4, radius: 2.75, less: 0.45, thickness: 0.75, apart: 1.15, from: 0.9 }
-/** Radius of a drive shaft's bell, relative to the wheel's, and at most this fraction of the distance to the next joint. */
+/**
+ * Radius of a drive shaft's bell, relative to the wheel's, and at most this fraction of the distance to the next joint.
+ */
 const OF_WHEEL = 0.17
 const OF_DISTANCE = 0.62
 

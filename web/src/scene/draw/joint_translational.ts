@@ -8,7 +8,9 @@ import { type DrawJoint, type Piece, piece } from './joint'
 import { hatchedRails } from './rails'
 import { type Form, formOf, strut } from './strut'
 
-/** Sides of a block: along the slide, across, and height in space; in a link's slot; of one that carries another slide. */
+/**
+ * Sides of a block: along the slide, across, and height in space; in a link's slot; of one that carries another slide.
+ */
 const BLOCK = { length: 5.2, across: 3.2, height: 3, width: 3.8 }
 const SLOTTED = { length: 4.6, across: 2.9 }
 const CARRIAGE = 9.5
@@ -21,7 +23,9 @@ const FOOT = { down: 4.2, radius: 1.2, plate: 6 }
 /** Rail in space: room beyond the travel; bars on a body: distance from the middle and radius. */
 const RAIL = { room: 4.2, aside: 1.6, bar: 0.55 }
 
-/** A block on a rail or in a slot; a bar in a tube where the slider is a bar; a spring strut where the model says so. */
+/**
+ * A block on a rail or in a slot; a bar in a tube where the slider is a bar; a spring strut where the model says so.
+ */
 export const translational: DrawJoint = (mechanism, kit, joint, index) => {
   const slide = mechanism.slideOf(index)
   if (!slide) return []

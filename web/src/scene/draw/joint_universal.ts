@@ -7,7 +7,10 @@ import { type DrawJoint, type Piece, piece } from './joint'
 const PIN = { radius: 0.75, half: 2.6 }
 /** Yoke: radius and thickness of its eyes, radius of its arms, and the distance behind the cross at which they meet. */
 const YOKE = { eye: 1.15, thickness: 0.9, arm: 0.7, behind: 3.6 }
-/** The cross is what indicates the joint from a ball: so much larger than other glyphs, where it leaves other joints this part of the way to it and is on no block. */
+/**
+ * The cross is what indicates the joint from a ball: so much larger than other glyphs, where it leaves other joints
+ * this part of the way to it and is on no block.
+ */
 const LARGE = { units: 1.8, part: 0.09 }
 /** From above: radius of the circle, and its lines in px. */
 const FLAT = { circle: 1.9, line: 2 }

@@ -3,7 +3,10 @@ import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 import type { Slide } from '../slide'
 
-/** Hatched lines on both sides of a slide on ground, in the plane of a planar mechanism; `aside` from its middle and `room` beyond its travel, in units. */
+/**
+ * Hatched lines on both sides of a slide on ground, in the plane of a planar mechanism; `aside` from its middle and
+ * `room` beyond its travel, in units.
+ */
 export function hatchedRails(mechanism: Mechanism, kit: Kit, slide: Slide, aside: number, room: number): Object3D[] {
   if (slide.low > slide.high) return []
   const s = kit.unit

@@ -22,7 +22,9 @@ export interface Strut {
 
 /** Radius of a rod. */
 const ROD = 0.72
-/** A cylinder: radius of barrel and collar, thickness of the collar, radii of piston rod and neck, the neck's length. */
+/**
+ * A cylinder: radius of barrel and collar, thickness of the collar, radii of piston rod and neck, the neck's length.
+ */
 const BARREL = { radius: 1.75, collar: 2, collarHeight: 1.1, piston: 0.8, neck: 0.9, neckLength: 1.7 }
 /** A damper is a slimmer cylinder. */
 const SLIM = 0.75

@@ -14,7 +14,10 @@ const PRESENT = 1.05
 /** At least that many equal times are marked. */
 const DOTS = 12
 
-/** The path of the chosen point, with dots at equal times, which show its speed, and a larger one where it is; gaps where there is no solution. */
+/**
+ * The path of the chosen point, with dots at equal times, which show its speed, and a larger one where it is; gaps
+ * where there is no solution.
+ */
 export const trace: Draw = (mechanism, kit, choice) => {
   if (!choice.trace) return []
   const [body, point] = choice.trace

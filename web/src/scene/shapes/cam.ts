@@ -16,7 +16,9 @@ export function leastCurvature(points: Flat[], closed: boolean): number {
   return Math.min(...radii, Infinity)
 }
 
-/** Radius of the roller on a pitch curve: as wanted, but never so large that it could not reach into the curve's bends. */
+/**
+ * Radius of the roller on a pitch curve: as wanted, but never so large that it could not reach into the curve's bends.
+ */
 export function rollerRadius(points: Flat[], closed: boolean, wanted: number): number {
   return Math.min(wanted, ROLLER * leastCurvature(points, closed))
 }

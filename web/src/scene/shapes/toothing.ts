@@ -29,7 +29,9 @@ export function toothHeight(teeth: number, radius: number): number {
   return Math.min((HEIGHT.ofPitch * 2 * Math.PI * radius) / teeth, HEIGHT.ofRadius * radius)
 }
 
-/** Outline of a gear about the origin, the middle of a tooth at angle `phase`; an internal gear's teeth point inwards. */
+/**
+ * Outline of a gear about the origin, the middle of a tooth at angle `phase`; an internal gear's teeth point inwards.
+ */
 export function gearOutline(teeth: number, radius: number, height: number, phase = 0, internal = false): Flat[] {
   const half = height / 2
   const [root, tip] = internal ? [radius + half, radius - half] : [radius - half, radius + half]

@@ -1,5 +1,5 @@
-//! glTF 2.0: the meshes of the scene that is shown, with the transforms of its nodes. Lengths and places in the file are checked here:
-//! what a damaged file says need not be so.
+//! glTF 2.0: the meshes of the scene that is shown, with the transforms of its nodes. Lengths and places in the file
+//! are checked here: what a damaged file says need not be so.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

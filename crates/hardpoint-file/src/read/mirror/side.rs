@@ -180,7 +180,8 @@ impl<'a> Side<'_, 'a> {
         named
     }
 
-    /// The values of a coordinate that is reversed in the mirror change their signs: numbers of an element on it that measure what it does.
+    /// The values of a coordinate that is reversed in the mirror change their signs: numbers of an element on it that
+    /// measure what it does.
     fn coordinate_values(&self, name: &str, table: &mut DeTable<'a>) {
         let Some(original) = self.entry("forces", name) else { return };
         let kind = word(original, "type").and_then(|t| ElementType::ALL.iter().find(|e| e.name == t));
@@ -259,8 +260,8 @@ impl<'a> Side<'_, 'a> {
         put(table, "mirror", Spanned::new(span, DeValue::String(Cow::Borrowed(axis))));
     }
 
-    /// A coupler holds the same relation between coordinates of joints that are mirrored; of others, and of joints whose angle changes
-    /// its sign, it depends on these signs.
+    /// A coupler holds the same relation between coordinates of joints that are mirrored; of others, and of joints
+    /// whose angle changes its sign, it depends on these signs.
     fn coupler(&mut self, name: &str, coupler: &mut DeTable<'a>, at: Range<usize>) {
         // The entry is mirrored already: the originals stand in the model.
         let Some(original) = self.entry("couplers", name) else { return };

@@ -375,7 +375,8 @@ impl Checker<'_> {
         }
         let largest = a.max(b).max(c);
         let slack = largest * FLAT;
-        // Principal moments obey I1 + I2 >= I3: the matrix (tr I / 2) 1 - I, the second moments of the mass, has no negative eigenvalue.
+        // Principal moments obey I1 + I2 >= I3: the matrix (tr I / 2) 1 - I, the second moments of the mass, has no
+        // negative eigenvalue.
         let half = 0.5 * (a + b + c);
         let (x, y, z) = (half - a + slack, half - b + slack, half - c + slack);
         let minors = [x, y, z, x * y - d * d, y * z - e * e, z * x - f * f];

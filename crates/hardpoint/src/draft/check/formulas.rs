@@ -1,4 +1,5 @@
-//! Checks of parameters and formulas: what their names mean, in which order they are evaluated, and what may follow them.
+//! Checks of parameters and formulas: what their names mean, in which order they are evaluated, and what may follow
+//! them.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -134,7 +135,8 @@ impl<'a> Checker<'a> {
         Some((Source::Parameter(parameter), if of_length { per_metre } else { 1.0 }))
     }
 
-    /// Takes formulas in an order in which each comes after those whose results it uses; HP0227 for those that have none.
+    /// Takes formulas in an order in which each comes after those whose results it uses; HP0227 for those that have
+    /// none.
     fn order(&mut self, written: Vec<Written>) {
         let giver: HashMap<Source, usize> =
             written.iter().enumerate().filter_map(|(k, w)| Some((w.formula.gives()?, k))).collect();

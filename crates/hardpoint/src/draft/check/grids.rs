@@ -8,7 +8,8 @@ use super::{Checker, Here};
 /// More positions than this are surely a slip: each is solved with all its sensitivities, and all are held.
 const MOST_POSITIONS: usize = 100_000;
 
-/// Positions nearer to each other than this part of a driver's way cannot be distinguished by the times at which it passes them.
+/// Positions nearer to each other than this part of a driver's way cannot be distinguished by the times at which it
+/// passes them.
 const APART: f64 = 1e-9;
 
 impl Checker<'_> {

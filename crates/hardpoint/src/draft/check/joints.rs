@@ -9,7 +9,8 @@ use crate::space::{Mat3, Pose, Vec3};
 
 use super::{Checker, Here, SAME_POINT, SQUARE_TOLERANCE, UNPLACED, degrees_between, frame_along};
 
-/// Direction of the markers' x axis where none is given; of an image across a global axis, the image of the original's default.
+/// Direction of the markers' x axis where none is given; of an image across a global axis, the image of the original's
+/// default.
 fn default_x(z: Vec3, mirror: Option<usize>) -> Vec3 {
     let reflected = |v: Vec3| mirror.map_or(v, |k| v - Vec3::AXES[k] * (2.0 * v.dot(Vec3::AXES[k])));
     reflected(reflected(z).any_square())
@@ -294,7 +295,8 @@ impl Checker<'_> {
         Some([first, last])
     }
 
-    /// Joints that need no place get one all the same, amid the places of their bodies' other joints, for their markers.
+    /// Joints that need no place get one all the same, amid the places of their bodies' other joints, for their
+    /// markers.
     pub(super) fn places_of_directions(&mut self) {
         let mut joints_on = vec![Vec::new(); self.model.bodies.len()];
         for (k, j) in self.model.joints.iter().enumerate() {

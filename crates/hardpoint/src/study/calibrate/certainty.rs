@@ -18,8 +18,8 @@ pub struct Certainty {
     pub untold: Vec<UnidentifiableChange>,
     /// Readings that were compared, less the directions that they tell.
     pub freedom: usize,
-    /// The standard deviation of the residuals: in the standard deviations that were given, where 1 is expected; in SI where none were
-    /// given. `None` where there are no more readings than directions.
+    /// The standard deviation of the residuals: in the standard deviations that were given, where 1 is expected; in SI
+    /// where none were given. `None` where there are no more readings than directions.
     pub scatter: Option<f64>,
     /// Sum of squared residuals, in standard deviations, each by what it counts.
     pub chi_square: f64,

@@ -17,7 +17,8 @@ use super::{
     NextReading, Reading, UnreachedPosture,
 };
 
-/// Natural steps, about the mechanism's size or a radian, that a fit may go from the drawing: what is measured is near what was meant.
+/// Natural steps, about the mechanism's size or a radian, that a fit may go from the drawing: what is measured is near
+/// what was meant.
 const FARTHEST: f64 = 10.0;
 /// A singular value below this part of the largest is round-off: the readings tell nothing of its direction.
 const ROUND_OFF: f64 = 1e-9;
@@ -127,7 +128,8 @@ impl<'b> FitWorkspace<'b> {
         design
     }
 
-    /// All postures that are reached in the design configuration, of a design; `None` where one is not, or the caller wants no more.
+    /// All postures that are reached in the design configuration, of a design; `None` where one is not, or the caller
+    /// wants no more.
     fn stands(&self, x: &[f64], more: &dyn Fn() -> bool) -> Option<Vec<Option<ReachedPosture>>> {
         let design = self.design(x);
         self.cost.borrow_mut().designs += 1;

@@ -1,13 +1,15 @@
 //! Fit of the geometry to measured data: best fit, accuracy, unidentifiable changes, readings to add.
 //!
-//! A reading i of an output y in a posture with standard deviation s_i has the residual `r_i = (y(b) - m_i) / s_i`; the fit makes the sum
-//! of their squares least, or that of a robust loss. With the exact Jacobian `J = dr/db` of what was read,
+//! A reading i of an output y in a posture with standard deviation s_i has the residual `r_i = (y(b) - m_i) / s_i`; the
+//! fit makes the sum of their squares least, or that of a robust loss. With the exact Jacobian `J = dr/db` of what was
+//! read,
 //!
 //! ```text
 //! covariance = (J' W J)^-1,    W = the weights of the loss
 //! ```
 //!
-//! over the directions that the readings tell anything of; the others are named and stay in the design configuration (`docs/theory.md`, section 13).
+//! over the directions that the readings tell anything of; the others are named and stay in the design configuration
+//! (`docs/theory.md`, section 13).
 
 mod certainty;
 mod fit;
@@ -122,8 +124,8 @@ pub struct Calibration {
     pub fitted: Vec<Option<FittedReading>>,
     /// Postures whose readings were left out.
     pub not_reached: Vec<UnreachedPosture>,
-    /// The sum that was made least, of the nominal design and of the one found: of squared residuals in standard deviations, or of the
-    /// loss. Where no standard deviations were given, in those that were found.
+    /// The sum that was made least, of the nominal design and of the one found: of squared residuals in standard
+    /// deviations, or of the loss. Where no standard deviations were given, in those that were found.
     pub objective: [f64; 2],
     /// Objective after each iteration.
     pub iterations: Vec<f64>,
@@ -144,7 +146,8 @@ pub enum CalibrationError {
     NothingReached(String),
     /// The mechanism can follow none of the variables.
     NothingVaries,
-    /// No more readings than variables that they tell of, and no standard deviations: how sure anything is cannot be known.
+    /// No more readings than variables that they tell of, and no standard deviations: how sure anything is cannot be
+    /// known.
     TooFewReadings {
         /// Readings that were reached.
         readings: usize,
@@ -168,8 +171,8 @@ pub struct CalibrationRequest<'a> {
     pub iterations: usize,
 }
 
-/// Finds the design that explains measurements best. `progress` is reported the objective after every iteration, and `more` is asked at every
-/// posture whether to go on.
+/// Finds the design that explains measurements best. `progress` is reported the objective after every iteration, and
+/// `more` is asked at every posture whether to go on.
 ///
 /// # Errors
 /// Where nothing can be fitted.

@@ -13,8 +13,8 @@ use super::posture::derivative;
 const PROPOSED: usize = 5;
 /// Maximum number of postures of a motion that are considered.
 const LOOKED_AT: usize = 24;
-/// A reading indicates a direction that the others do not tell if it makes its standard deviation less than a natural step, about the
-/// mechanism's size.
+/// A reading indicates a direction that the others do not tell if it makes its standard deviation less than a natural
+/// step, about the mechanism's size.
 const TELLS: f64 = 1.0;
 
 /// A further reading, of the standard deviation that readings of its kind have. In SI.
@@ -28,8 +28,8 @@ pub struct NextReading {
     pub sigma: f64,
     /// Index of the unidentifiable change that it would determine best.
     pub tells: Option<usize>,
-    /// The variable whose standard deviation it makes smaller by the largest part, by its place among those sought; none where it indicates
-    /// nothing of those that are known.
+    /// The variable whose standard deviation it makes smaller by the largest part, by its place among those sought;
+    /// none where it indicates nothing of those that are known.
     pub improves: Option<Improvement>,
 }
 

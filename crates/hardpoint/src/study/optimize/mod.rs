@@ -1,10 +1,11 @@
-//! The design that serves some goals best, within bounds and limits: from what moves a curve to the hardpoints that give it.
+//! The design that serves some goals best, within bounds and limits: from what moves a curve to the hardpoints that
+//! give it.
 //!
-//! Goals and limits are metrics of the motions, with exact derivatives. Where all goals are squares (a curve fitted, a target met) and
-//! only bounds limit the design, the search is one of bounded least squares; otherwise sequential programming. Goals that count by
-//! their greatest value (`max` metrics) are searched as `t` with every part of the curve below `t`, so that minimax needs nothing of the
-//! user. A design whose motion does not assemble, locks, or reaches a dead point is a step that was refused: the search steps back and
-//! goes on.
+//! Goals and limits are metrics of the motions, with exact derivatives. Where all goals are squares (a curve fitted, a
+//! target met) and only bounds limit the design, the search is one of bounded least squares; otherwise sequential
+//! programming. Goals that count by their greatest value (`max` metrics) are searched as `t` with every part of the
+//! curve below `t`, so that minimax needs nothing of the user. A design whose motion does not assemble, locks, or
+//! reaches a dead point is a step that was refused: the search steps back and goes on.
 
 mod gauss_newton;
 mod optimality;
@@ -31,8 +32,8 @@ pub const LIMIT_KEPT: f64 = 1e-8;
 use LIMIT_KEPT as KEPT;
 /// A design this near to optimal is an optimum.
 const OPTIMAL: f64 = 1e-6;
-/// A search that came to rest short of this, relative to the scale of the goals or to the gradient at the start, starts again where it
-/// is ...
+/// A search that came to rest short of this, relative to the scale of the goals or to the gradient at the start, starts
+/// again where it is ...
 const SHARP: f64 = 5e-9;
 /// ... as often as this.
 const AGAIN: usize = 3;
@@ -40,9 +41,11 @@ const AGAIN: usize = 3;
 const NO_LESS: f64 = 1e-14;
 /// ... and so has one whose step is less than this part of the bounds.
 const RESTING: f64 = 1e-13;
-/// Objectives that differ by less than this part are the same but for round-off: of such designs the one nearer to optimal is the better.
+/// Objectives that differ by less than this part are the same but for round-off: of such designs the one nearer to
+/// optimal is the better.
 const THE_SAME: f64 = 1e-12;
-/// A run that takes away so much of what kept the design from an optimum was worth it, whatever it did to the objective.
+/// A run that takes away so much of what kept the design from an optimum was worth it, whatever it did to the
+/// objective.
 const NEARER: f64 = 0.5;
 /// Gauss-Newton steps that promise less than this part of the objective are not made: the rest is round-off.
 const NO_PROMISE: f64 = 1e-14;
@@ -72,7 +75,8 @@ const ASTRAY: f64 = 1e4;
 const PATIENCE: usize = 20;
 /// ... which are better if they halve the objective.
 const HALVED: f64 = 0.5;
-/// The first solver has done its work where a step gains less than this part of the objective: others make an end of it.
+/// The first solver has done its work where a step gains less than this part of the objective: others make an end of
+/// it.
 const HARDLY_LESS: f64 = 1e-6;
 /// A start that cannot be judged is drawn nearer that many times.
 const HALVINGS: i32 = 8;
@@ -88,8 +92,8 @@ pub struct OptimizationResult {
     pub drawn_refused: Option<FailedDesign>,
     /// The searches, one per start, in order; that of number 0 starts from the nominal design.
     pub searches: Vec<SearchResult>,
-    /// The best of them, by its place there: of those that keep all limits the one with the least objective, of others the one that
-    /// exceeds them least. `None` where none could start.
+    /// The best of them, by its place there: of those that keep all limits the one with the least objective, of others
+    /// the one that exceeds them least. `None` where none could start.
     pub best: Option<usize>,
     /// All that it cost.
     pub cost: StudyCost,
@@ -125,8 +129,8 @@ pub struct SearchResult {
     pub optimality: Optimality,
     /// Iterations, in order, the start first.
     pub iterations: Vec<Iteration>,
-    /// Per searched variable, how much of the change of the objective it brought: along the way, the mean gradient of each step times
-    /// the step.
+    /// Per searched variable, how much of the change of the objective it brought: along the way, the mean gradient of
+    /// each step times the step.
     pub work: Vec<f64>,
     /// Designs that could not be judged.
     pub refused: Vec<FailedDesign>,
@@ -141,7 +145,8 @@ pub enum OptimizationStatus {
     Optimal,
     /// No step makes progress, although the conditions of an optimum are not satisfied.
     Stuck,
-    /// At the design that exceeds the limits least, or as near to it as no step got further: they cannot all be kept there.
+    /// At the design that exceeds the limits least, or as near to it as no step got further: they cannot all be kept
+    /// there.
     LimitsNotKept,
     /// After as many iterations as it was allowed.
     IterationLimit,
@@ -250,7 +255,8 @@ pub fn optimize(
 /// Judges one design, given by the values of all variables of the model.
 ///
 /// # Errors
-/// Fails where a motion stops, comes closer to a singular position than the margin that is requested, or a goal has no value.
+/// Fails where a motion stops, comes closer to a singular position than the margin that is requested, or a goal has no
+/// value.
 pub fn judge(
     model: &Model,
     motions: &Motions<'_>,
@@ -437,8 +443,8 @@ impl<'p> Descent<'p> {
         }
     }
 
-    /// The solver that is made for goals and limits like these, from where the search is. Least squares come near to bounds from
-    /// within, slowly: what they leave is left to sequential programming.
+    /// The solver that is made for goals and limits like these, from where the search is. Least squares come near to
+    /// bounds from within, slowly: what they leave is left to sequential programming.
     fn solver(&self, squares: bool) -> Option<Box<dyn Solver + 'p>> {
         if squares {
             least_squares(self.memory, &self.at, &self.here).map(|s| Box::new(s) as Box<dyn Solver + 'p>)
@@ -483,8 +489,8 @@ impl<'p> Descent<'p> {
 
     /// Damped Gauss-Newton steps under bounds and limits from the best design, as long as they gain.
     ///
-    /// Small misfits lie in narrow curved valleys, and on curved limits: a step along them leaves them. Up to [`CORRECTIONS`]
-    /// further steps with much greater damping lead back before the designs are compared.
+    /// Small misfits lie in narrow curved valleys, and on curved limits: a step along them leaves them. Up to
+    /// [`CORRECTIONS`] further steps with much greater damping lead back before the designs are compared.
     fn polish(&mut self, search: &mut SearchResult, tell: &mut dyn FnMut(&Iteration)) {
         let n = self.at.len();
         let promise =

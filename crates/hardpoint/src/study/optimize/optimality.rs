@@ -13,19 +13,23 @@ use super::problem::{Point, Problem, Rows};
 
 /// Distance from its end, as a fraction of its scale, below which a constraint is active.
 const BINDS: f64 = 1e-7;
-/// Misfits below this part of what the bounds of the strongest variable change them by are round-off: motions are solved to some 1e-14.
+/// Misfits below this part of what the bounds of the strongest variable change them by are round-off: motions are
+/// solved to some 1e-14.
 const MET: f64 = 1e-12;
-/// The scale of goals that are no squares is at least this part of the gradient at the start: their value alone may pass through zero.
+/// The scale of goals that are no squares is at least this part of the gradient at the start: their value alone may
+/// pass through zero.
 const LEAST_SCALE: f64 = 1e-6;
 
 /// A constraint that prevents a better design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ActiveConstraint {
-    /// The lower bound of a searched variable, by its place in [`OptimizationSettings::variables`](crate::model::OptimizationSettings::variables).
+    /// The lower bound of a searched variable, by its place in
+    /// [`OptimizationSettings::variables`](crate::model::OptimizationSettings::variables).
     Lower(usize),
     /// Upper bound.
     Upper(usize),
-    /// The lower end of a limit, by its place in [`OptimizationSettings::limits`](crate::model::OptimizationSettings::limits), in a motion.
+    /// The lower end of a limit, by its place in
+    /// [`OptimizationSettings::limits`](crate::model::OptimizationSettings::limits), in a motion.
     Least(usize, Option<usize>),
     /// The upper end of a limit.
     Most(usize, Option<usize>),
@@ -34,10 +38,11 @@ pub enum ActiveConstraint {
 /// Optimality of a design.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Optimality {
-    /// The part of the gradient that no active constraint balances, relative to the scale of the goals: 0 at an optimum.
+    /// The part of the gradient that no active constraint balances, relative to the scale of the goals: 0 at an
+    /// optimum.
     ///
-    /// The scale of squares `f = r^T r` is `2 max |J_v| |r|`, so that the residual is the cosine between the misfits and their
-    /// derivatives; that of other goals is their value, and the gradient at the start where that is less.
+    /// The scale of squares `f = r^T r` is `2 max |J_v| |r|`, so that the residual is the cosine between the misfits
+    /// and their derivatives; that of other goals is their value, and the gradient at the start where that is less.
     pub residual: f64,
     /// The same relative to the gradient at the start.
     pub left_of_start: f64,

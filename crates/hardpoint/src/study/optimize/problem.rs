@@ -174,7 +174,8 @@ impl<'m> Problem<'m> {
         Self { bounds: asked.variables.iter().map(bounds).collect(), model, motions, asked, goals, limits }
     }
 
-    /// The values of all variables where the searched ones are so far along their bounds, 0 at the lower one and 1 at the upper one.
+    /// The values of all variables where the searched ones are so far along their bounds, 0 at the lower one and 1 at
+    /// the upper one.
     pub fn design(&self, parts: &[f64]) -> Vec<f64> {
         let mut design = vec![0.0; self.model.variables.len()];
         for ((v, [low, high]), part) in self.asked.variables.iter().zip(&self.bounds).zip(parts) {
@@ -395,8 +396,8 @@ mod tests {
     use crate::study::test_models::crank_rocker;
     use crate::topology::Formulation;
 
-    /// Central differences of a smooth function at this step, as a part of the bounds, hold to this part of the largest number:
-    /// `step^2` of the third derivative, and round-off by the step.
+    /// Central differences of a smooth function at this step, as a part of the bounds, hold to this part of the largest
+    /// number: `step^2` of the third derivative, and round-off by the step.
     const STEP: f64 = 1e-5;
     const AGREES: f64 = 1e-7;
 
@@ -469,8 +470,8 @@ mod tests {
         }
     }
 
-    /// All numbers of a point with their derivatives; of the misfits the sum of their squares, since their nodes are where the design's
-    /// own path turns.
+    /// All numbers of a point with their derivatives; of the misfits the sum of their squares, since their nodes are
+    /// where the design's own path turns.
     fn numbers(point: &Point) -> Vec<(f64, Vec<f64>)> {
         let rows = |rows: &Rows| rows.values.iter().copied().zip(rows.d.iter().cloned()).collect::<Vec<_>>();
         let squares = Point { misfits: point.misfits.clone(), ..Point::default() };

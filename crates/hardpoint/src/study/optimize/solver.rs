@@ -1,4 +1,5 @@
-//! The solvers of basin, given a problem of Hardpoint's: bounded least squares, and sequential programming under limits.
+//! The solvers of basin, given a problem of Hardpoint's: bounded least squares, and sequential programming under
+//! limits.
 //!
 //! Both see the design as parts of its bounds, so that every variable goes from 0 to 1.
 
@@ -16,8 +17,9 @@ use crate::study::trust_region::{Recent, TrustRegion, next};
 
 use super::problem::{LimitRow, Point, Problem, Refusal, Rows};
 
-/// The sequential solver takes objective and limits for settled where they change by less than this, with curvatures scaled to the order
-/// of one: the square of how near to stationary a design shall be. What round-off leaves of that is for the search to see.
+/// The sequential solver takes objective and limits for settled where they change by less than this, with curvatures
+/// scaled to the order of one: the square of how near to stationary a design shall be. What round-off leaves of that is
+/// for the search to see.
 const SETTLED: f64 = 1e-30;
 /// The least curvature that is assumed in any direction, as a part of the largest.
 pub(super) const FLAT: f64 = 1e-4;
@@ -99,8 +101,8 @@ pub(super) fn least_squares<'p>(
     TrustRegion::new(start.to_vec(), [0.0, 1.0], Box::new(residuals), Box::new(derivatives))
 }
 
-/// The misfits of a design after their derivatives, `[J r]`, as one row for every variable and one more with the same squares and
-/// products: the number of misfits themselves depends on the times at which a design was solved.
+/// The misfits of a design after their derivatives, `[J r]`, as one row for every variable and one more with the same
+/// squares and products: the number of misfits themselves depends on the times at which a design was solved.
 fn folded_misfits(memory: &Memory<'_>, spans: &[f64], scale: f64, x: &[f64]) -> Vec<Vec<f64>> {
     memory.at(x, |found| {
         let Ok(point) = found else { return vec![vec![f64::NAN; x.len() + 1]; x.len() + 1] };
@@ -137,7 +139,8 @@ pub(super) struct Programming<'p> {
     /// Factor of the objective, and of every limit.
     scale: f64,
     limit_scales: Vec<f64>,
-    /// Number of groups of peaks and limited ranges there are, and how many rows of each kind: the same for every design.
+    /// Number of groups of peaks and limited ranges there are, and how many rows of each kind: the same for every
+    /// design.
     peaks: usize,
     spreads: usize,
     equal: usize,

@@ -1,5 +1,5 @@
-//! Sobol's indices of sensitivity: what part of a metric's variance over the ranges each variable is to account for, by itself and with
-//! all that it does together with others.
+//! Sobol's indices of sensitivity: what part of a metric's variance over the ranges each variable is to account for, by
+//! itself and with all that it does together with others.
 
 /// The indices of one metric by one variable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -13,8 +13,8 @@ pub struct SobolIndex {
 }
 
 /// The indices of a metric by each of that many variables, from its values in the designs of
-/// [`SweepMethod::Indices`](crate::model::SweepMethod::Indices), NaN where a design has none. `None` where it does not vary, or fewer than
-/// two pairs have it.
+/// [`SweepMethod::Indices`](crate::model::SweepMethod::Indices), NaN where a design has none. `None` where it does not
+/// vary, or fewer than two pairs have it.
 ///
 /// ```text
 /// f0 = mean of f_A and f_B,   V = mean of ((f_A - f0)^2 + (f_B - f0)^2) / 2
@@ -22,9 +22,9 @@ pub struct SobolIndex {
 /// T_i = mean of (f_A - f_ABi)^2 / 2 / V                       (Jansen 1999)
 /// ```
 ///
-/// A, B: independent designs; ABi: A with variable i of B. Where a design failed, its pair says nothing of the variables that need it, and
-/// the indices are those over the part of the ranges where the mechanism moves. Standard errors are those of quotients of means over
-/// independent pairs; evenly spread ones do better.
+/// A, B: independent designs; ABi: A with variable i of B. Where a design failed, its pair says nothing of the
+/// variables that need it, and the indices are those over the part of the ranges where the mechanism moves. Standard
+/// errors are those of quotients of means over independent pairs; evenly spread ones do better.
 pub fn sobol_indices(values: &[f64], variables: usize) -> Vec<Option<SobolIndex>> {
     let width = variables + 2;
     let of = |i: usize| {
@@ -102,7 +102,8 @@ mod tests {
 
     #[test]
     fn indices_of_ishigami_are_the_closed_ones() {
-        // f = sin x + 7 sin^2 y + 0.1 z^4 sin x on [-pi, pi]^3 (Ishigami and Homma 1990); V = a^2/8 + b pi^4/5 + b^2 pi^8/18 + 1/2.
+        // f = sin x + 7 sin^2 y + 0.1 z^4 sin x on [-pi, pi]^3 (Ishigami and Homma 1990); V = a^2/8 + b pi^4/5 + b^2
+        // pi^8/18 + 1/2.
         let (a, b, pi) = (7.0, 0.1, std::f64::consts::PI);
         let v = a * a / 8.0 + b * pi.powi(4) / 5.0 + b * b * pi.powi(8) / 18.0 + 0.5;
         let alone = [0.5 * (1.0 + b * pi.powi(4) / 5.0).powi(2), a * a / 8.0, 0.0];

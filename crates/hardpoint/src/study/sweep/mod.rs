@@ -116,8 +116,8 @@ impl<'a> Sweep<'a> {
         block
     }
 
-    /// Solves all designs from a number on, a multiple of [`BLOCK`](super::BLOCK). `done` is given what is found block by block, in order,
-    /// and may end the work; so may `more`.
+    /// Solves all designs from a number on, a multiple of [`BLOCK`](super::BLOCK). `done` is given what is found block
+    /// by block, in order, and may end the work; so may `more`.
     pub fn run(
         &self,
         from: usize,

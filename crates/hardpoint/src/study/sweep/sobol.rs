@@ -1,7 +1,9 @@
-//! Sobol's sequence: points that fill a cube of many dimensions evenly, any of them by its number, and evenly still after being scrambled.
+//! Sobol's sequence: points that fill a cube of many dimensions evenly, any of them by its number, and evenly still
+//! after being scrambled.
 
-/// Primitive polynomials and first direction numbers for 512 dimensions: the beginning of `new-joe-kuo-6.21201` of S. Joe and F. Y. Kuo,
-/// "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci. Comput. 30 (2008) 2635-2654, as they publish it.
+/// Primitive polynomials and first direction numbers for 512 dimensions: the beginning of `new-joe-kuo-6.21201` of S.
+/// Joe and F. Y. Kuo, "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci. Comput. 30
+/// (2008) 2635-2654, as they publish it.
 const JOE_KUO: &str = include_str!("joe_kuo.txt");
 const BITS: usize = 32;
 
@@ -61,8 +63,9 @@ fn directions(line: &str) -> [u32; BITS] {
     v
 }
 
-/// Owen's nested scrambling by a hash: every bit is turned over or not by what is above it (B. Burley, "Practical Hash-based Owen
-/// Scrambling", JCGT 9 (2020) no. 4, with the hash of N. Vegdahl, 2021). A point set that is evenly spread stays so.
+/// Owen's nested scrambling by a hash: every bit is turned over or not by what is above it (B. Burley, "Practical
+/// Hash-based Owen Scrambling", JCGT 9 (2020) no. 4, with the hash of N. Vegdahl, 2021). A point set that is evenly
+/// spread stays so.
 fn scrambled(x: u32, seed: u32) -> u32 {
     let mut x = x.reverse_bits();
     x ^= x.wrapping_mul(0x3d20_adea);
@@ -130,7 +133,8 @@ mod tests {
 
     #[test]
     fn a_product_is_integrated_far_better_than_at_random() {
-        // int prod (1 + (x_d - 1/2)) = 1 over 12 dimensions; at random the error is sqrt((1 + 1/12)^12 - 1) / sqrt(N) = 0.02.
+        // int prod (1 + (x_d - 1/2)) = 1 over 12 dimensions; at random the error is sqrt((1 + 1/12)^12 - 1) / sqrt(N) =
+        // 0.02.
         const N: usize = 4096;
         const SEEDS: u64 = 16;
         const AT_RANDOM: f64 = 0.0198;

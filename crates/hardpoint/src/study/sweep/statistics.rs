@@ -48,8 +48,8 @@ pub(in crate::study) fn quantile(sorted: &[f64], part: f64) -> f64 {
     sorted[k] + rest * (sorted[usize::min(k + 1, sorted.len() - 1)] - sorted[k])
 }
 
-/// Spearman's rank correlation of two series, over where both are known: 1 where one always rises with the other, -1 where it always
-/// falls. `None` where one of them does not vary.
+/// Spearman's rank correlation of two series, over where both are known: 1 where one always rises with the other, -1
+/// where it always falls. `None` where one of them does not vary.
 pub fn rank_correlation(a: &[f64], b: &[f64]) -> Option<f64> {
     let both: Vec<[f64; 2]> =
         a.iter().zip(b).map(|(a, b)| [*a, *b]).filter(|p| p.iter().all(|x| x.is_finite())).collect();

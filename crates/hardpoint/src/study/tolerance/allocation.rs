@@ -4,9 +4,10 @@
 //! minimise  sum c_a / t_a     subject to  k^2 t' Q_j t <= r_j^2  (squares)  or  w_j . t <= r_j  (worst case)
 //! ```
 //!
-//! with `t_a` the reaches, `r_j` the room between the value in the design configuration and a limit, `Q_ab = sum over variables i of a, l of b of
-//! g_i g_l rho_il (s_i / t_a) (s_l / t_b)` and `w_a = |gradient by the variables of a|`. All of it is convex, so that what fulfils the
-//! conditions of optimality is the optimum. It is found by a barrier and Newton's method.
+//! with `t_a` the reaches, `r_j` the room between the value in the design configuration and a limit,
+//! `Q_ab = sum over variables i of a, l of b of g_i g_l rho_il (s_i / t_a) (s_l / t_b)` and
+//! `w_a = |gradient by the variables of a|`. All of it is convex, so that what fulfils the conditions of optimality is
+//! the optimum. It is found by a barrier and Newton's method.
 
 use crate::linalg::semidefinite;
 use crate::model::{AllocationRule, AllocationSettings};
@@ -14,11 +15,13 @@ use crate::model::{AllocationRule, AllocationSettings};
 use super::monte_carlo::MonteCarlo;
 use super::{Study, ToleranceResult, dot};
 
-/// No tolerance is made looser than that many times what it is: beyond that no limit has a say in it, and no derivative either.
+/// No tolerance is made looser than that many times what it is: beyond that no limit has a say in it, and no derivative
+/// either.
 const MOST: f64 = 1000.0;
 /// The barrier deflects by this factor ...
 const HARDER: f64 = 10.0;
-/// ... until what it costs is less than this part of the costs. Newton's equations are then of a condition near its inverse.
+/// ... until what it costs is less than this part of the costs. Newton's equations are then of a condition near its
+/// inverse.
 const SHARP: f64 = 1e-8;
 /// Newton's method ends where the cost would fall by less than this part, and after that many steps at the latest.
 const STILL: f64 = 1e-18;
@@ -35,8 +38,8 @@ pub struct Allocation {
     pub rule: AllocationRule,
     /// Per tolerance that has a cost.
     pub tolerances: Vec<AllocatedTolerance>,
-    /// Per limit, in the order of [`ToleranceResult::limits`]: what it is worth, as the cost that would be saved if its room grew by
-    /// one SI unit; 0 where it does not bind.
+    /// Per limit, in the order of [`ToleranceResult::limits`]: what it is worth, as the cost that would be saved if its
+    /// room grew by one SI unit; 0 where it does not bind.
     pub worth: Vec<f64>,
     /// The sum of `cost / reach` before and after.
     pub cost: [f64; 2],

@@ -10,7 +10,8 @@ const ERRORS: f64 = 3.0;
 const FAILING: f64 = 1e-3;
 /// Contributions are taken of drawn designs from this number on: fewer leave whole percents to chance.
 const ENOUGH: usize = 1000;
-/// Groups of drawn designs with about the same deviation of a variable: least number of designs in each, and largest number of groups.
+/// Groups of drawn designs with about the same deviation of a variable: least number of designs in each, and largest
+/// number of groups.
 const PER_GROUP: usize = 100;
 const MOST_GROUPS: usize = 50;
 
@@ -31,7 +32,8 @@ pub enum SpreadModel {
 pub struct Contributions {
     /// Model that they are from.
     pub model: SpreadModel,
-    /// Per variable that may be off. Of drawn designs they are main effects: the variance of the mean at given deviations of the variable.
+    /// Per variable that may be off. Of drawn designs they are main effects: the variance of the mean at given
+    /// deviations of the variable.
     pub shares: Vec<f64>,
     /// The part that only several variables together bring; `None` where it is shared out among them.
     pub together: Option<f64>,
@@ -84,8 +86,8 @@ impl ToleranceResult {
     }
 }
 
-/// The variance of the mean value at given deviations of a variable, as a part of all: over groups of about equal deviations, less what
-/// the scatter within groups makes of their means.
+/// The variance of the mean value at given deviations of a variable, as a part of all: over groups of about equal
+/// deviations, less what the scatter within groups makes of their means.
 ///
 /// ```text
 /// V_i = sum n_b (m_b - m)^2 / n - (B - 1) s^2 / n,    S_i = V_i / V        b = 1..B,  s^2 the mean variance within groups

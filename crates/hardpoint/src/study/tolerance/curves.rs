@@ -5,7 +5,8 @@ use crate::model::OutputSource;
 use super::deviations::Deviations;
 use super::{SecondOrder, Study};
 
-/// Second derivatives of that many bytes are held for bands; of more variables and longer motions, bands are of first order.
+/// Second derivatives of that many bytes are held for bands; of more variables and longer motions, bands are of first
+/// order.
 const MOST_BYTES: usize = 256 << 20;
 /// And that many while they are worked out.
 const PART_BYTES: usize = 16 << 20;
@@ -89,8 +90,8 @@ impl Study<'_> {
         asked.iter().map(curve).collect()
     }
 
-    /// Exact second derivatives of some columns by all pairs of variables that may be off; `None` where they are too many, or the time
-    /// is up.
+    /// Exact second derivatives of some columns by all pairs of variables that may be off; `None` where they are too
+    /// many, or the time is up.
     fn seconds(&self, motion: usize, columns: &[usize], more: &(dyn Fn() -> bool + Sync)) -> Option<Seconds> {
         let (analysis, variables) = (&self.motions.analyses()[motion], &self.deviations.variables);
         let n = variables.len();

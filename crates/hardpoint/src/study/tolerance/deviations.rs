@@ -1,4 +1,5 @@
-//! Deviations of the design variables: how they scatter, alone and together, and what that makes of a function with known derivatives.
+//! Deviations of the design variables: how they scatter, alone and together, and what that makes of a function with
+//! known derivatives.
 
 use crate::linalg::semidefinite;
 use crate::model::{Model, Scatter, ToleranceSettings, VariableId};
@@ -120,7 +121,8 @@ impl Deviations {
         (0..g.len()).map(share).collect()
     }
 
-    /// The part of the variance to second order that each variable contributes; what two of them bring together is halved.
+    /// The part of the variance to second order that each variable contributes; what two of them bring together is
+    /// halved.
     ///
     /// ```text
     /// g_i (S g)_i + (H S H S)_ii / 2 + (k/3 - 1) (sum over the block of G_ij^2 / 2 + tr(G_b) G_ii / 4),  over their sum

@@ -1,8 +1,9 @@
 //! Tolerance study: effects of the tolerances of design variables on every metric and along whole curves.
 //!
-//! From exact derivatives, without sampling: worst case, root of the sum of squares, mean and variance to second order, what each variable
-//! contributes, yield (`docs/theory.md`, section on tolerances). Beside it the same from designs that are drawn and solved exactly, so that
-//! the error of the derivatives' answer is seen, and the loosest tolerances that keep the limits.
+//! From exact derivatives, without sampling: worst case, root of the sum of squares, mean and variance to second order,
+//! what each variable contributes, yield (`docs/theory.md`, section on tolerances). Beside it the same from designs
+//! that are drawn and solved exactly, so that the error of the derivatives' answer is seen, and the loosest tolerances
+//! that keep the limits.
 
 mod allocation;
 mod contributions;
@@ -32,8 +33,8 @@ pub use worst::Extreme;
 /// Threshold for a warning about nonlinearity: the second-order part of a deviation, or the shift of its mean, relative
 /// to the first-order standard deviation.
 pub const NONLINEAR: f64 = 0.1;
-/// Gradients are differenced over this part of a natural step to either side: the error of the difference, in h^2, and round-off, in 1/h,
-/// are then some 1e-8 of the second derivative.
+/// Gradients are differenced over this part of a natural step to either side: the error of the difference, in h^2, and
+/// round-off, in 1/h, are then some 1e-8 of the second derivative.
 const STEP: f64 = 1e-4;
 
 /// Result of a tolerance study.
@@ -89,8 +90,8 @@ pub struct MetricSpread {
     pub d: Vec<f64>,
     /// Standard deviation to first order: the root of the sum of squares.
     pub sigma: f64,
-    /// The part of the first-order variance that each variable contributes; they add up to 1. With correlated variables one may be
-    /// negative: it takes away from what another brings.
+    /// The part of the first-order variance that each variable contributes; they add up to 1. With correlated variables
+    /// one may be negative: it takes away from what another brings.
     pub shares: Vec<f64>,
     /// The same of the variance to second order, where that is known.
     pub second_shares: Option<Vec<f64>>,
@@ -135,7 +136,8 @@ impl ToleranceResult {
     }
 }
 
-/// The designs that are drawn within tolerances, by their numbers: all variables, in SI. Those that are left out stay in the design configuration.
+/// The designs that are drawn within tolerances, by their numbers: all variables, in SI. Those that are left out stay
+/// in the design configuration.
 pub fn toleranced_designs(
     model: &Model,
     asked: &ToleranceSettings,
@@ -190,7 +192,8 @@ impl MetricSpread {
 }
 
 /// Studies the tolerances of a design in some motions of the mechanism, each of which is the model's own of that number
-/// ([`Model::motions`]). `tell` is reported how far it is and may end it, `more` is asked at every output time of single designs.
+/// ([`Model::motions`]). `tell` is reported how far it is and may end it, `more` is asked at every output time of
+/// single designs.
 ///
 /// # Errors
 /// A [`ToleranceError`] where there is nothing to depend on.

@@ -97,7 +97,8 @@ impl Yield {
         self.kept as f64 / self.of as f64
     }
 
-    /// Standard error: that of a part with one more that keeps it and one more that does not, since none of many is not never.
+    /// Standard error: that of a part with one more that keeps it and one more that does not, since none of many is not
+    /// never.
     pub fn error(self) -> f64 {
         let n = self.of as f64 + 2.0;
         let part = (self.kept as f64 + 1.0) / n;

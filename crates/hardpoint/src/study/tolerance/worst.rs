@@ -3,7 +3,8 @@
 use super::deviations::{Block, Deviations};
 use super::dot;
 
-/// An ascent ends after that many rounds over all tolerances; it gains in each of them, and ends mostly after two or three.
+/// An ascent ends after that many rounds over all tolerances; it gains in each of them, and ends mostly after two or
+/// three.
 const ROUNDS: usize = 50;
 /// Within a sphere the direction is improved that many times in each round.
 const TURNS: usize = 10;
@@ -15,7 +16,8 @@ const NO_MORE: f64 = 1e-12;
 pub struct Extreme {
     /// To first order: `value +- sum over tolerances of reach * |gradient|`.
     pub first: f64,
-    /// To second order, where that is known: an extreme of the quadratic found by ascent from the first order's and its neighbours.
+    /// To second order, where that is known: an extreme of the quadratic found by ascent from the first order's and its
+    /// neighbours.
     pub second: Option<f64>,
     /// Deviations at the worst case, per toleranced variable: to second order if known, otherwise to first order.
     pub deviations: Vec<f64>,
@@ -25,7 +27,8 @@ pub struct Extreme {
     pub why: Option<String>,
 }
 
-/// The extreme of a function with a gradient and, perhaps, second derivatives: the greatest for `sign` 1, the least for -1.
+/// The extreme of a function with a gradient and, perhaps, second derivatives: the greatest for `sign` 1, the least for
+/// -1.
 pub(super) fn extreme(of: &Deviations, value: f64, g: &[f64], h: Option<&[Vec<f64>]>, sign: f64) -> Extreme {
     let g: Vec<f64> = g.iter().map(|g| sign * g).collect();
     let corner = corner(of, &g);
@@ -116,8 +119,8 @@ impl Quadratic<'_> {
         d[i] = best.expect("there is a candidate");
     }
 
-    /// The direction of a sphere's radius: the function with `mu |d|^2 / 2` added, which changes nothing on the sphere, is convex, and goes
-    /// up with every turn towards its gradient.
+    /// The direction of a sphere's radius: the function with `mu |d|^2 / 2` added, which changes nothing on the sphere,
+    /// is convex, and goes up with every turn towards its gradient.
     fn around(&self, block: &Block, d: &mut [f64]) {
         let square =
             block.range().flat_map(|i| block.range().map(move |j| (i, j))).map(|(i, j)| self.h[i][j].powi(2));

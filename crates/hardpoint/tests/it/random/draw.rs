@@ -7,8 +7,8 @@ use hardpoint::{draft::*, model::*};
 
 use super::rank::{Basis, coupler_row, driver_row, joint_rows};
 
-/// A row of an exactly determined mechanism keeps at least this part of its length beside the rows before it. Weaker ones
-/// exist in practice, but near a singular position nothing smooth can be requested.
+/// A row of an exactly determined mechanism keeps at least this part of its length beside the rows before it. Weaker
+/// ones exist in practice, but near a singular position nothing smooth can be requested.
 const WELL_POSED: f64 = 0.05;
 
 /// Steele's, Lea's and Flood's splitmix64: small, and good enough to draw with.
@@ -464,7 +464,8 @@ impl<'r> Drawing<'r> {
         j
     }
 
-    /// A closed curve without sharp bends about a place, for a joint along z; the way from there to the point that follows.
+    /// A closed curve without sharp bends about a place, for a joint along z; the way from there to the point that
+    /// follows.
     fn curve(&mut self, j: &mut JointDraft, p: Vec3, z: Vec3) -> Vec3 {
         let x = self.square_to(z);
         let y = z.cross(x);

@@ -14,8 +14,9 @@ use super::draw::Rng;
 use super::rank;
 
 /// Two ways to the same numbers agree to this, over a power of the margin that grows with the order: round-off enters a
-/// position once, a velocity through one more solution with the Jacobian, an acceleration through two, and each solution
-/// may lose 1 / margin of its digits. 1e-13 is some hundred roundings of bodies several joints away from ground.
+/// position once, a velocity through one more solution with the Jacobian, an acceleration through two, and each
+/// solution may lose 1 / margin of its digits. 1e-13 is some hundred roundings of bodies several joints away from
+/// ground.
 const AGREE: f64 = 1e-12;
 /// The best that central differences over a sweep of decades can do is some 1e-10 of a well-conditioned sensitivity; a
 /// coarse sweep finds a tenth of that, and each order loses digits to the margin.
@@ -45,7 +46,8 @@ pub struct Tally {
     pub solved: usize,
     pub stops: BTreeMap<String, usize>,
     pub faults: BTreeMap<String, usize>,
-    /// Joint types, in the tree and cut; coordinates, driven in the tree and across a cut, coupled and measured; drivers.
+    /// Joint types, in the tree and cut; coordinates, driven in the tree and across a cut, coupled and measured;
+    /// drivers.
     pub used: BTreeSet<String>,
     pub admissible: usize,
     pub reassembled: usize,
@@ -170,7 +172,8 @@ impl Case<'_> {
             self.is_closed(&model, s);
         }
         self.stop_alike(&a, &b);
-        // That an overconstrained mechanism cannot follow a variable shows on its way, not in the design configuration alone.
+        // That an overconstrained mechanism cannot follow a variable shows on its way, not in the design configuration
+        // alone.
         let least_times = if promise.exact { 1 } else { 3 };
         if a.motion.len().min(b.motion.len()) < least_times {
             return;
@@ -328,7 +331,8 @@ impl Case<'_> {
             let per_time = x.values.len() / a.1.motion.len();
             let n = per_time * times;
             let most = x.values[..n].iter().map(|x| x.abs()).fold(x.floor, f64::max);
-            // Across a cut turns are counted from the first output time and by the rates since, in the tree from the design.
+            // Across a cut turns are counted from the first output time and by the rates since, in the tree from the
+            // design.
             let whole = if x.counts_turns { std::f64::consts::TAU } else { f64::INFINITY };
             let apart = x.values[..n].iter().zip(&y.values[..n]).map(|(x, y)| {
                 let d = x - y;
@@ -572,8 +576,8 @@ struct Group {
     counts_turns: bool,
 }
 
-/// All numbers of a solution, lengths in sizes, by names in alphabetical order; those of a moved mechanism are moved back, and
-/// with `anywhere` those left out that depend on where it is.
+/// All numbers of a solution, lengths in sizes, by names in alphabetical order; those of a moved mechanism are moved
+/// back, and with `anywhere` those left out that depend on where it is.
 fn flat(model: &Model, s: &Solution, size: f64, moved: Option<Pose>, anywhere: bool) -> Vec<Group> {
     let times = s.motion.len();
     let by_name = |names: Vec<&str>| {
