@@ -100,13 +100,13 @@ def mirrored(model):
     [
         lambda model: (model, {"samples": 1100, "curves": ["toe", "camber"]}),
         lambda model: (model, {"method": "latin_hypercube", "samples": np.int64(1100), "seed": 3}),
-        lambda model: (model, {"method": "indices", "samples": 100}),
+        lambda model: (model, {"method": "sobol_indices", "samples": 100}),
         lambda model: (model.case("bump"), {"samples": 600, "curves": ["toe"]}),
         lambda model: (model, FAILING),
         lambda model: (model, {**FAILING, "curves": ["toe"]}),
         mirrored,
     ],
-    ids=["curves", "hypercube", "indices", "case", "failing", "curves of failing", "coordinates"],
+    ids=["curves", "hypercube", "sobol_indices", "case", "failing", "curves of failing", "coordinates"],
 )
 def test_numbers_are_those_of_one_machine(of, model, client, tmp_path):
     model, asked = of(model)

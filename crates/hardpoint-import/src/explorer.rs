@@ -210,7 +210,7 @@ fn vehicle(root: &Tree, m: &mut Mechanism, notes: &mut ImportLog) {
     });
     m.vehicle = Vehicle {
         wheelbase: figure("wheelbase", &Tree::number, &is_length),
-        centre_of_gravity: figure("cg_position", &|tree| Some(tree.vector()?[2] - road), &is_length),
+        cg_height: figure("cg_position", &|tree| Some(tree.vector()?[2] - road), &is_length),
         front_brake_share: figure("front_brake_bias", &Tree::number, &is_share),
         front_drive_share: figure("driven_axle", &driven, &is_share),
     };

@@ -284,7 +284,7 @@ impl Parameters {
         } else if is(&WHEELBASE) {
             m.vehicle.wheelbase = Some(value);
         } else if is(&HEIGHT) {
-            m.vehicle.centre_of_gravity = Some(value);
+            m.vehicle.cg_height = Some(value);
         } else if self.radius.is_none() || short != RADII[RADII.len() - 1] {
             self.radius = Some(value);
         }

@@ -149,7 +149,7 @@ impl<'m> Writer<'m> {
         let v = &self.m.vehicle;
         let figures = [
             ("wheelbase", v.wheelbase),
-            ("centre_of_gravity", v.centre_of_gravity),
+            ("cg_height", v.cg_height),
             ("front_brake_share", v.front_brake_share),
             ("front_drive_share", v.front_drive_share),
         ];
@@ -337,7 +337,7 @@ impl<'m> Writer<'m> {
                     t["joint"] = value(self.m.joints[c.joint].name.as_str());
                     t["coordinate"] = value(c.name);
                     t["stiffness"] = value(spring.stiffness);
-                    spring.free.filter(|x| *x != 0.0).into_iter().for_each(|x| t["free"] = value(x));
+                    spring.free.filter(|x| *x != 0.0).into_iter().for_each(|x| t["equilibrium"] = value(x));
                 }
                 ForceOn::Points(ends) => {
                     t["type"] = value("spring");

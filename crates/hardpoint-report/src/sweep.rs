@@ -135,7 +135,7 @@ pub struct InfluenceFact {
     /// other.
     pub rank_correlation: Option<f64>,
     /// First-order index of Sobol: the part of the variance that is gone where the variable is known. With
-    /// `method = "indices"`.
+    /// `method = "sobol_indices"`.
     pub first: Option<f64>,
     /// Standard error.
     pub first_error: Option<f64>,

@@ -22,7 +22,7 @@ pub(crate) const CASE: Table = table! {
     /// The laws of the drivers that it moves, by the drivers' names; each as the `law` of a driver.
     or("{}") "laws": Shape::Entries("a driver", &law::LAW), "{ bump = \"40*sin(2*pi*t)\" }";
     /// Motion of all other drivers.
-    or("\"held\"") "rest": REST, "\"as_above\"";
+    or("\"fixed\"") "other_drivers": REST, "\"as_in_model\"";
     /// Loads with or without inertia, as `loads` of the file. Default: that of the file.
     may "loads": LOADS, "\"static\"";
     /// Output times, as `[time]` has them. Default: those of `[time]`.
@@ -56,8 +56,8 @@ const PLACES: Table = table! {
 /// More positions of one driver than this are surely a slip.
 const MOST_POSITIONS: u32 = 10_000;
 const REST: Shape = Shape::Words(&[
-    ("held", "They are fixed in the design configuration: their law is 0."),
-    ("as_above", "They follow the laws that they have in `[drivers]`."),
+    ("fixed", "They are fixed in the design configuration: their law is 0."),
+    ("as_in_model", "They follow the laws that they have in `[drivers]`."),
 ]);
 const RESTS: [OtherDrivers; 2] = [OtherDrivers::Held, OtherDrivers::AsAbove];
 
@@ -77,7 +77,7 @@ impl Reader<'_> {
             let fields = self.entry("case", &entry, CASE.keys());
             let mut place = EntryPlace::of(&fields);
             if fields.get("grid").is_some() {
-                for key in ["laws", "rest", "loads", "time"] {
+                for key in ["laws", "other_drivers", "loads", "time"] {
                     let why = "a `grid` says where two drivers stand; all others are fixed in the design configuration, and there is no time in it";
                     self.out_of_place(&fields, key, why);
                 }
@@ -90,7 +90,7 @@ impl Reader<'_> {
             let laws = self.given(&fields, "laws", |r, f| {
                 r.case_laws(&entry.0, &fields, f, &mut place, &driven, formulas)
             });
-            let rest = self.word_of(&fields, "rest").map(|k| RESTS[k]);
+            let rest = self.word_of(&fields, "other_drivers").map(|k| RESTS[k]);
             let mut times = self.given(&fields, "time", |r, f| {
                 r.times(&format!("`time` of {}", fields.what), &fields.subject("time"), f)
             });
@@ -232,10 +232,10 @@ impl Reader<'_> {
         let names: Vec<String> = without.iter().map(|name| format!("`{}`", shown(name))).collect();
         let names = hardpoint::draft::some_of(&names, ", ", 12);
         let what = if without.len() == 1 { "driver" } else { "drivers" };
-        let at = fields.get("rest").map_or(fields.at.clone(), |f| f.value.span());
+        let at = fields.get("other_drivers").map_or(fields.at.clone(), |f| f.value.span());
         let message = format!("{} leaves {what} {names} to a `law` that is not there", fields.what);
         self.report("HP0104", at, message).help = Some(format!(
-            "give one in the case, like `laws = {{ {first} = \"10*t\" }}`, or in `[drivers.{first}]`, or hold it with `rest = \"held\"`"
+            "give one in the case, like `laws = {{ {first} = \"10*t\" }}`, or in `[drivers.{first}]`, or hold it with `other_drivers = \"held\"`"
         ));
     }
 

@@ -32,15 +32,15 @@ pub(crate) const MIRROR: Table = table! {
     /// `-` or a blank.
     or("{ \"left\": \"right\" }") "names": Shape::Entries("a word", &Shape::Text), "{ left = \"right\" }";
     /// Design variables of mirrored entries.
-    or("\"both\"") "variables": VARIABLES, "\"each\"";
+    or("\"symmetric\"") "variables": VARIABLES, "\"independent\"";
     /// Names of things that are on one side only.
     may "except": Shape::list(&Shape::Name("a thing")), "[\"left_damper\"]";
-    /// Names of drivers that do the opposite on the other side, as steering does.
-    may "opposite": Shape::list(&crate::format::DRIVER), "[\"left_steer\"]";
+    /// Names of drivers that move oppositely on the other side, as those of steering do.
+    may "antisymmetric": Shape::list(&crate::format::DRIVER), "[\"left_steer\"]";
 };
 const VARIABLES: Shape = Shape::Words(&[
-    ("both", "Each changes both sides alike."),
-    ("each", "Those with such a word in their names have one of their own on the other side."),
+    ("symmetric", "Each changes both sides alike."),
+    ("independent", "Those with such a word in their names have one of their own on the other side."),
 ]);
 /// Sections whose entries are mirrored; of parameters and design variables, where each side has its own.
 pub(crate) const SECTIONS: [&str; 14] = [
@@ -251,7 +251,7 @@ impl Reader<'_> {
             let list = self.list(f.value, &subject, "a list of names").into_iter().flatten();
             list.filter_map(|v| Some((self.name(v, &subject, "a name in quotes")?, v.span()))).collect()
         };
-        let (except, opposite) = (listed("except"), listed("opposite"));
+        let (except, opposite) = (listed("except"), listed("antisymmetric"));
         if self.found.len() > before {
             return None;
         }

@@ -25,11 +25,11 @@ pub(crate) const OPTIMIZE: Table = table! {
     /// Conditions that the design must satisfy.
     may "limits": Shape::Entries("a metric", &Shape::Kinds(&LIMIT)), "{ rod = { length = \"tie_rod\", max = 300 } }";
     /// No motion may come nearer to a singular position than this margin, above 0 and below 1. Default: it may.
-    may "margin": NUMBER, "0.02";
+    may "min_margin": NUMBER, "0.02";
     /// From how many designs the search starts: that of the file, and others spread within the bounds.
     or("1") "starts": Shape::Count(MOST_STARTS), "8";
     /// After that many iterations a search ends.
-    or("100") "iterations": Shape::Count(MOST_ITERATIONS), "100";
+    or("100") "max_iterations": Shape::Count(MOST_ITERATIONS), "100";
 };
 pub(super) const GOAL: Table = table! {
     /// A metric that is made small, or brought to a target.
@@ -138,9 +138,9 @@ impl Reader<'_> {
         let fields = self.fields("`optimize`", f.at.0..f.at.1, table, OPTIMIZE.keys());
         let place = EntryPlace::of(&fields);
         let variables = self.given(&fields, "variables", |r, f| r.variables_of(&fields, f));
-        let margin = self.number_of(&fields, "margin");
+        let margin = self.number_of(&fields, "min_margin");
         let starts = self.count_of(&fields, "starts", MOST_STARTS);
-        let iterations = self.count_of(&fields, "iterations", MOST_ITERATIONS);
+        let iterations = self.count_of(&fields, "max_iterations", MOST_ITERATIONS);
         self.need(&fields, "goals");
         for key in ["goals", "limits"] {
             let table = fields.get(key).map(|f| f.value.get_ref().as_table());

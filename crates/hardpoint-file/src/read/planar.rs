@@ -129,7 +129,7 @@ impl Reader<'_> {
                 square(force, "about");
             }
             if word(force, "type").as_deref() == Some("slide_friction") {
-                square(force, "normal");
+                square(force, "ignored_direction");
             }
         });
         sections(model, "drivers", &mut |driver| {

@@ -28,7 +28,7 @@ pub(crate) const SWEEP: Table = table! {
     may "variables": Shape::Entries("a design variable", &ENTRY), "{ lca_front_z = [-5, 5], radius = { from = 90, to = 110, levels = 5 } }";
     /// Method that chooses the designs.
     or("\"sobol\"") "method": METHOD, "\"factorial\"";
-    /// Number of designs; with `method = "indices"` that many pairs of designs.
+    /// Number of designs; with `method = "sobol_indices"` that many pairs of designs.
     or("1000") "samples": Shape::Count(MOST_SAMPLES), "100000";
     /// Seed of the random numbers: the same seed gives the same designs.
     or("1") "seed": Shape::Count(u32::MAX), "7";
@@ -46,7 +46,7 @@ const METHOD: Shape = Shape::Words(&[
     ("latin_hypercube", "At random, with one design in each of `samples` slices of every range."),
     ("sobol", "Points that fill the ranges evenly, however many there are."),
     (
-        "indices",
+        "sobol_indices",
         "What Sobol's indices of sensitivity take: for v variables, (v + 2) times `samples` designs.",
     ),
 ]);

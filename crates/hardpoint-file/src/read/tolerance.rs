@@ -46,7 +46,7 @@ pub(crate) const TOLERANCE: Table = table! {
     may "allocate": Shape::Words(&ALLOCATE), "\"rss\"";
     /// With `allocate = "rss"`: that many standard deviations have to fit between a metric in the design configuration
     /// and its limit.
-    or("3.0") "keep_sigmas": NUMBER, "4.5";
+    or("3.0") "required_sigmas": NUMBER, "4.5";
 };
 const DISTRIBUTION: Shape = Shape::Words(&[
     ("uniform", "Evenly within the tolerance, and never beyond."),
@@ -54,7 +54,7 @@ const DISTRIBUTION: Shape = Shape::Words(&[
     ("truncated", "The same normal without what is beyond the tolerance."),
 ]);
 const ALLOCATE: [(&str, &str); 2] = [
-    ("rss", "`keep_sigmas` standard deviations keep the limits, added by their squares."),
+    ("rss", "`required_sigmas` standard deviations keep the limits, added by their squares."),
     ("worst_case", "All deviations at once keep the limits, each at its worst."),
 ];
 const ENTRY: Shape = Shape::Any(
@@ -110,10 +110,10 @@ impl Reader<'_> {
         let curves = names(self, "curves", "a list of names of measures");
         let samples = self.count_of(&fields, "samples", MOST_SAMPLES);
         let seed = self.count_of(&fields, "seed", u32::MAX);
-        let keep = self.number_of(&fields, "keep_sigmas");
+        let keep = self.number_of(&fields, "required_sigmas");
         let rule = fields.get("allocate").and_then(|_| self.word_of(&fields, "allocate"));
-        if fields.get("keep_sigmas").is_some() && rule != Some(0) {
-            self.out_of_place(&fields, "keep_sigmas", "only `allocate = \"rss\"` counts standard deviations");
+        if fields.get("required_sigmas").is_some() && rule != Some(0) {
+            self.out_of_place(&fields, "required_sigmas", "only `allocate = \"rss\"` counts standard deviations");
         }
         for key in ["variables", "correlations", "limits"] {
             let table = fields.get(key).map(|f| f.value.get_ref().as_table());

@@ -44,7 +44,7 @@ pub(crate) const WHEEL: Table = table! {
     may "steer": DRIVER, "\"rack\"";
     /// The lower and the upper plane of its arms, for the instant centres of textbooks: of an arm two pivots and its
     /// ball joint, of a strut its top mount and another point of its axis.
-    may "planes": Shape::exactly(2, &ARM_PLANE_SHAPE),
+    may "arm_planes": Shape::exactly(2, &ARM_PLANE_SHAPE),
         "[{ body = \"lca\", at = [\"lca_front\", \"lca_rear\", \"lower_ball\"] }, { body = \"strut\", at = [\"strut_top\", \"strut_lower\"] }]";
     /// The ends of its spring, for the motion ratio.
     may "spring": Shape::exactly(2, &POINT_REF), "[{ body = \"ground\", at = \"spring_top\" }, { body = \"lca\", at = \"spring_bottom\" }]";
@@ -78,7 +78,7 @@ pub(crate) const VEHICLE: Table = table! {
     /// Distance of the axles, in the length unit.
     may "wheelbase": LENGTH, "2600";
     /// Height of the centre of gravity above the ground, in the length unit.
-    may "centre_of_gravity": LENGTH, "550";
+    may "cg_height": LENGTH, "550";
     /// Part of the braking force that the front wheels take, 0 to 1.
     may "front_brake_share": NUMBER, "0.65";
     /// Part of the driving force that the front wheels give, 0 to 1.
@@ -107,10 +107,10 @@ impl Reader<'_> {
         self.unread.clear();
         let fields = self.fields("`vehicle`", f.value.span(), table, VEHICLE.keys());
         let number = |key: &str| self.number_of(&fields, key);
-        let [wheelbase, centre_of_gravity, front_brake_share, front_drive_share] =
-            ["wheelbase", "centre_of_gravity", "front_brake_share", "front_drive_share"].map(number);
+        let [wheelbase, cg_height, front_brake_share, front_drive_share] =
+            ["wheelbase", "cg_height", "front_brake_share", "front_drive_share"].map(number);
         self.push(raw, Section::Vehicle, EntryPlace::of(&fields));
-        raw.draft.vehicle = Vehicle { wheelbase, centre_of_gravity, front_brake_share, front_drive_share };
+        raw.draft.vehicle = Vehicle { wheelbase, cg_height, front_brake_share, front_drive_share };
     }
 
     /// Axles, and their measures behind those of the wheels.
@@ -165,7 +165,7 @@ impl Reader<'_> {
                 r.two_points(&fields, f, "a list of a lower and an upper point")
             });
             let steer = self.name_of(&fields, "steer");
-            let planes = self.given(&fields, "planes", |r, f| r.arm_planes(&fields, f));
+            let planes = self.given(&fields, "arm_planes", |r, f| r.arm_planes(&fields, f));
             let spring =
                 self.given(&fields, "spring", |r, f| r.two_points(&fields, f, "a list of two points"));
             if spin.is_none() {
@@ -224,7 +224,7 @@ impl Reader<'_> {
 
     /// The planes of both arms, each by points of one body.
     fn arm_planes(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<[Vec<PointRef>; 2]> {
-        let subject = fields.subject("planes");
+        let subject = fields.subject("arm_planes");
         let list = f.value.get_ref().as_array().filter(|list| list.len() == 2);
         let Some(list) = list else {
             self.wrong(f.value, &subject, "a list of a lower and an upper plane");
@@ -268,7 +268,7 @@ impl Reader<'_> {
         // Whoever names no driver that steers, no planes and no spring does not ask for what follows from them.
         let is_asked = |need: WheelRequirement| match need {
             WheelRequirement::Steer => has("steer"),
-            WheelRequirement::Planes => has("planes"),
+            WheelRequirement::Planes => has("arm_planes"),
             WheelRequirement::Spring => has("spring"),
             _ => true,
         };
@@ -296,7 +296,7 @@ impl Reader<'_> {
             need if !is_at(need) => None,
             need => vehicle.lacks(need).next().map(|key| match key {
                 "wheelbase" => "`[vehicle]` has no `wheelbase`",
-                "centre_of_gravity" => "`[vehicle]` has no `centre_of_gravity`",
+                "cg_height" => "`[vehicle]` has no `cg_height`",
                 _ => "`[vehicle]` does not say which share of the force this end takes",
             }),
         };

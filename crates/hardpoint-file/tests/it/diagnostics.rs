@@ -237,16 +237,16 @@ fn wheels() {
     let with = |name: &str, more: &str| broken(name, "radius = 300", &format!("radius = 300\n{more}"));
     let plane = |at: &str| {
         format!(
-            "planes = [{{ body = \"coupler\", at = [\"B\", \"C\", [0, 0, 9]] }}, {{ body = \"rocker\", at = {at} }}]"
+            "arm_planes = [{{ body = \"coupler\", at = [\"B\", \"C\", [0, 0, 9]] }}, {{ body = \"rocker\", at = {at} }}]"
         )
     };
     with("planes_on_a_line", &plane("[\"C\", \"D\", \"C\"]"));
     with("plane_of_a_strut_at_one_place", &plane("[\"C\", \"C\"]"));
     with("plane_of_one_point", &plane("[\"C\"]"));
-    with("planes_of_one_arm", "planes = [{ body = \"coupler\", at = [\"B\", \"C\"] }]");
+    with("planes_of_one_arm", "arm_planes = [{ body = \"coupler\", at = [\"B\", \"C\"] }]");
     with(
         "plane_without_body",
-        "planes = [{ at = [\"B\", \"C\"] }, { body = \"rocer\", at = [\"B\", \"C\"] }]",
+        "arm_planes = [{ at = [\"B\", \"C\"] }, { body = \"rocer\", at = [\"B\", \"C\"] }]",
     );
     with("spring_at_one_place", "spring = [\"P\", \"P\"]");
     with("spring_of_one_point", "spring = \"P\"");

@@ -48,7 +48,7 @@ steps = 10
 const AXLE: &str = r#"
 name = "an axle"
 include = [{ file = "corner.toml", prefix = "left_", shared = ["rack", "slide", "steer"], parameters = { arm = 250 } }]
-mirror = { variables = "each" }
+mirror = { variables = "independent" }
 
 [hardpoints]
 left_pivot = [110, 210, 0]

@@ -59,7 +59,7 @@ block = {{ type = "block", centre = {{ body = "arm", at = "B" }}, x = {x}, y = {
 load = {{ type = "rigid", centre = {{ body = "arm", at = "B" }}, mass = "load/10", izz = 0.02 }}
 [forces]
 spring = {{ type = "spring", from = {{ body = "ground", at = "C" }}, to = {{ body = "arm", at = "B" }}, stiffness = {k}, cubic = {cubic}, damping = {c}, free_length = {free} }}
-twist = {{ type = "torsion_spring", joint = "A", stiffness = {about}, damping = {twist}, free = {swing} }}
+twist = {{ type = "torsion_spring", joint = "A", stiffness = {about}, damping = {twist}, equilibrium = {swing} }}
 push = {{ type = "force", at = {{ body = "arm", at = "B" }}, force = "3*load", along = [1, 2, 0], axes = "body", law = "1 + t" }}
 rub = {{ type = "friction", joint = "A", coefficient = 0.2, radius = {pin} }}
 turn = {{ type = "moment", body = "arm", moment = 4, about = "z" }}
@@ -574,7 +574,7 @@ steps = 200
     let first = values(&solved(&dynamic), "F")[0];
     assert!((first - closed(1.0)).abs() > 1.0, "{first}");
     let cases = text("-0.3*t", "")
-        + "[cases.slow]\nloads = \"static\"\nrest = \"as_above\"\n[cases.fast]\nrest = \"as_above\"\n";
+        + "[cases.slow]\nloads = \"static\"\nrest = \"as_in_model\"\n[cases.fast]\nrest = \"as_in_model\"\n";
     let file = parse(&cases, "lift.toml").unwrap_or_else(|e| panic!("{e}"));
     let of = |case: usize| {
         let model = file.model.in_case(CaseId(case));

@@ -173,7 +173,7 @@ fn in_a_motion_that_is_its_own_mirror_image_both_sides_measure_the_same() {
 #[test]
 fn each_side_may_have_variables_of_its_own_that_do_to_it_what_the_others_do_to_the_other() {
     let named = ALL.replace("front = {", "left_front = {").replace("tilted =", "left_tilted =");
-    let text = named.replace("mirror = {}", "mirror = { variables = \"each\" }");
+    let text = named.replace("mirror = {}", "mirror = { variables = \"independent\" }");
     let model = file(&text).model;
     let at =
         |name: &str| model.variables.iter().position(|v| v.name == name).unwrap_or_else(|| panic!("{name}"));
@@ -192,7 +192,7 @@ fn each_side_may_have_variables_of_its_own_that_do_to_it_what_the_others_do_to_t
 
 #[test]
 fn what_is_written_of_the_other_side_counts_more_key_by_key() {
-    let text = ALL.replace("mirror = {}", "mirror = { except = [\"left_spin\"], opposite = [\"left_yaw\"] }");
+    let text = ALL.replace("mirror = {}", "mirror = { except = [\"left_spin\"], antisymmetric = [\"left_yaw\"] }");
     let text = text
         .replace("left_x = {", "right_lift = { law = 0 }\nleft_x = {")
         .replace("rack = [30, 0, 80]", "rack = [30, 0, 80]\nright_rod_in = [35, -110, 80]");
@@ -220,7 +220,7 @@ laws = { left_lift = "20*t", left_yaw = "3*t" }
 [cases.left_only]
 laws = { left_lift = "20*t", steer = "5*t" }
 "#;
-    let text = ALL.replace("mirror = {}", "mirror = { opposite = [\"left_yaw\", \"steer\"] }") + cases;
+    let text = ALL.replace("mirror = {}", "mirror = { antisymmetric = [\"left_yaw\", \"steer\"] }") + cases;
     let model = file(&text).model;
     let names: Vec<_> = model.cases.iter().map(|c| c.name.as_str()).collect();
     assert_eq!(names, ["bump", "left_only", "right_only"]);
@@ -247,7 +247,7 @@ fn a_changed_design_is_written_where_the_original_stands_or_refused() {
     let saved = both.edit(&design).unwrap();
     assert_eq!(saved, text.replace("left_front = [100, 200, 20]", "left_front = [100, 202.5, 20]"));
 
-    let each = file(&text.replace("mirror = {}", "mirror = { variables = \"each\" }"));
+    let each = file(&text.replace("mirror = {}", "mirror = { variables = \"independent\" }"));
     let mut design = vec![0.0; each.model.variables.len()];
     for (name, others) in [("right_front_y", 0), ("left_front_y", 1)] {
         let mut design = design.clone();
@@ -274,7 +274,7 @@ fn broken_mirrors() {
         ("mirror_that_is_a_word", with("mirror = {}", "mirror = \"y\"")),
         ("mirror_with_misspelt_key", with("mirror = {}", "mirror = { acros = \"y\" }")),
         ("mirror_except_what_is_not_there", with("mirror = {}", "mirror = { except = [\"left_ngle\"] }")),
-        ("mirror_opposite_to_no_driver", with("mirror = {}", "mirror = { opposite = [\"left_yow\"] }")),
+        ("mirror_opposite_to_no_driver", with("mirror = {}", "mirror = { antisymmetric = [\"left_yow\"] }")),
         // What is wrong on the left is informed of the left, once.
         ("mirrored_joint_with_misspelt_key", with("lead = 25", "leed = 25")),
         ("mirrored_joint_of_no_body", with("\"left_nut\"], at", "\"left_nat\"], at")),

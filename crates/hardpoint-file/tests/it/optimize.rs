@@ -28,7 +28,7 @@ cases.fast = { laws = { motor = "90*t" } }
 
 [optimize]
 starts = 5
-margin = 0.03
+min_margin = 0.03
 [optimize.goals]
 path = { weight = 10 }
 steep = { metric = "steepest", target = 2, weight = 3 }

@@ -202,7 +202,7 @@ const PLANES: [(&str, [usize; 2], &str, [f64; 3]); 4] = [
 ];
 
 /// A text in which `<1 2>` is a point or direction of the plane, `<1 2 3>` one off it, and `<axis>`, `<about>`,
-/// `<along>` and `<normal>` are keys whose value is the normal of the plane: as a planar model writes it, or with all
+/// `<along>` and `<ignored_direction>` are keys whose value is the normal of the plane: as a planar model writes it, or with all
 /// that its shorthand leaves out.
 fn written(template: &str, plane: usize, is_short: bool) -> String {
     let (word, axes, name, normal) = PLANES[plane];
@@ -455,10 +455,10 @@ fn every_mass_and_force_in_a_plane_is_what_its_shorthand_stands_for() {
                 point("a", "<0 500>"),
                 point("c", "<90 450>")
             ),
-            "joint_spring" => "joint = \"slide\", stiffness = 12, free = 5, damping = 0.3".into(),
-            "torsion_spring" => "joint = \"pin\", stiffness = 0.3, free = 4, damping = 0.02".into(),
+            "joint_spring" => "joint = \"slide\", stiffness = 12, equilibrium = 5, damping = 0.3".into(),
+            "torsion_spring" => "joint = \"pin\", stiffness = 0.3, equilibrium = 4, damping = 0.02".into(),
             "friction" => "joint = \"pin\", coefficient = 0.1, radius = 12, length = 40".into(),
-            "slide_friction" => "joint = \"slide\", coefficient = 0.1<normal>".into(),
+            "slide_friction" => "joint = \"slide\", coefficient = 0.1<ignored_direction>".into(),
             "force" => format!(
                 "at = {}, force = 50, along = <0.4 0.8>, axes = \"body\", law = \"1 + t\"",
                 point("c", "<90 450>")

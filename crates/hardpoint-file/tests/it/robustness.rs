@@ -65,7 +65,7 @@ const PIECES: [&str; 62] = [
     "measures = \"all\"",
     "[cases.c]",
     "laws = { turn = \"t\" }",
-    "rest = \"as_above\"",
+    "other_drivers = \"as_in_model\"",
     "[optimize]",
     "[optimize.goals]",
     "limits = { l = { between = [\"A\", \"A\"], min = 2, max = 1 } }",

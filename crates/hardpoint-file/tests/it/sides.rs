@@ -582,10 +582,10 @@ pub(crate) fn masses_and_forces(hold: Hold<'_>) {
                 format!("from = {}, to = {}, compression = [[0, 0], [20, 300], [90, 2500]], free_length = 420, scale = 1.2", point("ground", "[0, 200, 300]"), point("left_b", "\"left_P\"")),
                 format!("from = {}, to = {}, extension = [[0, 0], [20, 300], [900, 2500]], free_length = 300", point("ground", "[0, 200, 300]"), point("left_b", "\"left_P\"")),
             ],
-            "joint_spring" => vec!["joint = \"left_tube\", coordinate = \"displacement\", stiffness = 12, free = 5, damping = 0.3".into()],
+            "joint_spring" => vec!["joint = \"left_tube\", coordinate = \"displacement\", stiffness = 12, equilibrium = 5, damping = 0.3".into()],
             "torsion_spring" => vec![
-                "joint = \"left_tube\", coordinate = \"angle\", stiffness = 0.3, free = 4, damping = 0.02".into(),
-                "joint = \"left_hinge\", stiffness = 0.3, free = 4, damping = 0.02".into(),
+                "joint = \"left_tube\", coordinate = \"angle\", stiffness = 0.3, equilibrium = 4, damping = 0.02".into(),
+                "joint = \"left_hinge\", stiffness = 0.3, equilibrium = 4, damping = 0.02".into(),
             ],
             "friction" => vec![
                 "joint = \"left_hinge\", coefficient = 0.1, radius = 12, length = 40, viscous = 0.01".into(),
@@ -594,7 +594,7 @@ pub(crate) fn masses_and_forces(hold: Hold<'_>) {
             ],
             "slide_friction" => vec![
                 "joint = \"left_tube\", coefficient = 0.1, length = 60, viscous = 0.02".into(),
-                "joint = \"left_rail\", coefficient = 0.1, normal = [0.5, -0.5, 0]".into(),
+                "joint = \"left_rail\", coefficient = 0.1, ignored_direction = [0.5, -0.5, 0]".into(),
             ],
             "force" => ["global", "body"].map(|axes| format!("at = {}, force = 50, along = [0.4, 0.3, 0.8], axes = \"{axes}\", law = \"1 + t\"", point("left_b", "\"left_P\""))).into(),
             "wheel_force" => vec!["wheel = \"left\", outboard = 300, forward = -200, up = 2000, law = \"1 - 0.3*t\"".into()],
@@ -735,7 +735,7 @@ pub(crate) fn measures(hold: Hold<'_>) {
                      left_measured = {{ type = \"{}\", {keys} }}\n\
                      [masses]\nleft_mass = {{ type = \"rigid\", centre = {{ body = \"left_b\", at = [10, 440, 10] }}, mass = 4, ixx = 0.02, iyy = 0.03, izz = 0.04 }}\n\
                      [forces]\nleft_spring = {{ type = \"spring\", from = {{ body = \"ground\", at = [0, 200, 300] }}, to = \"left_p\", stiffness = 20 }}\n\
-                     left_twist = {{ type = \"torsion_spring\", joint = \"left_tube\", coordinate = \"angle\", stiffness = 0.3, free = 4 }}\n\
+                     left_twist = {{ type = \"torsion_spring\", joint = \"left_tube\", coordinate = \"angle\", stiffness = 0.3, equilibrium = 4 }}\n\
                      left_soft = {{ type = \"elastic_joint\", joint = \"left_hinge\", x = 1000, y = 3000, z = 2000 }}\n",
                         kind.name
                     ),

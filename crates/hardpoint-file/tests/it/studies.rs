@@ -37,7 +37,7 @@ case = "fast"
 
 [cases.slow]
 laws = { turn = "36*t", slide = 5 }
-rest = "held"
+other_drivers = "fixed"
 
 [cases.fast]
 laws = { turn = "720*t" }
@@ -46,7 +46,7 @@ time = { end = 0.5, steps = 20 }
 [optimize]
 variables = ["C_x", "C_y"]
 starts = 4
-margin = 0.02
+min_margin = 0.02
 
 [optimize.goals]
 error = { weight = 10 }
@@ -80,9 +80,9 @@ fn cases() {
     broken("case_with_law_not_finite", laws, "laws = { turn = \"1/t\" }");
     broken("case_with_laws_of_a_text", laws, "laws = \"turn\"");
     broken("case_where_nothing_moves", laws, "laws = { turn = 30 }");
-    broken("case_with_unknown_rest", "rest = \"held\"", "rest = \"free\"");
+    broken("case_with_unknown_rest", "other_drivers = \"fixed\"", "rest = \"free\"");
     broken("case_without_steps", "time = { end = 0.5, steps = 20 }", "time = { end = 0.5 }");
-    broken("case_with_misspelt_key", "rest = \"held\"", "law = \"t\"");
+    broken("case_with_misspelt_key", "other_drivers = \"fixed\"", "law = \"t\"");
     broken(
         "case_with_law_in_a_missing_file",
         laws,
@@ -91,7 +91,7 @@ fn cases() {
     broken(
         "case_that_leaves_a_driver_without_law",
         "law = 0\n",
-        "\n[cases.all]\nlaws.turn = \"t\"\nrest = \"as_above\"\n",
+        "\n[cases.all]\nlaws.turn = \"t\"\nrest = \"as_in_model\"\n",
     );
     broken("metric_of_unknown_case", "case = \"fast\"", "case = \"fats\"");
     snapshot(
@@ -136,7 +136,7 @@ fn variables() {
     broken("optimize_of_no_variables", names, "variables = []");
     broken("optimize_of_one_variable_as_text", names, "variables = \"C_x\"");
     snapshot("optimize_where_nothing_has_bounds", &with(names, "").replace("bounds = [-10, 10]\n", ""));
-    broken("optimize_with_margin_above_one", "margin = 0.02", "margin = 2");
+    broken("optimize_with_margin_above_one", "min_margin = 0.02", "min_margin = 2");
     broken("optimize_with_no_starts", "starts = 4", "starts = 0");
     broken("optimize_with_half_a_start", "starts = 4", "starts = 1.5");
     broken("optimize_with_misspelt_key", "starts = 4", "start = 4");
@@ -223,7 +223,7 @@ fn consequences_for_studies_are_not_reported() {
         ("turn = \"720*t\"", "turn = true"),
         ("laws = { turn = \"720*t\" }", "laws = 3"),
         ("time = { end = 0.5, steps = 20 }", "time = 3"),
-        ("rest = \"held\"", "rest = 3"),
+        ("other_drivers = \"fixed\"", "rest = 3"),
         ("joint = \"J4\"", "joint = \"J5\""),
         ("[optimize.limits]", "[[optimize.limits]]"),
         ("[optimize.goals]", "[[optimize.goals]]"),

@@ -561,7 +561,7 @@ fn broken_tolerances() {
         "sigmas = 3\n[tolerance.variables]\nB_x = 0.1\nB_y = { tolerance = 0.2, cost = 2 }",
         "allocate = \"worst_case\"\n[tolerance.variables]\nB_x = 0.1\nB_y = 0.2",
     );
-    broken("tolerance_with_sigmas_kept_of_nothing", "sigmas = 3", "keep_sigmas = 4");
+    broken("tolerance_with_sigmas_kept_of_nothing", "sigmas = 3", "required_sigmas = 4");
     broken("correlation_beyond_one", "coefficient = 0.9", "coefficient = 1.1");
     broken("correlation_with_itself", "\"B_x\", \"B_y\"", "\"B_x\", \"B_x\"");
     broken("correlation_twice", "between = [\"B_y\", \"lean\"]", "between = [\"B_y\", \"B_x\"]");

@@ -20,7 +20,7 @@ radius = 310
 kingpin = [{ body = "knuckle", at = "ball_joint" }, { body = "ground", at = "strut_top" }]
 bump = "strut_drive"
 steer = "rack_drive"
-planes = [{ body = "lca", at = ["lca_rear", "lca_front", "ball_joint"] }, { body = "strut", at = ["strut_top", "strut_lower"] }]
+arm_planes = [{ body = "lca", at = ["lca_rear", "lca_front", "ball_joint"] }, { body = "strut", at = ["strut_top", "strut_lower"] }]
 spring = [{ body = "ground", at = "strut_top" }, { body = "knuckle", at = "strut_lower" }]
 measures = "all"
 "#;
@@ -40,7 +40,7 @@ radius = 230
 kingpin = ["kingpin_lower", { body = "uca", at = "upper_ball" }]
 bump = "spring_drive"
 steer = "rack_drive"
-planes = [{ body = "lca", at = ["lca_rear", "lca_front", "lower_ball"] }, { body = "uca", at = ["uca_rear", "uca_front", "upper_ball"] }]
+arm_planes = [{ body = "lca", at = ["lca_rear", "lca_front", "lower_ball"] }, { body = "uca", at = ["uca_rear", "uca_front", "upper_ball"] }]
 spring = [{ body = "ground", at = [40, 300, 400] }, { body = "lca", at = "pushrod_outer" }]
 measures = "all"
 "#;
@@ -445,7 +445,7 @@ fn slopes_are_those_of_runs_whose_driver_is_shifted() {
 const REAR: &str = r#"
 [vehicle]
 wheelbase = 2700
-centre_of_gravity = 620
+cg_height = 620
 front_brake_share = 0.68
 front_drive_share = 0.25
 
@@ -543,7 +543,7 @@ centre = [0, 750, 310]
 toe = 0
 camber = -1.5
 radius = 310
-planes = [
+arm_planes = [
     { body = "lca", at = ["lca_inner", [50, 300, 200], "lower_ball"] },
     { body = "uca", at = ["uca_inner", [50, 400, 430], "upper_ball"] },
 ]

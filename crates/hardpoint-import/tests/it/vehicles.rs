@@ -296,7 +296,7 @@ fn a_live_axle_of_adams_car_is_recognised_by_its_names() {
     let doc: DocumentMut = imported.text.parse().unwrap();
     for (path, should) in [
         (["vehicle", "wheelbase", ""], 2870.0),
-        (["vehicle", "centre_of_gravity", ""], 610.0),
+        (["vehicle", "cg_height", ""], 610.0),
         (["wheels", "wheel_left", "radius"], 305.0),
         (["masses", "rear_axle", "mass"], 92.0),
         (["masses", "rear_axle", "ixx"], 18.0),
@@ -400,7 +400,7 @@ fn figures_of_the_vehicle_come_from_suspension_explorer() {
     near(number(&doc, &["wheels", "wheel", "radius"]), radius, "radius");
     // The road is below the wheel, whose axis drops by 2 in 120.
     let road = 298.0 - radius * 120.0 / 2_f64.hypot(120.0);
-    near(number(&doc, &["vehicle", "centre_of_gravity"]), 400.0 - road, "centre of gravity");
+    near(number(&doc, &["vehicle", "cg_height"]), 400.0 - road, "centre of gravity");
     assert!(imported.text.contains("steer = \"steering\""), "{}", imported.text);
     let more = text.replace(
         "wheelbase: 2500.0",

@@ -292,11 +292,11 @@ impl<T: Real> AppliedLoads<'_, T> {
                 }
                 tension
             }
-            ElementKind::JointSpring { stiffness, free, damping, .. } => {
-                self.on_coordinate(e, stiffness.0, free.map(|n| n.0), damping.map(|n| n.0))
+            ElementKind::JointSpring { stiffness, equilibrium, damping, .. } => {
+                self.on_coordinate(e, stiffness.0, equilibrium.map(|n| n.0), damping.map(|n| n.0))
             }
-            ElementKind::TorsionSpring { stiffness, free, damping, .. } => {
-                self.on_coordinate(e, stiffness.0, free.map(|n| n.0), damping.map(|n| n.0))
+            ElementKind::TorsionSpring { stiffness, equilibrium, damping, .. } => {
+                self.on_coordinate(e, stiffness.0, equilibrium.map(|n| n.0), damping.map(|n| n.0))
             }
             ElementKind::Friction { .. } | ElementKind::SlideFriction { .. } => match self.ball(kind) {
                 Some((_, turn)) => self.friction[e.0] * magnitude(self.heading(kind, turn), STILL),
@@ -372,7 +372,7 @@ impl<T: Real> AppliedLoads<'_, T> {
 
     /// The direction that a ball turns in, shorter than 1 where that is slow: `omega / sqrt(omega^2 + w_0^2)`.
     fn heading(&self, kind: &ElementKind, turn: Vec3<T>) -> Vec3<T> {
-        turn * (T::one() / magnitude_with(turn, self.fades(kind)))
+        turn * (T::one() / magnitude_with(turn, self.transition_velocity(kind)))
     }
 
     /// The wrench that works on what an element acts on, one unit of it: on a coordinate, or on the turn of a ball.
@@ -385,11 +385,11 @@ impl<T: Real> AppliedLoads<'_, T> {
         Some((joint, row.wrench(&ends)))
     }
 
-    /// The speed below which friction fades.
-    fn fades(&self, kind: &ElementKind) -> T {
+    /// The speed below which friction goes smoothly to zero.
+    fn transition_velocity(&self, kind: &ElementKind) -> T {
         let given = match kind {
-            ElementKind::Friction { fades, .. } => (fades.map(|n| n.0), FADES),
-            ElementKind::SlideFriction { fades, .. } => (fades.map(|n| n.0), SLIDE_FADES),
+            ElementKind::Friction { transition_velocity, .. } => (transition_velocity.map(|n| n.0), FADES),
+            ElementKind::SlideFriction { transition_velocity, .. } => (transition_velocity.map(|n| n.0), SLIDE_FADES),
             _ => (None, FADES),
         };
         given.0.map_or_else(|| T::constant(given.1), |n| self.number(n))
@@ -411,13 +411,13 @@ impl<T: Real> AppliedLoads<'_, T> {
         };
         let grip = self.number(coefficient.0);
         let grip = radius.map_or(grip, |radius| grip * self.number(radius.0));
-        let (fades, viscous) = (self.fades(kind), self.or_zero(viscous));
+        let (transition_velocity, viscous) = (self.transition_velocity(kind), self.or_zero(viscous));
         if let Some((_, turn)) = self.ball(kind) {
-            return [grip, viscous * magnitude_with(turn, fades)];
+            return [grip, viscous * magnitude_with(turn, transition_velocity)];
         }
         let Some([_, rate]) = self.coordinate(e) else { return [T::zero(); 2] };
         // s = w / sqrt(w^2 + w_0^2)
-        let s = rate / (rate * rate + fades * fades).sqrt();
+        let s = rate / (rate * rate + transition_velocity * transition_velocity).sqrt();
         [grip * s, viscous * rate]
     }
 
@@ -428,7 +428,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         let kind = &self.model.elements[e.0].kind;
         let (joint, length, normal) = match kind {
             ElementKind::Friction { joint, length, .. } => (*joint, length, None),
-            ElementKind::SlideFriction { joint, length, normal, .. } => (*joint, length, *normal),
+            ElementKind::SlideFriction { joint, length, ignored_direction, .. } => (*joint, length, *ignored_direction),
             _ => return ([Vec3::zero(); 2], 0),
         };
         if self.ball(kind).is_some() {
@@ -459,11 +459,11 @@ impl<T: Real> AppliedLoads<'_, T> {
         &self,
         e: ElementId,
         stiffness: NumberId,
-        free: Option<NumberId>,
+        equilibrium: Option<NumberId>,
         damping: Option<NumberId>,
     ) -> T {
         let Some([value, rate]) = self.coordinate(e) else { return T::zero() };
-        let force = -(self.number(stiffness) * (value - self.or_zero(free)));
+        let force = -(self.number(stiffness) * (value - self.or_zero(equilibrium)));
         damping.map_or(force, |damping| force - self.number(damping) * rate)
     }
 
@@ -550,7 +550,7 @@ impl<T: Real> AppliedLoads<'_, T> {
     }
 }
 
-/// Below this speed, rad/s, friction fades unless something else is said; of slides, m/s.
+/// Below this speed, rad/s, friction goes smoothly to zero unless something else is said; of slides, m/s.
 const FADES: f64 = 0.01;
 const SLIDE_FADES: f64 = 0.001;
 

@@ -351,7 +351,7 @@ fn support<T: Real>(what: WheelMeasure, vehicle: &Vehicle) -> T {
     let front = vehicle.front_share(need).and_then(|(_, share)| share);
     // p or d of this end; p l / h, d l / h
     let share = front.map(|front| if need.end() == Some(VehicleEnd::Front) { front } else { 1.0 - front });
-    let known = share.zip(vehicle.wheelbase).zip(vehicle.centre_of_gravity);
+    let known = share.zip(vehicle.wheelbase).zip(vehicle.cg_height);
     T::constant(known.map_or(f64::NAN, |((share, wheelbase), height)| share * wheelbase / height))
 }
 

@@ -218,7 +218,7 @@ macro_rules! elements {
             /// Stiffness.
             stiffness: NumberDraft => Stiffness,
             /// The coordinate at which it pushes nothing; it counts from the drawing. Default: 0.
-            free: Option<NumberDraft> => Option<Length>,
+            equilibrium: Option<NumberDraft> => Option<Length>,
             /// Damping.
             damping: Option<NumberDraft> => Option<Damping>,
         }
@@ -232,7 +232,7 @@ macro_rules! elements {
             /// Stiffness.
             stiffness: NumberDraft => TorsionalStiffness,
             /// The angle at which it turns nothing; it counts from the drawing. Default: 0.
-            free: Option<NumberDraft> => Option<Angle>,
+            equilibrium: Option<NumberDraft> => Option<Angle>,
             /// Damping, or a viscous friction of the joint.
             damping: Option<NumberDraft> => Option<TorsionalDamping>,
         }
@@ -250,8 +250,8 @@ macro_rules! elements {
             length: Option<NumberDraft> => Option<Length>,
             /// A further moment against the motion in proportion to its speed.
             viscous: Option<NumberDraft> => Option<TorsionalDamping>,
-            /// The speed, per second, below which friction fades: at rest it holds nothing. Default: 0.01 rad/s.
-            fades: Option<NumberDraft> => Option<Angle>,
+            /// The speed, per second, below which friction goes smoothly to zero; at rest there is none. Default: 0.01 rad/s.
+            transition_velocity: Option<NumberDraft> => Option<Angle>,
         }
 
         /// Coulomb friction in a slide, from the force that it carries across its axis, and viscous friction besides.
@@ -265,11 +265,11 @@ macro_rules! elements {
             length: Option<NumberDraft> => Option<Length>,
             /// Direction across the axis, in the design configuration, in which normal forces are ignored, with the
             /// moments about the other directions. Default: in a planar model the normal of the plane; otherwise none.
-            normal: Option<Vec3> => Option<Vec3>,
+            ignored_direction: Option<Vec3> => Option<Vec3>,
             /// A further force against the motion in proportion to its speed.
             viscous: Option<NumberDraft> => Option<Damping>,
-            /// The speed, per second, below which friction fades: at rest it holds nothing. Default: 1 mm/s.
-            fades: Option<NumberDraft> => Option<Length>,
+            /// The speed, per second, below which friction goes smoothly to zero; at rest there is none. Default: 1 mm/s.
+            transition_velocity: Option<NumberDraft> => Option<Length>,
         }
 
         /// A given force on a point.

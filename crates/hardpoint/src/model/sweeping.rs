@@ -53,7 +53,7 @@ pub struct SweepRange {
 
 impl SweepMethod {
     /// The names of those that a file can ask for by name, in the order of the variants.
-    pub const NAMES: [&str; 4] = ["factorial", "latin_hypercube", "sobol", "indices"];
+    pub const NAMES: [&str; 4] = ["factorial", "latin_hypercube", "sobol", "sobol_indices"];
 
     /// Those of these names.
     pub const NAMED: [Self; 4] = [Self::Factorial, Self::LatinHypercube, Self::Sobol, Self::Indices];

@@ -90,7 +90,7 @@ pub struct Vehicle {
     /// Distance of the axles, m.
     pub wheelbase: Option<f64>,
     /// Height of the centre of gravity above the ground, m.
-    pub centre_of_gravity: Option<f64>,
+    pub cg_height: Option<f64>,
     /// Part of the braking force that the front wheels take, 0 to 1.
     pub front_brake_share: Option<f64>,
     /// Part of the driving force that the front wheels give, 0 to 1.
@@ -111,7 +111,7 @@ impl Vehicle {
     pub fn lacks(&self, need: WheelRequirement) -> impl Iterator<Item = &'static str> {
         let share = self.front_share(need);
         let of_pitching =
-            [("wheelbase", self.wheelbase), ("centre_of_gravity", self.centre_of_gravity)].map(Some);
+            [("wheelbase", self.wheelbase), ("cg_height", self.cg_height)].map(Some);
         let needed = of_pitching.into_iter().filter(move |_| share.is_some()).chain([share]).flatten();
         needed.filter(|(_, known)| known.is_none()).map(|(key, _)| key)
     }

@@ -404,9 +404,9 @@ fn slide_friction(joint: &str, coefficient: f64, length: Option<f64>, viscous: O
         joint: joint.into(),
         coefficient: coefficient.into(),
         length: length.map(NumberDraft::from),
-        normal: None,
+        ignored_direction: None,
         viscous: viscous.map(NumberDraft::from),
-        fades: None,
+        transition_velocity: None,
     };
     ElementDraft::new(format!("has friction at {joint}"), kind)
 }
@@ -427,7 +427,7 @@ fn sledge(length: Option<f64>, viscous: Option<f64>) -> Draft {
     draft
 }
 
-/// Friction of slides fades below 1 mm/s: at half a metre per second it is whole to this part.
+/// The transition velocity of slides is 1 mm/s: at half a metre per second it is whole to this part.
 const WHOLE: f64 = 1e-5;
 
 #[test]
@@ -519,12 +519,12 @@ fn friction_of_all_kinds_follows_the_design() {
     let open = Model::from_draft(&press).unwrap();
     let shared = Analysis::new(&open).unwrap().loads(&[]).shared_friction;
     assert_eq!(shared, [open.element("has friction at guide").unwrap()]);
-    let ElementKindDraft::SlideFriction { normal, fades, .. } = &mut press.forces.last_mut().unwrap().kind
+    let ElementKindDraft::SlideFriction { ignored_direction, transition_velocity, .. } = &mut press.forces.last_mut().unwrap().kind
     else {
         unreachable!()
     };
-    // Near its dead centre the ram is as slow as friction fades; differences see only what goes more slowly.
-    (*normal, *fades) = (Some(Vec3::AXES[2]), Some(0.2.into()));
+    // Near its dead centre the ram is as slow as friction goes smoothly to zero; differences see only what goes more slowly.
+    (*ignored_direction, *transition_velocity) = (Some(Vec3::AXES[2]), Some(0.2.into()));
     differentiated(&press, &["torque", "guide", "B"]);
 }
 

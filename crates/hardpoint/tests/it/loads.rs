@@ -181,7 +181,7 @@ pub fn press() -> Draft {
                 joint: "B".into(),
                 coordinate: None,
                 stiffness: 3.0.into(),
-                free: Some(0.2.into()),
+                equilibrium: Some(0.2.into()),
                 damping: Some(0.1.into()),
             },
         ),
@@ -596,12 +596,12 @@ pub fn friction(name: &str, joint: &str, coefficient: f64, radius: f64) -> Eleme
         radius: radius.into(),
         length: None,
         viscous: None,
-        fades: None,
+        transition_velocity: None,
     };
     ElementDraft::new(name, kind)
 }
 
-/// Friction fades below 0.01 rad/s: at a speed of some rad/s it is whole to this part.
+/// The transition velocity of friction is 0.01 rad/s: at a speed of some rad/s it is whole to this part.
 const WHOLE: f64 = 1e-5;
 
 #[test]

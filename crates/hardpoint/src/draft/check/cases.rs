@@ -101,7 +101,7 @@ impl Checker<'_> {
         }
         let example = draft.drivers.first().map_or("DRIVER", |d| d.name.as_str());
         fault.help(format!(
-            "give a driver a law in it, like `laws = {{ {example} = \"10*t\" }}`, or write `rest = \"as_above\"` for those in `[drivers]`"
+            "give a driver a law in it, like `laws = {{ {example} = \"10*t\" }}`, or write `other_drivers = \"as_in_model\"` for those in `[drivers]`"
         ));
     }
 }

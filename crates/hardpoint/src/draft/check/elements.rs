@@ -118,7 +118,7 @@ impl Checker<'_> {
                         .help(format!("write `type = \"{other}\"`, or name another coordinate"));
                 }
             }
-            ElementKind::Friction { joint, coefficient, radius, length, viscous, fades } => {
+            ElementKind::Friction { joint, coefficient, radius, length, viscous, transition_velocity } => {
                 let kind = self.model.joints[joint.0].kind.name;
                 if !["revolute", "cylindrical", "spherical"].contains(&kind) {
                     let help = match kind {
@@ -137,11 +137,11 @@ impl Checker<'_> {
                 }
                 let numbers = [(coefficient.0, "coefficient"), (radius.0, "radius")];
                 let length = length.map(|n| (n.0, "length"));
-                let fades = fades.map(|n| (n.0, "fades"));
-                self.above(numbers.into_iter().chain(length).chain(fades), &e.name, here);
+                let transition_velocity = transition_velocity.map(|n| (n.0, "transition_velocity"));
+                self.above(numbers.into_iter().chain(length).chain(transition_velocity), &e.name, here);
                 self.not_below(viscous.map(|n| n.0), "viscous", &e.name, here);
             }
-            ElementKind::SlideFriction { joint, coefficient, length, normal, viscous, fades } => {
+            ElementKind::SlideFriction { joint, coefficient, length, ignored_direction, viscous, transition_velocity } => {
                 let kind = self.model.joints[joint.0].kind.name;
                 if !["translational", "cylindrical"].contains(&kind) {
                     let help = match kind {
@@ -151,18 +151,18 @@ impl Checker<'_> {
                         }
                     };
                     self.no_friction(&e.name, *joint, "slide", here, help);
-                } else if let Some(normal) = normal {
+                } else if let Some(normal) = ignored_direction {
                     let z = self.model.joints[joint.0].frames[0].cols[2];
                     if normal.cross(z).norm() < ACROSS {
-                        let message = format!("`normal` of `{}` runs along its slide", e.name);
-                        self.fault("HP0251", here.key("normal"), message)
+                        let message = format!("`ignored_direction` of `{}` runs along its slide", e.name);
+                        self.fault("HP0251", here.key("ignored_direction"), message)
                             .help("give a direction across the slide, or leave it out");
                     }
                 }
                 let length = length.map(|n| (n.0, "length"));
-                let fades = fades.map(|n| (n.0, "fades"));
+                let transition_velocity = transition_velocity.map(|n| (n.0, "transition_velocity"));
                 self.above(
-                    [(coefficient.0, "coefficient")].into_iter().chain(length).chain(fades),
+                    [(coefficient.0, "coefficient")].into_iter().chain(length).chain(transition_velocity),
                     &e.name,
                     here,
                 );

@@ -35,11 +35,11 @@ impl Checker<'_> {
             && !(margin > 0.0 && margin < 1.0)
         {
             let message = format!("the margin of the optimisation cannot be {margin}");
-            self.fault("HP0237", here.key("margin"), message)
+            self.fault("HP0237", here.key("min_margin"), message)
                 .note("it is 0 at a singular position, and 1 far from any")
-                .help("give a number above 0 and below 1, like `margin = 0.02`, or leave it out");
+                .help("give a number above 0 and below 1, like `min_margin = 0.02`, or leave it out");
         }
-        for (key, count) in [("starts", o.starts), ("iterations", o.iterations)] {
+        for (key, count) in [("starts", o.starts), ("max_iterations", o.iterations)] {
             if count == 0 {
                 let message = format!("`{key}` of the optimisation cannot be 0");
                 self.fault("HP0237", here.key(key), message).help("give a whole number from 1");

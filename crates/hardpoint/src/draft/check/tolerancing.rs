@@ -282,10 +282,10 @@ impl Checker<'_> {
         if let AllocationRule::Rss { sigmas } = rule
             && !(sigmas > 0.0 && sigmas <= MOST_SIGMAS)
         {
-            let message = format!("`keep_sigmas` cannot be {sigmas}");
-            self.fault("HP0243", HERE.key("keep_sigmas"), message)
+            let message = format!("`required_sigmas` cannot be {sigmas}");
+            self.fault("HP0243", HERE.key("required_sigmas"), message)
                 .note("it says how many standard deviations have to fit between a metric in the design configuration and its limit")
-                .help(format!("give a number above zero, up to {MOST_SIGMAS}, like `keep_sigmas = 3`"));
+                .help(format!("give a number above zero, up to {MOST_SIGMAS}, like `required_sigmas = 3`"));
         }
         if t.limits.is_empty() && !self.unread(HERE, "limits") {
             self.fault(

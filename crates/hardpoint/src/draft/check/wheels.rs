@@ -16,7 +16,7 @@ impl Checker<'_> {
     pub(super) fn vehicle(&mut self) {
         let v = &self.draft.vehicle;
         let here = Here { section: Section::Vehicle, index: 0 };
-        for (key, value) in [("wheelbase", v.wheelbase), ("centre_of_gravity", v.centre_of_gravity)] {
+        for (key, value) in [("wheelbase", v.wheelbase), ("cg_height", v.cg_height)] {
             if value.is_some_and(|x| !(x > 0.0 && x.is_finite())) {
                 self.fault("HP0231", here.key(key), format!("the {key} of the vehicle is not above zero"))
                     .help("give a length above zero, in the file's length unit");
@@ -134,7 +134,7 @@ impl Checker<'_> {
         let body = self.body(&w.body, here.key("body"));
         let [centre, radius, spin, side, bump] =
             ["centre", "radius", "spin_axis", "side", "bump"].map(|key| !self.unread(here, key));
-        if ["kingpin", "steer", "planes", "spring"].into_iter().any(|key| self.unread(here, key)) {
+        if ["kingpin", "steer", "arm_planes", "spring"].into_iter().any(|key| self.unread(here, key)) {
             return None;
         }
         let centre = if centre { self.place(&w.centre, &w.name, here.key("centre")) } else { None };
@@ -316,7 +316,7 @@ impl Checker<'_> {
     /// The plane of an arm, by points that make one.
     fn arm_plane(&mut self, w: &WheelDraft, points: &[PointRef], arm: usize, here: Here) -> Option<ArmPlane> {
         let found: Vec<Option<PointId>> =
-            points.iter().map(|p| self.point(p, &w.name, here.item("planes", arm))).collect();
+            points.iter().map(|p| self.point(p, &w.name, here.item("arm_planes", arm))).collect();
         let found: Vec<PointId> = found.into_iter().collect::<Option<_>>()?;
         let places = found.iter().map(|p| self.position(self.model.points[p.0].at));
         let places: Vec<Vec3> = places.collect::<Option<_>>()?;
@@ -331,7 +331,7 @@ impl Checker<'_> {
             _ => {
                 let message =
                     format!("the {which} plane of wheel `{name}` is given by {} points", found.len());
-                self.fault("HP0231", here.item("planes", arm), message).help(
+                self.fault("HP0231", here.item("arm_planes", arm), message).help(
                     "give three points of an arm, or two of a strut: its top mount, and another one of its axis",
                 );
                 return None;
@@ -341,7 +341,7 @@ impl Checker<'_> {
             return Some(plane);
         }
         let message = format!("the points of the {which} plane of wheel `{name}` make no plane");
-        self.fault("HP0231", here.item("planes", arm), message).help(match plane {
+        self.fault("HP0231", here.item("arm_planes", arm), message).help(match plane {
             ArmPlane::Through(_) => "name two pivots and the ball joint of an arm, which are not on one line",
             ArmPlane::Square(_) => "name a strut's top mount and another point of its axis",
         });
@@ -382,9 +382,9 @@ impl Checker<'_> {
         }
         let (given, help) = (&draft.wheels[k], "add to the wheel ");
         let lacks = match what.needs() {
-            WheelRequirement::Planes if given.planes.is_none() && !self.unread(wheel, "planes") => Some((
+            WheelRequirement::Planes if given.planes.is_none() && !self.unread(wheel, "arm_planes") => Some((
                 "planes of the arms",
-                "`planes = [LOWER, UPPER]`, each `{ body = ..., at = [PIVOT, PIVOT, BALL] }`",
+                "`arm_planes = [LOWER, UPPER]`, each `{ body = ..., at = [PIVOT, PIVOT, BALL] }`",
             )),
             WheelRequirement::Spring if given.spring.is_none() && !self.unread(wheel, "spring") => {
                 Some(("spring", "`spring = [END, END]`, each a point's name or `{ body = ..., at = ... }`"))
