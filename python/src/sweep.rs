@@ -76,7 +76,9 @@ impl Model {
                 return refused(format!("there is no design variable named `{name}`{near}"));
             };
             if !(from < to) || !(to - from).is_finite() {
-                return refused(format!("the range of `{name}` does not rise; give the lower end first"));
+                return refused(format!(
+                    "the range of `{name}` is not in ascending order; give the lower end first"
+                ));
             }
             let variable = VariableId(k);
             let change = |x: f64| match x == drawn(&self.whole, variable) {

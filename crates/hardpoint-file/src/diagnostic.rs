@@ -270,7 +270,7 @@ fn remedy(code: &str) -> Option<&'static str> {
     Some(match code {
         "HP0101" => "check the path, and that the file is a text of at most 64 MiB that you may read",
         "HP0102" => {
-            "look at this place and just before it: mostly a quote, a bracket, a comma or `=` is missing or one too many"
+            "check this place and the text before it: mostly a quote, a bracket, a comma or `=` is missing or superfluous"
         }
         "HP0103" => "correct the spelling, or remove the key",
         "HP0104" => "add the key; `docs/file-format.md` shows an example of each table",
@@ -280,29 +280,31 @@ fn remedy(code: &str) -> Option<&'static str> {
         "HP0108" => "correct the underlined part; `docs/file-format.md` lists the functions",
         "HP0109" => "correct the number",
         "HP0110" => "correct the underlined part; `docs/file-format.md` says what each kind of law needs",
-        "HP0111" => "put the file beside the model file, and name it from there",
+        "HP0111" => "put the file into the folder of the model file, and name it from there",
         "HP0112" => "correct that line of the file, or choose other `columns`",
         "HP0113" => "correct the underlined part; `docs/file-format.md` says what expressions may name",
         "HP0115" => "export the body again as STL, OBJ or GLB, as triangles",
-        "HP0116" => "correct `mirror`; `docs/file-format.md` says what it makes of what",
+        "HP0116" => "correct `mirror`; `docs/file-format.md` describes it",
         "HP0117" => "include each file where it is needed, and none in itself",
         "HP0201" => "choose another name",
         "HP0202" => "give finite numbers",
         "HP0203" => "declare a body besides `ground`, like `[bodies]` with `crank = {}`",
         "HP0204" => "correct the name, or declare what it names",
-        "HP0205" => "give a vector that is not null, or two different hardpoints",
+        "HP0205" => "give a non-zero vector, or two different hardpoints",
         "HP0206" => "choose a third point off the x axis",
         "HP0207" => "name two different bodies",
         "HP0208" => "add the axis if the joint's type needs it, else remove it",
         "HP0209" => "correct one of the two axes",
-        "HP0210" => "give as many places as the joint's type needs; `docs/file-format.md` lists them",
+        "HP0210" => {
+            "give the number of locations that the joint's type needs; `docs/file-format.md` lists them"
+        }
         "HP0211" => "move one end, or use a spherical joint",
         "HP0212" => "connect the body with a joint, or remove it",
         "HP0213" => "name one of the joint's coordinates",
         "HP0214" => "change the law or the output times",
         "HP0215" => "remove one of the two drivers",
         "HP0216" => "name another point",
-        "HP0217" => "give it a velocity that is not null, or remove it",
+        "HP0217" => "give it a non-zero velocity, or remove it",
         "HP0218" => "name one of the bodies that the joint connects",
         "HP0219" => "give a `[time]` table with times that increase, like `end = 1.0` and `steps = 100`",
         "HP0223" => "remove it, or give a length above zero, a lead other than zero",

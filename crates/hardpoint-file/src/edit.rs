@@ -103,12 +103,12 @@ impl ModelFile {
         let message = "the changed design cannot be saved in this file";
         let d = self
             .diagnostic(Severity::Error, CODE, message, None)
-            .note(format!("a file with its numbers would have another {what} `{name}`"));
+            .note(format!("a file with its numbers would define another {what} `{name}`"));
         let d = match self.origins.names.get(&name) {
             Some(original) => d
                 .note(format!("`{name}` is the mirror image of `{original}`, and has no numbers of its own"))
-                .help(format!("change both alike, or write what is different of `{name}` by hand")),
-            None => d.help("change what this is given by in the file itself"),
+                .help(format!("change both in the same way, or write the differences of `{name}` by hand")),
+            None => d.help("change the defining numbers in the file itself"),
         };
         Err(Diagnostics::new(self.source.clone(), vec![d]))
     }
@@ -229,7 +229,7 @@ impl Edit<'_> {
         self.refuse(
             variables,
             why,
-            "change it there, or write it in this file as well, where it counts more",
+            "change it there, or write it in this file as well, which takes precedence",
         );
         true
     }
@@ -440,7 +440,7 @@ impl Edit<'_> {
                 self.refuse(
                     &by,
                     why,
-                    "move a hardpoint instead; a file says places of joints by hardpoints only",
+                    "move a hardpoint instead; files define locations of joints by hardpoints only",
                 );
                 continue;
             }
@@ -467,7 +467,7 @@ impl Edit<'_> {
                 let new: Vec<Vec3> = on.iter().map(|&e| turned[e] * old).collect();
                 if new.windows(2).any(|w| (w[0] - w[1]).norm() > SAME) {
                     let why = format!("it turns the two markers of joint `{}` differently", joint.name);
-                    self.refuse(&by, why, "a file gives both markers of a joint one direction");
+                    self.refuse(&by, why, "a file defines one direction for both markers of a joint");
                     continue;
                 }
                 let Some(new) = new.first().filter(|n| (**n - old).norm() > ROUND_OFF) else { continue };

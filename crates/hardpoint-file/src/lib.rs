@@ -157,11 +157,12 @@ impl ModelFile {
                 let all = self.model.variables.iter().map(|v| v.name.as_str());
                 let help = closest(wanted, all).map(|c| format!("did you mean `{c}`?"));
                 let message = format!("there is no design variable named `{}`", shown(wanted));
-                let note = format!("it heads column {} of `{}`", column + 1, shown(&name));
+                let note = format!("it is the title of column {} of `{}`", column + 1, shown(&name));
                 return Err(refused("HP0247", message, vec![note], help));
             };
             if variables.contains(&VariableId(k)) {
-                let message = format!("`{}` heads two columns of `{}`", shown(wanted), shown(&name));
+                let message =
+                    format!("`{}` is the title of two columns of `{}`", shown(wanted), shown(&name));
                 return Err(refused("HP0247", message, Vec::new(), Some("remove one of the two".into())));
             }
             variables.push(VariableId(k));
@@ -408,7 +409,7 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
     if !reader.found.is_empty() {
         // What it would have made is missing everywhere.
         let found = std::mem::take(&mut reader.found);
-        let note = "the rest of the model is checked when this is right";
+        let note = "correct this first; then the rest of the model is checked";
         let list = found.into_iter().map(|d| d.note(note)).collect();
         return Err(Diagnostics::new(source.clone(), list));
     }
@@ -494,7 +495,7 @@ fn syntax_errors(source: &Source, errors: &[toml::de::Error], file: &Range<usize
         }
     }
     if let Some(last) = list.last_mut() {
-        last.notes.push("the rest of the model is checked when the syntax is right".into());
+        last.notes.push("correct the syntax first; then the rest of the model is checked".into());
     }
     list
 }

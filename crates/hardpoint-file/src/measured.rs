@@ -98,7 +98,7 @@ impl ModelFile {
                         stands[*d] = self.units.to_si(self.model.driven(&drivers[*d]).quantity, *x);
                     }
                     (Some(Holds::Driver(_)), None) => {
-                        let help = "say where every driver of the first line stood";
+                        let help = "give the value of every driver of the first line";
                         return Err(Refusal::new("HP0112", format!("{} is missing", here(column)), help));
                     }
                     (Some(Holds::Sigma(_)), Some(x)) if !(*x > 0.0) => {
@@ -127,13 +127,13 @@ impl ModelFile {
     fn columns(&self, table: &Readings, file: &str) -> Result<Vec<Option<Holds>>, Refusal> {
         let mut found: Vec<Option<Holds>> = Vec::new();
         for (column, (name, unit)) in table.names.iter().enumerate() {
-            let note = format!("it heads column {} of `{file}`", column + 1);
+            let note = format!("it is the title of column {} of `{file}`", column + 1);
             if name.starts_with('#') {
                 found.push(None);
                 continue;
             }
             let holds = self.held(name).map_err(|help| {
-                let message = format!("`{}` is neither a driver nor anything that is measured", shown(name));
+                let message = format!("`{}` is neither a driver nor an output", shown(name));
                 Refusal::new("HP0248", message, help).note(note.clone())
             })?;
             if let Some((unit, expected)) = unit.as_deref().zip(self.unit_of(holds)).filter(|(a, b)| a != b) {
@@ -143,13 +143,13 @@ impl ModelFile {
                 return Err(Refusal::new("HP0248", message, help).note(note));
             }
             if found.contains(&Some(holds)) {
-                let message = format!("`{}` heads two columns of `{file}`", shown(name));
+                let message = format!("`{}` is the title of two columns of `{file}`", shown(name));
                 return Err(Refusal::new("HP0248", message, "remove one of the two"));
             }
             found.push(Some(holds));
         }
         if !found.iter().any(|h| matches!(h, Some(Holds::Output(_)))) {
-            let message = format!("`{file}` has nothing that was measured");
+            let message = format!("`{file}` has no column of readings");
             let help =
                 "add a column that is headed by a measure, or by a point's component, like `wheel_centre.z`";
             return Err(Refusal::new("HP0248", message, help));
@@ -158,11 +158,10 @@ impl ModelFile {
             if let Some(Holds::Sigma(m)) = holds
                 && !found.contains(&Some(Holds::Output(*m)))
             {
-                let message = format!("`{}` is of nothing that was measured", shown(&table.names[column].0));
+                let message = format!("`{}` has no column of readings", shown(&table.names[column].0));
                 let help = "add the column of its readings, or remove this one";
-                return Err(
-                    Refusal::new("HP0248", message, help).note(format!("it heads column {}", column + 1))
-                );
+                return Err(Refusal::new("HP0248", message, help)
+                    .note(format!("it is the title of column {}", column + 1)));
             }
         }
         Ok(found)
@@ -232,8 +231,8 @@ impl ModelFile {
         let moving = readings.iter().map(|r| &outputs[r.output]);
         if let Some(output) = moving.clone().find(|o| !self.model.is_known_at_rest(o.source)) {
             let message =
-                format!("`{}` cannot be compared: it is nothing of a mechanism that is at rest", output.name);
-            return Err(Refusal::new("HP0248", message, "remove its column, or let `#` head it")
+                format!("`{}` cannot be compared: it has no value for a mechanism at rest", output.name);
+            return Err(Refusal::new("HP0248", message, "remove its column, or begin its title with `#`")
                 .note("every line is a posture, in which all drivers stand"));
         }
         let Some(without) = readings.iter().find(|r| r.sigma.is_none()) else { return Ok(()) };

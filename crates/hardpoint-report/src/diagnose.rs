@@ -282,7 +282,7 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
             d.note("the mechanism is at a change point there, where its equilibrium is singular")
                 .help("read it at output times away from this one, or drive another joint of the loop")
         } else if !without_length.is_empty() {
-            d.note(format!("both ends of {} are at one place there: a spring of no length pulls nowhere", names_of(&without_length)))
+            d.note(format!("both ends of {} are at one place there: a spring of zero length has no direction", names_of(&without_length)))
                 .help("move one of its ends, or use a `bushing`")
         } else if is_compliance {
             d.note("what gives must be held by something, and constraints that say the same hold one another")

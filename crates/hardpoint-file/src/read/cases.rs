@@ -78,7 +78,7 @@ impl Reader<'_> {
             let mut place = EntryPlace::of(&fields);
             if fields.get("grid").is_some() {
                 for key in ["laws", "other_drivers", "loads", "time"] {
-                    let why = "a `grid` says where two drivers stand; all others are fixed in the design configuration, and there is no time in it";
+                    let why = "a `grid` defines positions of two drivers; all others are fixed in the design configuration, and it has no time";
                     self.out_of_place(&fields, key, why);
                 }
                 let sweeps = self.given(&fields, "grid", |r, f| r.sweeps(&fields, f, &mut place, &driven));
@@ -124,7 +124,7 @@ impl Reader<'_> {
             let at = raw.places.list(Section::Drivers)[*k].find("name", None);
             let message = format!("driver `{name}` has no `law`, and no case gives it one");
             let d = self.report("HP0104", at, message);
-            d.notes.push("cases with a `grid` say where drivers stand, not how they move".into());
+            d.notes.push("cases with a `grid` define positions of drivers, not laws".into());
             d.help = Some("add it, for example `law = \"10*t\"`".into());
         }
     }
@@ -138,7 +138,7 @@ impl Reader<'_> {
         driven: &HashMap<String, Quantity>,
     ) -> Option<Vec<(String, Vec<f64>)>> {
         let subject = fields.subject("grid");
-        let table = self.table(f.value, &subject, "a table of two drivers' names and where they stand")?;
+        let table = self.table(f.value, &subject, "a table of two drivers' names and positions")?;
         if table.len() > MOST_ENTRIES {
             self.too_many(f.value.span(), &subject.name, table.len());
             return None;
@@ -233,9 +233,9 @@ impl Reader<'_> {
         let names = hardpoint::draft::some_of(&names, ", ", 12);
         let what = if without.len() == 1 { "driver" } else { "drivers" };
         let at = fields.get("other_drivers").map_or(fields.at.clone(), |f| f.value.span());
-        let message = format!("{} leaves {what} {names} to a `law` that is not there", fields.what);
+        let message = format!("{} leaves {what} {names} without a `law`", fields.what);
         self.report("HP0104", at, message).help = Some(format!(
-            "give one in the case, like `laws = {{ {first} = \"10*t\" }}`, or in `[drivers.{first}]`, or hold it with `other_drivers = \"held\"`"
+            "give one in the case, like `laws = {{ {first} = \"10*t\" }}`, or in `[drivers.{first}]`, or fix it with `other_drivers = \"fixed\"`"
         ));
     }
 

@@ -120,7 +120,7 @@ pub(super) const TABLE: Curve = Curve {
         ending: "csv",
         example: "data/travel.csv",
         without_folder: "write the table as `points = [[0, 0], [1, 5]]`, or read the model from a file",
-        too_large: "keep every tenth row, or as few as show the curve",
+        too_large: "keep fewer rows, such as every tenth one",
     },
     abscissa: "time",
     abscissas: "times",
@@ -153,7 +153,7 @@ pub(super) const FORCE: Curve = Curve {
     abscissa: "way",
     abscissas: "ways",
     unit: "",
-    write: "write a way in the model's length unit and a force in N on each line, like `12.5, 340`",
+    write: "write a deflection in the model's length unit and a force in N on each line, like `12.5, 340`",
 };
 
 /// Text of a file.
@@ -174,7 +174,7 @@ pub(super) fn bytes_of(folder: Folder<'_>, name: &str, wanted: &Wanted<'_>) -> R
         Folder::Given(texts) => match texts.get(known) {
             Some(text) => return Ok(text.clone().into_bytes()),
             None => {
-                let message = format!("the file `{name}` did not come with this model");
+                let message = format!("the file `{name}` is not part of this model");
                 return Err(DataError::unreadable(message, wanted.without_folder));
             }
         },
@@ -235,7 +235,7 @@ fn inside<'n>(name: &'n str, wanted: &Wanted<'_>) -> Result<&'n Path, DataError>
 }
 
 fn leaves(name: &str, wanted: &Wanted<'_>) -> DataError {
-    let help = "put it beside the model file, or in a folder there, and name it from there, like";
+    let help = "put it into the folder of the model file, or a folder in it, and name it from there, like";
     DataError::unreadable(
         format!("the file `{name}` is not in the model's folder"),
         &format!("{help} `{}`", wanted.example),
@@ -293,7 +293,7 @@ fn parse(text: &str, name: &str, columns: &[Column; 2], of: &Curve) -> Result<Ve
         points.push(point);
         if points.len() > MOST_ROWS {
             let message = format!("`{name}` has more than {MOST_ROWS} rows");
-            return Err(DataError::content(message, "keep as few rows as show the curve"));
+            return Err(DataError::content(message, "keep fewer rows"));
         }
     }
     if points.is_empty() {

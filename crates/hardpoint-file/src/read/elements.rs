@@ -70,7 +70,7 @@ pub(crate) fn weightless(file: &ModelFile) -> Option<Diagnostic> {
     if heavy.is_empty() {
         let falls = model.gravity.norm() > 0.0;
         return falls.then(|| {
-            file.diagnostic(Severity::Note, "HP0253", "gravity acts on nothing: no body has mass", None)
+            file.diagnostic(Severity::Note, "HP0253", "gravity has no effect: no body has mass", None)
                 .help("give the bodies `[masses]`, or remove `[gravity]`")
         });
     }
@@ -86,8 +86,8 @@ pub(crate) fn weightless(file: &ModelFile) -> Option<Diagnostic> {
     let first = (Section::Bodies, light[0]);
     let d = file.diagnostic(Severity::Note, "HP0253", message, Some(first));
     Some(
-        d.note("without mass a body carries forces and needs none")
-            .help("give it `[masses]` if its weight or inertia counts"),
+        d.note("a body without mass transmits forces and needs none")
+            .help("add it to `[masses]` if its weight or inertia matters"),
     )
 }
 
@@ -107,7 +107,7 @@ impl Reader<'_> {
             if unit.is_none() {
                 let at = fields.get("along").map_or(fields.at.clone(), |f| f.value.span());
                 self.senseless(at, "the `along` of `gravity` has no direction").help =
-                    Some("give a vector of any length but zero, like [0, 0, -1]".into());
+                    Some("give a non-zero vector, like [0, 0, -1]".into());
             }
             Some(unit? * size)
         });
@@ -182,7 +182,7 @@ impl Reader<'_> {
             self.law_formulas.clear();
             self.senseless(f.value.span(), "the law of a force has a parameter that an expression gives")
                 .help = Some(
-                "write numbers in the law: what follows parameters is the force that it multiplies".into(),
+                "write numbers in the law; the force that it multiplies may depend on parameters".into(),
             );
             return None;
         }

@@ -88,7 +88,7 @@ pub(crate) fn parts(folder: Folder<'_>, text: &str) -> (Vec<Part>, Vec<IncludeEr
             let error = match read {
                 Ok(_) if parts.len() == MOST_FILES => DataError::unreadable(
                     format!("the model has more than {MOST_FILES} files"),
-                    "put some of them together",
+                    "combine some of them",
                 ),
                 Ok(text) if bytes + text.len() as u64 > LARGEST_FILE => {
                     let limit = LARGEST_FILE >> 20;
@@ -258,7 +258,7 @@ impl Reader<'_> {
         }
         self.included += files.sizes[k].max(LEAST_BYTES);
         if self.included > LARGEST_FILE {
-            let message = "files are included in files too many times".to_owned();
+            let message = "includes are nested too deeply".to_owned();
             self.report("HP0117", at, message).help =
                 Some("include each of them where it is needed only".into());
             return None;

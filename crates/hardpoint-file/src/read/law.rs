@@ -225,7 +225,7 @@ impl Reader<'_> {
                 let close = unknown.and_then(|name| closest(name, self.nominal.names()));
                 let close = close.map(|c| format!("did you mean the parameter `{c}`?"));
                 let at = self.inside(value, text, error.span);
-                let message = format!("the law of {of} cannot be read: {}", error.message);
+                let message = format!("invalid law of {of}: {}", error.message);
                 self.report("HP0108", at, message).help = close.or(error.help);
                 None
             }
@@ -292,7 +292,7 @@ impl Reader<'_> {
         match law {
             Ok(law) => Some(law),
             Err(error) => {
-                let message = format!("{} makes no sense: {}", fields.what, error.message);
+                let message = format!("{} is invalid: {}", fields.what, error.message);
                 self.report("HP0110", at, message).help = error.help;
                 None
             }
@@ -322,7 +322,7 @@ impl Reader<'_> {
             fields.get(if known { "end" } else { "degree" }).map_or(fields.at.clone(), |f| f.value.span());
         if !known {
             let written = self.source.text.get(at.clone()).unwrap_or_default().to_owned();
-            let message = format!("{} makes no sense: a smooth step has no degree {written}", fields.what);
+            let message = format!("{} is invalid: a smooth step has no degree {written}", fields.what);
             self.report("HP0110", at, message).help = Some(
                 "give 3, 5 or 7: with 3 the acceleration jumps at both ends, with 5 the jerk, with 7 neither"
                     .into(),

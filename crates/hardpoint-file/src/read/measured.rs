@@ -23,7 +23,7 @@ pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
     let name = path.display().to_string();
     let bytes = std::fs::read(path).map_err(|e| {
         let message = format!("the file `{}` cannot be read", shown(&name));
-        DataError::unreadable(message, "name a CSV file whose first line names drivers and what was measured")
+        DataError::unreadable(message, "name a CSV file whose first line names drivers and measured outputs")
             .note(e.to_string())
     })?;
     let text = text_from(bytes, &name)?;

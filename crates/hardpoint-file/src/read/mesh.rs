@@ -106,7 +106,7 @@ fn triangles_of(folder: Folder<'_>, name: &str) -> Result<Triangles, DataError> 
     let bytes = bytes_of(folder, name, &wanted)?;
     let name = shown(name);
     let Some((_, kind, load)) = kind else {
-        let message = format!("of `{name}` it is not known how to read it");
+        let message = format!("the format of `{name}` is not supported");
         return Err(unfit(message, "name a `.stl`, `.obj`, `.glb` or `.gltf` file"));
     };
     let mut triangles = Triangles::default();
@@ -187,7 +187,7 @@ impl Reader<'_> {
         if let (Some(x), Some(f)) = (scale.filter(|x| !(*x > 0.0)), fields.get("scale")) {
             let message = format!("{} cannot be {x}", fields.subject("scale").name);
             self.senseless(f.value.span(), message).help =
-                Some("write what one unit of the file is in the model's length unit, like `0.001`".into());
+                Some("give the size of one unit of the file in the model's length unit, like `0.001`".into());
             return None;
         }
         Some(MeshDraft { file: (name?, file?.value.span()), frame: frame?, scale: scale?, mirror })
@@ -232,7 +232,7 @@ impl Reader<'_> {
                     Some(BodyMesh::Said(said)) => said,
                     Some(BodyMesh::Faulty) => return None,
                     None if body == "ground" => {
-                        let message = format!("{} is on ground, where it moves nothing", mass.what);
+                        let message = format!("{} is on ground, where it has no effect", mass.what);
                         self.report("HP0251", f.value.span(), message).help =
                             Some("put it on the body that it belongs to, or remove it".into());
                         return None;
@@ -285,7 +285,7 @@ impl Reader<'_> {
                 <[f64; 10]>::try_from(numbers?).ok()
             });
             let [volume, x, y, z, second @ ..] = found.ok_or_else(|| {
-                let message = format!("the mesh `{}` did not come with this model", shown(name));
+                let message = format!("the mesh `{}` is not part of this model", shown(name));
                 DataError::unreadable(message, "read the model from its folder, where the mesh is")
             })?;
             return Ok(Solid { volume, centre: Vec3::new(x, y, z), second, in_body: false });
@@ -309,7 +309,7 @@ fn bounds_nothing(name: &str, open: OpenSurface) -> DataError {
             let edges = if count == 1 { "1 edge".into() } else { format!("{count} edges") };
             let [a, b] = [a, b].map(|p| format!("({}, {}, {})", p.x, p.y, p.z));
             let note = format!(
-                "at {edges} it does not go on: triangles there do not meet one that goes round the same way; one runs from {a} to {b} in the file's coordinates"
+                "at {edges} it is open: triangles there have no neighbour with the same orientation; one edge runs from {a} to {b} in the file's coordinates"
             );
             (format!("the surface in `{}` is not closed, so that it bounds no volume", shown(name)), note)
         }

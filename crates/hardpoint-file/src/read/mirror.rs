@@ -298,9 +298,10 @@ impl Reader<'_> {
         }
         if made.is_empty() {
             let words: Vec<String> = rule.words.iter().map(|w| format!("`{}`", w.0)).collect();
-            let message = format!("the mirror makes nothing: no name has the word {}", words.join(" or "));
+            let message =
+                format!("the mirror has no effect: no name contains the word {}", words.join(" or "));
             self.report("HP0116", value.span(), message).help = Some(
-                "say under `names` which word of the names says the side, like `names = { l = \"r\" }`; words stand between `_`, `-` or blanks, as in `l_ball`"
+                "give the word that identifies the side under `names`, like `names = { l = \"r\" }`; words stand between `_`, `-` or blanks, as in `l_ball`"
                     .into(),
             );
         }

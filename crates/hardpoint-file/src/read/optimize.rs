@@ -220,7 +220,7 @@ impl Reader<'_> {
         }
         let axes = ["x", "y", "z"];
         if axes.iter().all(|key| fields.get(key).is_none()) {
-            let message = format!("{} does not say along which axis", fields.what);
+            let message = format!("{} has no axis", fields.what);
             self.report("HP0104", fields.at.clone(), message).help =
                 Some("give at least one of `x = [10, 20]`, `y = { min = 0 }`, `z = { equal = 5 }`".into());
             return None;
@@ -251,7 +251,7 @@ impl Reader<'_> {
         let has = |key: &str| fields.get(key).is_some();
         if !has("min") && !has("max") && !has("equal") {
             if !fields.lost {
-                let message = format!("{} does not say between which values", fields.what);
+                let message = format!("{} has no values", fields.what);
                 self.report("HP0104", fields.at.clone(), message).help =
                     Some("give `min = 50`, `max = 200`, both of them, or `equal = 100`".into());
             }
@@ -259,7 +259,7 @@ impl Reader<'_> {
         }
         if has("equal") {
             for key in ["min", "max"] {
-                self.out_of_place(fields, key, "`equal` says both already");
+                self.out_of_place(fields, key, "`equal` defines both");
             }
         }
         let [min, max, equal] = ["min", "max", "equal"].map(|key| self.number_of(fields, key));

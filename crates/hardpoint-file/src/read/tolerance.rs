@@ -113,7 +113,11 @@ impl Reader<'_> {
         let keep = self.number_of(&fields, "required_sigmas");
         let rule = fields.get("allocate").and_then(|_| self.word_of(&fields, "allocate"));
         if fields.get("required_sigmas").is_some() && rule != Some(0) {
-            self.out_of_place(&fields, "required_sigmas", "only `allocate = \"rss\"` counts standard deviations");
+            self.out_of_place(
+                &fields,
+                "required_sigmas",
+                "only `allocate = \"rss\"` counts standard deviations",
+            );
         }
         for key in ["variables", "correlations", "limits"] {
             let table = fields.get(key).map(|f| f.value.get_ref().as_table());
@@ -213,7 +217,7 @@ impl Reader<'_> {
             let metric = self.name_of(&fields, "metric");
             let [least, most] = ["min", "max"].map(|key| self.number_of(&fields, key));
             if !fields.lost && fields.get("min").is_none() && fields.get("max").is_none() {
-                let message = format!("{} does not say between which values", fields.what);
+                let message = format!("{} has no values", fields.what);
                 self.report("HP0104", fields.at.clone(), message).help =
                     Some("give `min = 50`, `max = 200`, or both of them".into());
                 self.unread.push("");

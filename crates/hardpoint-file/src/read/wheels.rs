@@ -285,8 +285,8 @@ impl Reader<'_> {
         };
         let drivers = raw.draft.drivers.len();
         let no_driver = match drivers {
-            0 => "there is no driver that could be its `bump`".to_owned(),
-            n => format!("`bump` does not say which of the {n} drivers moves the wheel up and down"),
+            0 => "no driver can be its `bump`".to_owned(),
+            n => format!("`bump` is missing: {n} drivers could move the wheel up and down"),
         };
         // Whoever says nothing of the vehicle or of its ends does not ask what they do to the pitching.
         let lacking = |m: &WheelMeasure| match m.needs() {
@@ -297,7 +297,7 @@ impl Reader<'_> {
             need => vehicle.lacks(need).next().map(|key| match key {
                 "wheelbase" => "`[vehicle]` has no `wheelbase`",
                 "cg_height" => "`[vehicle]` has no `cg_height`",
-                _ => "`[vehicle]` does not say which share of the force this end takes",
+                _ => "`[vehicle]` has no share of the force for this end",
             }),
         };
         self.left_out(fields, WheelMeasure::ALL, WheelMeasure::name, lacking);
@@ -339,7 +339,7 @@ impl Reader<'_> {
             let names = missing.iter().filter(|(w, _)| *w == why).map(|(_, m)| format!("`{}`", name(*m)));
             d.notes.push(format!("{why}, so there is no {}", names.collect::<Vec<_>>().join(", ")));
         }
-        d.help = Some("give what is missing, or list the measures wanted by name".into());
+        d.help = Some("add the missing entries, or list the requested measures by name".into());
     }
 
     /// The measures listed under `measures`, and where: those named, or all that are possible.

@@ -192,7 +192,8 @@ fn each_side_may_have_variables_of_its_own_that_do_to_it_what_the_others_do_to_t
 
 #[test]
 fn what_is_written_of_the_other_side_counts_more_key_by_key() {
-    let text = ALL.replace("mirror = {}", "mirror = { except = [\"left_spin\"], antisymmetric = [\"left_yaw\"] }");
+    let text =
+        ALL.replace("mirror = {}", "mirror = { except = [\"left_spin\"], antisymmetric = [\"left_yaw\"] }");
     let text = text
         .replace("left_x = {", "right_lift = { law = 0 }\nleft_x = {")
         .replace("rack = [30, 0, 80]", "rack = [30, 0, 80]\nright_rod_in = [35, -110, 80]");

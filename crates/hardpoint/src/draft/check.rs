@@ -341,7 +341,7 @@ impl<'a> Checker<'a> {
                     ));
                 } else if section == Section::Bodies && *name == "ground" {
                     self.fault("HP0201", at, "`ground` is the name of the body that does not move")
-                        .help("it is always there and need not be declared; give this body another name");
+                        .help("give this body another name; `ground` is predefined");
                 }
             }
         }
@@ -497,7 +497,7 @@ impl<'a> Checker<'a> {
                 None => {
                     self.fault("HP0205", at, format!("the {key} of `{owner}` has no direction"))
                         .note(format!("it is written as [{}, {}, {}]", v.x, v.y, v.z))
-                        .help("give a vector of any length but zero, like [0, 0, 1]");
+                        .help("give a non-zero vector, like [0, 0, 1]");
                     None
                 }
             },
@@ -515,7 +515,7 @@ impl<'a> Checker<'a> {
                             } else {
                                 format!("hardpoints `{a}` and `{b}` are at the same place")
                             })
-                            .help("name two hardpoints that lie apart");
+                            .help("name two different hardpoints");
                         None
                     }
                 }
@@ -545,7 +545,7 @@ impl<'a> Checker<'a> {
                         LocationDraft::Formula(_) => {
                             let message = format!("the frame of body `{}` is given by an expression", b.name);
                             self.fault("HP0230", here.item("frame", k), message)
-                                .help("give numbers: a change of the design leaves frames where they are");
+                                .help("give numbers: body frames do not change with the design");
                             None
                         }
                         LocationDraft::At(v) if v.is_finite() => Some(*v),

@@ -234,7 +234,7 @@ impl<'a> Descent<'a> {
                 "rename it",
             )
         } else if !is_new {
-            (format!("two parameters are called `{name}`"), "rename one of them")
+            (format!("two parameters are named `{name}`"), "rename one of them")
         } else if (self::name, eof).parse_next(&mut LocatingSlice::new(name)).is_err() {
             let help = "use letters, digits and `_`, and begin with a letter or `_`";
             (format!("`{}` can not be the name of a parameter", name.escape_debug()), help)
@@ -302,8 +302,7 @@ impl<'a> Descent<'a> {
                 Err(error(self.span.clone(), "the number is too large", Some("the largest is 1.79e308")))
             }
             Token::Name("t") if self.free.is_some() => {
-                let help =
-                    "only the law of a driver knows the time; rename what is meant, if it is a parameter";
+                let help = "only laws of drivers depend on the time; rename the parameter if one is meant";
                 Err(error(self.span.clone(), "`t` is the time, which has no meaning here", Some(help)))
             }
             Token::Name("t") => self.leaf(Operation::Time),
@@ -418,7 +417,7 @@ impl<'a> Descent<'a> {
             Token::Symbol(">") => Relation::Greater,
             Token::Symbol(">=") => Relation::GreaterOrEqual,
             Token::Symbol(symbol @ ("=" | "==" | "!=")) => {
-                let message = format!("a law is not compared with `{symbol}`");
+                let message = format!("a law cannot be compared with `{symbol}`");
                 return Err(error(self.span.clone(), message, Some("use `<`, `<=`, `>` or `>=`")));
             }
             Token::Symbol("," | ")") | Token::End => {
@@ -526,7 +525,7 @@ impl<'a> Descent<'a> {
                 let help = (!is_plain_number).then(|| format!("for a product write `{before}*{shown}`"));
                 (format!("an operator is missing between `{before}` and `{shown}`"), help)
             }
-            Token::Symbol(")") => ("this `)` closes nothing".to_owned(), None),
+            Token::Symbol(")") => ("this `)` has no opening `(`".to_owned(), None),
             Token::Symbol("<" | "<=" | ">" | ">=" | "=" | "==" | "!=") => {
                 let help = "compare as in `if(t < 1, x, y)`".to_owned();
                 ("only the first argument of `if` can be a comparison".to_owned(), Some(help))

@@ -231,7 +231,7 @@ fn parameters_of_an_expression_act_as_the_numbers_they_stand_for() {
         assert_eq!(error.span, 0..text.len());
     }
     let error = Law::parse_with("a*t", &[("a", 1.0), ("a", 2.0)]).unwrap_err();
-    assert_eq!(error.message, "two parameters are called `a`");
+    assert_eq!(error.message, "two parameters are named `a`");
     let error = Law::parse_with("a*t", &[("a", f64::NAN)]).unwrap_err();
     assert_eq!(error.message, "the parameter `a` must be a finite number, not NaN");
     let error = Law::parse_with("amplitud*t", &[("amplitude", 1.0)]).unwrap_err();

@@ -80,7 +80,7 @@ impl Sequence {
                         "the law of piece {k} of a sequence has no finite value at the piece's {end}"
                     );
                     let help =
-                        "the law's own time starts at 0 when the piece does, and ends with its duration";
+                        "the time of a piece's law starts at 0 with the piece, and ends with its duration";
                     return Err(LawError::new(message, help));
                 }
             }
@@ -331,7 +331,7 @@ mod tests {
             (
                 vec![Piece::lasting(1.0, speed()), Piece::lasting(2.0, late)],
                 "the law of piece 1 of a sequence has no finite value at the piece's start",
-                "the law's own time starts at 0 when the piece does, and ends with its duration",
+                "the time of a piece's law starts at 0 with the piece, and ends with its duration",
             ),
         ];
         for (pieces, message, help) in sequences {

@@ -179,7 +179,7 @@ fn errors_name_the_place_and_the_remedy() {
         ("()", 0..1, "a value is missing after `(`", ""),
         ("sin(t", 3..4, "missing `)`: this `(` is not closed", ""),
         ("2*(t + (1)", 2..3, "missing `)`: this `(` is not closed", ""),
-        ("(t))", 3..4, "this `)` closes nothing", ""),
+        ("(t))", 3..4, "this `)` has no opening `(`", ""),
         ("2t", 1..2, "an operator is missing between `2` and `t`", "for a product write `2*t`"),
         ("2(t + 1)", 1..2, "an operator is missing between `2` and `(`", "for a product write `2*(`"),
         ("t(1)", 1..2, "an operator is missing between `t` and `(`", "for a product write `t*(`"),
@@ -224,7 +224,7 @@ fn errors_name_the_place_and_the_remedy() {
             "compare with `<`, `<=`, `>` or `>=`, as in `if(t < 1, x, y)`",
         ),
         ("if(t < 1", 2..3, "missing `)`: this `(` is not closed", ""),
-        ("if(t == 1, 1, 2)", 5..7, "a law is not compared with `==`", "use `<`, `<=`, `>` or `>=`"),
+        ("if(t == 1, 1, 2)", 5..7, "a law cannot be compared with `==`", "use `<`, `<=`, `>` or `>=`"),
         ("if(0 < t < 1, 1, 2)", 9..10, "an `if` has one comparison only", nest_help),
         ("if(t < 1, 2)", 0..12, "`if` takes 3 arguments, not 2", "write `if(a < b, x, y)`"),
     ];

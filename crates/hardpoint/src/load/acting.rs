@@ -389,7 +389,9 @@ impl<T: Real> AppliedLoads<'_, T> {
     fn transition_velocity(&self, kind: &ElementKind) -> T {
         let given = match kind {
             ElementKind::Friction { transition_velocity, .. } => (transition_velocity.map(|n| n.0), FADES),
-            ElementKind::SlideFriction { transition_velocity, .. } => (transition_velocity.map(|n| n.0), SLIDE_FADES),
+            ElementKind::SlideFriction { transition_velocity, .. } => {
+                (transition_velocity.map(|n| n.0), SLIDE_FADES)
+            }
             _ => (None, FADES),
         };
         given.0.map_or_else(|| T::constant(given.1), |n| self.number(n))
@@ -428,7 +430,9 @@ impl<T: Real> AppliedLoads<'_, T> {
         let kind = &self.model.elements[e.0].kind;
         let (joint, length, normal) = match kind {
             ElementKind::Friction { joint, length, .. } => (*joint, length, None),
-            ElementKind::SlideFriction { joint, length, ignored_direction, .. } => (*joint, length, *ignored_direction),
+            ElementKind::SlideFriction { joint, length, ignored_direction, .. } => {
+                (*joint, length, *ignored_direction)
+            }
             _ => return ([Vec3::zero(); 2], 0),
         };
         if self.ball(kind).is_some() {

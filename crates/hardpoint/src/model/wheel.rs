@@ -110,8 +110,7 @@ impl Vehicle {
     /// Keys of the vehicle data that a measure of a wheel needs and the model lacks.
     pub fn lacks(&self, need: WheelRequirement) -> impl Iterator<Item = &'static str> {
         let share = self.front_share(need);
-        let of_pitching =
-            [("wheelbase", self.wheelbase), ("cg_height", self.cg_height)].map(Some);
+        let of_pitching = [("wheelbase", self.wheelbase), ("cg_height", self.cg_height)].map(Some);
         let needed = of_pitching.into_iter().filter(move |_| share.is_some()).chain([share]).flatten();
         needed.filter(|(_, known)| known.is_none()).map(|(key, _)| key)
     }

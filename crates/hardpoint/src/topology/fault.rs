@@ -23,7 +23,7 @@ pub enum TopologyError {
     },
     /// The configuration in the design configuration is singular: motions are free there that are not free nearby
     /// (HP0304).
-    #[error("the mechanism is drawn in a singular position ({})", dozen(.bodies))]
+    #[error("the design configuration is singular ({})", dozen(.bodies))]
     Singular {
         /// Number of motions that are free in that position only.
         freedom: usize,
@@ -53,7 +53,7 @@ pub enum TopologyError {
         joint_names: Vec<String>,
     },
     /// The joints hold each other: nothing that a driver moves can move (HP0303).
-    #[error("the mechanism cannot move: its joints hold each other ({})", dozen(.bodies))]
+    #[error("the mechanism is immovable: its joints constrain each other ({})", dozen(.bodies))]
     Immovable {
         /// The joints whose constraints fail as soon as something moves.
         joints: Vec<JointId>,
@@ -113,7 +113,7 @@ impl TopologyError {
                 format!("where they meet: {}", dozen(joint_names)),
             ],
             Self::Immovable { joint_names, .. } => {
-                vec![format!("the constraints that fail as soon as something moves: {}", dozen(joint_names))]
+                vec![format!("the constraints that fail with any motion: {}", dozen(joint_names))]
             }
         }
     }
@@ -127,8 +127,7 @@ impl TopologyError {
             Self::UnderDriven { freedom, .. } => {
                 format!("add {freedom} drivers on these joints, or joints or rods that hold the motions")
             }
-            Self::Singular { .. } => "draw the mechanism a little further along its motion, off the position where its bars line up; if it \
-                                      moves by its special proportions only, a driver may be missing on one of these joints"
+            Self::Singular { .. } => "move the design configuration a little along the motion, away from the position in which its bars line up; if it moves only because of its special proportions, a driver may be missing on one of these joints"
                 .into(),
             Self::OverDriven { driver_names, mobility, .. } => {
                 let excess = match driver_names.len().saturating_sub(*mobility) {
@@ -138,7 +137,7 @@ impl TopologyError {
                 format!("remove any {excess} of these drivers, or free a joint")
             }
             Self::Immovable { .. } => {
-                "make axes that should be parallel exactly so, or use joints with more freedom (a spherical joint in \
+                "make parallel axes exactly parallel, or use joints with more freedom (a spherical joint in \
                  place of a revolute, a cylindrical joint in place of a slide)"
                     .into()
             }

@@ -519,7 +519,8 @@ fn friction_of_all_kinds_follows_the_design() {
     let open = Model::from_draft(&press).unwrap();
     let shared = Analysis::new(&open).unwrap().loads(&[]).shared_friction;
     assert_eq!(shared, [open.element("has friction at guide").unwrap()]);
-    let ElementKindDraft::SlideFriction { ignored_direction, transition_velocity, .. } = &mut press.forces.last_mut().unwrap().kind
+    let ElementKindDraft::SlideFriction { ignored_direction, transition_velocity, .. } =
+        &mut press.forces.last_mut().unwrap().kind
     else {
         unreachable!()
     };

@@ -240,7 +240,7 @@ impl<'a> Side<'_, 'a> {
         let other = self.rule.twin(driver).unwrap_or_default();
         self.refused.push((
             at,
-            format!("the law of driver `{driver}` lies in a file, and is not turned round for `{other}`"),
+            format!("the law of driver `{driver}` is in a file, and cannot be reversed for `{other}`"),
             format!("write the law of `{other}` as well, with a file of its own"),
         ));
     }

@@ -49,12 +49,12 @@ impl Checker<'_> {
         // Those of a parameter are counted from its value.
         if let Some([low, high]) = v.bounds.filter(|_| !self.unread(here, "value")) {
             if !(low < high && low.is_finite() && high.is_finite()) {
-                let message = format!("the bounds of design variable `{}` do not rise", v.name);
+                let message =
+                    format!("the bounds of design variable `{}` are not in ascending order", v.name);
                 self.fault("HP0229", here.key("bounds"), message)
                     .help("give the lower bound first, then the upper");
             } else if !(low <= 0.0 && high >= 0.0) {
-                let message =
-                    format!("the model in the design configuration is not within the bounds of `{}`", v.name);
+                let message = format!("the nominal design is outside the bounds of `{}`", v.name);
                 self.fault("HP0229", here.key("bounds"), message).help(
                     "bounds of a parameter enclose its value, those of another design variable enclose 0",
                 );
@@ -64,12 +64,12 @@ impl Checker<'_> {
         if is_none(v.typical) {
             let message = format!("the typical size of design variable `{}` is not positive", v.name);
             self.fault("HP0229", here.key("typical"), message)
-                .help("give how large a change of it is usual, or leave it out");
+                .help("give the size of a typical change, or leave it out");
         }
         if is_none(v.tolerance) {
             let message = format!("the tolerance of design variable `{}` is not positive", v.name);
             self.fault("HP0229", here.key("tolerance"), message)
-                .help("give by how much it may be off either way, or leave it out");
+                .help("give the half width of the tolerance, or leave it out");
         }
     }
 
@@ -119,7 +119,7 @@ impl Checker<'_> {
         }
         if changes.is_empty() && !self.joint_ids.contains(&None) {
             let message = format!("the field of design variable `{owner}` moves nothing on its bodies");
-            self.fault("HP0217", at, message).help("no joint or point of them is where the field moves");
+            self.fault("HP0217", at, message).help("the field does not move any joint or point on them");
             return None;
         }
         Some(changes)
@@ -156,7 +156,7 @@ impl Checker<'_> {
                     let message = format!("the bend of design variable `{owner}` has no direction");
                     self.fault("HP0205", key(), message)
                         .note("its two hardpoints are at one place, or `towards` is along the line between them")
-                        .help("name two hardpoints that lie apart, and a direction across");
+                        .help("name two different hardpoints, and a direction across their line");
                     return None;
                 };
                 ShapeField::Bend { from, to, towards }
@@ -175,7 +175,7 @@ impl Checker<'_> {
                     let message = format!("no field of design variable `{owner}` goes through these points");
                     self.fault("HP0217", key(), message)
                         .note("none of them moves, or two of them are at one place and move differently")
-                        .help("give points at different places, and how far each moves per unit");
+                        .help("give different points, each with its displacement per unit");
                     return None;
                 };
                 ShapeField::Through(found)
@@ -192,7 +192,7 @@ impl Checker<'_> {
                 if self.curve_points.contains(&hardpoint) {
                     let message = format!("design variable `{owner}` moves `{name}`, a point of a curve");
                     self.fault("HP0226", at, message)
-                        .note("the shape of a curve is no design variable; its place and direction are")
+                        .note("the shape of a curve cannot be a design variable; its place and direction can")
                         .help(
                             "write the curve's points as coordinates, and move the hardpoint that carries it",
                         );

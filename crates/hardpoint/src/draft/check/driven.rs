@@ -143,7 +143,7 @@ impl Checker<'_> {
         let [i, j] = [a?, b?].map(|p| self.model.points[p.0].clone());
         if self.apart(i.at, j.at) == Some(None) {
             let message = format!("the two points of driver `{}` are at the same place", d.name);
-            self.fault("HP0211", to, message).help("an actuator needs two points that lie apart");
+            self.fault("HP0211", to, message).help("an actuator needs two different points");
         }
         self.driven_joint(d, &joint::LEG, [i.body, j.body], [i.at, j.at], None, Zero::Kept)
     }
@@ -245,10 +245,12 @@ impl Checker<'_> {
                 "an angle can be prescribed from a global direction to one of a body, as seen along `about`"
                     .to_owned()
             }
-            "type" => "it is not the value of something that one driver can hold".to_owned(),
-            what => format!("`{what}` of a wheel is not the value of something that one driver can hold"),
+            "type" => "it is not the value of one coordinate that a driver can prescribe".to_owned(),
+            what => {
+                format!("`{what}` of a wheel is not the value of one coordinate that a driver can prescribe")
+            }
         });
-        fault.help("drivers prescribe `coordinate`, `position`, `distance`, `angle`, `toe`, `steer_angle`, `wheel_travel` and `wheel_recession`; drive one of these, and plot over the other");
+        fault.help("drivers prescribe `coordinate`, `position`, `distance`, `angle`, `toe`, `steer_angle`, `wheel_travel` and `wheel_recession`; drive one of these, and use the other as the abscissa");
         None
     }
 
@@ -292,9 +294,8 @@ impl Checker<'_> {
     ) -> Option<Driven> {
         let e = self.vector(axis2)?.unit()?;
         if (e - z * z.dot(e)).norm() < HEADLESS {
-            let message =
-                format!("what driver `{}` prescribes the angle of points along the line of sight", d.name);
-            self.fault("HP0213", at.clone(), message).help("prescribe an angle that is seen from aside");
+            let message = format!("the direction of driver `{}` is parallel to its line of sight", d.name);
+            self.fault("HP0213", at.clone(), message).help("give another `about` direction");
             return None;
         }
         let frames = [frame_along(z, x), frame_along(e, e.any_square())];
@@ -333,9 +334,9 @@ impl Checker<'_> {
         let between = |[a, b]: [&[String; 3]; 2]| [0, 1, 2].map(|k| format!("({} - {})", b[k], a[k]));
         let text = match (driven.zero, joint.axis) {
             (Zero::None, ..) if d.from_zero => {
-                let message = format!("what driver `{}` prescribes has no zero of its own", d.name);
+                let message = format!("the coordinate of driver `{}` has no zero of its own", d.name);
                 self.fault("HP0213", here.key("counted_from"), message)
-                    .note("lengths of rods, distances and positions have one; what a joint has turned or slid is counted from the drawing")
+                    .note("lengths of rods, distances and positions have one; joint angles and displacements count from the design configuration")
                     .help("leave `counted_from` out, or prescribe a measure with `measure = \"NAME\"`");
                 return None;
             }
@@ -374,7 +375,7 @@ impl Checker<'_> {
     ) -> Option<Driven> {
         if bodies[0] == bodies[1] {
             let name = &self.model.bodies[bodies[0].0].name;
-            let message = format!("driver `{}` prescribes how `{name}` moves relative to itself", d.name);
+            let message = format!("driver `{}` prescribes the motion of `{name}` relative to itself", d.name);
             let index = self.number_of("driver", &d.name).unwrap_or(0);
             let at = Here { section: Section::Drivers, index }.key("name");
             self.fault("HP0213", at, message).help("name two different bodies");

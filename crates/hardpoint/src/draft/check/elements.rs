@@ -61,8 +61,8 @@ impl Checker<'_> {
                     self.fault("HP0251", here.key("to"), message)
                         .help("give both ends on the body that it belongs to");
                 } else if self.at_one_place(*from, *to) {
-                    let message = format!("the ends of `{}` are drawn at the same place", e.name);
-                    self.fault("HP0251", here.key("to"), message).help("give ends that lie apart");
+                    let message = format!("the ends of `{}` are at the same place", e.name);
+                    self.fault("HP0251", here.key("to"), message).help("give two different ends");
                 }
             }
             ElementKind::Spring { from, to, stiffness, free_length, preload, .. } => {
@@ -71,22 +71,22 @@ impl Checker<'_> {
                     self.fault("HP0251", here.key("to"), message)
                         .help("put its ends on two bodies; `ground` is one");
                 } else if self.at_one_place(*from, *to) {
-                    let message = format!("the ends of `{}` are drawn at the same place", e.name);
+                    let message = format!("the ends of `{}` are at the same place", e.name);
                     self.fault("HP0251", here.key("to"), message)
-                        .note("a spring of no length pulls nowhere")
-                        .help("put its ends apart, or use a `bushing`");
+                        .note("a spring of zero length has no direction")
+                        .help("separate its ends, or use a `bushing`");
                 }
                 self.spring_forces(&kind, &e.name, here);
                 let table = kind.table().is_some();
                 if stiffness.is_none() && !table {
                     let message = format!("`{}` has neither a stiffness nor a table", e.name);
                     self.fault("HP0251", here.key("type"), message).help(
-                        "give its `stiffness`, or its force over its way as `compression` or `extension`",
+                        "give its `stiffness`, or its force over its deflection as `compression` or `extension`",
                     );
                 } else if preload.is_some() && table {
                     let message = format!("`{}` has both a table and a `preload`", e.name);
                     self.fault("HP0251", here.key("preload"), message)
-                        .note("without a `free_length` the way counts from the drawing, and the table's force at 0 is that in the design configuration")
+                        .note("without a `free_length` the deflection counts from the design configuration, and the table's force at 0 acts there")
                         .help("leave the preload out: shift the table by it, or give the `free_length`");
                 } else if free_length.is_some() && preload.is_some() {
                     let message = format!("`{}` has both a `free_length` and a `preload`", e.name);
@@ -141,7 +141,14 @@ impl Checker<'_> {
                 self.above(numbers.into_iter().chain(length).chain(transition_velocity), &e.name, here);
                 self.not_below(viscous.map(|n| n.0), "viscous", &e.name, here);
             }
-            ElementKind::SlideFriction { joint, coefficient, length, ignored_direction, viscous, transition_velocity } => {
+            ElementKind::SlideFriction {
+                joint,
+                coefficient,
+                length,
+                ignored_direction,
+                viscous,
+                transition_velocity,
+            } => {
                 let kind = self.model.joints[joint.0].kind.name;
                 if !["translational", "cylindrical"].contains(&kind) {
                     let help = match kind {
@@ -170,12 +177,12 @@ impl Checker<'_> {
             }
             ElementKind::WheelForce { wheel, outboard, forward, up, .. } => {
                 if [outboard, forward, up].iter().all(|n| n.is_none()) {
-                    let message = format!("`{}` does not say how the road pushes", e.name);
+                    let message = format!("`{}` has no force", e.name);
                     self.fault("HP0251", here.key("type"), message)
                         .help("give its force `up`, `outboard` or `forward`, or remove it");
                 }
                 if self.model.wheels[wheel.0].body == GROUND {
-                    let message = format!("`{}` pushes a wheel on ground, which does not move", e.name);
+                    let message = format!("`{}` acts on a wheel of ground, which does not move", e.name);
                     self.fault("HP0251", here.key("wheel"), message).help("name a wheel of another body");
                 }
             }
@@ -194,22 +201,22 @@ impl Checker<'_> {
                 }
                 if self.model.joints[joint.0].kind.places == 0 {
                     let message = format!(
-                        "joint `{}` has no place where it could give",
+                        "joint `{}` has no location at which it could deflect",
                         self.model.joints[joint.0].name
                     );
-                    self.fault("HP0251", here.key("joint"), message).help("name a joint that is somewhere");
+                    self.fault("HP0251", here.key("joint"), message).help("name a joint with a location");
                 }
             }
             ElementKind::PointForce { at, .. } => {
                 if self.body_of(*at) == GROUND.0 {
-                    let message = format!("`{}` pushes on ground, which does not move", e.name);
-                    self.fault("HP0251", here.key("at"), message).help("let it push a point of another body");
+                    let message = format!("`{}` acts on ground, which does not move", e.name);
+                    self.fault("HP0251", here.key("at"), message).help("apply it to a point of another body");
                 }
             }
             ElementKind::BodyMoment { body, .. } => {
                 if *body == GROUND {
-                    let message = format!("`{}` turns ground, which does not move", e.name);
-                    self.fault("HP0251", here.key("body"), message).help("let it turn another body");
+                    let message = format!("`{}` acts on ground, which does not move", e.name);
+                    self.fault("HP0251", here.key("body"), message).help("apply it to another body");
                 }
             }
         }
@@ -242,7 +249,7 @@ impl Checker<'_> {
     }
 
     fn mass_on_ground(&mut self, name: &str, here: Here, key: &'static str) {
-        let message = format!("mass `{name}` is on ground, where it moves nothing");
+        let message = format!("mass `{name}` is on ground, where it has no effect");
         self.fault("HP0251", here.key(key), message)
             .help("put it on the body that it belongs to, or remove it");
     }
@@ -250,7 +257,7 @@ impl Checker<'_> {
     /// HP0251: friction in a joint that is no such thing.
     fn no_friction(&mut self, name: &str, joint: JointId, what: &str, here: Here, help: &str) {
         let message =
-            format!("`{name}` is in joint `{}`, which is no {what}", self.model.joints[joint.0].name);
+            format!("`{name}` acts in joint `{}`, which is not a {what}", self.model.joints[joint.0].name);
         self.fault("HP0251", here.key("joint"), message).help(help);
     }
 
@@ -285,7 +292,7 @@ impl Checker<'_> {
         if let Err(why) = &table {
             let message = format!("the table of `{name}` {why}");
             self.fault("HP0252", here.key(key), message)
-                .help("give points `[way, force]`, two at least, their ways increasing");
+                .help("give at least two points `[deflection, force]`, with increasing deflections");
         }
         table.ok()
     }
@@ -296,8 +303,8 @@ impl Checker<'_> {
         if compression.is_some() && extension.is_some() {
             let message = format!("`{name}` has two tables");
             self.fault("HP0251", here.key("extension"), message)
-                .note("a way in compression is one below zero in extension, and a push a pull below zero")
-                .help("put both into one of them");
+                .note("compression is negative extension, and a compressive force is a negative tension")
+                .help("combine both in one table");
         }
         if scale.is_some() && compression.is_none() && extension.is_none() {
             let message = format!("`{name}` has a `scale` but no table");
@@ -383,13 +390,13 @@ impl Checker<'_> {
         let determinant = x * (y * z - e * e) - d * (d * z - e * f) + f * (d * e - y * f);
         let cubed = slack * slack * slack;
         if !(minors.iter().all(|m| *m >= 0.0) && determinant >= -cubed) {
-            let message = format!("no body can have the moments of inertia of `{name}`");
+            let message = format!("the moments of inertia of `{name}` are impossible");
             let fault = self.fault("HP0252", here.key("ixx"), message);
-            fault.note("none is above the sum of the other two, in any axes; products are the integrals of x y, y z and z x");
+            fault.note("each is at most the sum of the other two, in any axes; products are the integrals of x y, y z and z x");
             if moved {
                 fault.note(shown());
             }
-            fault.help("take all three about the centre of mass, or say about which point as `about`; where the products come as entries of the inertia matrix, change their signs");
+            fault.help("give all three about the centre of mass, or give the point as `about`; if the products are entries of the inertia matrix, change their signs");
         }
     }
 }

@@ -34,7 +34,7 @@ impl<'a> Checker<'a> {
         for (index, p) in draft.parameters.iter().enumerate() {
             let at = Here { section: Section::Parameters, index };
             if !p.name.trim().is_empty() && !Expression::can_name(&p.name) {
-                let message = format!("a parameter cannot be called `{}`", p.name);
+                let message = format!("invalid name of a parameter: `{}`", p.name);
                 self.fault("HP0201", at.key("name"), message).help(
                     "use letters, digits and `_`, and no name that expressions know already, such as `t` or `sin`",
                 );
@@ -74,7 +74,7 @@ impl<'a> Checker<'a> {
                 FormulaOf::Length(_) | FormulaOf::Law(..) | FormulaOf::CaseLaw(..) => continue,
             };
             let Some(of) = found else {
-                let message = format!("a formula gives `{name}`, which is not in the model");
+                let message = format!("a formula defines `{name}`, which is not in the model");
                 self.fault("HP0204", at, message);
                 continue;
             };
@@ -179,15 +179,15 @@ impl<'a> Checker<'a> {
             let shown = |k: &usize| format!("`{}`", written[*k].name);
             let first = &written[circle[0]];
             let message = match circle.as_slice() {
-                [one] => format!("{} is given by itself", shown(one)),
-                _ => format!("the formula of {} goes round in a circle", shown(&circle[0])),
+                [one] => format!("{} is defined by itself", shown(one)),
+                _ => format!("the formula of {} is circular", shown(&circle[0])),
             };
             let way = circle.iter().take(LISTED_NAMES).chain([&circle[0]]).map(shown).collect::<Vec<_>>();
             let fault = self.fault("HP0227", first.at.clone(), message);
             if circle.len() > 1 {
                 fault.note(way.join(" uses "));
             }
-            fault.help("give one of them by a number, or by something else");
+            fault.help("define one of them by a number, or by other names");
         }
         for k in (0..written.len()).filter(|k| waits[*k] > 0) {
             self.spoil(written[k].formula.of);
@@ -360,7 +360,7 @@ impl<'a> Checker<'a> {
         for &(parameter, expression) in given {
             let Some(p) = law.parameters().iter().position(|p| p.name == parameter) else {
                 let message =
-                    format!("a formula gives `{parameter}`, which the law of `{name}` does not have");
+                    format!("a formula defines `{parameter}`, which the law of `{name}` does not have");
                 self.fault("HP0204", at.clone(), message);
                 continue;
             };
@@ -424,7 +424,7 @@ impl<'a> Checker<'a> {
             {
                 let message = format!("the expression for `{name}` moves a point of a curve");
                 self.fault("HP0226", at, message)
-                    .note("the shape of a curve is no design variable; its place and direction are")
+                    .note("the shape of a curve cannot be a design variable; its place and direction can")
                     .help(
                         "write `design = false` for the parameters in it, or the curve's points as numbers",
                     );

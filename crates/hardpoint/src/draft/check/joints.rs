@@ -80,17 +80,17 @@ impl Checker<'_> {
                 let cosine = z.dot(z_j);
                 if kind.rows.contains(&Row::Cosine) && cosine.abs() > 1.0 - SQUARE_TOLERANCE {
                     let message =
-                        format!("the axes of joint `{name}` are parallel, where their angle holds nothing");
+                        format!("the axes of joint `{name}` are parallel, so that their angle is singular");
                     self.fault("HP0209", here.key("axis2"), message).help("use a `parallel` joint");
                 }
                 if kind.rows.contains(&Row::ConstantVelocity) && cosine < SQUARE_TOLERANCE {
-                    let message = format!("the shafts of joint `{name}` point at each other or are square");
+                    let message = format!("the shafts of joint `{name}` are opposite or perpendicular");
                     self.fault("HP0209", here.key("axis2"), message)
                         .note(format!(
                             "the angle between `axis` and `axis2` is {:.4} deg",
                             degrees_between(z, z_j)
                         ))
-                        .help("let both point the same way along the train, less than 90 deg apart");
+                        .help("point both in the same direction along the train, less than 90 deg apart");
                 }
                 let i = frame_along(z, default_x(z, j.mirror));
                 [i, Mat3::between(z, z_j) * i]
@@ -101,7 +101,7 @@ impl Checker<'_> {
                     let message = format!("the axes of joint `{name}` are not perpendicular to each other");
                     self.fault("HP0209", here.key("axis2"), message)
                         .note(format!("the angle between `axis` and `axis2` is {angle:.4} deg"))
-                        .help("turn one of them until they are square");
+                        .help("rotate one of them until they are perpendicular");
                 }
                 [frame_along(z, (x - z * z.dot(x)).unit()?); 2]
             }
@@ -189,13 +189,13 @@ impl Checker<'_> {
         match Curve::through(&points, draft.closed, [follower.x, follower.y]) {
             Ok(curve) if curve.at(curve.start())[0][0].is_finite() => Some(curve),
             Ok(_) => {
-                let message = format!("the point of `{name}` is drawn beyond the ends of its curve");
+                let message = format!("the point of `{name}` is beyond the ends of its curve");
                 self.fault("HP0226", here.key("at"), message)
-                    .help("place it beside the curve, or make the curve longer");
+                    .help("move it next to the curve, or extend the curve");
                 None
             }
             Err(error) => {
-                self.fault("HP0226", here.key("curve"), format!("no curve for `{name}`: {error}"));
+                self.fault("HP0226", here.key("curve"), format!("invalid curve of `{name}`: {error}"));
                 None
             }
         }
@@ -212,7 +212,9 @@ impl Checker<'_> {
                 .help(format!("remove `length` from `{}`", j.name));
         } else if !(length > 0.0 && length.is_finite()) {
             self.fault("HP0223", here.key("length"), format!("the length of `{}` must be positive", j.name))
-                .help("give the distance between its two ends, or leave it out to have it measured");
+                .help(
+                    "give the distance between its two ends, or leave it out: the distance is then measured",
+                );
         }
         Some(length)
     }
@@ -229,7 +231,7 @@ impl Checker<'_> {
                     .help(format!("remove `lead` from `{}`, or make it a `screw`", j.name));
             }
             Some(lead) if !(lead != 0.0 && lead.is_finite()) => {
-                let message = format!("the lead of screw `{}` must be a number other than zero", j.name);
+                let message = format!("the lead of screw `{}` must not be zero", j.name);
                 self.fault("HP0223", here.key("lead"), message)
                     .help("give the advance of one turn; negative for a left-hand thread");
             }
@@ -290,7 +292,7 @@ impl Checker<'_> {
         let (first, last) = (places[0]?, places[places.len() - 1]?);
         if kind.is_rod() && self.apart(first, last) == Some(None) {
             self.fault("HP0211", here.key("at"), format!("the two ends of `{name}` are at the same place"))
-                .help("a rod needs two points that lie apart");
+                .help("a rod needs two different points");
         }
         Some([first, last])
     }

@@ -39,7 +39,7 @@ impl Checker<'_> {
                 let message = format!("measure `{}` is the distance of a point from itself", m.name);
                 self.fault("HP0216", here.key("to"), message);
             } else if at_one_place {
-                let message = format!("the two points of measure `{}` are drawn at the same place", m.name);
+                let message = format!("the two points of measure `{}` are at the same place", m.name);
                 self.fault("HP0216", here.key("to"), message).note("a distance of zero has no rate").help(
                     "measure the `position` of one of them along each direction, or points that lie apart",
                 );
@@ -53,9 +53,8 @@ impl Checker<'_> {
         let draft = self.draft;
         let nothing = draft.masses.is_empty() && draft.forces.is_empty();
         if kind.is_load() && nothing && !self.lost("mass") && !self.lost("force") {
-            let message = format!("`{}` measures a load, but nothing has mass and nothing pushes", m.name);
-            self.fault("HP0250", here.key("type"), message)
-                .help("give the bodies `[masses]`, and what acts on them as `[gravity]` and `[forces]`");
+            let message = format!("`{}` measures a load, but the model has no masses and no forces", m.name);
+            self.fault("HP0250", here.key("type"), message).help("add `[masses]`, `[gravity]` or `[forces]`");
         }
         let gives = |e: &Element| {
             let rigid = matches!(
@@ -71,19 +70,19 @@ impl Checker<'_> {
             && rigid
             && !self.draft.unread.any_of(Section::Forces)
         {
-            let message = format!("`{}` measures what deflects, but nothing does", m.name);
+            let message =
+                format!("`{}` measures a compliance, but no part of the model is compliant", m.name);
             self.fault("HP0250", here.key("type"), message)
-                .help("give joints that yield as `[forces]` of `type = \"elastic_joint\"`");
+                .help("add compliant joints as `[forces]` of `type = \"elastic_joint\"`");
         }
         if let MeasureKind::Compliance { at, wheel, .. } = kind
             && at.is_some() == wheel.is_some()
         {
             let (message, help) = match at {
-                Some(_) => ("is pushed at a point and at a wheel", "leave `at` or `wheel` out"),
-                None => (
-                    "has no place that is pushed",
-                    "say the point as `at`, or the `wheel` that the road pushes",
-                ),
+                Some(_) => ("has a force at a point and at a wheel", "leave `at` or `wheel` out"),
+                None => {
+                    ("has no point of action", "give the point as `at`, or the `wheel` that the road acts on")
+                }
             };
             self.fault("HP0251", here.key("at"), format!("`{}` {message}", m.name)).help(help);
         }
@@ -159,14 +158,14 @@ impl Checker<'_> {
         if let Some(window) = m.window
             && !rises(&mut window.into_iter())
         {
-            let message = format!("the window of metric `{}` does not rise", m.name);
+            let message = format!("the window of metric `{}` is not in ascending order", m.name);
             self.fault("HP0234", here.key("window"), message).help("give the lower and the upper end");
             return None;
         }
         if let Some(target) = take.target()
             && !(rises(&mut target.iter().map(|p| p[0])) && target.iter().all(|p| p[1].is_finite()))
         {
-            let message = format!("the target of metric `{}` does not go on from point to point", m.name);
+            let message = format!("the abscissas of the target of metric `{}` do not increase", m.name);
             self.fault("HP0234", here.key("target"), message)
                 .help("list points `[abscissa, value]` in the order of their abscissa");
             return None;
@@ -188,7 +187,7 @@ impl Checker<'_> {
             && self.model.known(over).orders == 1
         {
             let name = m.over.as_deref().unwrap_or_default();
-            let message = format!("the rate of `{name}` is not known, so nothing can be followed over it");
+            let message = format!("the rate of `{name}` is not known, so it cannot be an abscissa");
             self.fault("HP0233", here.key("over"), message)
                 .help("take something that follows from positions or velocities");
             return None;
@@ -230,8 +229,8 @@ impl Checker<'_> {
                 let [a, b] = ends.map(|p| self.model.points[p.0].at);
                 if self.apart(a, b) == Some(None) {
                     let message =
-                        format!("the two points of `{key}` of measure `{owner}` are drawn at the same place");
-                    self.fault("HP0216", here.key(key), message).help("name two points that lie apart");
+                        format!("the two points of `{key}` of measure `{owner}` are at the same place");
+                    self.fault("HP0216", here.key(key), message).help("name two different points");
                     return None;
                 }
                 Some(Ray::Between(ends))
@@ -288,7 +287,7 @@ impl Checker<'_> {
             None if self.lost("driver") => None,
             None => {
                 let listed: Vec<String> = names.map(|n| format!("`{n}`")).collect();
-                let message = format!("measure `{owner}` does not say which driver moves");
+                let message = format!("measure `{owner}` has no driver");
                 self.fault("HP0232", here.key("driver"), message)
                     .note(format!("drivers: {}", listed.join(", ")))
                     .help("add `driver = ...`");
@@ -311,8 +310,8 @@ impl Checker<'_> {
         let name = self.model.measures[k].name.clone();
         match state[k] {
             Visit::Open => {
-                self.fault("HP0227", here.key("of"), format!("measure `{name}` is measured from itself"))
-                    .help("a measure may use others only where these do not use it in turn");
+                self.fault("HP0227", here.key("of"), format!("measure `{name}` depends on itself"))
+                    .help("remove the circular reference");
                 return false;
             }
             Visit::Done(sound) => return sound,
@@ -352,9 +351,9 @@ impl Checker<'_> {
             }
             MeasureKind::Compliance { of, .. } if !self.model.known(*of).by_position => {
                 let what = self.model.output_name(*of);
-                let message = format!("`{name}` needs what `{what}` does under a force, which is not known");
+                let message = format!("`{name}` needs the compliance of `{what}`, which is not known");
                 self.fault("HP0233", here.key("of"), message)
-                    .note("forces are let deflect at every position by itself")
+                    .note("deflections are computed at every position by itself")
                     .help("take a measure that follows from positions alone");
                 false
             }

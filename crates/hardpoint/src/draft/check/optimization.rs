@@ -28,8 +28,8 @@ impl Checker<'_> {
         // What can be limited follows from all that is checked before.
         let sound = self.faults.is_empty() && draft.unread.is_empty();
         if o.goals.is_empty() {
-            self.fault("HP0236", here.key("goals"), "nothing is to be optimised: there are no goals")
-                .help("name a metric that is to become small, like `goals.toe = { metric = \"toe_error\" }`");
+            self.fault("HP0236", here.key("goals"), "invalid optimisation: there are no goals")
+                .help("add a metric to minimise, like `goals.toe = { metric = \"toe_error\" }`");
         }
         if let Some(margin) = o.margin
             && !(margin > 0.0 && margin < 1.0)
@@ -80,15 +80,19 @@ impl Checker<'_> {
                 || self.lost("design variable")
                 || self.lost("parameter");
             if found.is_empty() && !unknown {
-                self.fault("HP0236", here.key(""), "no design variable may change: none has bounds").help(
-                    "give bounds to those that may, like `bounds = [-5, 5]` in `[design.NAME]`, or `NAME = { value = 60, bounds = [50, 70] }` in `[parameters]`",
+                self.fault("HP0236", here.key(""), "invalid optimisation: no design variable has bounds").help(
+                    "give bounds to the variables that may change, like `bounds = [-5, 5]` in `[design.NAME]`, or `NAME = { value = 60, bounds = [50, 70] }` in `[parameters]`",
                 );
             }
             return Some(found);
         };
         if names.is_empty() {
-            self.fault("HP0236", here.key("variables"), "no design variable may change: the list is empty")
-                .help("name those that may change, or leave `variables` out for all that have bounds");
+            self.fault(
+                "HP0236",
+                here.key("variables"),
+                "invalid optimisation: the list of variables is empty",
+            )
+            .help("name the variables that may change, or leave `variables` out for all that have bounds");
         }
         let mut first_of: BTreeMap<&str, usize> = BTreeMap::new();
         let mut found = Vec::new();
@@ -155,7 +159,7 @@ impl Checker<'_> {
                     "`{name}` is a measure, a whole curve; declare a metric of it, like `[metrics.{name}_range]` with `of = \"{name}\"` and `take = \"range\"`"
                 ));
             } else if draft.metrics.is_empty() {
-                fault.help("declare it in `[metrics.NAME]`: what of which measure is meant");
+                fault.help("declare it in `[metrics.NAME]`");
             }
         }
         self.metric_ids.get(known?).copied().flatten()
@@ -170,13 +174,12 @@ impl Checker<'_> {
         if !(g.weight > 0.0 && g.weight.is_finite()) {
             let message = format!("the weight of goal `{}` cannot be {}", g.name, g.weight);
             self.fault("HP0237", here.key("weight"), message).help(
-                "give a number above zero, or remove the goal; to make a metric large, give it a `target` that is large",
+                "give a number above zero, or remove the goal; to maximise a metric, give it a large `target`",
             );
         }
         if g.target.is_some_and(|target| !target.is_finite()) {
             let message = format!("the target of goal `{}` is not a finite number", g.name);
-            self.fault("HP0237", here.key("target"), message)
-                .help("give the value that its metric is to have");
+            self.fault("HP0237", here.key("target"), message).help("give the target value of its metric");
         }
         let metric = self.metric(&g.metric, here.key("metric"))?;
         let m = &self.model.metrics[metric];
@@ -186,7 +189,7 @@ impl Checker<'_> {
             let help =
                 format!("remove it; give the curve to be followed as `target` of `[metrics.{}]`", g.metric);
             self.fault("HP0237", here.key("target"), message)
-                .note("an `rms` says how far a curve is from its target, and is made as small as possible")
+                .note("an `rms` measures the distance of a curve from its target, and is minimised")
                 .help(help);
             return None;
         }
@@ -207,15 +210,15 @@ impl Checker<'_> {
         }
         match (l.least, l.most) {
             (None, None) => {
-                let message = format!("limit `{}` limits nothing", l.name);
+                let message = format!("limit `{}` has no bound", l.name);
                 self.fault("HP0238", here.key("name"), message)
                     .help("give `min`, `max`, both of them, or `equal`");
                 return None;
             }
             (Some(least), Some(most)) if least > most => {
-                let message = format!("limit `{}` contradicts itself", l.name);
+                let message = format!("the bounds of limit `{}` contradict each other", l.name);
                 self.fault("HP0238", here.key(side_of(&l.of)), message)
-                    .note(format!("it asks for at least {least} and at most {most}"))
+                    .note(format!("its minimum is {least} and its maximum is {most}"))
                     .help("give the lower one first, or as `min`");
                 return None;
             }
@@ -223,9 +226,9 @@ impl Checker<'_> {
         }
         let is_length = matches!(l.of, LimitTargetDraft::Distance(_) | LimitTargetDraft::Length(_));
         if let Some(most) = l.most.filter(|most| is_length && *most < 0.0) {
-            let message = format!("limit `{}` cannot hold: no length is below zero", l.name);
+            let message = format!("limit `{}` is impossible: a length cannot be negative", l.name);
             self.fault("HP0238", here.key("max"), message)
-                .note(format!("it asks for at most {most}"))
+                .note(format!("its maximum is {most}"))
                 .help("give a length above zero");
             return None;
         }
@@ -253,7 +256,7 @@ impl Checker<'_> {
                 let [a, b] = [found[0]?, found[1]?];
                 if a == b {
                     let message =
-                        format!("limit `{}` is put on the distance of `{}` from itself", l.name, names[0]);
+                        format!("limit `{}` applies to the distance of `{}` from itself", l.name, names[0]);
                     self.fault("HP0216", here.key("between"), message).help("name two different hardpoints");
                     return None;
                 }
@@ -301,9 +304,7 @@ impl Checker<'_> {
             let other = if of_low == limit.name { of_high } else { of_low };
             let message = format!("limits `{other}` and `{}` contradict each other", limit.name);
             self.fault("HP0238", here.key(side_of(&written.of)), message)
-                .note(format!(
-                    "`{of_low}` asks for at least {low}, and `{of_high}` for at most {high} of the same"
-                ))
+                .note(format!("the minimum of `{of_low}` is {low}, and the maximum of `{of_high}` is {high}"))
                 .help("widen one of the two, or remove it");
         }
     }
@@ -355,7 +356,7 @@ impl Checker<'_> {
             variables.iter().map(|v| format!("`{}`", model.variables[v.0].name)).collect();
         let names = crate::draft::some_of(&names, ", ", LISTED_NAMES);
         for (at, limit, what) in fixed {
-            let message = format!("limit `{limit}` is put on {what}, which no variable changes");
+            let message = format!("limit `{limit}` applies to {what}, which no variable changes");
             self.fault("HP0239", at, message)
                 .note(format!("variables that may change: {names}"))
                 .help("add a variable that moves it, with bounds, or remove the limit");

@@ -50,8 +50,8 @@ impl Checker<'_> {
         }
         let unknown = !draft.unread.is_empty() || !self.faults.is_empty();
         if sweeping.ranges.is_empty() && !unknown {
-            self.fault("HP0246", HERE.key(""), "nothing is swept: no design variable has a range").help(
-                "name those that are to change, like `NAME = { from = -5, to = 5 }` in `[sweep.variables]`, or give them `bounds`",
+            self.fault("HP0246", HERE.key(""), "invalid sweep: no design variable has a range").help(
+                "name the variables to change, like `NAME = { from = -5, to = 5 }` in `[sweep.variables]`, or give them `bounds`",
             );
         }
         if sweeping.count().is_none() && !unknown {
@@ -85,18 +85,18 @@ impl Checker<'_> {
             let (Some(low), Some(high)) = (low, high) else {
                 if !draft.unread.any(Section::Design, k) {
                     let missing = if low.is_none() { "from" } else { "to" };
-                    let message = format!("the range of `{name}` does not say `{missing}` where it goes");
+                    let message = format!("the range of `{name}` has no `{missing}`");
                     self.fault("HP0246", here.key("name"), message)
                         .help("write `{ from = -5, to = 5 }`, or give the variable `bounds`");
                 }
                 continue;
             };
             if !(low < high && low.is_finite() && high.is_finite()) {
-                let message = format!("the range of `{name}` does not rise");
+                let message = format!("the range of `{name}` is not in ascending order");
                 let key = if one.low.is_some() { "from" } else { "to" };
                 self.fault("HP0246", here.key(key), message)
-                    .note("it begins with `from` and ends with `to`; what is not given is a bound of the variable")
-                    .help("give the lower one as `from`; leave out a variable that is to stay in the design configuration");
+                    .note("`from` is the lower end and `to` the upper end; the bounds of the variable are their defaults")
+                    .help("give the lower one as `from`; leave out a variable that is constant");
                 continue;
             }
             found.push(SweepRange { variable, low, high, levels });
@@ -123,7 +123,7 @@ impl Checker<'_> {
         for (column, name) in list.names.iter().enumerate() {
             let first = *first_of.entry(name).or_insert(column);
             if first < column {
-                let message = format!("`{}`, line 1: `{name}` heads two columns", list.file);
+                let message = format!("`{}`, line 1: `{name}` is the title of two columns", list.file);
                 self.fault("HP0247", at.clone(), message)
                     .note(format!("columns {} and {}", first + 1, column + 1))
                     .help("remove one of the two");
@@ -132,7 +132,7 @@ impl Checker<'_> {
             let faults = self.faults.len();
             let found = self.optimized_variable(name, at.clone());
             if let Some(fault) = self.faults.get_mut(faults) {
-                fault.note(format!("it heads column {} of `{}`", column + 1, list.file));
+                fault.note(format!("it is the title of column {} of `{}`", column + 1, list.file));
             }
             variables.push(VariableId(found?));
         }

@@ -94,8 +94,8 @@ impl Checker<'_> {
         }
         let unknown = !draft.unread.is_empty() || !self.faults.is_empty();
         if found.is_empty() && !unknown {
-            self.fault("HP0241", HERE.key(""), "nothing may be off: no design variable has a tolerance").help(
-                "give one to each that may, as `tolerance = 0.1` in `[design.NAME]` or as `NAME = 0.1` in `[tolerance.variables]`",
+            self.fault("HP0241", HERE.key(""), "invalid tolerance study: no design variable has a tolerance").help(
+                "add tolerances, as `tolerance = 0.1` in `[design.NAME]` or as `NAME = 0.1` in `[tolerance.variables]`",
             );
         }
         found
@@ -133,13 +133,13 @@ impl Checker<'_> {
                 format!("the cost of the tolerance of `{name}` cannot be {}", one.cost.unwrap_or_default());
             self.fault("HP0241", here.key("cost"), message)
                 .note("a tolerance t costs `cost / t`, relative to the others")
-                .help("give a number above zero, or leave it out for a tolerance that stays as it is");
+                .help("give a number above zero, or leave it out for a fixed tolerance");
         }
         let reach = match one.reach {
             Some(reach) if !(reach > 0.0 && reach.is_finite()) => {
                 let message = format!("the tolerance of `{name}` cannot be {reach}");
                 self.fault("HP0241", here.key("tolerance"), message)
-                    .note("it is by how much the variable may be off, either way")
+                    .note("it is the half width of the deviations")
                     .help("give a number above zero, or leave the variable out if it is exact");
                 return None;
             }
@@ -147,7 +147,7 @@ impl Checker<'_> {
             None => {
                 let Some(reach) = first.tolerance else {
                     if !own {
-                        let message = format!("the tolerance of `{name}` does not say how large it is");
+                        let message = format!("the tolerance of `{name}` has no value");
                         self.fault("HP0241", here.key("name"), message).help(
                             "add `tolerance = 0.1` to it, or to the variable in `[design]` or `[parameters]`",
                         );
@@ -174,7 +174,7 @@ impl Checker<'_> {
             if !(sigmas > 0.0 && sigmas <= MOST_SIGMAS) {
                 let message = format!("`sigmas` of {what} cannot be {sigmas}");
                 self.fault("HP0241", here.key("sigmas"), message)
-                    .note("it says how many standard deviations a tolerance is")
+                    .note("it is the number of standard deviations in a tolerance")
                     .help(format!("give a number above zero, up to {MOST_SIGMAS}, like `sigmas = 3`"));
                 return None;
             }
@@ -198,7 +198,7 @@ impl Checker<'_> {
         if t.correlations.len() > MOST_CORRELATIONS {
             let message = format!("{} correlations are too many", t.correlations.len());
             self.fault("HP0242", HERE.key("correlations"), message).help(format!(
-                "give at most {MOST_CORRELATIONS}, or let one design variable move what goes together"
+                "give at most {MOST_CORRELATIONS}, or let one design variable move all that is correlated"
             ));
             return found;
         }
@@ -212,7 +212,7 @@ impl Checker<'_> {
             if !(one.coefficient.abs() <= 1.0) {
                 let message = format!("correlation `{}` cannot be {}", one.name, one.coefficient);
                 self.fault("HP0242", here.key("coefficient"), message)
-                    .help("give a number from -1 to 1: 1 where both are always off alike, 0 where they do not know of each other");
+                    .help("give a number from -1 to 1: 1 if both deviations are always equal, 0 if they are independent");
                 continue;
             }
             let name = &one.name;
@@ -234,10 +234,10 @@ impl Checker<'_> {
         }
         if !found.is_empty() && semidefinite::root(&matrix(&found)).is_none() {
             let names: Vec<String> = found.iter().map(|c| format!("`{}`", c.name)).collect();
-            let message = "the correlations contradict each other: no deviations can go together so";
+            let message = "the correlations contradict each other";
             self.fault("HP0242", HERE.key("correlations"), message)
                 .note(format!("their matrix is not positive semidefinite: {}", super::super::some_of(&names, ", ", super::LISTED_NAMES)))
-                .help("if a goes with b and b with c, a goes with c too: at least `r_ab r_bc - sqrt((1 - r_ab^2) (1 - r_bc^2))`");
+                .help("if a is correlated with b and b with c, so is a with c: at least `r_ab r_bc - sqrt((1 - r_ab^2) (1 - r_bc^2))`");
         }
         found
     }
@@ -268,7 +268,7 @@ impl Checker<'_> {
                 let message =
                     format!("`{name}` of correlation `{}` is {}", one.name, tolerance.scatter.name());
                 self.fault("HP0242", at, message)
-                    .note("what is cut off does not keep its distribution where it goes with something else")
+                    .note("a truncated distribution cannot be correlated")
                     .help("give it `distribution = \"normal\"`, or move both by one design variable");
                 return false;
             }
@@ -284,22 +284,19 @@ impl Checker<'_> {
         {
             let message = format!("`required_sigmas` cannot be {sigmas}");
             self.fault("HP0243", HERE.key("required_sigmas"), message)
-                .note("it says how many standard deviations have to fit between a metric in the design configuration and its limit")
+                .note("it is the number of standard deviations between the nominal value of a metric and its limit")
                 .help(format!("give a number above zero, up to {MOST_SIGMAS}, like `required_sigmas = 3`"));
         }
         if t.limits.is_empty() && !self.unread(HERE, "limits") {
-            self.fault(
-                "HP0243",
-                HERE.key("allocate"),
-                "tolerances cannot be sought: there is no limit to keep",
-            )
-            .help("add one, like `[tolerance.limits]` with `toe = { metric = \"toe_range\", max = 0.5 }`");
+            self.fault("HP0243", HERE.key("allocate"), "invalid allocation: there is no limit").help(
+                "add one, like `[tolerance.limits]` with `toe = { metric = \"toe_range\", max = 0.5 }`",
+            );
         }
         if t.tolerances.iter().all(|one| one.cost.is_none()) && !self.draft.unread.any_of(Section::Tolerances)
         {
-            self.fault("HP0243", HERE.key("allocate"), "tolerances cannot be sought: none has a cost")
-                .note("those without a cost stay as they are")
-                .help("give it to those that are sought, like `A_x = { tolerance = 0.1, cost = 1 }` in `[tolerance.variables]`");
+            self.fault("HP0243", HERE.key("allocate"), "invalid allocation: no tolerance has a cost")
+                .note("tolerances without a cost are fixed")
+                .help("give a cost to the tolerances to allocate, like `A_x = { tolerance = 0.1, cost = 1 }` in `[tolerance.variables]`");
         }
     }
 }

@@ -31,7 +31,7 @@ impl Checker<'_> {
                     here.key(key),
                     format!("the {key} of the vehicle is not between 0 and 1"),
                 )
-                .help("give the part that the front wheels have, 0 to 1");
+                .help("give the share of the front wheels, 0 to 1");
             }
         }
     }
@@ -103,7 +103,7 @@ impl Checker<'_> {
             WheelRequirement::Steer => (format!("steers wheel `{wheel}`"), "steer"),
             _ => (format!("moves wheel `{wheel}` up and down"), "bump"),
         };
-        let message = format!("`{what}` needs to know which driver {does}");
+        let message = format!("`{what}` needs the driver that {does}");
         self.fault("HP0232", here.key("type"), message)
             .note(format!("drivers: {}", drivers.join(", ")))
             .help(format!("add `{key} = DRIVER` to the wheel"));
@@ -227,7 +227,7 @@ impl Checker<'_> {
             let message = format!("wheel `{}` is on neither side of the vehicle", w.name);
             self.fault("HP0231", here.key("centre"), message)
                 .note("the y of its centre is zero")
-                .help("say `side = \"left\"` or `side = \"right\"`");
+                .help("give `side = \"left\"` or `side = \"right\"`");
             return None;
         }
         Some(if y > 0.0 { Side::Left } else { Side::Right })
@@ -247,10 +247,7 @@ impl Checker<'_> {
                     )
                 } else if !(side.sign() * e.y > 0.0) {
                     let message = format!("the spin axis of wheel `{name}` does not point outboard");
-                    (
-                        message,
-                        "turn it around, or say on which `side` of the vehicle the wheel is; y points left",
-                    )
+                    (message, "reverse it, or give the `side` of the wheel; y points left")
                 } else {
                     return Some(axis);
                 };
@@ -340,7 +337,7 @@ impl Checker<'_> {
         if makes_one {
             return Some(plane);
         }
-        let message = format!("the points of the {which} plane of wheel `{name}` make no plane");
+        let message = format!("the points of the {which} plane of wheel `{name}` do not define a plane");
         self.fault("HP0231", here.item("arm_planes", arm), message).help(match plane {
             ArmPlane::Through(_) => "name two pivots and the ball joint of an arm, which are not on one line",
             ArmPlane::Square(_) => "name a strut's top mount and another point of its axis",
@@ -373,7 +370,7 @@ impl Checker<'_> {
         let k = self.find("wheel", name, here.key("wheel"), names)?;
         let wheel = Here { section: Section::Wheels, index: k };
         if what.needs_kingpin() && draft.wheels[k].kingpin.is_none() && !self.unread(wheel, "kingpin") {
-            let message = format!("`{}` needs the kingpin of wheel `{name}`, which gives none", what.name());
+            let message = format!("`{}` needs the kingpin of wheel `{name}`, which has none", what.name());
             self.fault("HP0232", here.key("type"), message).help(
                 "add `kingpin = [LOWER, UPPER]` to the wheel, two points of the axis that it steers about, each a \
                  point's name or `{ body = ..., at = ... }`",
@@ -382,17 +379,19 @@ impl Checker<'_> {
         }
         let (given, help) = (&draft.wheels[k], "add to the wheel ");
         let lacks = match what.needs() {
-            WheelRequirement::Planes if given.planes.is_none() && !self.unread(wheel, "arm_planes") => Some((
-                "planes of the arms",
-                "`arm_planes = [LOWER, UPPER]`, each `{ body = ..., at = [PIVOT, PIVOT, BALL] }`",
-            )),
+            WheelRequirement::Planes if given.planes.is_none() && !self.unread(wheel, "arm_planes") => {
+                Some((
+                    "planes of the arms",
+                    "`arm_planes = [LOWER, UPPER]`, each `{ body = ..., at = [PIVOT, PIVOT, BALL] }`",
+                ))
+            }
             WheelRequirement::Spring if given.spring.is_none() && !self.unread(wheel, "spring") => {
                 Some(("spring", "`spring = [END, END]`, each a point's name or `{ body = ..., at = ... }`"))
             }
             _ => None,
         };
         if let Some((lacks, add)) = lacks {
-            let message = format!("`{}` needs the {lacks} of wheel `{name}`, which gives none", what.name());
+            let message = format!("`{}` needs the {lacks} of wheel `{name}`, which has none", what.name());
             self.fault("HP0232", here.key("type"), message).help(format!("{help}{add}"));
             return None;
         }
@@ -405,7 +404,8 @@ impl Checker<'_> {
         if let (Some(end), Some(at)) = (needs.end(), wheel.end)
             && end != at
         {
-            let message = format!("`{}` is of {} wheels, and `{name}` is none", what.name(), end.name());
+            let message =
+                format!("`{}` applies to {} wheels, and `{name}` is not one", what.name(), end.name());
             self.fault("HP0232", here.key("type"), message).help(match end {
                 VehicleEnd::Front => "at the rear measure `anti_lift` or `anti_squat`",
                 VehicleEnd::Rear => "at the front measure `anti_dive` or `anti_rise`",
@@ -417,7 +417,7 @@ impl Checker<'_> {
             return None;
         }
         if !missing.is_empty() {
-            let message = format!("`{}` needs to know more of the vehicle", what.name());
+            let message = format!("`{}` needs more data of the vehicle", what.name());
             let help = format!("add to `[vehicle]`: {}", missing.join(", "));
             self.fault("HP0232", here.key("type"), message).help(help);
             return None;
