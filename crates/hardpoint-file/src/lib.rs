@@ -1,4 +1,4 @@
-//! Model files of Hardpoint: from text to a checked [`Model`], or to everything that is wrong with it.
+//! Model files of Hardpoint: from text to a checked [`Model`], or to all diagnostics.
 //!
 //! ```
 //! let text = r#"
@@ -16,20 +16,19 @@
 //! assert_eq!(file.model.times.len(), 101);
 //! ```
 //!
-//! The ideas:
+//! Properties of the reader:
 //!
-//! * The format is TOML, described in `docs/file-format.md`; [`schema`] is its JSON Schema for editors.
-//! * Units are named once per file. [`Units`] converts, here and at every other edge; inside all is SI.
-//! * This crate knows keys, types and units. Whether the mechanism makes sense is checked by
-//! [`Model::from_draft`], whose faults are shown here at the place of the text that they are about. * Nothing stops at
-//! the first problem: [`Diagnostics`] holds all that were found. Only a file that is not TOML is not looked at further.
-//! * No text makes this crate panic, and none keeps it busy for long: names, tables and lists have limits far above any
-//! mechanism. * A model may include others in its folder, and be made of one side only. Both are put together of the
-//! texts' values before these are read (`read/include.rs`, `read/mirror.rs`), so that nothing behind knows of it but
-//! what writes numbers back. * A driver's table may lie in a CSV file in the model's folder, and a body's shape in a
-//! file of triangles; that is all that is read besides model files.
-//!
-//! What is not here: coordinates of hardpoints in expressions that no change of the design moves.
+//! - The format is TOML, described in `docs/file-format.md`; [`schema`] returns its JSON Schema for editors.
+//! - Units are named once per file. [`Units`] converts at the edges; inside all numbers are SI.
+//! - This crate knows keys, types and units. [`Model::from_draft`] checks the mechanism; its errors are reported at the
+//!   place in the text that they are about.
+//! - All problems are reported at once, as [`Diagnostics`]. Only a file that is not TOML is not read further.
+//! - No text makes this crate panic or keeps it busy for long: names, tables and lists have limits far above any
+//!   mechanism.
+//! - A model may include other files of its folder and mirror one side to the other. Both are resolved on the values of
+//!   the texts (`read/include.rs`, `read/mirror.rs`) before these are read.
+//! - Tables of laws may be CSV files, and shapes of bodies files of triangles, in the model's folder. No other files are
+//!   read.
 
 pub mod csv_table;
 mod diagnostic;

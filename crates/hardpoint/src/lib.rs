@@ -1,13 +1,14 @@
 //! **Exact kinematics and design sensitivities of driven mechanisms.**
 //!
-//! Hardpoint solves mechanisms that prescribed motions drive (suspensions, linkages, parallel robots) for
-//! position, velocity and acceleration, and differentiates all of them exactly by the *design*: where the
-//! joints sit and how their axes point. No design is re-solved for that, and nothing is re-assembled.
+//! Hardpoint solves mechanisms that are driven by prescribed motions (suspensions, linkages, parallel robots) for
+//! position, velocity and acceleration, and differentiates all of them exactly with respect to the *design*: the
+//! positions of the joints and the directions of their axes. No changed design is solved for that, and nothing is
+//! re-assembled.
 //!
 //! # Example
 //!
-//! Does the foot of an inclined slide move faster if its pivot goes up? A crank of 3 and a rod of 5 push a slider
-//! along x; at the design configuration the crank is upright, so the slider is at x = 4.
+//! Does the slider of an inclined crank drive move faster if the pivot of its crank moves up? A crank of length 3 and a
+//! rod of length 5 drive a slider along x. In the design configuration the crank is upright and the slider at x = 4.
 //!
 //! ```
 //! use hardpoint::{Analysis, draft::Draft, law::Law, model::Model};
@@ -26,34 +27,232 @@
 //!     .variable_moving("O up", "O", [0.0, 1.0, 0.0])
 //!     .measure("stroke", "slide")
 //!     .times([0.0, 0.1]);
-//! let model = Model::from_draft(&draft).expect("a sound model");
+//! let model = Model::from_draft(&draft).expect("a consistent model");
 //! let solution = Analysis::new(&model).expect("one driver for one freedom").run();
 //!
 //! let stroke = solution.measured.index("stroke").unwrap();
 //! let [_, speed, _] = solution.measured.value(0, stroke);
-//! assert!((speed - 3.0).abs() < 1e-12); // the pin moves along x at 3 rad/s * 1, the slider with it
+//! assert!((speed - 3.0).abs() < 1e-12); // the pin moves along x at 3 m/s, and the slider with it
 //!
 //! let up = model.variable("O up").unwrap();
 //! let [_, d_speed, _] = solution.measured.d(0, up, stroke);
-//! assert!((d_speed + 1.0).abs() < 1e-12); // a crank shorter by 1 per unit
+//! assert!((d_speed + 1.0).abs() < 1e-12); // the crank is shorter by 1 per unit
 //! ```
 //!
-//! # The few ideas it rests on
+//! # Primary types
 //!
-//! - A **model** is checked once and never changes; a changed design is a [`design::Geometry`] made from it.
-//! - Columns are twists, rows are wrenches, and a design variable is a twist too (`docs/theory.md`). Joints are
-//!   data: a chain of freedoms, and a list of elementary constraints ([`joint::JointType`]).
-//! - A [`topology::Topology`] says once how the mechanism is solved; position, velocity, acceleration and every
-//!   sensitivity then share one factorisation per step.
-//! - What the numerics find (a limit, a dead point, a change that cannot be followed) is a value with figures,
-//!   not an error: [`motion::Stop`], [`sensitivity::Admissibility`].
+//! - [`draft::Draft`] is a mechanism as written, with names for references. [`model::Model::from_draft`] checks it.
+//! - [`model::Model`] is the checked mechanism. It is immutable; a changed design is a vector with one value per
+//!   [`model::DesignVariable`].
+//! - [`Analysis`] is a model with its plan of solution ([`topology::Topology`]), ready to be run.
+//! - [`Run`] is a request, and [`Solution`] its result: [`motion::Motion`], [`sensitivity::Sensitivities`] and
+//!   [`measure::MeasureResults`].
+//! - [`study`] has the analyses that need many runs: optimisation, tolerances, calibration, sweeps, verification.
 //!
-//! SI units and radians inside and in this interface. The house from file to report is in `ARCHITECTURE.md`.
+//! Numerical outcomes are values with figures, not errors: [`motion::Stop`] describes why a run ended early,
+//! [`sensitivity::Admissibility`] why a mechanism cannot follow a design variable. Errors are for input that has no
+//! meaning: [`draft::DraftError`], [`topology::TopologyError`], [`law::LawError`].
 //!
-//! # What is not supported
+//! # Conventions
 //!
-//! Forces, masses and friction: motion here follows from drivers alone. Flexible bodies. Contacts that open and close.
-//! Joint types beyond [`joint::ALL`]. The shape of a curve as a design variable.
+//! SI units and radians; global components unless stated otherwise. Design variables are zero in the nominal design.
+//! Joint angles and displacements are those of body j relative to body i and zero in the design configuration; see
+//! [`joint`]. Derivatives are total derivatives at fixed time. Functions do not panic on any input unless their
+//! documentation has a section *Panics*.
+//!
+//! # Not supported
+//!
+//! - Dynamics: the motion follows from the drivers. Loads are computed along it ([`study::Loads`]), and small
+//!   deflections about it (compliance).
+//! - Flexible bodies.
+//! - Contacts that open and close.
+//! - Joint types beyond [`joint::ALL`].
+//! - The shape of a cam or slot as a design variable.
+//!
+//! # Cookbook
+//!
+//! The examples share this pendulum, which turns about z by one radian per second:
+//!
+//! ```
+//! # use hardpoint::{draft::Draft, law::Law};
+//! fn pendulum() -> Draft {
+//!     Draft::new("pendulum")
+//!         .hardpoint("O", [0.0, 0.0, 0.0])
+//!         .hardpoint("tip", [2.0, 0.0, 0.0])
+//!         .bodies(["arm"])
+//!         .revolute("O", ["ground", "arm"], "O", [0.0, 0.0, 1.0])
+//!         .driver("motor", "O", Law::parse("t").unwrap())
+//!         .point("tip", "arm", "tip")
+//!         .variable_moving("longer", "tip", [1.0, 0.0, 0.0])
+//!         .times([0.0, 0.5])
+//! }
+//! # let _ = pendulum();
+//! ```
+//!
+//! ## Mass: torque of a driver
+//!
+//! ```
+//! # use hardpoint::{Analysis, draft::Draft, law::Law, model::Model};
+//! # fn pendulum() -> Draft {
+//! #     Draft::new("pendulum").hardpoint("O", [0.0; 3]).hardpoint("tip", [2.0, 0.0, 0.0]).bodies(["arm"])
+//! #         .revolute("O", ["ground", "arm"], "O", [0.0, 0.0, 1.0]).driver("motor", "O", Law::parse("t").unwrap())
+//! #         .point("tip", "arm", "tip").variable_moving("longer", "tip", [1.0, 0.0, 0.0]).times([0.0, 0.5])
+//! # }
+//! let draft = pendulum().point_mass("bob", "arm", "tip", 3.0).gravity([0.0, -10.0, 0.0]);
+//! let model = Model::from_draft(&draft).unwrap();
+//! let loads = Analysis::new(&model).unwrap().loads(&[]);
+//! // 3 kg * 10 m/s^2 * 2 m, with the arm horizontal
+//! assert!((loads.drivers_at(0)[0].force - 60.0).abs() < 1e-12);
+//! ```
+//!
+//! ## Force: reaction of a joint
+//!
+//! ```
+//! # use hardpoint::{Analysis, draft::Draft, law::Law, model::Model};
+//! # fn pendulum() -> Draft {
+//! #     Draft::new("pendulum").hardpoint("O", [0.0; 3]).hardpoint("tip", [2.0, 0.0, 0.0]).bodies(["arm"])
+//! #         .revolute("O", ["ground", "arm"], "O", [0.0, 0.0, 1.0]).driver("motor", "O", Law::parse("t").unwrap())
+//! #         .point("tip", "arm", "tip").variable_moving("longer", "tip", [1.0, 0.0, 0.0]).times([0.0, 0.5])
+//! # }
+//! let draft = pendulum().force("pull", "arm", "tip", 7.0, [0.0, 1.0, 0.0]);
+//! let model = Model::from_draft(&draft).unwrap();
+//! let loads = Analysis::new(&model).unwrap().loads(&[]);
+//! assert!((loads.joints_at(0)[0].force.y + 7.0).abs() < 1e-12); // the joint holds the arm
+//! assert!((loads.drivers_at(0)[0].force + 14.0).abs() < 1e-12); // the motor resists 7 N * 2 m
+//! ```
+//!
+//! ## Law: a smooth step instead of an expression
+//!
+//! ```
+//! # use hardpoint::law::{Law, SmoothStep};
+//! let law = Law::smooth_step(SmoothStep { from: 0.0, to: 1.0, start: 0.0, end: 2.0, degree: 5 }).unwrap();
+//! let [value, speed, ..] = law.at(1.0).derivatives();
+//! assert!((law.at(1.0).value() - 0.5).abs() < 1e-12);
+//! # let _ = (value, speed);
+//! ```
+//!
+//! ## Sensitivity of a point's position
+//!
+//! ```
+//! # use hardpoint::{Analysis, draft::Draft, law::Law, model::Model};
+//! # fn pendulum() -> Draft {
+//! #     Draft::new("pendulum").hardpoint("O", [0.0; 3]).hardpoint("tip", [2.0, 0.0, 0.0]).bodies(["arm"])
+//! #         .revolute("O", ["ground", "arm"], "O", [0.0, 0.0, 1.0]).driver("motor", "O", Law::parse("t").unwrap())
+//! #         .point("tip", "arm", "tip").variable_moving("longer", "tip", [1.0, 0.0, 0.0]).times([0.0, 0.5])
+//! # }
+//! let model = Model::from_draft(&pendulum()).unwrap();
+//! let solution = Analysis::new(&model).unwrap().run();
+//! let (y, longer) = (solution.measured.index("tip.y").unwrap(), model.variable("longer").unwrap());
+//! let [d_value, d_rate, _] = solution.measured.d(1, longer, y);
+//! assert!((d_value - 0.5_f64.sin()).abs() < 1e-12); // y = (2 + b) sin t
+//! assert!((d_rate - 0.5_f64.cos()).abs() < 1e-12);
+//! ```
+//!
+//! ## Gradients of few outputs by many variables
+//!
+//! ```
+//! # use hardpoint::{Analysis, draft::Draft, law::Law, model::Model, study::GradientMethod};
+//! # fn pendulum() -> Draft {
+//! #     Draft::new("pendulum").hardpoint("O", [0.0; 3]).hardpoint("tip", [2.0, 0.0, 0.0]).bodies(["arm"])
+//! #         .revolute("O", ["ground", "arm"], "O", [0.0, 0.0, 1.0]).driver("motor", "O", Law::parse("t").unwrap())
+//! #         .point("tip", "arm", "tip").variable_moving("longer", "tip", [1.0, 0.0, 0.0]).times([0.0, 0.5])
+//! # }
+//! let model = Model::from_draft(&pendulum()).unwrap();
+//! let analysis = Analysis::new(&model).unwrap();
+//! let gradients = analysis.gradients(&[], &[1], GradientMethod::Adjoint); // output 1 is tip.y
+//! assert!((gradients.at(1, 0)[0][0] - 0.5_f64.sin()).abs() < 1e-12);
+//! ```
+//!
+//! ## Second derivatives along a direction
+//!
+//! ```
+//! # use hardpoint::{Analysis, draft::Draft, law::Law, model::Model};
+//! # fn pendulum() -> Draft {
+//! #     Draft::new("pendulum").hardpoint("O", [0.0; 3]).hardpoint("tip", [2.0, 0.0, 0.0]).bodies(["arm"])
+//! #         .revolute("O", ["ground", "arm"], "O", [0.0, 0.0, 1.0]).driver("motor", "O", Law::parse("t").unwrap())
+//! #         .point("tip", "arm", "tip").variable_moving("longer", "tip", [1.0, 0.0, 0.0]).times([0.0, 0.5])
+//! # }
+//! let model = Model::from_draft(&pendulum()).unwrap();
+//! let second = Analysis::new(&model).unwrap().second(&[0.0], &[vec![1.0]], &[[0, 0]]);
+//! assert!(second.value(1, 0, 1).abs() < 1e-12); // tip.y is linear in the length
+//! ```
+//!
+//! ## Many designs in one call
+//!
+//! ```
+//! # use hardpoint::{Analysis, Run, draft::Draft, law::Law, model::Model};
+//! # fn pendulum() -> Draft {
+//! #     Draft::new("pendulum").hardpoint("O", [0.0; 3]).hardpoint("tip", [2.0, 0.0, 0.0]).bodies(["arm"])
+//! #         .revolute("O", ["ground", "arm"], "O", [0.0, 0.0, 1.0]).driver("motor", "O", Law::parse("t").unwrap())
+//! #         .point("tip", "arm", "tip").variable_moving("longer", "tip", [1.0, 0.0, 0.0]).times([0.0, 0.5])
+//! # }
+//! let model = Model::from_draft(&pendulum()).unwrap();
+//! let designs: Vec<Vec<f64>> = (0..10).map(|k| vec![0.1 * f64::from(k)]).collect();
+//! let mut heights = vec![0.0; designs.len()];
+//! Analysis::new(&model).unwrap().solve_designs(Run::new().without_sensitivities(), &designs, |k, solution| {
+//!     heights[k] = solution.measured.value(1, 1)[0];
+//! });
+//! assert!((heights[9] - 2.9 * 0.5_f64.sin()).abs() < 1e-12);
+//! ```
+//!
+//! ## Optimisation: a length for a target
+//!
+//! ```
+//! # use std::{num::NonZero, ops::ControlFlow};
+//! # use hardpoint::{draft::Draft, law::Law};
+//! use hardpoint::draft::{GoalDraft, MetricDraft, OptimizationSettingsDraft};
+//! use hardpoint::model::{Model, Reduction};
+//! use hardpoint::study::{Motions, OptimizationRequest, optimize};
+//! use hardpoint::topology::Formulation;
+//! # fn pendulum() -> Draft {
+//! #     Draft::new("pendulum").hardpoint("O", [0.0; 3]).hardpoint("tip", [2.0, 0.0, 0.0]).bodies(["arm"])
+//! #         .revolute("O", ["ground", "arm"], "O", [0.0, 0.0, 1.0]).driver("motor", "O", Law::parse("t").unwrap())
+//! #         .point("tip", "arm", "tip").variable_moving("longer", "tip", [1.0, 0.0, 0.0]).times([0.0, 0.5])
+//! # }
+//!
+//! let mut draft = pendulum();
+//! draft.design[0].bounds = Some([-1.0, 1.0]);
+//! draft.metrics.push(MetricDraft {
+//!     name: "height".into(),
+//!     of: "tip.y".into(),
+//!     over: None,
+//!     take: Reduction::Value(0.5),
+//!     window: None,
+//!     case: None,
+//!     per_metre: 1.0,
+//!     per_radian: 1.0,
+//! });
+//! let goal = GoalDraft {
+//!     name: "height".into(),
+//!     metric: "height".into(),
+//!     weight: 1.0,
+//!     target: Some(1.2),
+//!     per_metre: 1.0,
+//!     per_radian: 1.0,
+//! };
+//! draft.optimization = Some(OptimizationSettingsDraft {
+//!     variables: None,
+//!     goals: vec![goal],
+//!     limits: vec![],
+//!     margin: None,
+//!     starts: 1,
+//!     iterations: 50,
+//! });
+//! let model = Model::from_draft(&draft).unwrap();
+//! let models = model.motions();
+//! let motions = Motions::of(&models, Formulation::Relative).unwrap_or_else(|_| panic!("it can be driven"));
+//! let request = OptimizationRequest {
+//!     progress: &mut |_, _| ControlFlow::Continue(()),
+//!     more: &|| true,
+//!     threads: NonZero::<usize>::MIN,
+//!     first: 0,
+//! };
+//! let result = optimize(&model, &motions, model.optimization.as_ref().unwrap(), request);
+//! let best = result.searches[0].found.as_ref().unwrap();
+//! assert!((best.design[0] - (1.2 / 0.5_f64.sin() - 2.0)).abs() < 1e-6);
+//! ```
+//!
+//! Model files are read by the crate `hardpoint-file`.
 
 mod blocks;
 pub mod constraint;

@@ -1,10 +1,11 @@
-//! Drafts written in code: constructors, and a chain of words for what most mechanisms are made of.
+//! Drafts written in code: constructors, and a chain of builder methods for the most common entries.
 //!
-//! Whatever has no word here is a field: `draft.wheels.push(...)`.
+//! All other entries are fields: `draft.wheels.push(...)`.
 
 use crate::draft::{
-    BodyDraft, ChangeDraft, CurveDraft, DirectionDraft, Draft, DrivenDraft, DriverDraft, FrameDraft,
-    HardpointDraft, JointDraft, LocationDraft, MeasureDraft, MeasureKindDraft, PointDraft, VariableDraft,
+    BodyDraft, ChangeDraft, CurveDraft, DirectionDraft, Draft, DrivenDraft, DriverDraft, ElementDraft,
+    ElementKindDraft, FrameDraft, HardpointDraft, JointDraft, LocationDraft, MeasureDraft, MeasureKindDraft,
+    NumberDraft, PointDraft, PointRef, VariableDraft,
 };
 use crate::law::Law;
 use crate::space::Vec3;
@@ -121,6 +122,81 @@ impl Draft {
     /// Adds a measure. A joint's name represents its only coordinate, `["joint", "coordinate"]` for one of several.
     pub fn measure(mut self, name: impl Into<String>, kind: impl Into<MeasureKindDraft>) -> Self {
         self.measures.push(MeasureDraft::new(name, kind));
+        self
+    }
+
+    /// Adds a point mass, kg, at a place of a body.
+    pub fn point_mass(
+        mut self,
+        name: impl Into<String>,
+        body: impl Into<String>,
+        at: impl Into<LocationDraft>,
+        mass: impl Into<NumberDraft>,
+    ) -> Self {
+        let kind = ElementKindDraft::Rigid {
+            centre: PointRef::On { body: body.into(), at: at.into() },
+            mass: mass.into(),
+            ixx: None,
+            iyy: None,
+            izz: None,
+            ixy: None,
+            iyz: None,
+            izx: None,
+            about: None,
+        };
+        self.masses.push(ElementDraft::new(name, kind));
+        self
+    }
+
+    /// Sets the acceleration of gravity, m/s^2, global.
+    pub fn gravity(mut self, acceleration: impl Into<Vec3>) -> Self {
+        self.gravity = acceleration.into();
+        self
+    }
+
+    /// Adds a linear spring between places on two bodies, with its stiffness in N/m; it has no force in the design
+    /// configuration.
+    pub fn spring(
+        mut self,
+        name: impl Into<String>,
+        bodies: [impl Into<String>; 2],
+        between: [impl Into<LocationDraft>; 2],
+        stiffness: impl Into<NumberDraft>,
+    ) -> Self {
+        let ([i, j], [from, to]) = (bodies, between);
+        let kind = ElementKindDraft::Spring {
+            from: PointRef::On { body: i.into(), at: from.into() },
+            to: PointRef::On { body: j.into(), at: to.into() },
+            stiffness: Some(stiffness.into()),
+            cubic: None,
+            compression: None,
+            extension: None,
+            scale: None,
+            free_length: None,
+            preload: None,
+            damping: None,
+        };
+        self.forces.push(ElementDraft::new(name, kind));
+        self
+    }
+
+    /// Adds a constant force at a place of a body: N, along a global direction of any length.
+    pub fn force(
+        mut self,
+        name: impl Into<String>,
+        body: impl Into<String>,
+        at: impl Into<LocationDraft>,
+        force: impl Into<NumberDraft>,
+        along: impl Into<Vec3>,
+    ) -> Self {
+        let kind = ElementKindDraft::PointForce {
+            at: PointRef::On { body: body.into(), at: at.into() },
+            force: force.into(),
+            along: along.into(),
+            axes: None,
+            law: None,
+        };
+        self.forces.push(ElementDraft::new(name, kind));
         self
     }
 

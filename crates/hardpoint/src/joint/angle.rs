@@ -1,4 +1,6 @@
-//! Angle: the angle between an axis of body i and an axis of body j stays.
+//! Angle: the angle between an axis of body i and an axis of body j is constant.
+//!
+//! It has no coordinate.
 
 use crate::constraint::Row;
 

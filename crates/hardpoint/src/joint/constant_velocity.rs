@@ -1,4 +1,6 @@
-//! Constant velocity: two shafts that meet in a point and turn alike, whatever the angle between them.
+//! Constant velocity: two shafts that meet in a point and rotate at the same speed, at any angle between them.
+//!
+//! It has no coordinate.
 
 use crate::constraint::{COINCIDE, Row};
 

@@ -1,4 +1,6 @@
-//! Course: where an axis of body j points, seen along an axis of body i.
+//! Course: direction of an axis of body j, seen along an axis of body i.
+//!
+//! Coordinate: angle of j relative to i, about z_i, right-handed, rad.
 
 use crate::constraint::Row;
 use crate::joint::Quantity;

@@ -1,4 +1,6 @@
-//! Cylindrical: a shaft that slides and turns.
+//! Cylindrical: a shaft that slides and rotates.
+//!
+//! Coordinates: displacement of j relative to i, along z_i, m; angle about z_i, right-handed, rad.
 
 use crate::constraint::{ON_LINE, PARALLEL_Z};
 

@@ -1,4 +1,6 @@
 //! Distance: a rod of constant length between two ball ends.
+//!
+//! Coordinate: length from P_i to P_j, m.
 
 use crate::constraint::Row;
 

@@ -1,4 +1,6 @@
 //! Dot-1: an axis of body i perpendicular to an axis of body j.
+//!
+//! It has no coordinate.
 
 use crate::constraint::Row;
 

@@ -1,4 +1,6 @@
 //! Dot-2: the line between two points stays perpendicular to an axis.
+//!
+//! It has no coordinate.
 
 use crate::constraint::Row;
 

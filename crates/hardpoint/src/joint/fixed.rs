@@ -1,4 +1,6 @@
-//! Fixed: body j is part of body i.
+//! Fixed: body j is rigidly attached to body i.
+//!
+//! It has no coordinate.
 
 use crate::constraint::{COINCIDE, PARALLEL_FRAMES, Row};
 

@@ -1,4 +1,6 @@
 //! In-line: a point on a line.
+//!
+//! Coordinate: displacement of j relative to i, along z_i, m.
 
 use crate::constraint::ON_LINE;
 

@@ -1,4 +1,6 @@
 //! In-plane: a point on a plane.
+//!
+//! Coordinates: displacements of j relative to i, along x_i and y_i, m.
 
 use crate::constraint::Row;
 

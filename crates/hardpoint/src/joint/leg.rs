@@ -1,4 +1,6 @@
-//! Leg: a rod whose length a driver prescribes (an actuator, a spring), or only a measure reads.
+//! Leg: an actuator or spring whose length a driver prescribes or a measure reads.
+//!
+//! Coordinate: length from P_i to P_j, m.
 
 use super::{JointType, LENGTH, Need, VectorKind};
 

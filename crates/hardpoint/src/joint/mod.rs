@@ -1,8 +1,27 @@
 //! The joint types: one file each, all of the same shape.
 //!
-//! A joint is data. As a *tree* joint it is a chain of [`Freedom`]s that carries body j from body i;
-//! as a *cut* joint it is a list of elementary constraints ([`Row`]) between its two markers. The
-//! engine knows freedoms and rows, never joints, so a new joint is one file, named here.
+//! A joint is data. As a *tree* joint it is a chain of [`Freedom`]s that places body j relative to body i; as a *cut*
+//! joint it is a list of elementary constraints ([`Row`]) between its two markers. The engine knows freedoms and rows,
+//! not joints: a new joint is one file, named here.
+//!
+//! # Frames, signs and units
+//!
+//! A joint connects body i, the first of its `bodies`, with body j, the second. It has a marker on each: an origin P
+//! and right-handed axes x, y, z fixed in the body. In the design configuration both origins are at the joint's
+//! hardpoint (or each at its own, for joints with two), z points along `axis`, and x along `axis2` if the type has one.
+//! Where only z matters, x is any perpendicular direction, the same for both markers.
+//!
+//! ```text
+//!          z_i   z_j                       d = P_j - P_i, from marker i to marker j
+//!           |   /
+//!           |  /    angle of j relative to i: about z_i, positive by the right-hand rule,
+//!     i ----P_i        from x_i to x_j, counted in whole turns along the motion
+//!            \ d
+//!             P_j ---- j    displacement of j relative to i: d . z_i, positive along z_i
+//! ```
+//!
+//! Angles are in rad and displacements in m. All coordinates are zero in the design configuration, except for lengths,
+//! which are whole distances. Reactions are the force and the moment that the joint applies to body j.
 
 mod angle;
 mod constant_velocity;

@@ -1,4 +1,6 @@
-//! Orientation: body j does not turn relative to body i, but moves as it likes.
+//! Orientation: body j has the orientation of body i and translates freely.
+//!
+//! It has no coordinate.
 
 use crate::constraint::PARALLEL_FRAMES;
 

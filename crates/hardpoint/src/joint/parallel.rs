@@ -1,4 +1,6 @@
-//! Parallel axes: body j turns about an axis of fixed direction, but moves as it likes.
+//! Parallel axes: body j rotates about an axis of fixed direction and translates freely.
+//!
+//! Coordinate: angle of j relative to i, about z_i, right-handed, rad.
 
 use crate::constraint::PARALLEL_Z;
 

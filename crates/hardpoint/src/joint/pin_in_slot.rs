@@ -1,4 +1,6 @@
-//! Pin in slot: a pin that slides along a straight slot and turns in it.
+//! Pin in slot: a pin that slides along a straight slot and rotates in it.
+//!
+//! Coordinates: displacement of j relative to i, along x_i, m; angle about z_i, right-handed, rad.
 
 use crate::constraint::{PARALLEL_Z, Row};
 

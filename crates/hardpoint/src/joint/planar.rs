@@ -1,4 +1,6 @@
-//! Planar: body j slides and turns on a plane.
+//! Planar: body j slides and rotates on a plane.
+//!
+//! Coordinates: angle of j relative to i, about z_i, right-handed, rad; displacements along x_i and y_i, m.
 
 use crate::constraint::{PARALLEL_Z, Row};
 

@@ -1,4 +1,6 @@
 //! Point on curve: a pin in a slot, or a roller on a cam.
+//!
+//! It has no coordinate.
 
 use crate::constraint::Row;
 

@@ -1,4 +1,6 @@
 //! Revolute: a hinge.
+//!
+//! Coordinate: angle of j relative to i, about z_i, right-handed, rad.
 
 use crate::constraint::{COINCIDE, PARALLEL_Z};
 

@@ -1,4 +1,6 @@
-//! Revolute-spherical rod: a massless link on a hinge of body i, with a ball on body j.
+//! Revolute-spherical rod: a massless link on a hinge of body i, with a ball joint on body j.
+//!
+//! Coordinate: length from P_i to P_j, m.
 
 use crate::constraint::Row;
 

@@ -1,4 +1,6 @@
-//! Screw: a turn that advances along its own axis.
+//! Screw: a rotation that advances along its own axis.
+//!
+//! Coordinates: angle of j relative to i, about z_i, right-handed, rad; displacement along z_i, m.
 
 use crate::constraint::{ON_LINE, PARALLEL_Z};
 

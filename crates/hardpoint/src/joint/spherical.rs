@@ -1,4 +1,6 @@
 //! Spherical: a ball joint.
+//!
+//! It has no coordinate.
 
 use crate::constraint::COINCIDE;
 

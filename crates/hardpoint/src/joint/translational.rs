@@ -1,4 +1,6 @@
-//! Translational: a slide that cannot turn.
+//! Translational: a slide without rotation.
+//!
+//! Coordinate: displacement of j relative to i, along z_i, m.
 
 use crate::constraint::{ON_LINE, PARALLEL_FRAMES};
 

@@ -1,4 +1,6 @@
-//! Travel: how far a point of body j has gone along an axis of body i.
+//! Travel: displacement of a point of body j along an axis of body i.
+//!
+//! Coordinate: displacement of j relative to i, along z_i, m.
 
 use crate::constraint::Row;
 use crate::joint::Quantity;

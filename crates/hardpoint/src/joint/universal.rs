@@ -1,4 +1,6 @@
-//! Universal: a cross between two forks.
+//! Universal: a cross between two yokes.
+//!
+//! Coordinates: angle about the pin of body i and angle2 about the pin of body j, right-handed, rad.
 
 use crate::constraint::{COINCIDE, Row};
 
