@@ -25,6 +25,10 @@ class Diagnostic:
     file: str | None
     line: int | None
     column: int | None
+    length: int | None
+    """Number of underlined characters."""
+    label: str | None
+    """Text at the underlined place."""
     notes: tuple[str, ...]
     help: str | None
     """What to do about it."""
@@ -39,7 +43,7 @@ class Diagnostic:
 
 
 def _plain(message: str) -> dict:
-    nothing = dict.fromkeys(("code", "file", "line", "column", "help"))
+    nothing = dict.fromkeys(("code", "file", "line", "column", "length", "label", "help"))
     return {**nothing, "severity": "error", "message": message, "notes": (), "rendered": f"error: {message}"}
 
 

@@ -32,7 +32,7 @@ impl Failure {
     /// Diagnostics of a reader of files.
     pub fn of_text(found: &Diagnostics) -> Self {
         let rendered = found.render(false);
-        let mut list: Vec<Value> = found.list().iter().map(|d| diagnostic(d, "", String::new())).collect();
+        let mut list: Vec<Value> = found.list().iter().map(|d| diagnostic(d, String::new())).collect();
         // All of them are rendered together, with their places in the text.
         if let Some(first) = list.first_mut() {
             first["rendered"] = rendered.into();
@@ -49,36 +49,26 @@ impl Failure {
     pub fn of_study(message: impl Into<String>) -> Self {
         let message = message.into();
         let rendered = format!("error: {message}");
-        Self::Found(
-            Kind::Study,
-            vec![json!({ "severity": "error", "code": null, "message": message, "file": null, "line": null,
-            "column": null, "notes": [], "help": null, "rendered": rendered })],
-        )
+        Self::Found(Kind::Study, vec![plain(&message, &rendered)])
     }
 }
 
-/// A diagnostic about a model as the package reads it.
-pub(crate) fn told(file: &ModelFile, d: &Diagnostic) -> Value {
-    diagnostic(d, file.text(), file.render(d, false))
+/// An error without a place in a file, in the form of a diagnostic.
+fn plain(message: &str, rendered: &str) -> Value {
+    json!({ "severity": "error", "code": null, "message": message, "file": null, "line": null, "column": null,
+        "length": null, "element": null, "label": null, "notes": [], "help": null, "rendered": rendered })
 }
 
-/// A diagnostic of a text; its element is the entry that it points at.
-fn diagnostic(d: &Diagnostic, text: &str, rendered: String) -> Value {
-    let at = d.span.clone().and_then(|span| text.get(span));
-    // The name of `[joints.hinge]` is its last part.
-    let element = at.map(|at| at.rsplit('.').next().unwrap_or(at).trim_matches('"'));
-    json!({
-        "severity": format!("{:?}", d.severity).to_lowercase(),
-        "code": d.code,
-        "message": d.message,
-        "element": element.filter(|name| !name.contains(['\n', '='])),
-        "file": d.file,
-        "line": d.line,
-        "column": d.column,
-        "notes": d.notes,
-        "help": d.help,
-        "rendered": rendered,
-    })
+/// JSON of a diagnostic of a model, with its rendered text.
+pub(crate) fn told(file: &ModelFile, d: &Diagnostic) -> Value {
+    diagnostic(d, file.render(d, false))
+}
+
+/// JSON of a diagnostic, with its rendered text.
+fn diagnostic(d: &Diagnostic, rendered: String) -> Value {
+    let mut json = serde_json::to_value(d).expect("a diagnostic is plain data");
+    json["rendered"] = Value::String(rendered);
+    json
 }
 
 impl From<PyErr> for Failure {
@@ -91,11 +81,9 @@ impl From<Failure> for PyErr {
     fn from(failure: Failure) -> Self {
         let (class, text) = match failure {
             Failure::Raised(error) => return error,
-            Failure::Misunderstood(message) => (
-                "UsageError",
-                json!([{ "severity": "error", "code": null, "message": message,
-                "file": null, "line": null, "column": null, "notes": [], "help": null, "rendered": format!("error: {message}") }]),
-            ),
+            Failure::Misunderstood(message) => {
+                ("UsageError", json!([plain(&message, &format!("error: {message}"))]))
+            }
             Failure::Found(kind, list) => (
                 match kind {
                     Kind::Model => "ModelError",

@@ -560,7 +560,7 @@ impl Session {
         let diagnostics = || {
             json!([{
                 "severity": "error", "code": code, "message": message, "file": file,
-                "line": null, "column": null, "label": null, "notes": [note], "help": help,
+                "line": null, "column": null, "length": null, "element": null, "label": null, "notes": [note], "help": help,
             }])
         };
         let text = || text::error(code, message, note, help);

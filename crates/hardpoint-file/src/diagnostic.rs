@@ -26,9 +26,10 @@ pub enum Severity {
     Note,
 }
 
-/// One thing to tell about a model file.
+/// One finding about a model file.
 ///
-/// Serialised for `--json` as `{severity, code, message, file, line, column, label, notes, help}`.
+/// Its JSON form is the same for the command (`--json`), the page and Python: `{severity, code, message, file, line,
+/// column, length, element, label, notes, help}`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Diagnostic {
     /// Severity.
@@ -43,6 +44,10 @@ pub struct Diagnostic {
     pub line: Option<usize>,
     /// Column of the line in characters, from 1.
     pub column: Option<usize>,
+    /// Number of underlined characters.
+    pub length: Option<usize>,
+    /// Name of the entry that is underlined: the last part of a key, or a name in quotes.
+    pub element: Option<String>,
     /// Range of bytes of the text that is underlined.
     #[serde(skip)]
     pub span: Option<Range<usize>>,
@@ -203,6 +208,9 @@ impl Source {
             start..self.boundary(s.end).max(start)
         });
         let (line, column) = span.as_ref().map(|s| self.line_column(s.start)).unzip();
+        let underlined = span.as_ref().map(|s| &self.text[s.clone()]);
+        // The name of `[joints.hinge]` is its last part.
+        let name = underlined.map(|text| text.rsplit('.').next().unwrap_or(text).trim_matches('"'));
         Diagnostic {
             severity,
             code,
@@ -210,6 +218,8 @@ impl Source {
             file: span.as_ref().map_or(&*self.file, |s| self.file_at(s.start).0).to_owned(),
             line,
             column,
+            length: underlined.map(|text| text.chars().count()),
+            element: name.filter(|name| !name.contains(['\n', '='])).map(str::to_owned),
             span,
             label: None,
             notes: Vec::new(),

@@ -225,12 +225,16 @@ pub struct DiagnosticMessage {
     pub code: String,
     /// The headline, enough alone.
     pub message: String,
+    /// Name of the file; none for the text that the page shows.
+    pub file: Option<String>,
     /// Line of the text, from 1; none where the text as a whole is meant.
     pub line: Option<usize>,
     /// Column of the line in characters, from 1.
     pub column: Option<usize>,
-    /// Number of characters are meant.
+    /// Number of underlined characters.
     pub length: Option<usize>,
+    /// Name of the entry that is underlined.
+    pub element: Option<String>,
     /// Text at that place.
     pub label: Option<String>,
     /// Facts.
@@ -242,9 +246,8 @@ pub struct DiagnosticMessage {
 impl DiagnosticMessage {
     /// A diagnostic of this text.
     pub(crate) fn of(text: &str, d: &Diagnostic) -> Self {
-        let length = d.span.as_ref().and_then(|span| text.get(span.clone())).map(|part| part.chars().count());
-        // What is in an included file has no place in the text that the page shows.
-        let is_here = d.span.is_none() || length.is_some();
+        // An included file has no place in the text that the page shows.
+        let is_here = d.span.as_ref().is_none_or(|span| text.get(span.clone()).is_some());
         let message = match (is_here, d.line) {
             (false, Some(line)) => format!("{}, line {line}: {}", d.file, d.message),
             _ => d.message.clone(),
@@ -253,9 +256,11 @@ impl DiagnosticMessage {
             severity: format!("{:?}", d.severity).to_lowercase(),
             code: d.code.into(),
             message,
+            file: Some(d.file.clone()).filter(|_| !is_here),
             line: d.line.filter(|_| is_here),
             column: d.column.filter(|_| is_here),
-            length,
+            length: d.length.filter(|_| is_here),
+            element: d.element.clone(),
             label: d.label.clone(),
             notes: d.notes.clone(),
             help: d.help.clone(),
@@ -268,9 +273,11 @@ impl DiagnosticMessage {
             severity: "error".into(),
             code: code.into(),
             message,
+            file: None,
             line: None,
             column: None,
             length: None,
+            element: None,
             label: None,
             notes: Vec::new(),
             help: Some(help.into()),

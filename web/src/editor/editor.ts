@@ -218,7 +218,7 @@ function lineBreakOf(text: string): string {
 /** Diagnostic for a failure of the check itself. */
 function failure(error: unknown): Diagnostic {
   const message = `the text could not be checked: ${error instanceof Error ? error.message : String(error)}`
-  return { severity: 'error', code: '', message, line: null, column: null, length: null, label: null, notes: [], help: null }
+  return { severity: 'error', code: '', message, file: null, line: null, column: null, length: null, element: null, label: null, notes: [], help: null }
 }
 
 /** Longer texts are read through for a completion only when it is requested, characters. */

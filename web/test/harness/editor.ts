@@ -26,7 +26,7 @@ async function check(text: string): Promise<Diagnostic[]> {
   const found: Diagnostic[] = []
   const bodies = ['ground', ...[...text.matchAll(/^(\w+) = \{ frame/gm)].map(([, name]) => name)]
   text.split(/\r?\n/).forEach((line, k) => {
-    const at = { line: k + 1, label: null, severity: 'error' as const }
+    const at = { line: k + 1, file: null, element: null, label: null, severity: 'error' as const }
     for (const { 1: names, index } of line.matchAll(/^bodies = \[(.*)\]/g)) {
       for (const { 1: name, index: within } of names.matchAll(/"(\w*)"/g)) {
         if (bodies.includes(name)) continue
