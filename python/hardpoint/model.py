@@ -305,7 +305,7 @@ class Model:
         return outcome(self, text, design, design)
 
     def sweep(self, *, workers: int | None = None, progress: Progress = None, **asked) -> SweepResult:
-        """Solves many designs in all cases, as `hardpoint sweep` does: `method` (`sobol`, `latin_hypercube`, `factorial`, `indices`),
+        """Solves many designs in all cases, as `hardpoint sweep` does: `method` (`sobol`, `latin_hypercube`, `factorial`, `sobol_indices`),
         `samples`, `seed`, `levels`, `ranges` (`{"lca_front_z": (-5, 5)}`), `curves` (names of measures whose whole curves are kept),
         `designs` (a CSV file that lists them)."""
         columns, curves, text = self.sweep_plan(**asked).run(workers, listener(progress))

@@ -409,7 +409,7 @@ impl Method {
             Self::Factorial => SweepMethod::Factorial,
             Self::LatinHypercube => SweepMethod::LatinHypercube,
             Self::Sobol => SweepMethod::Sobol,
-            Self::Indices => SweepMethod::Indices,
+            Self::SobolIndices => SweepMethod::Indices,
         }
     }
 }

@@ -1,3 +1,4 @@
+import type { DiagnosticMessage } from '../engine/protocol'
 /** Data about the server that the page comes from; undefined in a file. */
 interface About {
   token: string
@@ -26,18 +27,8 @@ export interface OnDisk {
   revision: string
 }
 
-/** As `hardpoint check --json` has it. */
-export interface Diagnostic {
-  severity: 'error' | 'warning' | 'note'
-  code: string
-  message: string
-  line: number | null
-  column: number | null
-  span: { start: number; end: number } | null
-  label: string | null
-  notes: string[]
-  help: string | null
-}
+/** JSON form of a diagnostic, that of `hardpoint check --json`. */
+export type Diagnostic = DiagnosticMessage
 
 /** Outcome of saving. */
 export type Saved =

@@ -188,7 +188,7 @@ fn a_factorial_and_indices_have_as_many_designs_as_they_must() {
     // Four variables of three values, two of five.
     let found = json(&["--method", "factorial"]);
     assert_eq!((&found["designs"], &found["seed"]), (&(81 * 25).into(), &serde_json::Value::Null));
-    let found = json(&["--method", "sobol_indices", "--samples", "256"]);
+    let found = json(&["--method", "sobol-indices", "--samples", "256"]);
     assert_eq!(found["designs"], 256 * 8);
     for metric in found["metrics"].as_array().unwrap() {
         let of = |key: &str| -> f64 {
