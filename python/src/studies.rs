@@ -80,7 +80,7 @@ impl Model {
         let (file, motions) = (&self.whole, self.motions()?);
         let Some(asked) = &file.model.optimization else {
             return Err(Failure::of_study(
-                "the model does not say what to optimise; add `[optimize.goals]` with the metrics that are to be small, and `bounds` to \
+                "the model has no `[optimize]` table; add `[optimize.goals]` with the metrics that are to be small, and `bounds` to \
                  the design variables that may change",
             )
             .into());

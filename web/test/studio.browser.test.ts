@@ -86,7 +86,7 @@ describe('the designs that were gone through', () => {
 })
 
 describe('a study', () => {
-  const table = { title: 'Goals', note: '', header: ['goal', 'nominal', 'found', 'wanted'], rows: [['toe_error (bump)', '0.40243 deg', '0.0058794 deg', '0 deg']] }
+  const table = { title: 'Goals', note: '', header: ['goal', 'nominal', 'optimised', 'target'], rows: [['toe_error (bump)', '0.40243 deg', '0.0058794 deg', '0 deg']] }
   const found = { tables: [table], change: [{ name: 'rack_z', by: 2 }], text: 'name = "found"', message: 'an optimum within the bounds' }
   const last = () => page.evaluate(() => ({ ...window.studies.at(-1)! }))
   const end = (result: typeof found | { tables: never[]; change: null; text: null; message: string }) => page.evaluate((result) => window.studies.at(-1)!.end(result), result)

@@ -124,7 +124,7 @@ fn compare_in(
         written.extend(FILES[usize::from(!page_is_there)..].iter().map(|name| folder.path_of(name)));
         result.and_then(|()| folder.commit(&FILES)).map_err(|e| session.not_written(&e))?;
         if !page_is_there {
-            session.remark("the two have other bodies or measures: they cannot be drawn beside each other, and there is no page");
+            session.remark("the models have different bodies or measures: they cannot be shown together, and there is no page");
         }
     }
     if session.is_json() {

@@ -116,7 +116,7 @@ pub fn asked(
 ) -> Result<OptimizationSettings, Outcome> {
     let Some(asked) = &file.model.optimization else {
         let why = format!(
-            "`{}` does not say what to optimise; add `[optimize.goals]` with the metrics that are to be small, and `bounds` to the \
+            "`{}` has no `[optimize]` table; add `[optimize.goals]` with the metrics that are to be small, and `bounds` to the \
              design variables that may change (docs/file-format.md)",
             file.file_name()
         );

@@ -458,7 +458,7 @@ impl Session {
             }
             let left = times.len();
             self.remark(&format!(
-                "{steps} output times are too many to be held at once: every {every}th is looked at, {left} in all"
+                "{steps} output times do not fit into memory: every {every}th is used, {left} in all"
             ));
             file.model.times = times;
         }

@@ -192,9 +192,7 @@ fn no_plan(why: SweepPlanError, file: &ModelFile) -> String {
              `[sweep.variables]`, or use `--range NAME=FROM..TO` (docs/sweep.md)",
             file.file_name()
         ),
-        SweepPlanError::NoDesigns => {
-            "there is no design to be solved; give at least one with `--samples`".into()
-        }
+        SweepPlanError::NoDesigns => "there are no designs; give at least one with `--samples`".into(),
         SweepPlanError::TooMany => format!(
             "that would be more than {} designs; give fewer levels, fewer variables, or use `--method sobol --samples N`",
             SweepSettings::MOST

@@ -345,8 +345,7 @@ impl Tables<'_> {
 /// Reason why there is no table of sensitivities.
 fn interrupted(name: &str) -> String {
     format!(
-        "left out: `{name}`, because the run was interrupted while the rows of variables were taken out of it that the mechanism \
-         cannot follow"
+        "left out: `{name}`, because the run was interrupted before the rows of inadmissible variables were removed"
     )
 }
 

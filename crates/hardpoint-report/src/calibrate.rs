@@ -456,7 +456,7 @@ impl CalibrateFacts {
         let of = format!("{} in {}", count(self.readings, "reading"), count(self.postures, "posture"));
         rows.push(("compared", of));
         let [before, after] = self.objective.map(number);
-        rows.push(("objective", format!("{before} in the design configuration, {after} found")));
+        rows.push(("objective", format!("{before} nominal, {after} fitted")));
         if let Some(scatter) = self.scatter {
             let (unit, free) = (&self.scatter_unit, self.freedom);
             let said = if unit.is_empty() {
@@ -479,7 +479,7 @@ impl CalibrateFacts {
         if !self.as_drawn.is_empty() {
             rows.push((
                 "nominal",
-                format!("{} stood in the design configuration", some_of(&self.as_drawn, ", ")),
+                format!("{} were in the design configuration", some_of(&self.as_drawn, ", ")),
             ));
         }
         for n in self.not_reached.iter().take(LISTED) {
@@ -553,10 +553,10 @@ impl CalibrateFacts {
             table(
                 "Not reported",
                 "Changes of the design that change nothing that was read, or too little. The design found has none of them.",
-                &["", "a change by", "what readings tell of it"],
+                &["", "a change by", "information of the readings"],
                 self.untold.iter().enumerate().map(untold).collect(),
             ),
-            table("Hardpoints that move", "", &["hardpoint", "nominal", "found"], self.hardpoints.iter().map(moved).collect()),
+            table("Hardpoints that move", "", &["hardpoint", "nominal", "optimised"], self.hardpoints.iter().map(moved).collect()),
             table(
                 "Readings far off",
                 "By more than three standard deviations.",

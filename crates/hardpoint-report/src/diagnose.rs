@@ -285,7 +285,7 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
             d.note(format!("both ends of {} are at one place there: a spring of zero length has no direction", names_of(&without_length)))
                 .help("move one of its ends, or use a `bushing`")
         } else if is_compliance {
-            d.note("what gives must be held by something, and constraints that say the same hold one another")
+            d.note("compliant elements need a support, and redundant constraints support one another")
                 .help("release no driver that nothing else holds, and remove redundant constraints: `check` names them")
         } else if !rubs {
             d.note("redundant constraints share it, by how stiff they are")
@@ -349,7 +349,7 @@ pub fn margin(file: &ModelFile, margin: &MarginFact) -> Option<Diagnostic> {
     let d = d.note(format!("the loop consists of {}", names(margin.joints.iter().map(String::as_str))));
     Some(d.help(match file.model.at_change_points {
         ChangePointPolicy::Stop => {
-            "drive another joint of this loop, or move its hardpoints so that it stays away from there"
+            "drive another joint of this loop, or move its hardpoints away from this position"
         }
         ChangePointPolicy::Continue => {
             "the motion may pass a change point, as `at_change_points = \"continue\"` allows; read velocities, loads and sensitivities at \

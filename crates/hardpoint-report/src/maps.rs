@@ -177,7 +177,7 @@ impl MapFact {
         let left_out = if fits {
             ""
         } else {
-            "; the sensitivities are too many for a page and stand in map_sensitivity.csv"
+            "; the sensitivities are too many for a page and are in map_sensitivity.csv"
         };
         GridPage {
             name: self.name.clone(),

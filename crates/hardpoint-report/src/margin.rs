@@ -116,7 +116,7 @@ impl MarginFact {
     /// Sentence about the minimum margin.
     pub fn sentence(&self) -> String {
         let least = format!(
-            "The least margin is {} at t = {} s, in the loop of {}",
+            "The minimum margin is {} at t = {} s, in the loop of {}",
             rounded(self.least, 2),
             number(self.time),
             some_in_words(&self.joints.iter().map(|j| format!("`{j}`")).collect::<Vec<_>>()),

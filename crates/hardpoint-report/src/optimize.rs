@@ -455,7 +455,7 @@ impl OptimizeFacts {
                 let case = drawn.and_then(|r| case_name(model, r.motion?));
                 let case = case.map_or(String::new(), |case| format!("case `{case}`: "));
                 let why = drawn.map_or("", |r| r.why.as_str());
-                format!("no design could be judged, not even the one in the design configuration: {case}{why}")
+                format!("no design could be evaluated, not even the nominal one: {case}{why}")
             }
         }
     }
@@ -482,7 +482,7 @@ impl OptimizeFacts {
         let mut tables = vec![Table {
             title: "Goals".into(),
             note: String::new(),
-            header: header(&["goal", "nominal", "found", "wanted"]),
+            header: header(&["goal", "nominal", "optimised", "target"]),
             rows: self.goals.iter().map(goal).collect(),
         }];
         if !self.limits.is_empty() {
@@ -504,7 +504,7 @@ impl OptimizeFacts {
             tables.push(Table {
                 title: "Limits".into(),
                 note: String::new(),
-                header: header(&["limit", "nominal", "found", "wanted", "binds"]),
+                header: header(&["limit", "nominal", "optimised", "required", "active"]),
                 rows: self.limits.iter().map(limit).collect(),
             });
         }
@@ -532,7 +532,7 @@ impl OptimizeFacts {
                 note: "Start, found and bounds are values of the number that the variable changes; where it changes several, they are \
                     changes of the design configuration. Work is a variable's share of what was gained, along the way."
                     .into(),
-                header: header(&["variable", "start", "found", "change", "bounds", "work", "bound that binds"]),
+                header: header(&["variable", "start", "optimised", "change", "bounds", "work", "active bound"]),
                 rows: self.variables.iter().map(variable).collect(),
             });
         }
@@ -544,7 +544,7 @@ impl OptimizeFacts {
             tables.push(Table {
                 title: "Hardpoints that move".into(),
                 note: String::new(),
-                header: header(&["hardpoint", "nominal", "found"]),
+                header: header(&["hardpoint", "nominal", "optimised"]),
                 rows: self.hardpoints.iter().map(row).collect(),
             });
         }
@@ -558,7 +558,7 @@ impl OptimizeFacts {
         let Evaluations { designs, motions, .. } = self.evaluations;
         let mut rows = vec![
             ("result", self.message.clone()),
-            ("objective", format!("{} in the design configuration, {} found", shown(before), shown(after))),
+            ("objective", format!("{} nominal, {} optimised", shown(before), shown(after))),
         ];
         rows.extend(
             self.kkt.map(|kkt| ("optimality", format!("{} of the goals' gradient is left", error(kkt)))),
@@ -567,10 +567,7 @@ impl OptimizeFacts {
             let before = self.margin.before.map_or("-".into(), number);
             rows.push((
                 "margin",
-                format!(
-                    "{before} in the design configuration, {} found, to a singular position",
-                    number(after)
-                ),
+                format!("{before} nominal, {} optimised, to a singular position", number(after)),
             ));
         }
         if let Some(saved) = &self.saved {
@@ -863,7 +860,7 @@ impl OptimizeFacts {
         }
         if let Some(why) = &saved.why {
             let advice = match margin {
-                None => "; if it is too near to a singular position, ask for a `margin` in `[optimize]`",
+                None => "; if it is too near to a singular position, set `min_margin` in `[optimize]`",
                 Some(_) => "",
             };
             self.fall_short(

@@ -571,8 +571,7 @@ impl SweepFacts {
         };
         let metrics = Table {
             title: "Metrics".into(),
-            note: "Over all designs that have them: which design has the least and the greatest value, and what 5 %, half and 95 % of \
-                them are below."
+            note: "Over all designs with a value: the designs with the minimum and the maximum, and the quantiles at 5, 50 and 95 %."
                 .into(),
             header: header(&[
                 "metric", "nominal", "least", "in design", "5 %", "median", "95 %", "greatest", "in design ", "mean", "sigma",

@@ -86,8 +86,7 @@ impl ValidityFact {
         (!rows.is_empty()).then(|| Table {
             title: "How far sensitivities can be trusted".into(),
             note: format!(
-                "As predictions: the variable may go so far either way until the second-order part of the measure named is 5 % of \
-                 the first-order part. As numbers: the least pivot is {pivots} of the largest.{margin}"
+                "Prediction: change of the variable in either direction at which the second-order part of the named measure is 5 % of the first-order part. Numerics: the smallest pivot is {pivots} of the largest.{margin}"
             ),
             header: ["variable", "linear within", "limited by"].map(String::from).to_vec(),
             rows,

@@ -239,7 +239,7 @@ impl WhatIfFacts {
         };
         Table {
             title: format!("What if {}", self.change_line()),
-            note: "Predictions come from today's derivatives, without solving again; the exact curves are re-solved. \
+            note: "Predictions come from the nominal derivatives, without solving again; the exact curves are re-solved. \
                    \"Linear up to\": that many times this change, the second-order part is 5 % of the first-order one."
                 .into(),
             header: [
@@ -356,7 +356,7 @@ impl WhatIfFacts {
             rows,
         };
         let metrics = MetricChange::table(&self.metrics)
-            .map(|t| Table { title: "Metrics, today and changed".into(), ..t });
+            .map(|t| Table { title: "Metrics, nominal and changed".into(), ..t });
         [change, self.table(wanted)].into_iter().chain(metrics).collect()
     }
 
@@ -367,7 +367,7 @@ impl WhatIfFacts {
         let mut rows = vec![
             ("change", self.change_line()),
             ("it is", self.follows.clone()),
-            ("least margin", format!("{today} today, {changed} changed")),
+            ("least margin", format!("{today} nominal, {changed} changed")),
         ];
         if !self.nearest.is_empty() {
             let near = ChangeFact::line(&self.nearest);

@@ -54,7 +54,7 @@ impl Engine {
         let answered = match serde_json::from_slice(request) {
             Ok(request) => self.answered(request, tell),
             Err(error) => {
-                let message = format!("the page asked what the engine does not understand: {error}");
+                let message = format!("unknown request: {error}");
                 Err(vec![DiagnosticMessage::plain(
                     "HP0701",
                     message,

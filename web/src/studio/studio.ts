@@ -76,8 +76,8 @@ export class Studio {
     }
     this.#drawer = new Drawer([
       { name: 'Model', title: 'The text of the model', open: () => this.#openEditor() },
-      { name: 'Optimise', title: 'Search for the design that serves goals best', open: studyPane(() => optimizePane(host), this) },
-      { name: 'Tolerance', title: 'How exactly the design must be made', open: studyPane(() => tolerancePane(host), this) },
+      { name: 'Optimise', title: 'Optimise the design for your goals', open: studyPane(() => optimizePane(host), this) },
+      { name: 'Tolerance', title: 'Tolerance analysis', open: studyPane(() => tolerancePane(host), this) },
     ])
     const server = connect(document)
     const own = { text: () => this.#settled(), replace: (text: string) => void this.replace(text, 'from disk'), onChange: (listener: () => void) => this.onText(listener) }
@@ -159,7 +159,7 @@ export class Studio {
       state.choose({})
       if (state.changed) this.#solve()
     } catch (error) {
-      this.#say(`Changes are predicted, not solved: ${words(error)}`)
+      this.#say(`Showing linear predictions: the solver is not available: ${words(error)}`)
       this.root.dataset.engine = 'failed'
     }
   }

@@ -115,7 +115,7 @@ fn travel(session: &Session, mut text: String) -> String {
                 ));
             }
             None => session.remark(&format!(
-                "the travel of case `{name}` is beyond this linkage, and a part of it as well: check the hardpoints, and change its laws"
+                "the linkage cannot reach the travel of case `{name}`, nor a part of it: check the hardpoints, and change its laws"
             )),
         }
     }

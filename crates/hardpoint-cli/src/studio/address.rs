@@ -134,7 +134,7 @@ pub fn given_token(text: &str) -> Result<String, String> {
     if is_plain && text.len() >= SHORTEST_TOKEN {
         Ok(text.into())
     } else {
-        Err(format!("a token has {SHORTEST_TOKEN} letters, digits, `-` and `_` at least"))
+        Err(format!("a token needs at least {SHORTEST_TOKEN} letters, digits, `-` and `_`"))
     }
 }
 

@@ -370,17 +370,17 @@ fn a_saved_design_that_stops_or_comes_too_near_to_a_singular_position_is_no_opti
         let output = bench.run(&run);
         (output.status.code(), json, String::from_utf8(output.stdout).unwrap())
     };
-    for margin in ["", "optimize.margin = 0.15\n"] {
+    for margin in ["", "optimize.min_margin = 0.15\n"] {
         let (code, json, text) = saved(margin, 5.0);
         assert_eq!((code, json["status"].as_str()), (Some(0), Some("optimal")), "{text}");
         assert!(!text.contains("not the one found"), "{text}");
     }
     for (margin, travel, why) in [
         ("", 12.0, "cannot move beyond"),
-        ("optimize.margin = 0.15\n", 12.0, "cannot move beyond"),
-        ("optimize.margin = 0.15\n", 10.0, "less than 0.15"),
+        ("optimize.min_margin = 0.15\n", 12.0, "cannot move beyond"),
+        ("optimize.min_margin = 0.15\n", 10.0, "less than 0.15"),
         // A margin that the nominal design keeps, and that the saved one keeps by less.
-        ("optimize.margin = 0.15\n", 5.1, ""),
+        ("optimize.min_margin = 0.15\n", 5.1, ""),
     ] {
         let (code, json, text) = saved(margin, travel);
         if why.is_empty() {
@@ -391,7 +391,7 @@ fn a_saved_design_that_stops_or_comes_too_near_to_a_singular_position_is_no_opti
         assert_eq!((code, json["status"].as_str()), (Some(1), Some("not_reproduced")), "{travel}: {text}");
         assert!(json["saved"]["why"].as_str().unwrap().contains(why), "{}", json["saved"]);
         assert!(text.contains(why) && !text.contains("an optimum"), "{text}");
-        let asks = text.contains("ask for a `margin`");
+        let asks = text.contains("set `min_margin`");
         assert_eq!(asks, margin.is_empty(), "advice for who has given a margin: {text}");
     }
 }

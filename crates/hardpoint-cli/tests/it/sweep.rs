@@ -226,7 +226,7 @@ fn what_cannot_be_swept_is_refused_with_what_to_do() {
     list("", &["HP0112", "`list.csv` is empty"]);
     list("1,2\n3,4\n", &["line 1", "numbers in place of the names"]);
     list("lca_front_z,camber\n1,2\n", &["HP0247", "no design variable named `camber`", "column 2"]);
-    list("lca_front_z,lca_front_z\n1,2\n", &["HP0247", "heads two columns"]);
+    list("lca_front_z,lca_front_z\n1,2\n", &["HP0247", "is the title of two columns"]);
     list("lca_front_z,lca_rear_z\n1,2\n3\n", &["line 3, column 2 (`lca_rear_z`) is missing"]);
     list("lca_front_z,lca_rear_z\n1,2\n3,x\n", &["line 3, column 2 (`lca_rear_z`): `x` is not a number"]);
     list("lca_front_z\n1,2\n", &["line 2 has 2 values for 1 variables"]);

@@ -216,8 +216,7 @@ impl Facts {
         (!rows.is_empty()).then(|| {
             table(
                 "Conditions of admissibility",
-                "What each joint asks of a change of the design so that it stays closed with all bodies where they are; d is the \
-                 line between its two points. A defect is that of the variable named, per unit.",
+                "Conditions on a design change under which each joint stays closed with all bodies fixed; d is the line between its two points. Each defect is per unit of the named variable.",
                 ["joint", "condition", "defect"],
                 rows,
             )

@@ -281,7 +281,7 @@ impl Beside<'_> {
             let rise: Option<f64> = rise.map(|(by, d)| d.map(|d| by * d)).sum();
             Some(of.value? + rise.filter(|_| !of.sensitivities.is_empty())?)
         };
-        let note = "Predicted from today's sensitivities, without solving again.".to_owned();
+        let note = "Predicted from the nominal sensitivities, without solving again.".to_owned();
         Design {
             quantities: self.quantities(output, origin),
             values: values.iter().map(foreseen).collect(),
@@ -306,7 +306,8 @@ impl Beside<'_> {
         let static_value = |k: usize, m: usize| {
             what_if.today.measured.outputs[m].known.by_position.then(|| what_if.foreseen(k, m)[1])
         };
-        let note = "Predicted from today's first and second derivatives, without solving again.".to_owned();
+        let note =
+            "Predicted from the nominal first and second derivatives, without solving again.".to_owned();
         Design {
             quantities: self.quantities(output, |_, _| None),
             values: self.values(values, |_| None, static_value),
