@@ -611,7 +611,7 @@ sensitivities: Array<number | null>, };
  */
 export type Design = {
 /**
- * What it is called on the page: `changed`, `foreseen to first order`, ...
+ * What it is called on the page: `changed`, `predicted to first order`, ...
  */
 name: string,
 /**

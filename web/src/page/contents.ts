@@ -29,7 +29,7 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
   const scale = largest(state, index, order)
   const own = quantity.curves[order]
   if (own.length === 0) return { ...content, message: unknown(title) }
-  const label = state.foreseen ? 'foreseen to first order' : (present?.name ?? (state.compares ? 'present design' : title))
+  const label = state.foreseen ? 'predicted to first order' : (present?.name ?? (state.compares ? 'present design' : title))
   content.lines.push({ label, color: css('--trace'), curve: quiet(state.curve(index, order), scale), width: 2.4 })
   if (state.compares) {
     const curve = former ? (former.quantities[index]?.[order] ?? new Float32Array()) : own

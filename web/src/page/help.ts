@@ -20,7 +20,7 @@ const KEYS: [keys: string, meaning: string][] = [
 const MARKS: [mark: string, meaning: string][] = [
   ['solid', 'the present design'],
   ['dashed', 'the design that it is compared with'],
-  ['dotted', 'foreseen to first or second order, or how far it may be off'],
+  ['dotted', 'predicted to first or second order, or an error bound'],
   ['rings', 'finite differences of re-solved designs'],
 ]
 
