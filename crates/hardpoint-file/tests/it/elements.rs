@@ -294,7 +294,7 @@ rub = { type = "spring_force", force = "rub" }
         "[gravity]\nalong = \"-y\"",
     );
     let file = parse(&nothing, "slider.toml").unwrap_or_else(|e| panic!("{e}"));
-    assert!(file.remarks[0].message.contains("gravity acts on nothing"), "{:?}", file.remarks);
+    assert!(file.remarks[0].message.contains("gravity has no effect"), "{:?}", file.remarks);
 }
 
 /// The note about bodies without mass is at the first of them, wherever it is in the list.

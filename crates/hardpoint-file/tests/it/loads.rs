@@ -574,7 +574,7 @@ steps = 200
     let first = values(&solved(&dynamic), "F")[0];
     assert!((first - closed(1.0)).abs() > 1.0, "{first}");
     let cases = text("-0.3*t", "")
-        + "[cases.slow]\nloads = \"static\"\nrest = \"as_in_model\"\n[cases.fast]\nrest = \"as_in_model\"\n";
+        + "[cases.slow]\nloads = \"static\"\nother_drivers = \"as_in_model\"\n[cases.fast]\nother_drivers = \"as_in_model\"\n";
     let file = parse(&cases, "lift.toml").unwrap_or_else(|e| panic!("{e}"));
     let of = |case: usize| {
         let model = file.model.in_case(CaseId(case));

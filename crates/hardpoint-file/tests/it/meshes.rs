@@ -153,7 +153,7 @@ fn what_is_no_shape_is_refused() {
     let cases: [(&str, Vec<u8>, &str, &str); 17] = [
         ("else.stl", stl(&faces()), "HP0111", "there is no file `arm.stl`"),
         ("arm.step", b"ISO-10303-21;".to_vec(), "HP0115", "`.stl`, `.obj`, `.glb` or `.gltf`"),
-        ("arm", b"".to_vec(), "HP0115", "it is not known how to read it"),
+        ("arm", b"".to_vec(), "HP0115", "is not supported"),
         ("arm.stl", b"".to_vec(), "HP0115", "cannot be read as an STL file"),
         ("arm.stl", b"solid arm\nfacet normal 0 0".to_vec(), "HP0115", "cannot be read as an STL file"),
         ("arm.stl", stl(&[]), "HP0115", "has no triangles"),

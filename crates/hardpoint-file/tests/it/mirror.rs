@@ -149,7 +149,7 @@ steps = 20
 
 #[test]
 fn in_a_motion_that_is_its_own_mirror_image_both_sides_measure_the_same() {
-    for (variables, count) in [("both", 7), ("each", 7)] {
+    for (variables, count) in [("symmetric", 7), ("independent", 7)] {
         let text = ALL.replace("mirror = {}", &format!("mirror = {{ variables = \"{variables}\" }}"));
         let model = file(&text).model;
         let mut felt = 0;
@@ -162,7 +162,7 @@ fn in_a_motion_that_is_its_own_mirror_image_both_sides_measure_the_same() {
             let ((a, da), (b, db)) = (curves(&model, &left.name), curves(&model, &right));
             close(&right, &a, &b, SAME);
             felt += usize::from(da.iter().flatten().any(|x| x.abs() > 1e-6));
-            if variables == "both" {
+            if variables == "symmetric" {
                 da.iter().zip(&db).for_each(|(a, b)| close(&right, a, b, SAME_RATES));
             }
         }

@@ -765,7 +765,7 @@ pub(crate) fn wheels_and_axles(hold: Hold<'_>) {
         .replace("15*sin(2*pi*t)", "0")
         .replace("steps = 200", "steps = 24")
         .replace("\n[wheels.right]\nmeasures = [\"toe\", \"camber\", \"steer_angle\", \"wheel_travel\", \"roll_centre_height\"]\n", "")
-        .replace("bump = \"left_bump\"\n", "bump = \"left_bump\"\nsteer = \"steering\"\nspring = [{ body = \"ground\", at = \"left_damper_top\" }, { body = \"left_lca\", at = \"left_damper_foot\" }]\nplanes = [{ body = \"left_lca\", at = [\"left_lca_front\", \"left_lca_rear\", \"left_lower_ball\"] }, { body = \"left_uca\", at = [\"left_uca_front\", \"left_uca_rear\", \"left_upper_ball\"] }]\n")
+        .replace("bump = \"left_bump\"\n", "bump = \"left_bump\"\nsteer = \"steering\"\nspring = [{ body = \"ground\", at = \"left_damper_top\" }, { body = \"left_lca\", at = \"left_damper_foot\" }]\narm_planes = [{ body = \"left_lca\", at = [\"left_lca_front\", \"left_lca_rear\", \"left_lower_ball\"] }, { body = \"left_uca\", at = [\"left_uca_front\", \"left_uca_rear\", \"left_upper_ball\"] }]\n")
         .replace(&format!("measures = [{list}]"), "measures = \"all\"");
     let mut seen = Vec::new();
     for end in ["front", "rear"] {

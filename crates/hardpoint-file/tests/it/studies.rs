@@ -91,7 +91,7 @@ fn cases() {
     broken(
         "case_that_leaves_a_driver_without_law",
         "law = 0\n",
-        "\n[cases.all]\nlaws.turn = \"t\"\nrest = \"as_in_model\"\n",
+        "\n[cases.all]\nlaws.turn = \"t\"\nother_drivers = \"as_in_model\"\n",
     );
     broken("metric_of_unknown_case", "case = \"fast\"", "case = \"fats\"");
     snapshot(

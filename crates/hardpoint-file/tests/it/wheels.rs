@@ -53,7 +53,7 @@ fn arms(side: &str, rack: &str) -> String {
         format!("{{ body = \"{side}{arm}\", at = [{points}] }}")
     };
     format!(
-        "steer = \"{rack}\"\nplanes = [{}, {}]\n\
+        "steer = \"{rack}\"\narm_planes = [{}, {}]\n\
          spring = [{{ body = \"ground\", at = [10, 330, 330] }}, {{ body = \"{side}lca\", at = [10, 450, -20] }}]\n",
         at("lca", "lower_ball"),
         at("uca", "upper_ball")
