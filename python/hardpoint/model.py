@@ -93,7 +93,7 @@ class Model:
         }
         self.cases: tuple[str, ...] = tuple(m["case"] for m in info["motions"] if m["case"] is not None)
         self.grids: tuple[str, ...] = tuple(info["grids"])
-        self.remarks: tuple[Diagnostic, ...] = tuple(Diagnostic.of(d) for d in info["remarks"])
+        self.diagnostics: tuple[Diagnostic, ...] = tuple(Diagnostic.of(d) for d in info["remarks"])
         self._variable_index = {name: k for k, name in enumerate(self.variables)}
         self._output_index = {name: k for k, name in enumerate(self.outputs)}
 
@@ -404,7 +404,7 @@ def listener(progress: Progress) -> Callable[[int, int], Any] | None:
 def _opened(native: _native.Model) -> Model:
     native.plan()
     model = Model(native)
-    for remark in model.remarks:
+    for remark in model.diagnostics:
         if remark.severity == "warning":
             warnings.warn(remark.rendered, HardpointWarning, stacklevel=3)
     return model
