@@ -82,7 +82,7 @@ class Tracks {
     this.#scales = new Float32Array(take(4 * tracks).buffer)
     this.#gapCounts = new Uint32Array(take(4 * tracks).buffer)
     this.#gaps = new Uint32Array(take(8 * gaps).buffer)
-    this.#arm_planes = [0, 1, 2, 3].map(() => block.subarray(at, (at += residuals)))
+    this.#planes = [0, 1, 2, 3].map(() => block.subarray(at, (at += residuals)))
     let [residual, gap] = [0, 0]
     for (let index = 0; index < tracks; index++) {
       this.#starts.push({ residual, gap })

@@ -19,7 +19,7 @@ describe('a changed design beside the one as loaded', () => {
   const lines = () => text(page, 'plot-0')
 
   test('is drawn solid, the one as loaded dashed, and both have a curve', async () => {
-    expect(await page.locator('.ghost-key').innerText()).toContain('as loaded')
+    expect(await page.locator('.ghost-key').innerText()).toContain('original')
     expect(await lines()).toMatch(/changed/)
     expect(await lines()).toMatch(/as loaded/)
   })

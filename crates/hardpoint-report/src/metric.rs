@@ -188,7 +188,7 @@ fn what(model: &Model, units: Units, metric: &Metric) -> String {
     match &metric.take {
         Reduction::Least => format!("least {of}{within}"),
         Reduction::Greatest => format!("greatest {of}{within}"),
-        Reduction::Range => format!("greatest less least {of}{within}"),
+        Reduction::Range => format!("range of {of} (max - min){within}"),
         Reduction::Integral => format!("integral of {of} over {over}{within}"),
         Reduction::Mean => format!("mean of {of}{mean_over}{within}"),
         Reduction::Rms(target) if target.is_empty() => format!("root mean square of {of}{mean_over}{within}"),

@@ -435,7 +435,7 @@ impl OptimizeFacts {
             OptimizationStatus::Optimal if best_is_met(found) => "all goals are met: nothing is left to gain".into(),
             OptimizationStatus::Optimal if binding.is_empty() => "an optimum: no small change of the design is better".into(),
             OptimizationStatus::Optimal => format!(
-                "an optimum within the bounds, of which {} hold it; wider ones would do more",
+                "optimum found; {} are at their bounds, and wider bounds would improve it",
                 some_of(&binding, ", ")
             ),
             OptimizationStatus::Stuck => "no step goes further, although it is not quite an optimum: try more `starts`, or more output times \
@@ -447,7 +447,7 @@ impl OptimizeFacts {
                 exceeded()
             ),
             OptimizationStatus::IterationLimit => {
-                "the iterations are used up before an optimum was reached: give more `iterations`".into()
+                "the iterations are used up before an optimum was reached: increase `max_iterations`".into()
             }
             OptimizationStatus::Interrupted => "interrupted: the best design so far".into(),
             OptimizationStatus::NoStart => {

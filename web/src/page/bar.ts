@@ -38,7 +38,7 @@ function comparison(state: State): HTMLElement | undefined {
   const select = el(
     'select',
     { 'data-testid': 'compare', onchange: () => state.choose({ compared: select.value === '' ? undefined : Number(select.value) }) },
-    el('option', { value: '' }, 'as loaded'),
+    el('option', { value: '' }, 'original'),
     ...designs.flatMap((design, index) => (isBand(design) ? [] : [el('option', { value: index }, design.name)])),
   )
   return el('label', { class: 'compare' }, el('span', { class: 'muted' }, 'Compare with'), select)

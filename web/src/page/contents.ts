@@ -33,7 +33,7 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
   content.lines.push({ label, color: css('--trace'), curve: quiet(state.curve(index, order), scale), width: 2.4 })
   if (state.compares) {
     const curve = former ? (former.quantities[index]?.[order] ?? new Float32Array()) : own
-    content.lines.push({ label: former?.name ?? 'as loaded', color: css('--former'), curve: quiet(curve, scale), width: 1.8, dash: DASHED })
+    content.lines.push({ label: former?.name ?? 'original', color: css('--former'), curve: quiet(curve, scale), width: 1.8, dash: DASHED })
   }
   const bands = report.designs.filter(({ kind, quantities }) => kind === 'band' && quantities[index]?.[order].length)
   // Over another quantity, which is itself off, they would say something else.
@@ -100,8 +100,8 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   const curve = seen(differences.curves[order], selected.index, true)
   content.lines.push({ label: 'finite differences', color: css('--ink'), curve, marks: withGaps(curve) })
   const caption =
-    `${rest} Rings: re-solved ±${figure(Number(differences.step.toPrecision(2)), differences.unit)} away, ` +
-    `disagreement at most ${number(differences.worst[order], 2)}.`
+    `${rest} Rings: checked by re-solving at ±${figure(Number(differences.step.toPrecision(2)), differences.unit)}, ` +
+    `maximum difference ${number(differences.worst[order], 2)}.`
   return overOther(state, subject.over, { ...content, caption: caption.trimStart() })
 }
 

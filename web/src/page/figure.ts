@@ -47,9 +47,9 @@ export class Figure {
         this.#shown = this.#shown === 'value' ? 'sensitivity' : 'value'
         this.show()
       } },
-      'd / d variable',
+      'Sensitivity',
     )
-    const remove = el('button', { type: 'button', class: 'icon', 'data-testid': 'remove', title: 'Take this curve away', 'aria-label': 'Take this curve away', onclick: () => onRemove(this) }, '×')
+    const remove = el('button', { type: 'button', class: 'icon', 'data-testid': 'remove', title: 'Remove plot', 'aria-label': 'Remove plot', onclick: () => onRemove(this) }, '×')
     const add = el('button', { type: 'button', class: 'icon', 'data-testid': 'add-curve', title: 'Add a curve', 'aria-label': 'Add a curve', onclick: onAdd }, '+')
     const controls = el('div', { class: 'controls' }, quantity, over, order, able ? shown : undefined, wish.leads ? add : remove)
     this.plot = new Plot(state, wish.testId, [controls], time)

@@ -67,7 +67,7 @@ export function variables(state: State): HTMLElement {
     for (const item of rows) item.sync()
     resetAll.hidden = !state.changed
     const variable = report.variables[choice.variable]
-    const foreseen = state.foreseen ? 'Changes are predicted to first order. ' : state.sensed ? '' : 'Sensitivities are those before the last change. '
+    const foreseen = state.foreseen ? 'Changes are predicted to first order. ' : state.sensed ? '' : 'Sensitivities are being updated. '
     note.replaceChildren(...prose(foreseen + (variable?.note || variable?.description || '')))
     if (choice.variable === shown) return
     shown = choice.variable

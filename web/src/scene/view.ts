@@ -261,7 +261,7 @@ export class View {
     const variable = this.today.report.variables[this.state.choice.variable]
     const change = variable && shownChange(this.today, variable)
     const forces = this.state.choice.forces && forceText(this.#matter.mechanism)
-    const said = [forces, change !== undefined && `arrows for ${changeText(change, variable)}`].filter((words) => words)
+    const said = [forces, change !== undefined && `Arrows: effect of ${changeText(change, variable)}`].filter((words) => words)
     this.#arrows.textContent = said.map((words) => `${words}, `).join('')
     const assembly = new Assembly(this.#matter.mechanism, this.#palette, this.state.choice, marks, this.#outlines, MARK_NUMBERS)
     this.scene.add(...assembly.groups)

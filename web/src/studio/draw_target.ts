@@ -48,6 +48,6 @@ export function targetButton(plot: Plot, drawing: () => Drawing, { text, replace
     if (!sketch) return begin()
     sketch.close()
     end()
-  } }, 'Target')
+  } }, 'Draw target')
   return button
 }

@@ -36,7 +36,7 @@ interface Hold {
 export class Grips {
   readonly element = el('div', { class: 'grips', hidden: true })
   readonly pane = el('section', { class: 'grip-pane', hidden: true, 'aria-label': 'Hardpoint', 'data-testid': 'grip-pane' })
-  readonly button = el('button', { type: 'button', title: 'Take hold of hardpoints (M)', 'data-testid': 'grips', 'aria-pressed': 'false', onclick: () => this.toggle() }, 'move')
+  readonly button = el('button', { type: 'button', title: 'Move hardpoints (M)', 'data-testid': 'grips', 'aria-pressed': 'false', onclick: () => this.toggle() }, 'move')
   #guide = svg('svg', { class: 'guide', 'aria-hidden': 'true' })
   #shown: Shown[]
   #chosen?: Shown
@@ -318,7 +318,7 @@ export class Grips {
     this.#why.replaceChildren(...prose(this.state.refusal || this.state.bound))
     const chosen = this.#chosen
     this.pane.classList.toggle('idle', !chosen)
-    this.#name.textContent = chosen?.grip.name ?? 'Take hold of a hardpoint'
+    this.#name.textContent = chosen?.grip.name ?? 'Click a point to move it'
     this.#ways.forEach((button, k) => button.setAttribute('aria-pressed', String(WAYS[k] === this.#way)))
     for (const field of this.#fields) field.disabled = !chosen
     if (!chosen) return

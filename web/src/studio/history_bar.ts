@@ -82,7 +82,7 @@ function snapshots(history: History, { show, compare }: Shows): HTMLElement {
     } })
     const action = (title: string, name: string, run: () => void) => el('button', { type: 'button', name: `${name} ${snapshot.id}`, title, 'data-testid': `snapshot-${name.toLowerCase()}`, onclick: run }, name)
     const actions = [
-      action('Take this design again', 'Take', () => (show(history.take(snapshot)), open(false), button.focus())),
+      action('Open this design', 'Open', () => (show(history.take(snapshot)), open(false), button.focus())),
       action('Compare the present design with it', 'Compare', () => choose(compared === snapshot ? undefined : snapshot)),
       action('Delete this design', 'Delete', () => {
         if (compared === snapshot) choose(undefined)

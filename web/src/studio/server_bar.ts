@@ -11,7 +11,7 @@ export interface Text {
 }
 
 /** Studies of the server, by their button labels. */
-const STUDIES: Record<What, string> = { optimize: 'Optimise', tolerance: 'Study tolerances', sweep: 'Sweep' }
+const STUDIES: Record<What, string> = { optimize: 'Optimise', tolerance: 'Run tolerance analysis', sweep: 'Sweep' }
 
 /** Controls that a server adds to the page's bar: save, other models, studies; and notices. */
 export function serverBar(server: Server, text: Text): HTMLElement {
@@ -202,7 +202,7 @@ class Desk {
     const { server, notes } = this
     if (server.state === 'there') notes.drop('server')
     else if (server.state === 'gone') {
-      notes.show('server', 'The server does not answer; your changes are kept in the page. It is found again when it is started with', { stop: true, detail: server.command })
+      notes.show('server', 'The server does not answer; your changes are kept in the page. Restart it with', { stop: true, detail: server.command })
     } else {
       notes.show('server', 'Another server answers at this address; your changes are kept in the page. Open the address that it has printed, or end it and start', { stop: true, detail: server.command })
     }

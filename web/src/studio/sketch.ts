@@ -43,7 +43,7 @@ export class Sketch implements Overlay {
   #canvas = svg('svg', { 'aria-hidden': 'true' })
   #element = el('div', { class: 'sketch', tabindex: 0, role: 'application', 'data-testid': 'sketch', 'aria-label': 'Draw a target: arrow keys move the cross, with Shift less far; Enter sets a point, Delete takes the nearest away, Page up and down go from point to point, Escape ends' }, this.#canvas)
   #reading = el('output', { 'data-testid': 'sketch-reading' })
-  #take = el('button', { type: 'button', class: 'first', 'data-testid': 'sketch-take', onclick: () => this.#finish() }, 'Take as target')
+  #take = el('button', { type: 'button', class: 'first', 'data-testid': 'sketch-take', onclick: () => this.#finish() }, 'Use as target')
   #bar: HTMLElement
 
   constructor(
@@ -56,7 +56,7 @@ export class Sketch implements Overlay {
     this.#bar = el('div', { class: 'sketch-bar', role: 'toolbar', 'aria-label': 'Target curve' },
       this.#take,
       button('Clear', 'sketch-clear', () => this.#set([])),
-      button('More room', 'sketch-room', () => {
+      button('Extend axis', 'sketch-room', () => {
         this.#room *= ROOM
         this.#rescale()
       }),

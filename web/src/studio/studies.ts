@@ -41,7 +41,7 @@ export function optimizePane(host: StudyHost): StudyPane {
 export function tolerancePane(host: StudyHost): StudyPane {
   return pane(host, {
     name: 'Tolerance',
-    verb: 'Study tolerances',
+    verb: 'Run tolerance analysis',
     offer: (text) => host.studies.toleranceOffer(text),
     form: toleranceForm,
     start: (text, request) => host.studies.tolerance(text, request),
@@ -85,7 +85,7 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
     shown = 'form'
     const why = el('span', { class: 'muted', 'data-testid': `${testId}-why` })
     const run = el('button', { type: 'submit', class: 'first', 'data-testid': `${testId}-run` }, verb)
-    const again = el('button', { type: 'button', hidden: true, 'data-testid': `${testId}-again`, onclick: () => void load() }, 'Read the changed model')
+    const again = el('button', { type: 'button', hidden: true, 'data-testid': `${testId}-again`, onclick: () => void load() }, 'Reload from model')
     const sync = () => {
       const request = made.request()
       run.disabled = typeof request === 'string'
@@ -153,10 +153,10 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
       showForm(made)
       if (!touched) refresh()
     }
-    const take = el('button', { type: 'button', class: 'first', 'data-testid': `${testId}-take`, onclick: () => (host.take(result, text), away()) }, 'Take this design')
+    const take = el('button', { type: 'button', class: 'first', 'data-testid': `${testId}-take`, onclick: () => (host.take(result, text), away()) }, 'Apply design')
     const discard = el('button', { type: 'button', 'data-testid': `${testId}-discard`, onclick: away }, found ? 'Discard' : 'Back')
     const outcome = el('p', { class: 'outcome', 'data-testid': `${testId}-outcome` }, ...prose(result.message))
-    const since = el('p', { class: 'outcome stale', 'data-testid': `${testId}-stale` }, 'The design has changed since: this is of the design as it was. To take it leaves out what has changed.')
+    const since = el('p', { class: 'outcome stale', 'data-testid': `${testId}-stale` }, 'The design has changed since: this is of the design as it was. Applying it discards later changes.')
     stale = () => (since.hidden = host.text() === text)
     stale()
     show(outcome, since, el('div', { class: 'acts' }, ...(found ? [take] : []), discard), el('div', { class: 'checks' }, ...result.tables.map(factTable)))

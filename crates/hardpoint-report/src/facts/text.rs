@@ -310,11 +310,11 @@ impl VariableFact {
         match self.answer {
             Answer::Admissible | Answer::Unknown => String::new(),
             Answer::Reassembled => {
-                format!("The mechanism closes again what opens: {}.", defects(&self.opens_at_design))
+                format!("The mechanism re-assembles: the variable opens {}.", defects(&self.opens_at_design))
             }
             Answer::CannotFollow => {
                 let time = self.time.map_or(String::new(), |t| format!(" (at t = {} s)", number(t)));
-                format!("No motion closes what opens: {}{time}.", defects(&self.resists))
+                format!("Not possible: no motion closes {}{time}.", defects(&self.resists))
             }
         }
     }
