@@ -3,8 +3,8 @@
 /**
  * One number per output step, kept as `f32`; NaN means "no value at this step" and is drawn as a gap.
  *
- * In the page it is a list of tracks of the packed block, whose values follow each other in turn: see [`crate::encoding`].
- * It cannot be serialised before it is packed.
+ * In the page it is a list of tracks of the packed block, whose values follow each other in turn: see
+ * [`crate::encoding`]. It cannot be serialised before it is packed.
  *
  * ```
  * use hardpoint_report::page::Curve;
@@ -24,7 +24,7 @@ export type Payload = {
  */
 title: string,
 /**
- * What the model file says about itself; may be empty.
+ * Description in the model file; may be empty.
  */
 description: string,
 /**
@@ -40,7 +40,7 @@ generator: string,
  */
 units: Units,
 /**
- * Whether the whole motion was solved.
+ * True if the whole motion was solved.
  */
 status: Status,
 /**
@@ -68,7 +68,7 @@ joints: Array<JointMark>,
  */
 couplers: Array<CouplerMark>,
 /**
- * What is driven.
+ * Driven coordinates.
  */
 drivers: Array<DriverMark>,
 /**
@@ -88,7 +88,7 @@ loads: Array<LoadMark>,
  */
 vehicle: VehicleAxes | null,
 /**
- * What can be plotted over time.
+ * Quantities that can be plotted over time.
  */
 quantities: Array<Quantity>,
 /**
@@ -100,11 +100,12 @@ values: Array<Value>,
  */
 first: number | null,
 /**
- * The quantity over which the page draws that one at first, an index into [`Payload::quantities`]; over time where there is none.
+ * The quantity over which the page draws that one at first, an index into [`Payload::quantities`]; over time where
+ * there is none.
  */
 over: number | null,
 /**
- * Other designs over the same motion, to be compared with this one: changed, foreseen, re-solved.
+ * Other designs over the same motion, to be compared with this one: changed, predicted, re-solved.
  */
 designs: Array<Design>,
 /**
@@ -116,7 +117,7 @@ maps: Array<GridMap>,
  */
 sweep: SweepPlot | null,
 /**
- * How far from singular the mechanism is over time, if anything is solved for.
+ * Margin from singular positions over time, if anything is solved for.
  */
 margin: Margin | null,
 /**
@@ -153,16 +154,16 @@ files: { [key in string]: string },
  */
 case: string | null,
 /**
- * How much of the motion the page shows; as much as there is room for where it does not say.
+ * Detail of the motion on the page; as much as fits if it is not given.
  */
 shown: Detail | null, };
 
 /**
- * How much of a motion the page shows.
+ * Detail of a motion on the page.
  */
 export type Detail = {
 /**
- * Every so many steps of those that are kept.
+ * Every that many steps of those that are kept.
  */
 stride: number,
 /**
@@ -170,7 +171,7 @@ stride: number,
  */
 origins: boolean,
 /**
- * How bodies move with the variables, and with that the sensitivities of their origins.
+ * Motion of bodies by the variables, and with that the sensitivities of their origins.
  */
 bodies: boolean,
 /**
@@ -200,11 +201,12 @@ angle: string,
 time: string, };
 
 /**
- * How the run ended.
+ * Status at the end of the run.
  */
 export type Status = {
 /**
- * False when the motion, or that of a design beside it, stops before its last step; the page then says so in a banner.
+ * False when the motion, or that of a design beside it, stops before its last step; the page then says so in a
+ * banner.
  */
 complete: boolean,
 /**
@@ -217,7 +219,7 @@ message: string, };
  */
 export type Fact = {
 /**
- * What it is.
+ * Label of the figure.
  */
 label: string,
 /**
@@ -246,7 +248,7 @@ skeleton: Array<[number, number, number]>,
  */
 labels: Array<string>,
 /**
- * What they are there for, in the order of `skeleton`.
+ * Roles of the points, in the order of `skeleton`.
  */
 roles: Array<PointRole>,
 /**
@@ -255,7 +257,7 @@ roles: Array<PointRole>,
 mesh: Mesh | null, };
 
 /**
- * What a hardpoint of a body is there for; of several reasons the first.
+ * Role of a hardpoint of a body; of several roles the first.
  */
 export type PointRole = "joint" | "hinge" | "wheel" | "measured";
 
@@ -309,16 +311,18 @@ at_j: [number, number, number],
  */
 axis: [number, number, number] | null,
 /**
- * The same in the frame of body j; in the design configuration the two agree, but for kinds with an axis on each body.
+ * The same in the frame of body j; in the design configuration the two agree, but for kinds with an axis on each
+ * body.
  */
 axis_j: [number, number, number] | null,
 /**
- * Unit vector along the second axis, where there is one: in the frame of body j for `universal`, `constant_velocity`, `dot1` and
- * `angle`, in that of body i for others.
+ * Unit vector along the second axis, where there is one: in the frame of body j for `universal`,
+ * `constant_velocity`, `dot1` and `angle`, in that of body i for others.
  */
 axis2: [number, number, number] | null,
 /**
- * The two hardpoints that the axis passes through in the design configuration, in the frame of body i, where it is given so.
+ * The two hardpoints that the axis passes through in the design configuration, in the frame of body i, where it is
+ * given so.
  */
 hinge: [[number, number, number], [number, number, number]] | null,
 /**
@@ -330,11 +334,11 @@ lead: number | null,
  */
 curve: JointCurve | null,
 /**
- * How it is to be drawn, where the model says so: `coilover`, `spring`, `damper`, `cylinder` or `rod`.
+ * Shape in drawings, if the model gives one: `coilover`, `spring`, `damper`, `cylinder` or `rod`.
  */
 draw: string | null,
 /**
- * Whether the joint closes a loop instead of carrying body j.
+ * True if the joint closes a loop instead of carrying body j.
  */
 cut: boolean, };
 
@@ -343,11 +347,11 @@ cut: boolean, };
  */
 export type JointCurve = {
 /**
- * Whether its last point is followed by its first.
+ * True if its last point is followed by its first.
  */
 closed: boolean,
 /**
- * Its points in the frame of the body.
+ * Points in the frame of the body.
  */
 points: Array<[number, number, number]>,
 /**
@@ -368,7 +372,7 @@ name: string,
  */
 kind: string,
 /**
- * Its terms: of a rack first the rack, then the pinion.
+ * Terms: of a rack first the rack, then the pinion.
  */
 terms: Array<CouplerTerm>,
 /**
@@ -385,7 +389,7 @@ export type CouplerTerm = {
  */
 joint: number,
 /**
- * Whether the coordinate is an angle; a length otherwise.
+ * True if the coordinate is an angle; a length otherwise.
  */
 turns: boolean,
 /**
@@ -394,7 +398,7 @@ turns: boolean,
 coefficient: number, };
 
 /**
- * What a driver drives.
+ * Coordinate that a driver drives.
  */
 export type DriverMark = {
 /**
@@ -402,7 +406,7 @@ export type DriverMark = {
  */
 name: string,
 /**
- * What its law is, in words.
+ * Law in words.
  */
 law: string,
 /**
@@ -410,7 +414,7 @@ law: string,
  */
 joint: number | null,
 /**
- * Whether the driven coordinate is an angle; a length otherwise.
+ * True if the driven coordinate is an angle; a length otherwise.
  */
 turns: boolean,
 /**
@@ -426,8 +430,9 @@ along: [number, number, number] | null,
  */
 travel: Curve,
 /**
- * Where several drivers move: how fast each of the first of [`Payload::quantities`] goes with this one while the others stand, in
- * its unit per length unit or radian; empty of what does not follow from positions alone.
+ * If several drivers move: rate of each of the first of [`Payload::quantities`] by this driver while the others
+ * are at rest, in its unit per length unit or radian; empty for quantities that do not follow from positions
+ * alone.
  */
 alone: Array<Curve>, };
 
@@ -453,7 +458,7 @@ export type WheelMark = {
  */
 name: string,
 /**
- * Its centre, on the body that carries it.
+ * Centre, on the body that carries it.
  */
 centre: BodyPlace,
 /**
@@ -486,7 +491,7 @@ from: BodyPlace,
  */
 to: BodyPlace,
 /**
- * How it is to be drawn, where the model says so; see [`JointMark::draw`].
+ * Shape in drawings, if the model gives one; see [`JointMark::draw`].
  */
 draw: string | null, };
 
@@ -503,15 +508,16 @@ name: string,
  */
 joint: number | null,
 /**
- * Where it acts.
+ * Point of action.
  */
 at: BodyPlace,
 /**
- * Three numbers per step: the force in the world, N. What redundant constraints leave open is left out; not a number where nothing is known.
+ * Three numbers per step: the force in the world, N. What redundant constraints leave open is left out; not a
+ * number where nothing is known.
  */
 force: Curve,
 /**
- * Whether something is left out of it at any time.
+ * True if something is left out of it at any time.
  */
 is_part: boolean, };
 
@@ -557,15 +563,15 @@ group: string,
  */
 value: Curve,
 /**
- * Its first time derivative.
+ * First time derivative.
  */
 rate: Curve,
 /**
- * Its second time derivative.
+ * Second time derivative.
  */
 accel: Curve,
 /**
- * What a metric wants it to be, `n` steps; empty where none does.
+ * Target curve of a metric, `n` steps; empty without one.
  */
 wanted: Curve, };
 
@@ -582,7 +588,7 @@ name: string,
  */
 what: string,
 /**
- * Its unit.
+ * Unit.
  */
 unit: string,
 /**
@@ -602,7 +608,7 @@ quantity: number | null,
  */
 target: [number | null, number | null] | null,
 /**
- * Its derivatives by every design variable, in the order of [`Payload::variables`]; none where one cannot be followed.
+ * Derivatives by every design variable, in the order of [`Payload::variables`]; none where one cannot be followed.
  */
 sensitivities: Array<number | null>, };
 
@@ -611,11 +617,11 @@ sensitivities: Array<number | null>, };
  */
 export type Design = {
 /**
- * What it is called on the page: `changed`, `predicted to first order`, ...
+ * Name on the page: `changed`, `predicted to first order`, ...
  */
 name: string,
 /**
- * How it was found.
+ * Source of the design.
  */
 kind: DesignKind,
 /**
@@ -631,28 +637,28 @@ note: string,
  */
 poses: Array<Curve>,
 /**
- * Its hardpoints in the bodies' frames, as in [`BodyTrack::skeleton`].
+ * Hardpoints in the bodies' frames, as in [`BodyTrack::skeleton`].
  */
 skeletons: Array<Array<[number, number, number]>>,
 /**
- * Its forces, as in [`LoadMark::force`], in the order of [`Payload::loads`].
+ * Forces, as in [`LoadMark::force`], in the order of [`Payload::loads`].
  */
 loads: Array<Curve>,
 /**
- * Its quantities, in the order of [`Payload::quantities`].
+ * Quantities, in the order of [`Payload::quantities`].
  */
 quantities: Array<DesignCurves | null>,
 /**
- * Its values, in the order of [`Payload::values`].
+ * Values, in the order of [`Payload::values`].
  */
 values: Array<number | null>,
 /**
- * Its distance from singular positions.
+ * Distance from singular positions.
  */
 margin: Curve | null, };
 
 /**
- * How another design was found.
+ * Source of another design.
  */
 export type DesignKind = "exact" | "first_order" | "second_order" | "band";
 
@@ -665,16 +671,17 @@ export type DesignCurves = {
  */
 value: Curve,
 /**
- * Its first time derivative.
+ * First time derivative.
  */
 rate: Curve,
 /**
- * Its second time derivative.
+ * Second time derivative.
  */
 accel: Curve, };
 
 /**
- * A case that sweeps two drivers over a grid. Tables have a row for each place of the second driver, with a number for each of the first.
+ * A case that sweeps two drivers over a grid. Tables have a row for each place of the second driver, with a number for
+ * each of the first.
  */
 export type GridMap = {
 /**
@@ -686,11 +693,11 @@ name: string,
  */
 drivers: [GridDriver, GridDriver],
 /**
- * How many positions were reached, and why others were not.
+ * Number of positions were reached, and why others were not.
  */
 note: string,
 /**
- * What is measured.
+ * Measured quantities.
  */
 quantities: Array<GridQuantity>, };
 
@@ -699,15 +706,15 @@ quantities: Array<GridQuantity>, };
  */
 export type GridDriver = {
 /**
- * Its name.
+ * Name.
  */
 name: string,
 /**
- * Its unit.
+ * Unit.
  */
 unit: string,
 /**
- * Where it stands, increasing.
+ * Positions, increasing.
  */
 places: Array<number>, };
 
@@ -716,19 +723,19 @@ places: Array<number>, };
  */
 export type GridQuantity = {
 /**
- * Its name.
+ * Name.
  */
 name: string,
 /**
- * Its unit.
+ * Unit.
  */
 unit: string,
 /**
- * Its values, row by row.
+ * Values, row by row.
  */
 values: Curve,
 /**
- * Its derivatives by design variables; none where they would be too many for a page.
+ * Derivatives by design variables; none where they would be too many for a page.
  */
 sensitivities: Array<GridSensitivity>, };
 
@@ -754,11 +761,11 @@ values: Curve, };
  */
 export type SweepPlot = {
 /**
- * What a point is: `design`, or `posture`.
+ * Meaning of a point: `design`, or `posture`.
  */
 what: string,
 /**
- * So many were solved.
+ * That many were solved.
  */
 designs: number,
 /**
@@ -770,7 +777,7 @@ step: number,
  */
 axes: Array<SweepAxis>,
 /**
- * Sobol's indices, where they were asked for.
+ * Sobol's indices, where they were requested.
  */
 indices: Array<SweepIndex>, };
 
@@ -779,19 +786,19 @@ indices: Array<SweepIndex>, };
  */
 export type SweepAxis = {
 /**
- * Its name, and the case where there are several.
+ * Name, and the case where there are several.
  */
 name: string,
 /**
- * Its unit.
+ * Unit.
  */
 unit: string,
 /**
- * Whether it is a metric.
+ * True if it is a metric.
  */
 metric: boolean,
 /**
- * Its value in each point.
+ * Value in each point.
  */
 values: Curve, };
 
@@ -817,7 +824,7 @@ first: [number, number],
 total: [number, number], };
 
 /**
- * How far the mechanism is from singular: 1 is best, 0 is a singular position.
+ * Margin of the mechanism from singular positions: 1 is best, 0 is a singular position.
  */
 export type Margin = {
 /**
@@ -825,7 +832,7 @@ export type Margin = {
  */
 value: Curve,
 /**
- * What its least value means.
+ * Meaning of its minimum.
  */
 note: string, };
 
@@ -838,7 +845,7 @@ export type Variable = {
  */
 name: string,
 /**
- * What it means, in a few words; may be empty.
+ * Meaning in a few words; may be empty.
  */
 description: string,
 /**
@@ -846,7 +853,7 @@ description: string,
  */
 unit: string,
 /**
- * Whether every joint stays intact under this design change.
+ * True if every joint stays intact under this design change.
  */
 admissibility: Admissibility,
 /**
@@ -870,8 +877,8 @@ tolerance: number | null,
  */
 bounds: [number | null, number | null] | null,
 /**
- * Per body, how it moves with the variable: six numbers per step, dx dy dz in the length unit and a rotation vector in rad,
- * per unit of the variable; empty where that is not shown.
+ * Per body, how it moves with the variable: six numbers per step, dx dy dz in the length unit and a rotation
+ * vector in rad, per unit of the variable; empty where that is not shown.
  */
 shifts: Array<Curve>,
 /**
@@ -880,7 +887,7 @@ shifts: Array<Curve>,
 sensitivities: Array<Sensitivity>, };
 
 /**
- * Whether a mechanism can follow a design variable.
+ * True if a mechanism can follow a design variable.
  */
 export type Admissibility = "admissible" | "reassembled" | "cannot_follow";
 
@@ -893,15 +900,15 @@ export type Arrow = {
  */
 body: number,
 /**
- * Where the hardpoint is.
+ * Position of the hardpoint.
  */
 at: [number, number, number],
 /**
- * How its location changes.
+ * Velocity of its location.
  */
 v: [number, number, number],
 /**
- * How its orientation turns.
+ * Velocity of its orientation.
  */
 turn: [number, number, number], };
 
@@ -926,7 +933,7 @@ rate: Curve,
  */
 accel: Curve,
 /**
- * The same by re-solving a changed design, when that was asked for.
+ * The same by re-solving a changed design, when that was requested.
  */
 fd: FiniteDifference | null, };
 
@@ -935,7 +942,7 @@ fd: FiniteDifference | null, };
  */
 export type FiniteDifference = {
 /**
- * The curves hold every so many of the `n` steps, from the first: they are drawn as a few marks.
+ * The curves hold every that many of the `n` steps, from the first: they are drawn as a few marks.
  */
 stride: number,
 /**

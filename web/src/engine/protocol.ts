@@ -3,7 +3,7 @@
 import type { Design, ModelText, Table } from '../payload'
 
 /**
- * What is asked of the engine.
+ * Request to the engine.
  */
 export type Request = { "ask": "check",
 /**
@@ -15,16 +15,16 @@ model: ModelText, } | { "ask": "open",
  */
 model: ModelText, } | { "ask": "design",
 /**
- * What is changed.
+ * Changed variables.
  */
 change: Array<VariableSetting>,
 /**
- * A design that is solved already: where the changed one cannot be, what is given is as far on the way from this one to it
- * as can be.
+ * A design that is solved already: where the changed one cannot be, what is given is as far on the way from
+ * this one to it as can be.
  */
 from: Array<VariableSetting> | null, } | { "ask": "text",
 /**
- * What is changed.
+ * Changed variables.
  */
 change: Array<VariableSetting>, } | { "ask": "page",
 /**
@@ -40,7 +40,7 @@ model: ModelText, } | { "ask": "optimize",
  */
 model: ModelText,
 /**
- * What is asked besides what the text says.
+ * Options besides those of the text.
  */
 asked: OptimizeRequest, } | { "ask": "optimize_offer",
 /**
@@ -56,20 +56,20 @@ model: ModelText, } | { "ask": "tolerance",
  */
 model: ModelText,
 /**
- * What is asked besides what the text says.
+ * Options besides those of the text.
  */
 asked: ToleranceRequest, };
 
 /**
- * What is asked of an optimisation; all else is as the text has it.
+ * Options of an optimisation; all others are those of the text.
  */
 export type OptimizeRequest = {
 /**
- * What may change, and within what.
+ * Variables that may change, with their bounds.
  */
 variables: Array<VariableChoice>,
 /**
- * What is to be small.
+ * Goals to minimise.
  */
 goals: Array<GoalChoice>,
 /**
@@ -77,7 +77,7 @@ goals: Array<GoalChoice>,
  */
 starts: number,
 /**
- * After so many iterations a search ends.
+ * After that many iterations a search ends.
  */
 iterations: number, };
 
@@ -86,7 +86,7 @@ iterations: number, };
  */
 export type VariableChoice = {
 /**
- * Its name.
+ * Name.
  */
 name: string,
 /**
@@ -99,20 +99,20 @@ bounds: [number, number], };
  */
 export type GoalChoice = {
 /**
- * Its name.
+ * Name.
  */
 metric: string,
 /**
- * How much its unit counts.
+ * Weight of one unit.
  */
 weight: number,
 /**
- * Where it is to be; as small as possible where there is none.
+ * Target; `null` to minimise.
  */
 target: number | null, };
 
 /**
- * What an optimisation of a text may choose, and what the text chooses: `[optimize]`, and what could stand there.
+ * Options of an optimisation, with their values in the text: `[optimize]` and its possible entries.
  */
 export type OptimizeOffer = {
 /**
@@ -124,7 +124,7 @@ variables: Array<SearchVariable>,
  */
 goals: Array<SearchGoal>,
 /**
- * What must hold, a sentence each.
+ * Limits, a sentence each.
  */
 limits: Array<string>,
 /**
@@ -132,7 +132,7 @@ limits: Array<string>,
  */
 starts: number,
 /**
- * After so many iterations a search ends.
+ * After that many iterations a search ends.
  */
 iterations: number, };
 
@@ -141,11 +141,11 @@ iterations: number, };
  */
 export type SearchVariable = {
 /**
- * Its name.
+ * Name.
  */
 name: string,
 /**
- * Its unit.
+ * Unit.
  */
 unit: string,
 /**
@@ -153,7 +153,7 @@ unit: string,
  */
 bounds: [number, number] | null,
 /**
- * Whether the search of the text changes it.
+ * True if the search of the text changes it.
  */
 chosen: boolean, };
 
@@ -162,11 +162,11 @@ chosen: boolean, };
  */
 export type SearchGoal = {
 /**
- * Its name.
+ * Name.
  */
 metric: string,
 /**
- * Its unit.
+ * Unit.
  */
 unit: string,
 /**
@@ -174,40 +174,40 @@ unit: string,
  */
 value: number | null,
 /**
- * How much its unit counts.
+ * Weight of one unit.
  */
 weight: number,
 /**
- * Where it is to be; as small as possible where there is none.
+ * Target; `null` to minimise.
  */
 target: number | null,
 /**
- * Whether its target is a curve, which the text has: then it has none of its own.
+ * True if its target is a curve, which the text has: then it has none of its own.
  */
 curve: boolean,
 /**
- * Whether it is a goal of the text.
+ * True if it is a goal of the text.
  */
 chosen: boolean, };
 
 /**
- * What a tolerance study of a text may choose, and what the text chooses: `[tolerance]`.
+ * Options of a tolerance study, with their values in the text: `[tolerance]`.
  */
 export type ToleranceOffer = {
 /**
- * What may be off, by how much.
+ * Tolerances of the variables.
  */
 tolerances: Array<ToleranceChoice>,
 /**
- * What is looked at.
+ * Names of the metrics.
  */
 metrics: Array<string>,
 /**
- * So many designs are drawn.
+ * Number of designs are drawn.
  */
 samples: number,
 /**
- * What they are drawn from.
+ * Seed of the random numbers.
  */
 seed: number, };
 
@@ -216,7 +216,7 @@ seed: number, };
  */
 export type ToleranceChoice = {
 /**
- * Its name.
+ * Name.
  */
 name: string,
 /**
@@ -224,24 +224,24 @@ name: string,
  */
 tolerance: number,
 /**
- * Its unit.
+ * Unit.
  */
 unit: string,
 /**
- * How it scatters.
+ * Distribution of the deviations.
  */
 distribution: string, };
 
 /**
- * What is asked of a tolerance study; all else is as the text has it.
+ * Options of a tolerance study; all others are those of the text.
  */
 export type ToleranceRequest = {
 /**
- * So many designs are drawn and solved exactly.
+ * Number of designs are drawn and solved exactly.
  */
 samples: number,
 /**
- * What they are drawn from: the same number gives the same designs.
+ * Seed of the random numbers: the same seed gives the same designs.
  */
 seed: number, };
 
@@ -267,13 +267,17 @@ export type DiagnosticMessage = {
  */
 severity: 'error' | 'warning' | 'note',
 /**
- * Its stable code.
+ * Stable code.
  */
 code: string,
 /**
  * The headline, enough alone.
  */
 message: string,
+/**
+ * Name of the file; none for the text that the page shows.
+ */
+file: string | null,
 /**
  * Line of the text, from 1; none where the text as a whole is meant.
  */
@@ -283,11 +287,15 @@ line: number | null,
  */
 column: number | null,
 /**
- * How many characters are meant.
+ * Number of underlined characters.
  */
 length: number | null,
 /**
- * What to write at that place.
+ * Name of the entry that is underlined.
+ */
+element: string | null,
+/**
+ * Text at that place.
  */
 label: string | null,
 /**
@@ -295,12 +303,12 @@ label: string | null,
  */
 notes: Array<string>,
 /**
- * What to do.
+ * Instruction that corrects the problem.
  */
 help: string | null, };
 
 /**
- * What is wrong or worth knowing about a text.
+ * Diagnostics of a text.
  */
 export type CheckReply = {
 /**
@@ -309,7 +317,7 @@ export type CheckReply = {
 messages: Array<DiagnosticMessage>, };
 
 /**
- * What can be done with a model that was opened.
+ * Abilities of a model that was opened.
  */
 export type OpenReply = {
 /**
@@ -321,11 +329,11 @@ cases: Array<string>,
  */
 grips: Array<MovableHardpoint>,
 /**
- * How the frames of the bodies are turned in the drawing, quaternions w x y z, ground first.
+ * Orientations of the bodies' frames in the design configuration, quaternions w x y z, ground first.
  */
 frames: Array<[number, number, number, number]>,
 /**
- * Why its motion ends early, where it does.
+ * Reason of an early end of its motion.
  */
 stop: DiagnosticMessage | null, };
 
@@ -334,20 +342,20 @@ stop: DiagnosticMessage | null, };
  */
 export type MovableHardpoint = {
 /**
- * Its name.
+ * Name.
  */
 name: string,
 /**
- * Where it is in the drawing, in the model's unit.
+ * Position in the design configuration, in the model's unit.
  */
 place: [number, number, number],
 /**
- * What its coordinates are varied by.
+ * Variables of its coordinates.
  */
 coordinates: [Coordinate, Coordinate, Coordinate], };
 
 /**
- * What a coordinate of a hardpoint is varied by.
+ * Variable of a coordinate of a hardpoint.
  */
 export type Coordinate = {
 /**
@@ -368,7 +376,7 @@ bounds: [number, number] | null, };
  */
 export type DesignReply = {
 /**
- * The part of the way to the design that was asked for, 0 to 1: 1 where it is that one.
+ * The part of the way to the design that was requested, 0 to 1: 1 where it is that one.
  */
 part: number,
 /**
@@ -376,7 +384,7 @@ part: number,
  */
 design: Design | null,
 /**
- * Why it is not the one asked for, or why its motion ends early.
+ * Reason why it is not the requested design, or of an early end of its motion.
  */
 why: DiagnosticMessage | null, };
 
@@ -390,15 +398,15 @@ export type Text = {
 text: string, };
 
 /**
- * What a study came to.
+ * Result of a study.
  */
 export type StudyReply = {
 /**
- * How it ended, in a sentence.
+ * Sentence about its end.
  */
 message: string,
 /**
- * What was found.
+ * Tables of the result.
  */
 tables: Array<Table>,
 /**
@@ -411,7 +419,7 @@ change: Array<VariableSetting> | null,
 text: string | null, };
 
 /**
- * Why there is no answer.
+ * Reason why there is no answer.
  */
 export type ErrorReply = {
 /**
@@ -420,11 +428,11 @@ export type ErrorReply = {
 failed: Array<DiagnosticMessage>, };
 
 /**
- * How far a study is.
+ * Progress of a study.
  */
 export type ProgressReply = {
 /**
- * So much is done ...
+ * Amount that is done ...
  */
 done: number,
 /**
@@ -432,10 +440,10 @@ done: number,
  */
 total: number | null,
 /**
- * What has happened, in a line.
+ * Line about the last event.
  */
 line: string,
 /**
- * The design that the study stands at.
+ * The design that the study is at.
  */
 change: Array<VariableSetting> | null, };
