@@ -26,7 +26,7 @@ use crate::meter::{Listener, Meter};
 use crate::outcome::Outcome;
 use crate::text;
 
-/// Whom a session indicates what it does.
+/// Receiver of a session's reports.
 enum Audience {
     /// Somebody who reads.
     Terminal,
@@ -148,7 +148,7 @@ impl Session {
         self.started.elapsed().as_secs_f64()
     }
 
-    /// Reads the model, or indicates what is wrong with it.
+    /// Reads the model, or reports what is wrong with it.
     pub fn read(&self, path: &Path) -> Result<ModelFile, Outcome> {
         hardpoint_file::read(path).map_err(|error: ReadError| {
             self.not_read(error.diagnostics());
@@ -366,7 +366,7 @@ impl Session {
         }
     }
 
-    /// Plans the solution, or indicates why the mechanism cannot be driven.
+    /// Plans the solution, or reports why the mechanism cannot be driven.
     pub fn plan<'m>(&self, file: &'m ModelFile, formulation: Formulation) -> Result<Analysis<'m>, Outcome> {
         let analysis = Analysis::with(&file.model, formulation);
         let analysis = analysis.map_err(|fault| self.cannot_be_driven(file, &fault))?;
@@ -444,7 +444,7 @@ impl Session {
         Ok(gathering.end(&whole))
     }
 
-    /// Makes the motion of a model short enough to be studied as a whole, by leaving out output times, and indicates
+    /// Makes the motion of a model short enough to be studied as a whole, by leaving out output times, and reports
     /// that.
     pub fn fits(&self, file: &mut ModelFile) {
         let most = usize::max(STUDY_BYTES / Footprint::of(&file.model, true).bytes().max(1), 2);

@@ -71,7 +71,7 @@ struct Series {
 }
 
 impl Contents<'_> {
-    /// Writes the workbook, and indicates what is not in it.
+    /// Writes the workbook, and reports what is not in it.
     ///
     /// # Errors
     /// Where `out` cannot be written.

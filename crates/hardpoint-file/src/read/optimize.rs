@@ -28,7 +28,7 @@ pub(crate) const OPTIMIZE: Table = table! {
     may "min_margin": NUMBER, "0.02";
     /// From how many designs the search starts: that of the file, and others spread within the bounds.
     or("1") "starts": Shape::Count(MOST_STARTS), "8";
-    /// After that many iterations a search ends.
+    /// Maximum number of iterations of a search.
     or("100") "max_iterations": Shape::Count(MOST_ITERATIONS), "100";
 };
 pub(super) const GOAL: Table = table! {

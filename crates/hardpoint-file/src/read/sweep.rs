@@ -28,11 +28,11 @@ pub(crate) const SWEEP: Table = table! {
     may "variables": Shape::Entries("a design variable", &ENTRY), "{ lca_front_z = [-5, 5], radius = { from = 90, to = 110, levels = 5 } }";
     /// Method that chooses the designs.
     or("\"sobol\"") "method": METHOD, "\"factorial\"";
-    /// Number of designs; with `method = "sobol_indices"` that many pairs of designs.
+    /// Number of designs; with `method = "sobol_indices"` the number of pairs of designs.
     or("1000") "samples": Shape::Count(MOST_SAMPLES), "100000";
     /// Seed of the random numbers: the same seed gives the same designs.
     or("1") "seed": Shape::Count(u32::MAX), "7";
-    /// With `method = "factorial"`: that many values of every variable that says nothing else.
+    /// With `method = "factorial"`: default number of values of a variable.
     or("3") "levels": Shape::Count(MOST_LEVELS), "5";
     /// The designs, in place of all of these: a CSV file in the model's folder whose first line names design variables.
     may "designs": Shape::Text, "\"designs.csv\"";
@@ -62,7 +62,7 @@ pub(super) const RANGE: Table = table! {
     may "from": NUMBER, "-5";
     /// Upper end. Default: its upper bound.
     may "to": NUMBER, "5";
-    /// With `method = "factorial"`: that many values, both ends among them. Default: as `[sweep]` says.
+    /// With `method = "factorial"`: number of values, including both ends. Default: that of `[sweep]`.
     may "levels": Shape::Count(MOST_LEVELS), "5";
 };
 /// Lists of designs.

@@ -28,7 +28,7 @@ pub(crate) const TOLERANCE: Table = table! {
     may "variables": Shape::Entries("a design variable", &ENTRY), "{ B = 0.1, C_x = { tolerance = 0.2, distribution = \"uniform\" } }";
     /// Default distribution of deviations.
     or("\"normal\"") "distribution": DISTRIBUTION, "\"uniform\"";
-    /// A tolerance is that many standard deviations of the normal distribution.
+    /// Number of standard deviations of the normal distribution in a tolerance.
     or("3.0") "sigmas": NUMBER, "2";
     /// Correlations of normal variables.
     may "correlations": Shape::Entries("a correlation", &Shape::Table(&CORRELATION)), "{ jig = { between = [\"left_z\", \"right_z\"], coefficient = 0.9 } }";
@@ -44,8 +44,7 @@ pub(crate) const TOLERANCE: Table = table! {
     or("1") "seed": Shape::Count(u32::MAX), "7";
     /// The loosest tolerances are sought that keep the limits, of variables that have a `cost`.
     may "allocate": Shape::Words(&ALLOCATE), "\"rss\"";
-    /// With `allocate = "rss"`: that many standard deviations have to fit between a metric in the design configuration
-    /// and its limit.
+    /// With `allocate = "rss"`: number of standard deviations between the nominal value of a metric and its limit.
     or("3.0") "required_sigmas": NUMBER, "4.5";
 };
 const DISTRIBUTION: Shape = Shape::Words(&[
@@ -69,7 +68,7 @@ pub(super) const ENTRY_TABLE: Table = table! {
     may "tolerance": NUMBER, "0.1";
     /// Distribution of the deviation. Default: that of `[tolerance]`.
     may "distribution": DISTRIBUTION, "\"uniform\"";
-    /// The tolerance is that many standard deviations. Default: as `[tolerance]` says.
+    /// Number of standard deviations in the tolerance. Default: that of `[tolerance]`.
     may "sigmas": NUMBER, "2";
     /// Relative cost of the tolerance: `cost` over the tolerance. Without it `allocate` does not change the tolerance.
     may "cost": NUMBER, "5";

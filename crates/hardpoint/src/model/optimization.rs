@@ -16,7 +16,7 @@ pub struct OptimizationSettings {
     /// From how many designs the search starts: the one in the design configuration, and others spread within the
     /// bounds.
     pub starts: usize,
-    /// After that many iterations a search ends.
+    /// Maximum number of iterations of a search.
     pub iterations: usize,
 }
 
