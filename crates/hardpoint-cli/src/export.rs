@@ -39,7 +39,10 @@ fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Re
         None => {
             let name = to.to_string_lossy();
             let why = || {
-                format!("`-o {name}`: the file name does not identify a format; give one with `--format`: {}", known())
+                format!(
+                    "`-o {name}`: the file name does not identify a format; give one with `--format`: {}",
+                    known()
+                )
             };
             Format::of(&name).ok_or_else(|| session.misunderstood(&why()))?
         }

@@ -667,9 +667,6 @@ fn measures_that_all_leaves_out_are_named_with_the_reason() {
     let file = parse(&text, "four-bar.toml").unwrap_or_else(|e| panic!("{e}"));
     assert!(file.model.measure("w.bump_steer").is_none());
     let text = file.render(&file.remarks[0], false);
-    assert!(
-        text.contains("`bump` is missing: 2 drivers") && text.contains("`bump_steer`"),
-        "{text}"
-    );
+    assert!(text.contains("`bump` is missing: 2 drivers") && text.contains("`bump_steer`"), "{text}");
     assert!(text.contains("= help: "), "{text}");
 }
