@@ -31,7 +31,7 @@ class _Jacobian(casadi.Callback):
 
 
 class MechanismCallback(casadi.Callback):
-    """The same function for CasADi's expressions and solvers, with the exact Jacobian of the engine. Keep the object as long as
+    """Function for CasADi's expressions and solvers, with the exact Jacobian of the engine. Keep the object as long as
     expressions use it."""
 
     def __init__(self, of: Function, name: str = "mechanism", options: dict | None = None):

@@ -56,7 +56,7 @@ Columns = Mapping[str, Any]
 PART = 8192
 """That many designs are a part, where nothing is said."""
 BLOCK = 512
-"""Designs are solved in blocks of that many; parts begin with one, so that their last bits do not depend on how they are cut."""
+"""Number of designs in a block; parts begin with a block, so that their last bits do not depend on the partition."""
 AHEAD = 3
 """That many tasks are under way for each thread of the workers: one is solved, the others wait beside it."""
 PATIENCE = 600.0
@@ -157,7 +157,7 @@ def multi_start(
 
 
 def opened(store: Store, storage_options: Mapping[str, Any] | None = None) -> Stored:
-    """What `sweep` or `monte_carlo` has left at a store."""
+    """Results of `sweep` or `monte_carlo` in a store."""
     fs, root = _at(store, storage_options)
     record = _record(fs, root)
     if record is None or not record["complete"]:
@@ -173,15 +173,15 @@ class Stored:
         self._fs = fs
         self._record = record
         self.store: str = fs.unstrip_protocol(root)
-        """Where they are, as a URL."""
+        """Location as a URL."""
         firsts = range(0, record["designs"], record["sweep"]["part"])
         self._files = {table: tuple(_path(root, table, first) for first in firsts) for table in record["tables"]}
         self.parts: tuple[str, ...] = self._files["designs"]
         """The files of designs, in order."""
         self.designs: int = record["designs"]
-        """How many designs there are."""
+        """Number of designs."""
         self.failed: int = record["failed"]
-        """How many of them do not move to their end; the column `failed` says why."""
+        """Number of designs that do not move to their end; the column `failed` has the reasons."""
 
     def __len__(self) -> int:
         return self.designs
@@ -202,7 +202,7 @@ class Stored:
         return pyarrow.concat_tables(found)
 
     def dataset(self, table: str = "designs") -> pyarrow.dataset.Dataset:
-        """The same as a data set of Arrow, from which columns and rows are read as they are needed."""
+        """Arrow data set, from which columns and rows are read on demand."""
         return pyarrow.dataset.dataset(list(self._of(table)), filesystem=self._fs, format="parquet")
 
     def _of(self, table: str) -> tuple[str, ...]:
@@ -221,7 +221,7 @@ def _plain(value: Any) -> Any:
 
 
 class _Work:
-    """What is solved. It travels once to each worker, and is planned once there."""
+    """Task data. They are sent to each worker once, and planned there once."""
 
     study: str
 
@@ -255,7 +255,7 @@ class _Work:
         return hash(self.digest)
 
     def last(self, first: int) -> int:
-        """Where the part ends that begins there."""
+        """End of the part that begins there."""
         return min(first + self.part, self.count)
 
     def tables(self) -> tuple[str, ...]:
@@ -263,7 +263,7 @@ class _Work:
         return ("designs",)
 
     def plan(self) -> Any:
-        """What is needed for any part."""
+        """Data for any part."""
 
     def solve(self, plan: Any, first: int, last: int) -> dict[str, Columns]:
         """The tables of some designs."""
@@ -447,7 +447,7 @@ def _next(ended: SimpleQueue[Future], under_way: Mapping[Future, int]) -> Future
 
 
 def _result(future: Future, named: str) -> tuple[Any] | None:
-    """What a task has found; nothing if it cannot be had now: its worker was lost meanwhile, or the scheduler does not answer."""
+    """Result of a task; None if it is not available now: its worker was lost, or the scheduler does not answer."""
     try:
         return (future.result(timeout=ANSWER),)
     except KilledWorker as error:
@@ -500,7 +500,7 @@ class _Watch:
             )
 
     def _at_work(self) -> tuple[int | None, bool]:
-        """How many workers there are, if the scheduler answers, and whether any of them works at a task, as they last said."""
+        """Number of workers, if the scheduler answers, and whether any of them works at a task, by their last report."""
         try:
             known = self._client.sync(self._client.scheduler.identity, callback_timeout=ANSWER)
         except (OSError, TimeoutError):
@@ -510,7 +510,7 @@ class _Watch:
 
 
 class _Part(NamedTuple):
-    """What each task is about."""
+    """Subject of each task."""
 
     work: _Work
     fs: fsspec.AbstractFileSystem
@@ -585,7 +585,7 @@ def _json(record: dict) -> bytes:
 
 
 def _record(fs: fsspec.AbstractFileSystem, root: str) -> dict | None:
-    """What the store says of itself."""
+    """Metadata of the store."""
     path = f"{root}/{RECORD}"
     try:
         record = json.loads(fs.cat_file(path))
@@ -690,7 +690,7 @@ def _told(metadata: pyarrow.parquet.FileMetaData) -> dict:
 
 
 def _known(fs: fsspec.AbstractFileSystem, path: str) -> dict:
-    """What a part says of itself; nothing where there is none, or no whole one."""
+    """Metadata of a part; None if there is none, or an incomplete one."""
     try:
         with fs.open(path, "rb") as file:
             return _told(pyarrow.parquet.read_metadata(file))

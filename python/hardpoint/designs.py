@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Designs:
-    """What was kept of many designs. Where a design cannot be moved to its end (`stops`), and by variables that the mechanism cannot
+    """Stored results of many designs. Where a design cannot be moved to its end (`stops`), and by variables that the mechanism cannot
     follow, numbers are NaN. Arrays are read-only: to change numbers, copy them."""
 
     def __init__(self, model: Model, case: int, rows: np.ndarray, outputs: list[str], order: int, at: np.ndarray, found: dict, with_d: bool):

@@ -1,4 +1,4 @@
-"""How things look in a notebook."""
+"""Display in notebooks."""
 
 from __future__ import annotations
 

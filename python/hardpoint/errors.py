@@ -1,4 +1,4 @@
-"""What can go wrong: one class for each kind, all of them with the diagnostics of the command line."""
+"""Errors: one class for each kind, all with the diagnostics of the command line."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Diagnostic:
     severity: str
     """`error`, `warning` or `note`."""
     code: str | None
-    """Its code, `HP0501`; docs/diagnostics.md lists them all."""
+    """Code, such as `HP0501`; docs/diagnostics.md lists all codes."""
     message: str
     element: str | None
     """The name of the element that it is about."""
@@ -31,7 +31,7 @@ class Diagnostic:
     """Text at the underlined place."""
     notes: tuple[str, ...]
     help: str | None
-    """What to do about it."""
+    """Instruction that corrects the problem."""
     rendered: str
     """As the command line shows it, with its place in the text."""
 
@@ -103,11 +103,11 @@ class StudyError(HardpointError):
 
 
 class UsageError(HardpointError, ValueError):
-    """What was asked makes no sense: a name that does not exist, an array of the wrong shape."""
+    """Invalid request: a name that does not exist, an array of the wrong shape."""
 
 
 class HardpointWarning(UserWarning):
-    """What the engine has to tell although nothing is wrong."""
+    """Warnings and notes of the engine."""
 
 
 def unknown(what: str, name: str, known) -> UsageError:

@@ -12,7 +12,7 @@ from .model import Model
 
 
 STEP = 1e-5
-"""Of differences, as a part of the size of the mechanism or of a radian: the cube root of round-off."""
+"""Step of differences relative to the size of the mechanism or to a radian: the cube root of round-off."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Part:
     is_metric: bool
     unit: str
     place: slice
-    """Its numbers among those of the function."""
+    """Indices of its values in those of the function."""
 
 
 class Function:
@@ -116,11 +116,11 @@ class Function:
         return self._solved(x, True)[1].copy()
 
     def value(self, x) -> float:
-        """Of a function of one number, that."""
+        """Value of a function of one number."""
         return float(self._one(self(x))[0])
 
     def gradient(self, x) -> np.ndarray:
-        """Of a function of one number, its gradient."""
+        """Gradient of a function of one number."""
         return self._one(self.jacobian(x))[0]
 
     def _one(self, found: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ from .function import Function
 
 
 def function(of: Function) -> Callable[[jax.Array], jax.Array]:
-    """The same function for `jax.jit`, `jax.grad`, `jax.jacfwd`, `jax.jacrev` and `jax.vmap`, with the exact derivatives of the engine in
+    """Function for `jax.jit`, `jax.grad`, `jax.jacfwd`, `jax.jacrev` and `jax.vmap`, with the exact derivatives of the engine in
     both directions. It takes and gives an array of double precision, as `of` does; `jax.config.update("jax_enable_x64", True)` is
     needed, since single precision is not enough for a mechanism.
     """

@@ -23,28 +23,28 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 Design = Union[Mapping[str, float], "ArrayLike", None]
-"""A design: values by the names of design variables, or all of them in order. What is left out, and NaN, stays in the design configuration."""
+"""A design: values by the names of design variables, or all of them in order. Missing values, and NaN, are nominal."""
 Progress = Union[Callable[[int, int], Any], bool, None]
 """Is reported how much is done of how much; `True` writes it to the standard error."""
 
 MOST_RANKED = 200
-"""Of more hardpoints than these the coordinates are no variables of a what-if."""
+"""Maximum number of hardpoints whose coordinates are variables of a what-if."""
 
 ORDERS = {0: 0, 1: 1, 2: 2, "value": 0, "rate": 1, "acceleration": 2}
 
 
 @dataclass(frozen=True)
 class Variable:
-    """A design variable. Of a parameter its value is the parameter's own, of all others it is a change: zero in the design configuration."""
+    """A design variable. The value of a parameter is its own; for all others it is a change, zero in the nominal design."""
 
     name: str
     unit: str
     drawn: float
-    """Its value in the design configuration."""
+    """Value in the nominal design."""
     bounds: tuple[float, float] | None
     """Between which values it may lie."""
     typical: float | None
-    """How large a change of it is usual."""
+    """Typical size of a change."""
     tolerance: float | None
     """By how much it may be off when it is made, either way."""
     is_parameter: bool
@@ -62,11 +62,11 @@ class Output:
     units: tuple[str, ...]
     """Their units."""
     by_position: bool
-    """Whether it follows from the position alone: then it has second derivatives by the design."""
+    """True if it follows from the position alone: then it has second derivatives by the design."""
 
 
 class Model:
-    """A mechanism that has been read, checked and planned.
+    """A mechanism that was read and checked, with its plan of solution.
 
     A model never changes; all methods may be called from several threads at once, and long ones leave the interpreter free.
     Models pickle. A model with cases is requested one of them, `model.case("bump").run()` or `model.run(case="bump")`; studies take
@@ -236,7 +236,7 @@ class Model:
     # Studies
 
     def what_if(self, design: Design, *, case: str | None = None) -> Study:
-        """What a changed design does to every measure and metric: exactly, and as predicted to first and second order.
+        """Effect of a changed design on every measure and metric: exact, and predicted to first and second order.
 
         As on the command line, coordinates of hardpoints are variables too: `{"tie_rod_outer.z": 2.0}`.
         """
@@ -246,7 +246,7 @@ class Model:
 
     @cached_property
     def _whole(self) -> Model:
-        """The model with a variable for every coordinate, unless there are that many that nobody reads what each does."""
+        """The model with a variable for every coordinate, up to a maximum number."""
         return self.with_coordinates() if len(self.hardpoints) <= MOST_RANKED else self
 
     def verify(self, *, case: str | None = None, progress: Progress = None) -> Study:
@@ -254,7 +254,7 @@ class Model:
         return outcome(self, self._native.verify(self._index(case), listener(progress)))
 
     def validity(self, *, case: str | None = None) -> list[dict]:
-        """How far each sensitivity can be trusted: up to which change the design follows it."""
+        """Linear range of each sensitivity: the change up to which the design follows it."""
         return json.loads(self._native.validity(self._index(case)))
 
     def optimize(
@@ -273,7 +273,7 @@ class Model:
         workers: int | None = None,
         progress: Progress = None,
     ) -> Study:
-        """What the tolerances of the design variables come to; `allocate` (`rss`, `worst_case`) seeks the loosest that keep the limits."""
+        """Tolerance study of the design variables; `allocate` (`rss`, `worst_case`) finds the loosest tolerances that keep the limits."""
         return outcome(self, self._native.tolerance(samples, seed, allocate, workers, listener(progress)))
 
     def calibrate(
@@ -397,7 +397,7 @@ class Model:
 
 
 def listener(progress: Progress) -> Callable[[int, int], Any] | None:
-    """What is informed of progress."""
+    """Receiver of progress reports."""
     return display.counter() if progress is True else progress or None
 
 

@@ -29,9 +29,9 @@ class Metric:
     time: float | None
     """When it is taken, s; `None` for what is taken of the whole curve."""
     error: float | None
-    """How far interpolation between output times may be off."""
+    """Error of the interpolation between output times."""
     sensitivities: dict[str, float]
-    """Its derivatives by the design variables that the mechanism follows."""
+    """Derivatives by the design variables that the mechanism follows."""
 
 
 class Body:
@@ -56,7 +56,7 @@ class BodySensitivity:
         self.name = name
         self.position = numbers[:, 0:3]
         self.rotation = numbers[:, 3:6]
-        """Of the orientation, as a rotation vector: dA/db = skew(rotation) A."""
+        """Derivative of the orientation, as a rotation vector: dA/db = skew(rotation) A."""
         self.velocity = numbers[:, 6:9]
         self.angular_velocity = numbers[:, 9:12]
         self.acceleration = numbers[:, 12:15]
@@ -74,7 +74,7 @@ class Run:
         self._by_order: dict[int, np.ndarray] = {}
         stop = native.stop
         self.stop: Diagnostic | None = diagnostics(stop)[0] if stop else None
-        """Why the motion ends before the last output time."""
+        """Reason why the motion ends before the last output time."""
 
     @property
     def case(self) -> str | None:
@@ -164,7 +164,7 @@ class Run:
         return Body(name, self._native.body(self._body(name)))
 
     def body_sensitivity(self, name: str, variable: str) -> BodySensitivity:
-        """Its derivatives by a design variable."""
+        """Derivatives by a design variable."""
         by = self._follow(variable)
         if not self._followed:
             raise UsageError.saying("the run was requested no sensitivities; leave `sensitivities=False` out")
@@ -198,11 +198,11 @@ class Run:
 
     @cached_property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What there is to tell of the motion: variables that cannot be followed or change nothing, positions close to a dead point."""
+        """Diagnostics of the motion: variables that cannot be followed or change nothing, positions near a dead point."""
         return diagnostics(self._native.diagnostics())
 
     def summary(self) -> dict:
-        """What `summary.json` of the command line has."""
+        """Contents of the command's `summary.json`."""
         return json.loads(self._native.summary())
 
     def page(self) -> display.Page:
@@ -228,7 +228,7 @@ class Run:
         return pandas.DataFrame(self._columns())
 
     def to_arrow(self):
-        """The same as a table of Arrow, the unit of each column in its metadata."""
+        """Arrow table, with the unit of each column in its metadata."""
         import pyarrow
 
         fields, arrays = [pyarrow.field("time", pyarrow.float64(), metadata={"unit": "s"})], [pyarrow.array(self.times)]

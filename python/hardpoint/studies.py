@@ -1,4 +1,4 @@
-"""What studies come to."""
+"""Results of studies."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ class Study:
         self.design: dict[str, float] | None = dict(zip(names, exact)) if exact else None
         """The design that was found: the value of every design variable."""
         self.rounded: dict[str, float] | None = dict(zip(names, rounded)) if rounded else None
-        """The same with numbers of few digits, as it is saved."""
+        """Design with rounded numbers, as it is saved."""
 
     @property
     def status(self) -> str | None:
-        """How it ended."""
+        """Status at the end."""
         return self.facts.get("status")
 
     @property
     def message(self) -> str | None:
-        """The same in words, and what to do."""
+        """Status in words, with an instruction."""
         return self.facts.get("message")
 
     def text(self) -> str:
