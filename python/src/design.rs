@@ -25,7 +25,7 @@ pub(crate) fn changes(file: &ModelFile, values: &[f64]) -> Result<Vec<f64>, Fail
             let name = &model.variables[k].name;
             return Err(Failure::Misunderstood(format!("the value of `{name}` is infinite")));
         }
-        Ok(file.units.to_si(model.variables[k].quantity, *value) - model.drawn_value(variable))
+        Ok(file.units.to_si(model.variables[k].quantity, *value) - model.nominal_value(variable))
     };
     values.iter().enumerate().map(change).collect()
 }
@@ -38,5 +38,5 @@ pub(crate) fn drawn(file: &ModelFile, variable: VariableId) -> f64 {
 /// The value that a change makes.
 pub(crate) fn shown(file: &ModelFile, variable: VariableId, change: f64) -> f64 {
     let quantity = file.model.variables[variable.0].quantity;
-    file.units.from_si(quantity, change + file.model.drawn_value(variable))
+    file.units.from_si(quantity, change + file.model.nominal_value(variable))
 }

@@ -138,7 +138,7 @@ impl Model {
         let body = |b: hardpoint::model::BodyId| model.bodies[b.0].name.as_str();
         let variables = model.variables.iter().enumerate().map(|(k, v)| {
             let drawn = drawn(file, VariableId(k));
-            let shown = |b: f64| units.from_si(v.quantity, b + model.drawn_value(VariableId(k)));
+            let shown = |b: f64| units.from_si(v.quantity, b + model.nominal_value(VariableId(k)));
             let is_parameter = v.changes.iter().any(|c| matches!(c, Change::Parameter(_)));
             json!({
                 "name": v.name,

@@ -83,7 +83,9 @@ impl Model {
             let variable = VariableId(k);
             let change = |x: f64| match x == drawn(&self.whole, variable) {
                 true => 0.0,
-                false => self.whole.units.to_si(model.variables[k].quantity, x) - model.drawn_value(variable),
+                false => {
+                    self.whole.units.to_si(model.variables[k].quantity, x) - model.nominal_value(variable)
+                }
             };
             let levels = asked
                 .levels

@@ -181,7 +181,7 @@ fn range(session: &Session, file: &ModelFile, text: &str, levels: usize) -> Resu
         return Err(refuse("the range does not rise; give the lower end first"));
     }
     let quantity = file.model.variables[k].quantity;
-    let [low, high] = [from, to].map(|x| file.units.to_si(quantity, x) - file.model.drawn_value(variable));
+    let [low, high] = [from, to].map(|x| file.units.to_si(quantity, x) - file.model.nominal_value(variable));
     Ok(SweepRange { variable, low, high, levels })
 }
 

@@ -146,7 +146,7 @@ impl Contents<'_> {
         page.table("Warnings", &[], notes)?;
         let variable = |(k, v): (usize, &VariableFact)| {
             let value =
-                self.file.units.from_si(model.variables[k].quantity, model.drawn_value(VariableId(k)));
+                self.file.units.from_si(model.variables[k].quantity, model.nominal_value(VariableId(k)));
             let unit = if v.unit == "1" { "" } else { &v.unit };
             vec![
                 v.name.as_str().into(),

@@ -168,7 +168,7 @@ impl ModelFile {
         }
         let in_si = |row: &Vec<f64>| {
             let value = |(v, x): (&VariableId, &f64)| {
-                self.units.to_si(self.model.variables[v.0].quantity, *x) - self.model.drawn_value(*v)
+                self.units.to_si(self.model.variables[v.0].quantity, *x) - self.model.nominal_value(*v)
             };
             variables.iter().zip(row).map(value).collect()
         };

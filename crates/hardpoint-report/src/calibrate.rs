@@ -341,7 +341,7 @@ impl CalibrateFacts {
             let v = found.variables[k];
             let variable = &model.variables[v.0];
             let shown = |x: f64| units.from_si(variable.quantity, x);
-            let start = model.drawn_value(v);
+            let start = model.nominal_value(v);
             CalibratedVariable {
                 name: variable.name.clone(),
                 unit: variable_unit(model, units, variable),

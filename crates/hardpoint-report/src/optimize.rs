@@ -451,7 +451,7 @@ impl OptimizeFacts {
             }
             OptimizationStatus::Interrupted => "interrupted: the best design so far".into(),
             OptimizationStatus::NoStart => {
-                let drawn = found.drawn_refused.as_ref();
+                let drawn = found.nominal_failure.as_ref();
                 let case = drawn.and_then(|r| case_name(model, r.motion?));
                 let case = case.map_or(String::new(), |case| format!("case `{case}`: "));
                 let why = drawn.map_or("", |r| r.why.as_str());

@@ -203,7 +203,7 @@ impl SweepInputs<'_> {
     /// A change of a variable as the file writes it: of a parameter its value.
     fn shown(&self, variable: VariableId, change: f64) -> f64 {
         let quantity = self.model().variables[variable.0].quantity;
-        self.units().from_si(quantity, change + self.model().drawn_value(variable))
+        self.units().from_si(quantity, change + self.model().nominal_value(variable))
     }
 
     /// The swept variables of a design, as the file writes them.

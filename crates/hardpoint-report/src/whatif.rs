@@ -153,11 +153,11 @@ impl WhatIfFacts {
         };
         for (m, output) in measured.outputs.iter().enumerate() {
             let shown = |x: f64| units.from_si(output.dimension, x);
-            let foresight = what_if.foresight(m);
+            let prediction_quality = what_if.prediction_quality(m);
             let steps = || 0..what_if.len();
-            let foreseen = |order: usize| match foresight {
+            let foreseen = |order: usize| match prediction_quality {
                 Some(f) if f.errors[order].is_some() => {
-                    steps().map(|k| shown(what_if.foreseen(k, m)[order])).collect()
+                    steps().map(|k| shown(what_if.predicted(k, m)[order])).collect()
                 }
                 _ => Vec::new(),
             };
@@ -169,9 +169,9 @@ impl WhatIfFacts {
                 unit: unit(units, output.dimension),
                 change: change.map(|(x, _)| shown(x)),
                 time: change.map(|(_, k)| what_if.today.motion.times[k]),
-                errors: foresight.map(|f| f.errors.map(|e| e.map(shown))),
-                linear_up_to: foresight.and_then(|f| f.linear_up_to).filter(|x| x.is_finite()),
-                exactly_linear: foresight.and_then(|f| f.linear_up_to).is_some_and(f64::is_infinite),
+                errors: prediction_quality.map(|f| f.errors.map(|e| e.map(shown))),
+                linear_up_to: prediction_quality.and_then(|f| f.linear_up_to).filter(|x| x.is_finite()),
+                exactly_linear: prediction_quality.and_then(|f| f.linear_up_to).is_some_and(f64::is_infinite),
                 today: steps().map(|k| shown(measured.value(k, m)[0])).collect(),
                 first: foreseen(0),
                 second: foreseen(1),

@@ -26,7 +26,9 @@ pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, Refusal> {
     let variable = |(k, v): (usize, &hardpoint::model::DesignVariable)| SearchVariable {
         name: v.name.clone(),
         unit: variable_unit(model, units, v),
-        bounds: v.bounds.map(|b| b.map(|x| units.from_si(v.quantity, x + model.drawn_value(VariableId(k))))),
+        bounds: v
+            .bounds
+            .map(|b| b.map(|x| units.from_si(v.quantity, x + model.nominal_value(VariableId(k))))),
         chosen: asked.is_some_and(|asked| asked.variables.contains(&VariableId(k))),
     };
     let goal = |(k, metric): (usize, &hardpoint::model::Metric)| {
@@ -118,7 +120,7 @@ pub(crate) fn asked(
     for searched in &request.variables {
         let v =
             file.model.variable(&searched.name).ok_or_else(|| unknown("design variable", &searched.name))?;
-        let drawn = file.model.drawn_value(v);
+        let drawn = file.model.nominal_value(v);
         let variable = &mut file.model.variables[v.0];
         variable.bounds = Some(searched.bounds.map(|x| units.to_si(variable.quantity, x) - drawn));
         asked.variables.push(v);

@@ -125,12 +125,13 @@ impl Reader<'_> {
                 let wheel = raw.draft.wheels.iter().find(|w| Some(&w.name) == name.as_ref());
                 wheel.is_some_and(|w| w.bump.is_some() || alone)
             });
-            let possible =
-                |m: &AxleMeasure| (has_wheelbase || !m.needs_wheelbase()) && (moves || !m.goes_by_driver());
+            let possible = |m: &AxleMeasure| {
+                (has_wheelbase || !m.needs_wheelbase()) && (moves || !m.depends_on_driver())
+            };
             let possible: Vec<_> = AxleMeasure::ALL.iter().copied().filter(possible).collect();
             let lacking = |m: &AxleMeasure| match m {
                 m if m.needs_wheelbase() && !has_wheelbase => Some("`[vehicle]` has no `wheelbase`"),
-                m if m.goes_by_driver() && !moves => Some("not both wheels have a `bump` driver"),
+                m if m.depends_on_driver() && !moves => Some("not both wheels have a `bump` driver"),
                 _ => None,
             };
             self.left_out(&fields, AxleMeasure::ALL, AxleMeasure::name, lacking);
@@ -273,7 +274,7 @@ impl Reader<'_> {
             _ => true,
         };
         let has_driver =
-            |need: WheelRequirement| !need.goes_by_driver() || need == WheelRequirement::Steer || moves;
+            |need: WheelRequirement| !need.depends_on_driver() || need == WheelRequirement::Steer || moves;
         let is_at = |need: WheelRequirement| need.end().is_none_or(|at| end == Some(at.name()));
         let possible = |m: &WheelMeasure| {
             let need = m.needs();

@@ -206,7 +206,7 @@ fn limits_that_contradict_each_other_and_designs_that_lock_are_told() {
     let file = model("four_bar_inverse.toml");
     let found = searched(&file, &OptimizationSettings { margin: Some(0.99), ..asked(&file) });
     assert_eq!((found.best, found.searches[0].status), (None, OptimizationStatus::NoStart));
-    assert!(found.drawn_refused.unwrap().why.contains("margin"));
+    assert!(found.nominal_failure.unwrap().why.contains("margin"));
 }
 
 /// A restart from an optimum gains less than this part of the objective.

@@ -231,7 +231,7 @@ fn rates_and_accelerations_agree_with_differences_over_time() {
         file.model.times = at.iter().flat_map(|t| [t - H, *t, t + H]).collect();
         let solution = solved(&file);
         for what in
-            WheelMeasure::ALL.iter().filter(|m| !m.needs().goes_by_driver() && !is_left_out(name, **m))
+            WheelMeasure::ALL.iter().filter(|m| !m.needs().depends_on_driver() && !is_left_out(name, **m))
         {
             let m = solution.measured.index(&format!("w.{}", what.name())).unwrap();
             let value = |k: usize| solution.measured.value(k, m);
@@ -296,7 +296,7 @@ fn the_wheels_of_an_axle_are_each_others_mirror_images_half_a_period_later() {
     let file = parsed(&(text("rack_steering") + AXLE));
     let solution = solved(&file);
     let half = (solution.motion.len() - 1) / 2;
-    let is_there = |m: &&WheelMeasure| !m.needs().goes_by_driver() && !is_left_out("rack_steering", **m);
+    let is_there = |m: &&WheelMeasure| !m.needs().depends_on_driver() && !is_left_out("rack_steering", **m);
     for what in WheelMeasure::ALL.iter().filter(is_there) {
         let sign = match what {
             WheelMeasure::SteerAngle | WheelMeasure::ContactY => -1.0,

@@ -256,7 +256,7 @@ impl Beside<'_> {
                         .map(|(v, by)| by * today.measured.derivative(k, VariableId(v), m, order))
                         .sum::<f64>()
                 };
-                let other = if order == 0 { what_if.foreseen(k, m)[0] } else { now + rise() };
+                let other = if order == 0 { what_if.predicted(k, m)[0] } else { now + rise() };
                 units.from_si(output.dimension, self.beside(output.dimension, order, now, other))
             };
             let known = one_by_one || output.known.by_position;
@@ -298,13 +298,13 @@ impl Beside<'_> {
                 let now = what_if.today.measured.value(k, m)[0];
                 units.from_si(
                     output.dimension,
-                    self.beside(output.dimension, 0, now, what_if.foreseen(k, m)[1]),
+                    self.beside(output.dimension, 0, now, what_if.predicted(k, m)[1]),
                 )
             };
             output.known.by_position.then(|| self.curves(1, value))
         };
         let static_value = |k: usize, m: usize| {
-            what_if.today.measured.outputs[m].known.by_position.then(|| what_if.foreseen(k, m)[1])
+            what_if.today.measured.outputs[m].known.by_position.then(|| what_if.predicted(k, m)[1])
         };
         let note =
             "Predicted from the nominal first and second derivatives, without solving again.".to_owned();

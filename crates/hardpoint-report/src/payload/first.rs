@@ -28,7 +28,8 @@ impl Compose<'_> {
         let rank = |m: usize| {
             let output = &measured.outputs[m];
             let range = over_time(&|k| measured.value(k, m)[0]);
-            let by_driver = matches!(output.source, OutputSource::Measure(k) if self.model.goes_by_driver(k));
+            let by_driver =
+                matches!(output.source, OutputSource::Measure(k) if self.model.depends_on_driver(k));
             if by_driver || !(range > self.round_off.value(output.dimension, 0)) {
                 return None;
             }

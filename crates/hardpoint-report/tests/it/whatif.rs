@@ -118,14 +118,14 @@ fn curves_of_the_changed_design_are_those_of_the_solver() {
             assert_eq!(text(anew), expected(as_is, magnitude, solved), "{} {order}", output.name);
             // The value comes along the whole change at once, the rates variable by variable.
             let linear = steps().map(|k| {
-                [now(k, order), if order == 0 { found.foreseen(k, m)[0] } else { foreseen(k, order) }]
+                [now(k, order), if order == 0 { found.predicted(k, m)[0] } else { foreseen(k, order) }]
             });
             assert_eq!(text(first), expected(as_is, magnitude, linear), "{} {order}", output.name);
         }
         let second = curves(DesignKind::SecondOrder);
         assert_eq!(second.is_some(), output.known.by_position, "{}", output.name);
         if let Some(second) = second {
-            let bent = steps().map(|k| [now(k, 0), found.foreseen(k, m)[1]]);
+            let bent = steps().map(|k| [now(k, 0), found.predicted(k, m)[1]]);
             assert_eq!(text(&second.value), expected((units, output.dimension, 0), magnitude, bent));
             assert_eq!(text(&second.rate), text(&Curve::default()));
         }
@@ -182,7 +182,7 @@ fn values_of_the_changed_design_are_those_of_its_curves() {
             let Some(foreseen) = design(&page, kind).values[at] else { continue };
             let order = usize::from(kind == DesignKind::SecondOrder);
             let linear =
-                file.units.from_si(found.today.measured.outputs[m].dimension, found.foreseen(k, m)[order]);
+                file.units.from_si(found.today.measured.outputs[m].dimension, found.predicted(k, m)[order]);
             assert!((foreseen - linear).abs() < 1e-6, "{} {kind:?}", value.name);
         }
     }

@@ -7,14 +7,14 @@ mod build;
 mod change;
 mod check;
 mod element;
-mod fault;
+mod error;
 mod idle;
 mod measure;
 
 pub use change::{ChangeDraft, ShapeDraft};
 pub use check::{ConstantError, Nominal};
 pub use element::{ElementDraft, ElementKindDraft, ElementType, NumberDraft};
-pub use fault::{DraftError, DraftLocation, Section, did_you_mean, some_of};
+pub use error::{DraftError, DraftLocation, Section, did_you_mean, some_of};
 pub use measure::{FieldDraft, FieldKind, MeasureField, MeasureKindDraft, MeasureType};
 
 use std::collections::BTreeMap;

@@ -398,7 +398,7 @@ impl<'a> FormulaEvaluator<'a> {
         self.counted.truncate(first * self.model.measures.len());
         let fits = |m: &usize| run.is_some_and(|run| run.fits(*m, times.len()));
         let model = self.model;
-        let is_given = |m: &usize| *m < model.measures.len() && model.goes_by_step(*m);
+        let is_given = |m: &usize| *m < model.measures.len() && model.depends_on_step(*m);
         self.left.extend((0..self.turns.len()).filter(|m| !is_given(m) && !fits(m)).map(|m| (first, m)));
         measured.take_given(first, self.slopes, run.is_some());
         times.for_each(|k| self.fill_one(k, begins, measured));
@@ -692,7 +692,7 @@ impl<'a, T: Real> Instant<'a, T> {
     /// Formulas and signs: `docs/measures.md`.
     fn measure(&self, k: usize) -> T {
         let unknown = || T::constant(f64::NAN);
-        if self.model.goes_by_step(k) {
+        if self.model.depends_on_step(k) {
             return self.slopes.get(k).copied().unwrap_or_else(unknown);
         }
         match &self.model.measures[k].kind {

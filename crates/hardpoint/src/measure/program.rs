@@ -282,7 +282,7 @@ impl Recorder<'_> {
     /// An output that depends on these bodies and depends on what these variables move within them; none that is no
     /// arithmetic.
     fn output(&self, output: &Output, [bodies, variables]: &[Vec<usize>; 2]) -> Option<RecordedOutput> {
-        if goes_by_step(self.model, output.source) {
+        if depends_on_step(self.model, output.source) {
             return None;
         }
         recording::begin();
@@ -354,13 +354,13 @@ impl Recorder<'_> {
 }
 
 /// True if an output goes, itself or by what it is made of, by more of a step than where its bodies are.
-fn goes_by_step(model: &Model, output: OutputSource) -> bool {
+fn depends_on_step(model: &Model, output: OutputSource) -> bool {
     let OutputSource::Measure(m) = output else { return false };
-    model.goes_by_step(m)
+    model.depends_on_step(m)
         || match &model.measures[m].kind {
-            MeasureKind::Rate { of } => goes_by_step(model, *of),
+            MeasureKind::Rate { of } => depends_on_step(model, *of),
             MeasureKind::Combination { expression: formula } => {
-                formula.sources().any(|source| goes_by_step(model, source))
+                formula.sources().any(|source| depends_on_step(model, source))
             }
             _ => false,
         }

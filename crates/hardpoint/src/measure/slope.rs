@@ -96,7 +96,7 @@ impl<'a> Slopes<'a> {
                 drivers: &self.drivers,
                 instants: self.poses.iter().map(|p| Instant::new(self.model, &self.fixed[by], p)).collect(),
             };
-            for k in (0..self.model.measures.len()).filter(|k| self.model.goes_by_driver(*k)) {
+            for k in (0..self.model.measures.len()).filter(|k| self.model.depends_on_driver(*k)) {
                 let x = alone.measure(self.model, k);
                 if by < self.variables { out.set_d(by, k, x.d) } else { out.set(k, x.v) }
             }
@@ -107,7 +107,7 @@ impl<'a> Slopes<'a> {
 /// The drivers that a measure depends on, if it does: those of both wheels of an axle may differ.
 fn driver_of(model: &Model, k: usize) -> Option<[DriverId; 2]> {
     let of_wheel = |wheel: WheelId, need: WheelRequirement| model.wheels[wheel.0].driver(need);
-    if !model.goes_by_driver(k) {
+    if !model.depends_on_driver(k) {
         return None;
     }
     match model.measures[k].kind {

@@ -28,7 +28,7 @@ impl StepValues {
     /// Those of a model, with derivatives by that many variables.
     pub fn new(model: &Model, variables: usize) -> Self {
         let count = model.measures.len();
-        let measures: Vec<usize> = (0..count).filter(|m| model.goes_by_step(*m)).collect();
+        let measures: Vec<usize> = (0..count).filter(|m| model.depends_on_step(*m)).collect();
         let mut places = vec![None; count];
         measures.iter().enumerate().for_each(|(n, m)| places[*m] = Some(n));
         let mut numbers = Blocks::default();

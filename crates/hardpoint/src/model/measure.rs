@@ -328,7 +328,7 @@ macro_rules! in_models {
                 match &self.measures[k].kind {
                     $(#[allow(unused_variables, reason = "how much is known follows from some of its fields")]
                     MeasureKind::$variant { $($field),* } => { let $model = self; $known })*
-                    MeasureKind::Wheel { .. } | MeasureKind::Axle { .. } if self.goes_by_driver(k) => moving(1),
+                    MeasureKind::Wheel { .. } | MeasureKind::Axle { .. } if self.depends_on_driver(k) => moving(1),
                     MeasureKind::Wheel { .. } | MeasureKind::Axle { .. } => POSITIONS,
                 }
             }
@@ -856,20 +856,20 @@ impl Model {
     }
 
     /// True if a measure says what happens while one driver alone moves, rather than in the course of time.
-    pub fn goes_by_driver(&self, measure: usize) -> bool {
+    pub fn depends_on_driver(&self, measure: usize) -> bool {
         match self.measures[measure].kind {
             MeasureKind::Slope { .. } => true,
-            MeasureKind::Wheel { what, .. } => what.needs().goes_by_driver(),
-            MeasureKind::Axle { what, .. } => what.goes_by_driver(),
+            MeasureKind::Wheel { what, .. } => what.needs().depends_on_driver(),
+            MeasureKind::Axle { what, .. } => what.depends_on_driver(),
             _ => false,
         }
     }
 
     /// True if a measure needs more of a step than where its bodies are: what happens while one driver alone moves, or
     /// loads.
-    pub fn goes_by_step(&self, measure: usize) -> bool {
+    pub fn depends_on_step(&self, measure: usize) -> bool {
         let kind = &self.measures[measure].kind;
-        self.goes_by_driver(measure) || kind.is_load() || matches!(kind, MeasureKind::Compliance { .. })
+        self.depends_on_driver(measure) || kind.is_load() || matches!(kind, MeasureKind::Compliance { .. })
     }
 
     /// Dimension of a driver's force: its product with the driven quantity is work.
@@ -883,7 +883,7 @@ impl Model {
     /// True if an output has a number where nothing moves: what follows from positions alone, or from what happens
     /// while one driver alone moves. Velocities, accelerations and what follows from them are those of a motion.
     pub fn is_known_at_rest(&self, output: OutputSource) -> bool {
-        let by_driver = matches!(output, OutputSource::Measure(k) if self.goes_by_driver(k));
+        let by_driver = matches!(output, OutputSource::Measure(k) if self.depends_on_driver(k));
         by_driver || self.known(output).by_position
     }
 

@@ -9,10 +9,10 @@ mod coupler;
 mod curve;
 pub(crate) mod element;
 mod formula;
-mod held;
 mod measure;
 mod metric;
 mod optimization;
+mod shared;
 mod solid;
 mod spring_table;
 mod sweeping;
@@ -31,7 +31,6 @@ pub use element::{
 };
 pub(crate) use element::{each_number, elements};
 pub use formula::{Formula, NamedNumber, Source, Target};
-pub use held::SharedModel;
 pub(crate) use measure::measures;
 pub use measure::{
     Combination, Dimension, KnownOrders, Measure, MeasureKind, OrientationAngle, OutputSource, Ray,
@@ -40,6 +39,7 @@ pub use measure::{
 pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
 pub use optimization::{Goal, Limit, LimitTarget, OptimizationSettings};
+pub use shared::SharedModel;
 pub(crate) use solid::about_centre;
 pub use solid::{OpenSurface, Solid};
 pub use spring_table::SpringTable;

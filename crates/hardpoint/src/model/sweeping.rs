@@ -117,7 +117,7 @@ impl SweepSettings {
 impl Model {
     /// Value of a variable in the nominal design, in its unit, from which its bounds and ranges count: a parameter's
     /// own value, and 0 for all variables that describe a change.
-    pub fn drawn_value(&self, variable: VariableId) -> f64 {
+    pub fn nominal_value(&self, variable: VariableId) -> f64 {
         let variable = &self.variables[variable.0];
         let own = variable.changes.iter().find_map(|change| match change {
             Change::Parameter(change) => Some(&self.parameters[change.parameter.0]),

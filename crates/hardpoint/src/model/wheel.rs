@@ -169,7 +169,7 @@ impl WheelRequirement {
     }
 
     /// True if the measure says what happens while one driver alone moves.
-    pub fn goes_by_driver(self) -> bool {
+    pub fn depends_on_driver(self) -> bool {
         !matches!(self, Self::Nothing | Self::Kingpin | Self::Planes)
     }
 }
@@ -353,7 +353,7 @@ wheel_measures! {
 
 wheel_measures! {
     /// Measures of an axle. Formulas and signs are in `docs/measures.md`.
-    AxleMeasure, goes_by_driver: bool;
+    AxleMeasure, depends_on_driver: bool;
     /// Distance of the contact points across the vehicle.
     Track "track" LENGTH false;
     /// Sum of both toe angles.

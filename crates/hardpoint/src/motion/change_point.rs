@@ -10,7 +10,7 @@ use crate::linalg::{hermite, segment_at};
 use crate::model::ChangePointPolicy;
 use crate::topology::BlockId;
 
-use super::forecast::Channel;
+use super::predictor::Channel;
 use super::stepper::{AcceptedPosition, Lookahead, StepRejection, Stepper};
 use super::walk::Path;
 use super::{Stop, StopKind};

@@ -4,22 +4,22 @@
 //! (`kinematics`). Output times that follow each other closely are stepped through as they
 //! are (`stepper`, `abreast`); everywhere else the path is followed in steps of its own (`walk`).
 
-pub(crate) mod abreast;
 mod assembly;
 mod change_point;
-pub(crate) mod designs;
+pub(crate) mod design_batch;
 pub(crate) mod execution;
-mod forecast;
 pub(crate) mod jerk;
 pub(crate) mod kinematics;
 pub(crate) mod level;
 pub(crate) mod margin;
 pub(crate) mod parts;
+mod predictor;
 mod singularity;
 pub(crate) mod step_program;
 pub(crate) mod stepper;
 mod stop;
 pub(crate) mod tape;
+pub(crate) mod time_batch;
 pub(crate) mod turns;
 mod walk;
 

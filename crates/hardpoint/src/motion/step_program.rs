@@ -26,10 +26,10 @@ use crate::topology::{BlockId, CoordinateId, LinkStep, RowId, Topology};
 
 use super::BodyState;
 use super::execution::{Cache, Execution, Runnable, Staged, StepMethod};
-use super::forecast::{Channel, NODES, ORDERS};
 use super::kinematics::{CORRECTIONS, QUADRATIC, ROUND_OFF, State};
 use super::margin::Margins;
 use super::parts::PlanGeometry;
+use super::predictor::{Channel, NODES, ORDERS};
 use super::stepper::{AcceptedPosition, Stepper};
 
 /// Newton's first correction while recording, in units of each coordinate, for programs with one correction and with

@@ -12,9 +12,9 @@ use crate::topology::{BlockId, RowId, SetBy, Topology};
 
 use super::assembly::Assembly;
 use super::change_point::Crossing;
-use super::forecast::Predictor;
 use super::kinematics::{PositionFailure, Residuals, State, factors_of};
 use super::parts::PlanGeometry;
+use super::predictor::Predictor;
 use super::singularity::{Surroundings, Workspace};
 use super::turns::TurnCounter;
 use super::walk::{MOST_BEND, PART_OF_WAY, Path};

@@ -9,8 +9,8 @@ use crate::model::{BodyId, VariableId};
 use crate::topology::{CoordinateId, RowId, SetBy, Topology};
 
 use super::execution::ProgramMemory;
-use super::forecast::{Channel, ORDERS};
 use super::kinematics::Residuals;
+use super::predictor::{Channel, ORDERS};
 use super::step_program::{CONDITIONS, Inputs, Outputs, PER_BLOCK, Purpose, StepCheck, StepProgram};
 use super::stepper::{LOCKED, smooth};
 

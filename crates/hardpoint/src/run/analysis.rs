@@ -224,8 +224,8 @@ impl<'m> Analysis<'m> {
     }
 
     /// True if measures need more of a step than where its bodies are.
-    pub(super) fn goes_by_step(&self) -> bool {
-        (0..self.model().measures.len()).any(|k| self.model().goes_by_step(k))
+    pub(super) fn depends_on_step(&self) -> bool {
+        (0..self.model().measures.len()).any(|k| self.model().depends_on_step(k))
     }
 
     /// True if any load is requested.
@@ -237,7 +237,7 @@ impl<'m> Analysis<'m> {
     pub(super) fn needs_kernel(&self) -> Option<&'static str> {
         let model = self.model();
         let is_compliance = |k: usize| matches!(model.measures[k].kind, MeasureKind::Compliance { .. });
-        if (0..model.measures.len()).any(|k| model.goes_by_driver(k) || is_compliance(k)) {
+        if (0..model.measures.len()).any(|k| model.depends_on_driver(k) || is_compliance(k)) {
             return Some("measures depend on a driver that moves alone, or say how elastic joints deflect");
         }
         if self.asks_for_loads() { load::hindrance(model, &self.topology) } else { None }

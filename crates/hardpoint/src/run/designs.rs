@@ -8,7 +8,7 @@ use hardpoint_tape::LANES;
 
 use crate::measure::{MeasureResults, StepValues};
 use crate::motion::SolverStatistics;
-use crate::motion::designs::DesignBatch;
+use crate::motion::design_batch::DesignBatch;
 use crate::motion::step_program::Purpose;
 use crate::sensitivity::{Resistance, Sensitivities, admissibility, note_defects};
 
@@ -39,7 +39,7 @@ impl Analysis<'_> {
     ) {
         let scope = Scope { of_many: designs.len(), ..run.scope };
         let alone =
-            scope.sensitivities || scope.measures && (self.goes_by_step() || self.has_times_between());
+            scope.sensitivities || scope.measures && (self.depends_on_step() || self.has_times_between());
         let (next, visit) = (AtomicUsize::new(0), Mutex::new(visit));
         let work = || {
             let mut solutions: [Solution; LANES] = std::array::from_fn(|_| Solution::default());

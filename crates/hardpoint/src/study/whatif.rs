@@ -98,7 +98,7 @@ impl WhatIf {
     }
 
     /// The value of output m at time k as predicted to first and to second order.
-    pub fn foreseen(&self, k: usize, m: usize) -> [f64; 2] {
+    pub fn predicted(&self, k: usize, m: usize) -> [f64; 2] {
         // y + y_b . d,    y + y_b . d + d . y_bb d / 2
         let linear = self.today.measured.value(k, m)[0] + self.first(k, m);
         [linear, linear + self.second(k, m)]
@@ -110,7 +110,7 @@ impl WhatIf {
     }
 
     /// Quality of the prediction of output m over the motion; `None` if nothing was predicted or solved.
-    pub fn foresight(&self, m: usize) -> Option<PredictionQuality> {
+    pub fn prediction_quality(&self, m: usize) -> Option<PredictionQuality> {
         if self.is_empty() || !self.cannot_follow.is_empty() {
             return None;
         }
@@ -123,7 +123,7 @@ impl WhatIf {
             if now.abs() > change.0.abs() {
                 change = (now, k);
             }
-            for (most, foreseen) in errors.iter_mut().zip(self.foreseen(k, m)) {
+            for (most, foreseen) in errors.iter_mut().zip(self.predicted(k, m)) {
                 *most = most.map(|most| most.max((foreseen - exact).abs()));
             }
             (first, second) = (first.max(self.first(k, m).abs()), second.max(self.second(k, m).abs()));

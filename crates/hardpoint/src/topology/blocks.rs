@@ -8,11 +8,11 @@ use petgraph::graph::{DiGraph, NodeIndex};
 use crate::linalg::FullPivot;
 use crate::model::{BodyId, Model};
 
-use super::fault::TopologyError;
+use super::error::TopologyError;
 use super::matching::match_columns;
 use super::{
     Block, BlockId, ClosureColumn, ClosureId, CoordinateId, CoupledColumn, LinkId, LoopLink, RowId, RowTerm,
-    SetBy, Topology, fault,
+    SetBy, Topology, error,
 };
 
 /// A pivot below this part of the largest is zero when constraints are counted.
@@ -91,7 +91,7 @@ pub(super) fn split(model: &Model, topology: &mut Topology) -> Result<(), Topolo
             let elsewhere = (model.is_drawn_open() && nearby < free.len())
                 .then(|| design_jacobian(&shifted(model), topology))
                 .and_then(|jacobian| groups_of(topology, &jacobian).ok());
-            elsewhere.ok_or_else(|| fault::free_motions(model, topology, &free, nearby))?
+            elsewhere.ok_or_else(|| error::free_motions(model, topology, &free, nearby))?
         }
     };
     order_links(topology, groups.len());

@@ -6,8 +6,8 @@ use crate::linalg::{Factors, FullPivot, LARGEST_DENSE};
 use crate::model::Model;
 
 use super::blocks::{RANK_TOLERANCE, SparseRow, columns_in_block, design_jacobian};
-use super::fault::TopologyError;
-use super::{BlockId, RowId, Topology, fault};
+use super::error::TopologyError;
+use super::{BlockId, RowId, Topology, error};
 
 /// Counts the degrees of freedom; every unknown is already known to be determined.
 ///
@@ -68,7 +68,7 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
     if contradictions.is_empty() {
         Ok(())
     } else {
-        Err(fault::contradicted(model, topology, &contradictions))
+        Err(error::contradicted(model, topology, &contradictions))
     }
 }
 

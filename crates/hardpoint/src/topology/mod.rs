@@ -6,7 +6,7 @@
 //! the cost grows linearly with the number of independent loops (`docs/theory.md`, section 3).
 
 mod blocks;
-mod fault;
+mod error;
 mod ids;
 mod matching;
 mod mobility;
@@ -14,7 +14,7 @@ mod redundancy;
 mod size;
 mod tree;
 
-pub use fault::TopologyError;
+pub use error::TopologyError;
 pub use ids::{BlockId, ClosureId, CoordinateId, Ids, LinkId, RowId};
 pub use redundancy::Redundancy;
 

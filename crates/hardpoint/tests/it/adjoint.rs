@@ -136,7 +136,7 @@ fn all_measures_of_a_wheel_have_the_same_gradients_where_variables_move_its_own_
             MeasureKindDraft::Wheel { wheel: "wheel".into(), what },
         )
     };
-    let plain = WheelMeasure::ALL.iter().filter(|m| !m.needs().goes_by_driver());
+    let plain = WheelMeasure::ALL.iter().filter(|m| !m.needs().depends_on_driver());
     draft.measures.extend(plain.map(of_wheel));
     let kind = MeasureKindDraft::Distance {
         from: on_knuckle("hub"),

@@ -23,7 +23,7 @@ const DIALECT: [&str; 26] = [
     "foresee",
     "foreseen",
     "foreseeing",
-    "foresight",
+    "prediction_quality",
     "give way",
     "gives way",
     "go by",

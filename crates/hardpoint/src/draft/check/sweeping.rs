@@ -150,7 +150,7 @@ impl Checker<'_> {
 
     /// A value of a variable as a file writes it, as a change in SI: of a parameter from its own value.
     fn in_si(&self, variable: VariableId, quantity: Quantity, x: f64, per: [f64; 2]) -> f64 {
-        x / per_si(Dimension::from(quantity), per[0], per[1]) - self.model.drawn_value(variable)
+        x / per_si(Dimension::from(quantity), per[0], per[1]) - self.model.nominal_value(variable)
     }
 
     /// The place of a measure in the model.

@@ -82,7 +82,7 @@ impl Checker<'_> {
         }
         let unmoved =
             self.model.axles[axle.0].wheels.into_iter().find(|w| self.model.wheels[w.0].bump.is_none());
-        if let Some(wheel) = unmoved.filter(|_| what.goes_by_driver()) {
+        if let Some(wheel) = unmoved.filter(|_| what.depends_on_driver()) {
             let wheel = self.model.wheels[wheel.0].name.clone();
             self.needs_driver(what.name(), &wheel, WheelRequirement::Bump, here);
             return None;
@@ -397,7 +397,7 @@ impl Checker<'_> {
         }
         let id = self.wheel_ids[k]?;
         let (needs, wheel) = (what.needs(), &self.model.wheels[id.0]);
-        if needs.goes_by_driver() && wheel.driver(needs).is_none() {
+        if needs.depends_on_driver() && wheel.driver(needs).is_none() {
             self.needs_driver(what.name(), name, needs, here);
             return None;
         }

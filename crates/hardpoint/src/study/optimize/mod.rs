@@ -89,7 +89,7 @@ pub struct OptimizationResult {
     /// The nominal design; `None` where it cannot be judged.
     pub drawn: Option<DesignAssessment>,
     /// Reason why the nominal design cannot be evaluated.
-    pub drawn_refused: Option<FailedDesign>,
+    pub nominal_failure: Option<FailedDesign>,
     /// The searches, one per start, in order; that of number 0 starts from the nominal design.
     pub searches: Vec<SearchResult>,
     /// The best of them, by its place there: of those that keep all limits the one with the least objective, of others
@@ -219,7 +219,7 @@ pub fn optimize(
     let problem = Problem::new(model, motions, asked);
     let OptimizationRequest { progress, more, threads, first } = searching;
     let mut cost = StudyCost::default();
-    let (drawn, drawn_refused) = match problem.at(vec![0.0; model.variables.len()], &mut cost, more) {
+    let (drawn, nominal_failure) = match problem.at(vec![0.0; model.variables.len()], &mut cost, more) {
         Ok(point) => (Some(judged(&problem, &point, &limit_scales(&problem, &point))), None),
         Err(refusal) => (None, Some(refused(vec![0.0; model.variables.len()], refusal))),
     };
@@ -249,7 +249,7 @@ pub fn optimize(
     let searches: Vec<SearchResult> =
         searches.into_iter().map(|s| s.expect("every start was searched from")).collect();
     searches.iter().for_each(|s| cost += s.cost);
-    OptimizationResult { drawn, drawn_refused, best: best(&searches), searches, cost }
+    OptimizationResult { drawn, nominal_failure, best: best(&searches), searches, cost }
 }
 
 /// Judges one design, given by the values of all variables of the model.

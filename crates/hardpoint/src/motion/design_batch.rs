@@ -11,12 +11,12 @@ use hardpoint_tape::{LANES, Lanes};
 use crate::blocks::{AlignedLanes, Blocks, ResultBlock, lanes_of};
 use crate::model::{BodyId, VariableId};
 
-use super::abreast::ProgramOf;
-use super::forecast::{NODES, ORDERS, Weights};
 use super::kinematics::QUADRATIC;
+use super::predictor::{NODES, ORDERS, Weights};
 use super::step_program::MOST_CORRECTIONS;
 use super::stepper::{Lookahead, MILD, MILD_CHANGE, Stepper, TRUST_FLOOR};
 use super::tape::{SolveQuality, Tape};
+use super::time_batch::ProgramOf;
 use super::walk::Path;
 use super::{Motion, SolverStatistics};
 

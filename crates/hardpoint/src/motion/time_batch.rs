@@ -11,9 +11,9 @@ use hardpoint_tape::{LANES, Lanes};
 use crate::blocks::{AlignedLanes, ResultBlock, lanes_of};
 
 use super::execution::{ProgramMemory, Runnable};
-use super::forecast::{NODES, ORDERS, Weights};
 use super::kinematics::QUADRATIC;
 use super::margin::Margin;
+use super::predictor::{NODES, ORDERS, Weights};
 use super::step_program::{MOST_CORRECTIONS, StepProgram};
 use super::stepper::{
     AcceptedPosition, EVEN, LONGEST, Lookahead, MILD, MILD_CHANGE, RESTS, Stepper, TRUST_FLOOR,
