@@ -27,8 +27,8 @@
 //!   mechanism.
 //! - A model may include other files of its folder and mirror one side to the other. Both are resolved on the values of
 //!   the texts (`read/include.rs`, `read/mirror.rs`) before these are read.
-//! - Tables of laws may be CSV files, and shapes of bodies files of triangles, in the model's folder. No other files are
-//!   read.
+//! - Tables of laws may be CSV files, and shapes of bodies files of triangles, in the model's folder. No other files
+//!   are read.
 
 pub mod csv_table;
 mod diagnostic;

@@ -398,7 +398,7 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
     ("unknown", "spring_strut,temperature\n0,1\n", "HP0248", &["`temperature`", "`#` leaves its column out"]),
     ("twice", "spring_strut,toe,toe\n0,1,1\n", "HP0248", &["`toe` is the title of two columns"]),
     ("unit", "spring_strut,toe [rad]\n0,1\n", "HP0248", &["`toe` is in `rad`, and the model file has deg"]),
-    ("nothing measured", "spring_strut\n0\n", "HP0248", &["nothing that was measured", "wheel_centre.z"]),
+    ("nothing measured", "spring_strut\n0\n", "HP0248", &["has no column of readings", "wheel_centre.z"]),
     (
         "sigma of nothing",
         "spring_strut,toe,sigma camber\n0,1,1\n",

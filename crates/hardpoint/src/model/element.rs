@@ -250,7 +250,7 @@ macro_rules! elements {
             length: Option<NumberDraft> => Option<Length>,
             /// A further moment against the motion in proportion to its speed.
             viscous: Option<NumberDraft> => Option<TorsionalDamping>,
-            /// The speed, per second, below which friction goes smoothly to zero; at rest there is none. Default: 0.01 rad/s.
+            /// Speed, per second, below which friction goes smoothly to zero; at rest it is zero. Default: 0.01 rad/s.
             transition_velocity: Option<NumberDraft> => Option<Angle>,
         }
 
@@ -268,7 +268,7 @@ macro_rules! elements {
             ignored_direction: Option<Vec3> => Option<Vec3>,
             /// A further force against the motion in proportion to its speed.
             viscous: Option<NumberDraft> => Option<Damping>,
-            /// The speed, per second, below which friction goes smoothly to zero; at rest there is none. Default: 1 mm/s.
+            /// Speed, per second, below which friction goes smoothly to zero; at rest it is zero. Default: 1 mm/s.
             transition_velocity: Option<NumberDraft> => Option<Length>,
         }
 
