@@ -80,7 +80,7 @@ fn cases() {
     broken("case_with_law_not_finite", laws, "laws = { turn = \"1/t\" }");
     broken("case_with_laws_of_a_text", laws, "laws = \"turn\"");
     broken("case_where_nothing_moves", laws, "laws = { turn = 30 }");
-    broken("case_with_unknown_rest", "other_drivers = \"fixed\"", "rest = \"free\"");
+    broken("case_with_unknown_rest", "other_drivers = \"fixed\"", "other_drivers = \"free\"");
     broken("case_without_steps", "time = { end = 0.5, steps = 20 }", "time = { end = 0.5 }");
     broken("case_with_misspelt_key", "other_drivers = \"fixed\"", "law = \"t\"");
     broken(
