@@ -5,7 +5,7 @@
 
 use std::array::from_fn;
 
-/// Number of designs there are.
+/// Number of designs.
 pub const DESIGNS: usize = 1000;
 
 /// Changes of the 24 coordinates, m, design by design.

@@ -20,7 +20,7 @@ use crate::model::Model;
 use crate::run::derivatives;
 use crate::watch::patiently;
 
-/// Number of threads as are requested, or one for each core.
+/// Requested number of threads, or one for each core.
 pub(crate) fn threads(asked: Option<usize>) -> NonZero<usize> {
     let asked = asked.and_then(NonZero::new);
     asked.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZero::<usize>::MIN)

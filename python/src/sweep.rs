@@ -184,7 +184,7 @@ fn table<'py>(
 
 #[pymethods]
 impl Sweep {
-    /// Number of designs there are.
+    /// Number of designs.
     #[getter]
     fn count(&self) -> PyResult<usize> {
         Ok(self.with(|swept| swept.sweep.plan().count())?)

@@ -693,7 +693,7 @@ name: string,
  */
 drivers: [GridDriver, GridDriver],
 /**
- * Number of positions were reached, and why others were not.
+ * Number of positions that were reached, and why others were not.
  */
 note: string,
 /**

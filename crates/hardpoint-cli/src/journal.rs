@@ -107,7 +107,7 @@ impl Journal {
         self.file.seek(SeekFrom::Start(at)).map(drop)
     }
 
-    /// Number of designs are in it, the first ones.
+    /// Number of designs that are in it, the first ones.
     pub fn designs(&self) -> usize {
         self.blocks.iter().map(|(_, designs)| designs).sum()
     }

@@ -86,7 +86,7 @@ pub fn page(
     Some(report(&request, &|page| finish(page, &today)).expect("a payload is plain data"))
 }
 
-/// Number of threads as are requested, or one for each core.
+/// Requested number of threads, or one for each core.
 pub fn threads(asked: Option<NonZero<usize>>) -> NonZero<usize> {
     asked.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZero::<usize>::MIN)
 }

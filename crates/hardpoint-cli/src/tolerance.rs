@@ -63,7 +63,7 @@ const FILES: [&str; 5] = ["metrics.csv", "contributions.csv", "bands.csv", "samp
 /// The request besides what the file says.
 #[derive(Default)]
 pub struct ToleranceOverrides {
-    /// Number of designs are drawn.
+    /// Number of designs that are drawn.
     pub samples: Option<u32>,
     /// From this number.
     pub seed: Option<u32>,

@@ -27,7 +27,7 @@ const MOST_COLUMNS: usize = 16_384;
 const MOST_LETTERS: usize = 32_767;
 /// Maximum number of cells of a sheet over time, which is in memory until it is complete.
 const MOST_CELLS: usize = 1_000_000;
-/// Number of curves have a chart.
+/// Number of curves that have a chart.
 const MOST_CHARTS: usize = 100;
 /// A chart, in pixels; rows of sheets are 20 high.
 const CHART: (u32, u32) = (560, 300);

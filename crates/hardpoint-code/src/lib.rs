@@ -101,7 +101,7 @@ pub enum UnsupportedProgram {
     Size {
         /// Name of the quantity that is too large.
         what: &'static str,
-        /// Number of there are.
+        /// Total number.
         count: usize,
     },
 }
@@ -119,7 +119,7 @@ pub struct Counts {
     pub copies: usize,
     /// Instructions that put a number aside because registers ran out.
     pub spills: usize,
-    /// Number of numbers are put aside at the same time, at the most.
+    /// Number of numbers that are put aside at the same time, at the most.
     pub slots: usize,
 }
 

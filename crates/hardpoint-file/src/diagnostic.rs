@@ -7,7 +7,7 @@ use std::sync::Arc;
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use serde::Serialize;
 
-/// Maximum number of diagnostics are shown; the others are counted.
+/// Maximum number of diagnostics that are shown; the others are counted.
 const SHOWN: usize = 50;
 /// Lines longer than this are not shown, only named.
 const LONG_LINE: usize = 2000;

@@ -71,9 +71,9 @@ use tree::{Folder, Reader};
 
 /// Files larger than this are not read, bytes.
 pub const LARGEST_FILE: u64 = 64 << 20;
-/// Number of syntax errors are shown: after a few, they follow from the ones before.
+/// Number of syntax errors that are shown: after a few, they follow from the ones before.
 const SYNTAX_ERRORS: usize = 5;
-/// Number of files of a folder are named where the one requested is not there.
+/// Number of files of a folder that are named where the one requested is not there.
 const LISTED_FILES: usize = 12;
 
 /// A model, and the text that it was read from.

@@ -44,7 +44,7 @@ impl LengthUnit {
         }
     }
 
-    /// Number of it make a metre.
+    /// Number of units per metre.
     pub const fn per_metre(self) -> f64 {
         match self {
             Self::Millimetre => 1000.0,
@@ -93,7 +93,7 @@ impl AngleUnit {
         }
     }
 
-    /// Number of it make a radian.
+    /// Number of units per radian.
     pub const fn per_radian(self) -> f64 {
         match self {
             Self::Degree => 180.0 / std::f64::consts::PI,

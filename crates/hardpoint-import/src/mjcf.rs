@@ -31,7 +31,7 @@ pub const FORMAT: Format = Format {
 const DEEPEST: usize = 100;
 /// Points nearer to each other than this part of the mechanism's size are one.
 const CLOSED: f64 = 1e-7;
-/// Maximum number of files are included.
+/// Maximum number of files that are included.
 const MOST_INCLUDED: usize = 100;
 /// Maximum number of times that files are put into each other.
 const MOST_EXPANDED: usize = 20_000;

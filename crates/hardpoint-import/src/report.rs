@@ -6,9 +6,9 @@ use std::fmt;
 use hardpoint_file::{Diagnostic, Severity, Source};
 use serde::Serialize;
 
-/// Number of entries of one kind are listed in a text; the others are counted.
+/// Number of entries of one kind that are listed in a text; the others are counted.
 const LISTED: usize = 40;
-/// Number of problems are shown; the others are counted.
+/// Number of problems that are shown; the others are counted.
 const SHOWN: usize = 50;
 /// Maximum number of problems that are listed; the others are counted. Nobody corrects more of them at a time.
 const MOST_PROBLEMS: usize = 200;

@@ -28,7 +28,7 @@ pub const FORMAT: Format = Format {
 
 /// Models contain models, and frames refer to frames, so deep at most.
 const DEEPEST: usize = 40;
-/// Maximum number of files are included.
+/// Maximum number of files that are included.
 const MOST_INCLUDED: usize = 100;
 /// Maximum number of times that models are placed; nested ones count more than once.
 const MOST_PLACED: usize = 20_000;

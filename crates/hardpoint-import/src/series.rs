@@ -31,7 +31,7 @@ pub struct StoredPose {
 /// By how much a solution differs from what was stored, at most, over all bodies and times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Difference {
-    /// Number of times were compared.
+    /// Number of times that were compared.
     pub times: usize,
     /// Difference of positions, in the file's unit.
     pub place: f64,

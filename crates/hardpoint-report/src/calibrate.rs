@@ -76,7 +76,7 @@ pub struct CalibrateFacts {
     pub hardpoints: Vec<MovedHardpoint>,
     /// Readings that are far off, the farthest first.
     pub far_off: Vec<FarOff>,
-    /// Number of there are.
+    /// Total number.
     pub far_off_count: usize,
     /// Postures that the mechanism in the design configuration does not reach: their readings are left out.
     pub not_reached: Vec<NotReachedFact>,

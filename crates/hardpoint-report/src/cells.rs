@@ -12,7 +12,7 @@ pub enum Cells {
 }
 
 impl Cells {
-    /// Number of there are.
+    /// Total number.
     pub fn len(&self) -> usize {
         match self {
             Self::Whole(cells) => cells.len(),

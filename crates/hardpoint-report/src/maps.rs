@@ -24,9 +24,9 @@ pub struct MapFact {
     pub name: String,
     /// The two drivers and where each of them is.
     pub drivers: [MapDriver; 2],
-    /// Number of positions were reached.
+    /// Number of positions that were reached.
     pub solved: usize,
-    /// Number of there are.
+    /// Total number.
     pub asked: usize,
     /// True if the user ended it before all were tried.
     pub interrupted: bool,
@@ -45,9 +45,9 @@ pub struct MapLine {
     pub name: String,
     /// The two drivers.
     pub drivers: [String; 2],
-    /// Number of positions were reached.
+    /// Number of positions that were reached.
     pub solved: usize,
-    /// Number of there are.
+    /// Total number.
     pub asked: usize,
     /// Reasons why the others were not reached.
     pub gaps: Vec<String>,

@@ -69,7 +69,7 @@ pub struct OptimizeFacts {
     pub starts: Vec<StartFact>,
     /// Designs that could not be judged, the first of them.
     pub refused: Vec<RefusedFact>,
-    /// Number of there were.
+    /// Total number.
     pub refused_count: usize,
     /// Further notes.
     pub diagnostics: Vec<Diagnostic>,

@@ -556,7 +556,7 @@ pub struct GridMap {
     pub name: String,
     /// The two drivers.
     pub drivers: [GridDriver; 2],
-    /// Number of positions were reached, and why others were not.
+    /// Number of positions that were reached, and why others were not.
     pub note: String,
     /// Measured quantities.
     pub quantities: Vec<GridQuantity>,

@@ -18,7 +18,7 @@ use crate::optimize::{BeforeAfter, Evaluations, case_name};
 use crate::page::{Fact, Payload, SweepAxis, SweepIndex, SweepPlot, Table};
 use crate::tolerance::{FailureFact, bar, header, percent, titled};
 
-/// Maximum number of designs are drawn, and ranked.
+/// Maximum number of designs that are drawn, and ranked.
 pub const DRAWN: usize = 5000;
 
 /// A sweep, in the model's units. As JSON it is `summary.json` of `hardpoint sweep`.
@@ -92,7 +92,7 @@ pub struct SweptFact {
     pub unit: String,
     /// In the design configuration.
     pub drawn: Option<f64>,
-    /// Number of designs have it.
+    /// Number of designs that have it.
     pub known: usize,
     /// Distribution over these designs.
     pub distribution: Option<DistributionFact>,

@@ -212,7 +212,7 @@ pub struct FailureFact {
     pub why: String,
     /// Number.
     pub first: usize,
-    /// Number of there are.
+    /// Total number.
     pub count: usize,
 }
 
@@ -221,7 +221,7 @@ pub struct FailureFact {
 pub struct AllocationFact {
     /// `rss` or `worst_case`.
     pub rule: &'static str,
-    /// Number of standard deviations have to fit.
+    /// Number of standard deviations that have to fit.
     pub sigmas: Option<f64>,
     /// `found`, or why there are none.
     pub status: String,

@@ -173,7 +173,7 @@ pub struct ToleranceOffer {
     pub tolerances: Vec<ToleranceChoice>,
     /// Names of the metrics.
     pub metrics: Vec<String>,
-    /// Number of designs are drawn.
+    /// Number of designs that are drawn.
     pub samples: usize,
     /// Seed of the random numbers.
     #[cfg_attr(test, ts(type = "number"))]
@@ -198,7 +198,7 @@ pub struct ToleranceChoice {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ToleranceRequest {
-    /// Number of designs are drawn and solved exactly.
+    /// Number of designs that are drawn and solved exactly.
     pub samples: usize,
     /// Seed of the random numbers: the same seed gives the same designs.
     pub seed: u32,

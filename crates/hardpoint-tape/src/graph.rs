@@ -494,7 +494,7 @@ impl Graph {
         order
     }
 
-    /// Maximum number of values are live in this order.
+    /// Maximum number of values that are live in this order.
     fn live_in(&self, order: &[u32]) -> usize {
         let mut last = vec![0u32; self.nodes.len()];
         for (k, node) in order.iter().enumerate() {

@@ -8,10 +8,10 @@ use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, dispatch, f64x8};
 
 use crate::program::{Call, Instruction, LANES, Lanes, Operand, Program};
 
-/// Number of numbers go through an instruction at a time.
+/// Number of numbers that go through an instruction at a time.
 pub const WIDE: usize = ABREAST * LANES;
 
-/// Number of groups of lanes go side by side.
+/// Number of groups of lanes that go side by side.
 const ABREAST: usize = 4;
 
 /// A program made ready to be run, with its working memory.

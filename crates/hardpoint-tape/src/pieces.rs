@@ -23,7 +23,7 @@ pub struct Pieces {
     pub shapes: Vec<Shape>,
     /// The pieces, in the order in which they are run.
     pub pieces: Vec<Piece>,
-    /// Number of numbers are kept while they run.
+    /// Number of numbers that are kept while they run.
     pub kept: usize,
 }
 

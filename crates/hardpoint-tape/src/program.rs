@@ -226,8 +226,8 @@ impl Program {
         }
     }
 
-    /// Maximum number of values are live at a time: computed, and still to be read. What is only given back is written
-    /// at once, and is not counted.
+    /// Maximum number of values that are live at a time: computed, and still to be read. What is only given back is
+    /// written at once, and is not counted.
     pub fn live(&self) -> usize {
         let mut last = vec![0; self.instructions.len()];
         for (k, instruction) in self.instructions.iter().enumerate() {

@@ -203,7 +203,7 @@ tolerances: Array<ToleranceChoice>,
  */
 metrics: Array<string>,
 /**
- * Number of designs are drawn.
+ * Number of designs that are drawn.
  */
 samples: number,
 /**
@@ -237,7 +237,7 @@ distribution: string, };
  */
 export type ToleranceRequest = {
 /**
- * Number of designs are drawn and solved exactly.
+ * Number of designs that are drawn and solved exactly.
  */
 samples: number,
 /**

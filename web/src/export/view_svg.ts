@@ -30,7 +30,7 @@ const LIGHT = new Vector3(-0.35, 0.7, 0.75).normalize()
 const DARKEST = 0.62
 /** Faces nearer to the light than this cosine have their full colour: those that face the reader, too. */
 const BRIGHT = 0.6
-/** Number of shades are distinguished. */
+/** Number of shades that are distinguished. */
 const SHADES = 12
 /** Width of outlines, px. */
 const OUTLINE = 0.9

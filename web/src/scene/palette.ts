@@ -1,7 +1,7 @@
 import './palette.css'
 import { css } from '../dom'
 
-/** Number of colours there are for bodies. */
+/** Number of colours for bodies. */
 export const TINTS = 6
 
 /** Colours of the drawing in the scheme of the moment, as the style sheet has them. */

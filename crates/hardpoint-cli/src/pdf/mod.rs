@@ -13,9 +13,9 @@ use crate::workbook::Contents;
 use paper::{BLACK, BLUE, GREY, MARGIN, PAGE, Paper, RED, SMALL, STRONG, TEXT, TITLE};
 use plot::Plot;
 
-/// Number of curves are drawn.
+/// Number of curves that are drawn.
 const MOST_CURVES: usize = 200;
-/// Number of variables are ranked at each measure.
+/// Number of variables that are ranked at each measure.
 const MOST_RANKED: usize = 12;
 /// Positions of the columns of tables.
 const FACTS: [f32; 2] = [0.0, 90.0];

@@ -8,7 +8,7 @@ use super::paper::{BLACK, BLUE, Face, GREY, PALE, Paper, SMALL, STRONG};
 pub const SIZE: (f32, f32) = (240.0, 146.0);
 /// Room left of, below, right of and above the curve.
 const AROUND: [f32; 4] = [46.0, 26.0, 8.0, 16.0];
-/// Number of values at least have a mark on an axis, where these are round.
+/// Number of values at least that have a mark on an axis, where these are round.
 const MARKS: f64 = 4.0;
 /// Maximum number of intervals of a curve, each drawn with its lowest and its highest point: more cannot be
 /// distinguished on paper.

@@ -43,7 +43,7 @@ pub struct Allocator<'l> {
     free_slots: Vec<Memory>,
     /// Slots that this instruction reads for the last time: free for the next.
     last_read: Vec<Memory>,
-    /// Number of outputs of values are stored.
+    /// Number of outputs of values that are stored.
     stored: usize,
 }
 

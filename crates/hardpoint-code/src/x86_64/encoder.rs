@@ -123,7 +123,7 @@ pub enum When {
 pub struct Assembler {
     width: Width,
     pub bytes: Vec<u8>,
-    /// Number of instructions there are.
+    /// Number of instructions.
     pub count: usize,
 }
 

@@ -53,7 +53,7 @@ impl Frame {
         self.width
     }
 
-    /// Number of vector registers there are.
+    /// Number of vector registers.
     pub fn registers(&self) -> usize {
         match self.width {
             Width::Avx2 => 16,

@@ -69,7 +69,7 @@ impl Names {
         Self { inputs, uniforms, constants, sign, magnitude: sign + 1 }
     }
 
-    /// Number of names there are.
+    /// Number of names.
     pub fn len(&self) -> usize {
         self.magnitude as usize + 1
     }

@@ -91,7 +91,7 @@ pub(crate) fn weightless(file: &ModelFile) -> Option<Diagnostic> {
     )
 }
 
-/// Number of bodies without mass are named.
+/// Number of bodies without mass that are named.
 const MOST_NAMES: usize = 8;
 
 impl Reader<'_> {

@@ -54,7 +54,7 @@ struct Triangles {
     places: HashMap<[u64; 3], u32>,
     vertices: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
-    /// Number of there are in the file, kept or not.
+    /// Total number, stored or not.
     count: usize,
 }
 

@@ -38,7 +38,7 @@ pub(crate) const TOLERANCE: Table = table! {
     may "curves": Shape::list(&OUTPUT), "[\"toe\"]";
     /// Limits of metrics.
     may "limits": Shape::Entries("a metric", &Shape::Table(&LIMIT)), "{ toe = { metric = \"toe_range\", max = 0.5 } }";
-    /// Number of designs are drawn and solved exactly.
+    /// Number of designs that are drawn and solved exactly.
     or("10000") "samples": Shape::Count(MOST_SAMPLES), "100000";
     /// Seed of the random numbers: the same seed gives the same designs.
     or("1") "seed": Shape::Count(u32::MAX), "7";

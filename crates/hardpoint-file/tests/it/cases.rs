@@ -131,8 +131,5 @@ fn a_case_may_take_its_laws_from_files_and_be_the_only_one_that_has_them() {
     // Without its own law the driver needs one in each case.
     std::fs::write(&path, format!("{above}{case}[cases.more]\nlaws = {{ motor = \"t\" }}\nother_drivers = \"as_in_model\"\ntime = {{ at = [0, 1] }}\n")).unwrap();
     let error = read(&path).unwrap_err();
-    assert!(
-        error.to_string().contains("case `more` leaves driver `travel` without a `law`"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("case `more` leaves driver `travel` without a `law`"), "{error}");
 }

@@ -202,8 +202,8 @@ const PLANES: [(&str, [usize; 2], &str, [f64; 3]); 4] = [
 ];
 
 /// A text in which `<1 2>` is a point or direction of the plane, `<1 2 3>` one off it, and `<axis>`, `<about>`,
-/// `<along>` and `<ignored_direction>` are keys whose value is the normal of the plane: as a planar model writes it, or with all
-/// that its shorthand leaves out.
+/// `<along>` and `<ignored_direction>` are keys whose value is the normal of the plane: as a planar model writes it, or
+/// with all that its shorthand leaves out.
 fn written(template: &str, plane: usize, is_short: bool) -> String {
     let (word, axes, name, normal) = PLANES[plane];
     let mut parts = template.split('<');

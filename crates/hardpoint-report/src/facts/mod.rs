@@ -41,7 +41,7 @@ pub struct Facts {
     pub units: Units,
     /// `relative` or `absolute` coordinates.
     pub formulation: &'static str,
-    /// Number of there are of everything.
+    /// Total number of each kind.
     pub counts: Counts,
     /// Bodies without ground.
     pub bodies: Vec<BodyFact>,
@@ -67,7 +67,7 @@ pub struct Facts {
     pub notes: Vec<String>,
 }
 
-/// Number of there are.
+/// Total number.
 #[derive(Clone, Debug, Serialize)]
 pub struct Counts {
     /// Bodies without ground.
@@ -289,7 +289,7 @@ impl Facts {
         }
     }
 
-    /// Number of variables have this answer.
+    /// Number of variables that have this answer.
     pub fn answers(&self, answer: Answer) -> usize {
         self.variables.iter().filter(|v| v.answer == answer).count()
     }

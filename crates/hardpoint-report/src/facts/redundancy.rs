@@ -14,7 +14,7 @@ use super::joint_name;
 /// Redundant constraints among the same joints, couplers and drivers.
 #[derive(Clone, Debug, Serialize)]
 pub struct RedundancyFact {
-    /// Number of constraints are redundant among them.
+    /// Number of constraints that are redundant among them.
     pub count: usize,
     /// The joints.
     pub joints: Vec<String>,

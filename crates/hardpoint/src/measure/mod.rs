@@ -75,7 +75,7 @@ impl Output {
 pub struct MeasureResults {
     /// The columns: all measures, then x, y, z of all named points.
     pub outputs: Vec<Output>,
-    /// Number of design variables there are.
+    /// Number of design variables.
     pub variables: usize,
     /// Output times.
     steps: usize,
@@ -132,7 +132,7 @@ impl MeasureResults {
         }
     }
 
-    /// Number of output times there are.
+    /// Number of output times.
     pub fn len(&self) -> usize {
         if self.outputs.is_empty() { 0 } else { self.steps }
     }

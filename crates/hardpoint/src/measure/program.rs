@@ -83,7 +83,7 @@ pub(crate) struct MeasureProgram {
     outputs: usize,
     /// By variable and output: where its derivatives begin; none where they are all zero.
     places: Vec<Option<usize>>,
-    /// Number of numbers they are.
+    /// Number of values.
     derivatives: usize,
 }
 

@@ -27,7 +27,7 @@ use super::sink::{NullSink, Sink, hand_over};
 pub(crate) struct Scope {
     pub sensitivities: bool,
     pub measures: bool,
-    /// Number of designs are solved in all, this one included: what is worth a program for all of them.
+    /// Number of designs that are solved in all, this one included: what is worth a program for all of them.
     pub of_many: usize,
 }
 

@@ -85,7 +85,7 @@ impl<'m> Motions<'m> {
         self.analyses[motion].model()
     }
 
-    /// Number of there are.
+    /// Total number.
     pub fn len(&self) -> usize {
         self.analyses.len()
     }

@@ -46,7 +46,7 @@ pub struct Gradients {
     pub times: Vec<f64>,
     /// The outputs requested.
     pub outputs: Vec<Output>,
-    /// Number of design variables there are.
+    /// Number of design variables.
     pub variables: usize,
     /// Method that was used: direct or adjoint.
     pub method: GradientMethod,

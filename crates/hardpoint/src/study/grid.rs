@@ -23,7 +23,7 @@ pub struct GridMap {
     still: Vec<bool>,
     /// Per position, what was found there.
     positions: Vec<Position>,
-    /// Number of design variables there are.
+    /// Number of design variables.
     variables: usize,
     /// Stops of the motions that did not reach their end.
     pub stops: Vec<GridStop>,
@@ -188,7 +188,7 @@ impl GridMap {
         }
     }
 
-    /// Number of positions were reached.
+    /// Number of positions that were reached.
     pub fn solved(&self) -> usize {
         self.positions.iter().filter(|p| matches!(p, Position::Solved(_))).count()
     }

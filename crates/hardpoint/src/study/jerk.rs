@@ -10,7 +10,7 @@ pub struct Jerks {
     pub times: Vec<f64>,
     /// `states[k * bodies + b]` at time k of body b; body 0 is ground.
     pub states: Vec<BodyJerk>,
-    /// Number of bodies there are, ground included.
+    /// Number of bodies, ground included.
     pub bodies: usize,
     /// Reason why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,

@@ -19,7 +19,7 @@ const KEPT: f64 = 1e-9;
 pub struct NearestAdmissible {
     /// By how much every variable changes, m, rad, or plain.
     pub change: Vec<f64>,
-    /// Number of independent conditions there are.
+    /// Number of independent conditions.
     pub conditions: usize,
     /// The largest defect of the change that was requested, and of this one, in units of the mechanism's size or rad.
     pub defects: [f64; 2],

@@ -20,7 +20,7 @@ pub struct SecondDerivatives {
     pub pairs: Vec<[usize; 2]>,
     /// The columns: measures, then components of points.
     pub outputs: Vec<Output>,
-    /// Number of bodies there are, ground included.
+    /// Number of bodies, ground included.
     pub bodies: usize,
     /// `values[(k * pairs + p) * outputs + m]`, and likewise by body.
     values: Vec<f64>,

@@ -11,7 +11,7 @@ use basin::{
 
 /// Gradient relative to that at the start below which a point is stationary.
 const STATIONARY: f64 = 1e-13;
-/// Number of points are kept: a line search may go back a few.
+/// Number of points that are kept: a line search may go back a few.
 const KEPT: usize = 16;
 
 /// Results at the most recent points.

@@ -67,7 +67,8 @@ fn jacobian_of_parts(model: &Model, topology: &Topology) -> Vec<SparseRow> {
                 for step in &link.steps {
                     for (k, c) in step.coordinates().enumerate() {
                         let unit = topology[c].unit;
-                        // J_ra = +- l_r . x_a, per unit of the row and times that of the coordinate: a number without dimension (6)
+                        // J_ra = +- l_r . x_a, per unit of the row and times that of the coordinate: a number without
+                        // dimension (6)
                         let entry = side * scale * unit * wrench.on(step.twist(k, &frame.rot, frame.r));
                         entries.push((c, entry));
                     }

@@ -524,7 +524,8 @@ fn friction_of_all_kinds_follows_the_design() {
     else {
         unreachable!()
     };
-    // Near its dead centre the ram is as slow as friction goes smoothly to zero; differences see only what goes more slowly.
+    // Near its dead centre the ram is as slow as friction goes smoothly to zero; differences see only what goes more
+    // slowly.
     (*ignored_direction, *transition_velocity) = (Some(Vec3::AXES[2]), Some(0.2.into()));
     differentiated(&press, &["torque", "guide", "B"]);
 }

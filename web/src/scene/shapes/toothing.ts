@@ -13,7 +13,7 @@ const HEIGHT = { ofPitch: 0.62, ofRadius: 0.16 }
 const FOOT = 0.26
 const TIP = 0.1
 
-/** Number of teeth are drawn on two gears: in their ratio, so that they mesh while they turn. */
+/** Number of teeth that are drawn on two gears: in their ratio, so that they mesh while they turn. */
 export function drawnTeeth([a, b]: [number, number]): [number, number] {
   const [few, many] = a < b ? [a, b] : [b, a]
   if (Number.isInteger(a) && Number.isInteger(b) && few >= FEWEST && few <= MOST && many <= MATE) return [a, b]

@@ -9,7 +9,7 @@ use super::certainty::Known;
 use super::fit::{FitWorkspace, SearchResult};
 use super::posture::derivative;
 
-/// Number of readings are proposed.
+/// Number of readings that are proposed.
 const PROPOSED: usize = 5;
 /// Maximum number of postures of a motion that are considered.
 const LOOKED_AT: usize = 24;

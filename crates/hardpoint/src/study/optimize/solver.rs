@@ -139,7 +139,7 @@ pub(super) struct Programming<'p> {
     /// Factor of the objective, and of every limit.
     scale: f64,
     limit_scales: Vec<f64>,
-    /// Number of groups of peaks and limited ranges there are, and how many rows of each kind: the same for every
+    /// Number of groups of peaks and limited ranges, and how many rows of each kind: the same for every
     /// design.
     peaks: usize,
     spreads: usize,

@@ -56,7 +56,7 @@ impl<'a> SweepPlan<'a> {
         Ok(Self { asked, variables, count, sobol })
     }
 
-    /// Number of there are.
+    /// Total number.
     pub fn count(&self) -> usize {
         self.count
     }

@@ -160,9 +160,9 @@ pub enum ToleranceError {
 /// Progress reports of a study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ToleranceStage {
-    /// Number of gradients of that many are differenced.
+    /// Number of these gradients that are differenced.
     Derivatives(usize, usize),
-    /// Number of designs of that many were solved.
+    /// Number of these designs that were solved.
     Designs(usize, usize),
 }
 

@@ -31,7 +31,7 @@ pub struct MonteCarlo {
     pub all: Option<Yield>,
     /// Designs that do not move to the end in some motion, by what happens there.
     pub failures: Vec<FailureGroup>,
-    /// Number of designs these are.
+    /// Number of these designs.
     pub failed: usize,
     /// Cost of the designs.
     pub cost: StudyCost,
@@ -87,7 +87,7 @@ pub struct FailureGroup {
     pub why: String,
     /// Number.
     pub first: usize,
-    /// Number of there are.
+    /// Total number.
     pub count: usize,
 }
 

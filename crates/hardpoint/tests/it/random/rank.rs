@@ -15,7 +15,7 @@ pub struct Basis {
 }
 
 impl Basis {
-    /// Number of independent rows there are.
+    /// Number of independent rows.
     pub fn rank(&self) -> usize {
         self.vectors.len()
     }
