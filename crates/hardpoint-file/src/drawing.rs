@@ -64,7 +64,7 @@ pub enum Form {
 }
 
 impl Form {
-    /// All of them, in the order of [`FORMS`].
+    /// All of them, in the order of `FORMS`.
     pub const ALL: [Self; 5] = [Self::Coilover, Self::Spring, Self::Damper, Self::Cylinder, Self::Rod];
 
     /// As model files write it.

@@ -135,7 +135,7 @@ impl ModelFile {
 
     /// The designs that a CSV file lists, wherever it lies: its first line names design variables, each line below has
     /// their values, in the file's units; of a parameter its value, of all others a change. What comes out is changes
-    /// in SI, as in [`SweepSettings`](hardpoint::model::Sweeping).
+    /// in SI, as in [`SweepSettings`](hardpoint::model::SweepSettings).
     ///
     /// # Errors
     /// What is wrong with it.

@@ -48,7 +48,7 @@ impl Model {
     /// Every [`DraftError`] of the draft, in its order: unknown or duplicate names, axes that are null or missing or
     /// not square, places that do not fit the joint type, drivers on coordinates that a joint does not have, laws that
     /// are not finite at an output time, times that do not increase. No fault, but no model either, where something is
-    /// [`UnreadEntries`](crate::draft::Unread) and all else is right.
+    /// [`UnreadEntries`](crate::draft::UnreadEntries) and all else is right.
     ///
     /// ```
     /// use hardpoint::{draft::Draft, model::Model};

@@ -18,7 +18,7 @@ pub struct CurveBands {
     pub measure: usize,
     /// The motion, by its place among those studied.
     pub motion: usize,
-    /// Column in [`MeasureResults`](crate::measure::Measured).
+    /// Column in [`MeasureResults`](crate::measure::MeasureResults).
     pub column: usize,
     /// Output times, s.
     pub times: Vec<f64>,
