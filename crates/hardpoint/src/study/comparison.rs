@@ -106,8 +106,8 @@ impl Comparison {
         [0, 2, 4].map(|kind| self.errors[kind * self.bodies + body.0 - 1].error)
     }
 
-    /// Errors of value, rate and acceleration of output m, a column of [`MeasureResults`](crate::measure::MeasureResults); 0
-    /// for orders that it does not have.
+    /// Errors of value, rate and acceleration of output m, a column of
+    /// [`MeasureResults`](crate::measure::MeasureResults); 0 for orders that it does not have.
     pub fn of_output(&self, m: usize) -> [f64; 3] {
         let first = KINDS.len() * self.bodies + self.orders[..m].iter().sum::<usize>();
         [0, 1, 2].map(|order| if order < self.orders[m] { self.errors[first + order].error } else { 0.0 })
