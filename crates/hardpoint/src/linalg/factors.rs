@@ -7,12 +7,12 @@ use super::sparse::SparseLu;
 
 /// Blocks with more unknowns than this are factored by [`SparseLu`].
 ///
-/// With four entries a row sparse factors are three times as fast as dense ones at 16 unknowns and seven times at 40;
-/// with full rows they are as fast up to 16. But margins of sparse blocks are not recorded (`motion/step_program.rs`),
-/// so that blocks which mechanisms commonly have stay dense.
+/// With four entries per row, sparse factors are three times as fast as dense ones at 16 unknowns and seven times at
+/// 40; with full rows they are as fast up to 16. But margins of sparse blocks are not recorded
+/// (`motion/step_program.rs`), so the common block sizes stay dense.
 pub(crate) const LARGEST_DENSE: usize = 40;
 
-/// LU factors of one block's Jacobian, kept for every right-hand side of a step.
+/// LU factors of the Jacobian of one block, stored for all right-hand sides of a step.
 #[derive(Clone, Debug)]
 pub(crate) enum Factors<T> {
     Dense(Elimination<T>),
@@ -54,7 +54,8 @@ impl<T: Real> Factors<T> {
         }
     }
 
-    /// Number of multiplications of a sparse factorisation in the present order; 0 for dense factors, which are small.
+    /// Number of multiplications of a sparse factorisation in the present pivot order; 0 for dense factors, which are
+    /// small.
     pub fn multiplications(&self) -> usize {
         match self {
             Self::Dense(_) => 0,
@@ -62,7 +63,7 @@ impl<T: Real> Factors<T> {
         }
     }
 
-    /// One determinant that [`Factors::factor`] found over another.
+    /// Ratio of two determinants found by [`Factors::factor`].
     #[inline(always)]
     pub fn ratio(&self, now: T, before: T) -> T {
         match self {

@@ -1,19 +1,19 @@
-//! Small dense systems with one solution, many or none: the least of those that fit best.
+//! Minimum-norm least-squares solutions of small dense systems of any rank.
 
-/// A column is independent of those before it if more is left of it than this times the number of rows or columns, as a
-/// part of the largest entry: round-off leaves less.
+/// A column is independent of the preceding ones if its remainder exceeds this, times the larger of the numbers of rows
+/// and columns, relative to the largest entry: round-off leaves less.
 const ROUND_OFF: f64 = f64::EPSILON;
 
-/// The shortest `x` of those for which `|A x - b|` is least, `x = A^+ b`, for each right-hand side `b`.
+/// The shortest `x` of those that minimise `|A x - b|`, `x = A^+ b`, for each right-hand side `b`.
 ///
-/// `A` has m rows and n columns. With orthogonal `Q` and `V`, and columns exchanged by `P` and `N` (a complete
+/// `A` has m rows and n columns. With orthogonal `Q` and `V`, and column permutations `P` and `N` (a complete
 /// orthogonal decomposition),
 ///
 /// ```text
-/// A P = Q (R)      as many rows in R as A has independent ones;      R^T N = V (S)      S square and triangular
-///         (0)                                                                  (0)
+/// A P = Q (R)      R has one row per independent column;      R^T N = V (S)      S square and triangular
+///         (0)                                                             (0)
 ///
-/// x = P V (S^-T N^T c)      c the first rows of Q^T b
+/// x = P V (S^-T N^T c)      c: the first rows of Q^T b
 ///         (     0    )
 /// ```
 pub(crate) fn least_squares(
@@ -22,14 +22,14 @@ pub(crate) fn least_squares(
     right: &[Vec<f64>],
 ) -> Vec<Vec<f64>> {
     let mut columns: Vec<Vec<f64>> = (0..n).map(|c| (0..m).map(|r| entry(r, c)).collect()).collect();
-    // Squares of entries stay within the range of numbers.
+    // Scaling prevents squares of entries from overflowing.
     let largest =
         columns.iter().flatten().fold(0.0, |most: f64, x| if x.abs() <= most { most } else { x.abs() });
     if largest == 0.0 {
         return vec![vec![0.0; n]; right.len()];
     }
     columns.iter_mut().flatten().for_each(|x| *x /= largest);
-    // Q^T A P = (R over 0), of as many rows as independent columns
+    // Q^T A P = (R over 0), R with one row per independent column
     let q = Triangular::of(columns, ROUND_OFF * m.max(n) as f64);
     let rank = q.reflections.len();
     let row = |i: usize| (0..n).map(|j| if j < i { 0.0 } else { q.columns[j][i] }).collect();
@@ -41,7 +41,8 @@ pub(crate) fn least_squares(
         q.reflections.iter().for_each(|h| reflect(h, &mut c));
         let mut y = vec![0.0; n];
         for i in 0..rank {
-            // S^T y = N^T c, forwards, since S^T is lower triangular; the rest of y is 0, which makes x the shortest
+            // S^T y = N^T c by forward substitution, since S^T is lower triangular; the rest of y is 0, which makes x
+            // the shortest
             let known: f64 = (0..i).map(|k| v.columns[i][k] * y[k]).sum();
             y[i] = (c[v.order[i]] - known) / v.columns[i][i];
         }
@@ -54,8 +55,8 @@ pub(crate) fn least_squares(
     right.iter().map(solution).collect()
 }
 
-/// As many rows as columns, for which products of columns are those of a matrix with any number of rows: the factor R
-/// of `A P = Q R` with its columns where they were.
+/// Square matrix with the same products of columns as a matrix with any number of rows: the factor R of `A P = Q R`,
+/// its columns in their original order.
 pub(crate) fn folded_rows(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let n = columns.len();
     let mut rows = vec![vec![0.0; n]; n];
@@ -63,25 +64,26 @@ pub(crate) fn folded_rows(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     for (column, &place) in q.columns.iter().zip(&q.order) {
         rows.iter_mut().zip(column).for_each(|(row, entry)| row[place] = *entry);
     }
-    // Below the diagonal is nothing that means something.
+    // Entries below the diagonal are meaningless.
     for (k, &place) in q.order.iter().enumerate() {
         rows[k + 1..].iter_mut().for_each(|row| row[place] = 0.0);
     }
     rows
 }
 
-/// A matrix made upper triangular by reflections, its columns exchanged so that the longest comes first.
+/// A matrix made upper triangular by Householder reflections, with column exchanges: the longest remaining column is
+/// next.
 struct Triangular {
     /// Meaningless below the diagonal.
     columns: Vec<Vec<f64>>,
     /// Permutation of the columns.
     order: Vec<usize>,
-    /// Unit normals of the mirrors, without the zeros at their beginning; as many as there are independent columns.
+    /// Unit normals of the reflections, without leading zeros; one per independent column.
     reflections: Vec<Vec<f64>>,
 }
 
 impl Triangular {
-    /// Columns of which no more than `least` is left count as zero.
+    /// Triangularises `columns`. Columns with a remainder of at most `least` count as zero.
     fn of(mut columns: Vec<Vec<f64>>, least: f64) -> Self {
         let (n, m) = (columns.len(), columns.first().map_or(0, Vec::len));
         let mut order: Vec<usize> = (0..n).collect();
@@ -90,7 +92,7 @@ impl Triangular {
             let longer = |a: (usize, f64), b: (usize, f64)| if b.1 > a.1 { b } else { a };
             let lengths = (k..n).map(|c| (c, norm(&columns[c][k..])));
             let (longest, length) = lengths.reduce(longer).expect("a column is left");
-            // Written so that NaN goes on, and into all solutions.
+            // Written so that NaN propagates into all solutions.
             if length <= least {
                 break;
             }
@@ -109,7 +111,7 @@ impl Triangular {
     }
 }
 
-/// Mirrors the last entries of x.
+/// Reflects the last entries of x.
 fn reflect(normal: &[f64], x: &mut [f64]) {
     let last = x.len() - normal.len();
     let twice: f64 = 2.0 * normal.iter().zip(&x[last..]).map(|(a, b)| a * b).sum::<f64>();
@@ -139,7 +141,7 @@ mod tests {
         (0..n).map(|c| a.iter().map(|row| row[c]).collect()).collect()
     }
 
-    /// The pseudo-inverse, column by column of its transposed.
+    /// The pseudo-inverse, stored as the columns of its transpose.
     fn inverse(a: &Matrix, n: usize) -> Matrix {
         let m = a.len();
         let units: Matrix = (0..m).map(|k| (0..m).map(|r| f64::from(u8::from(r == k))).collect()).collect();
@@ -185,7 +187,7 @@ mod tests {
             prop_assert!(apart(&gram(&a), &gram(&folded)) <= 1e-14 * a.len() as f64);
         }
 
-        /// A product of an m x rank and a rank x n matrix, as small or as large as numbers are.
+        /// A product of an m x rank and a rank x n matrix, over the whole range of magnitudes.
         #[test]
         fn what_is_found_is_the_pseudo_inverse_whatever_the_rank_and_size(
             (left, right) in (1_usize..9, 0_usize..6, 1_usize..9).prop_flat_map(|(m, rank, n)| {
@@ -197,7 +199,7 @@ mod tests {
             let n = right.first().map_or(3, Vec::len);
             let mut a = if right.is_empty() { vec![vec![0.0; n]; left.len()] } else { product(&left, &right) };
             let scale = 10_f64.powi(exponent);
-            // Factors that are nearly dependent themselves have no certain rank.
+            // Factors that are nearly dependent have no definite rank.
             let rank = right.len().min(left.len()).min(n);
             prop_assume!(Triangular::of(transposed(&a, n), 1e-3).reflections.len() == rank);
             prop_assert!(failure(&a, n) < 1e-11, "{:e}", failure(&a, n));

@@ -1,26 +1,26 @@
-//! Small dense systems: the elimination of the hot path.
+//! Small dense systems: the Gaussian elimination of the hot path.
 
 use crate::number::Real;
 
-/// A factor of the elimination above this says that another order of the rows would keep more digits.
+/// Growth factor of the elimination above which another order of the rows is chosen, to keep more digits.
 pub(crate) const MOST_GROWTH: f64 = 4.0;
 
-/// LU factors of one block's Jacobian, kept for every right-hand side of a step.
+/// LU factors of the Jacobian of one block, stored for all right-hand sides of a step.
 ///
-/// The order of the pivots is chosen once and watched: from one step to the next it hardly ever changes.
+/// The pivot order is chosen once and monitored: it hardly ever changes from one step to the next.
 #[derive(Clone, Debug)]
 pub(crate) struct Elimination<T> {
     n: usize,
-    /// Row-major n x n: the matrix.
+    /// The matrix, n x n, row-major.
     rows: Vec<T>,
-    /// Factors, rows in the order of the pivots, diagonal inverted.
+    /// Factors, with rows in pivot order and the diagonal inverted.
     ///
     /// `P A = L U`, l_ii = 1: below the diagonal l_rk, above it u_kc, on it 1 / u_kk.
     a: Vec<T>,
     order: Vec<usize>,
-    /// True if that order is an even permutation.
+    /// True if the pivot order is an even permutation.
     even: bool,
-    /// The factors may be as large as this before another order is looked for.
+    /// Largest growth factor before another order is chosen.
     most_growth: f64,
     scratch: Vec<T>,
 }
@@ -28,25 +28,25 @@ pub(crate) struct Elimination<T> {
 /// Result of a factorisation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Factored<T> {
-    /// Smallest pivot over the largest; 0 where singular or not finite.
+    /// Smallest pivot over the largest; 0 if the matrix is singular or not finite.
     pub pivot_ratio: f64,
     /// True if the determinant is positive.
     pub positive: bool,
-    /// The size of the determinant; of a sparse matrix its logarithm.
+    /// Magnitude of the determinant; for a sparse matrix, its logarithm.
     pub determinant: T,
-    /// Pivots that the result depends on.
+    /// Monitored quantities that the result depends on.
     pub watched: Watched<T>,
 }
 
-/// Monitored quantities of an elimination in an order that was chosen before.
+/// Monitored quantities of an elimination in a pivot order that was chosen before.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Watched<T> {
-    /// The product of the pivots; of a sparse matrix its sign alone.
+    /// Product of the pivots; for a sparse matrix, only its sign.
     pub product: T,
-    /// The largest pivot, and the largest inverse of one.
+    /// Largest pivot magnitude.
     pub most: T,
     pub least: T,
-    /// The largest factor.
+    /// Largest entry of the factor L.
     pub growth: T,
 }
 
@@ -56,11 +56,12 @@ impl<T: Real> Watched<T> {
         Self { product: zero, most: zero, least: zero, growth: zero }
     }
 
-    /// Smallest pivot over the largest, 0 where any is not finite; and whether the product of the pivots is positive.
+    /// Returns the ratio of the smallest to the largest pivot (0 if any is not finite), and true if the product of the
+    /// pivots is positive.
     #[inline(always)]
     pub fn verdict(&self) -> (f64, bool) {
         let product = self.product.decisive();
-        // NaN, as of a pivot of zero, is no sign either.
+        // NaN, which a pivot of zero produces, has no sign either.
         let regular = product.abs() > 0.0;
         // min abs(u_kk) / max abs(u_kk) = 1 / (max abs(u_kk) max abs(1 / u_kk))
         let ratio = if regular { 1.0 / (self.most.decisive() * self.least.decisive()) } else { 0.0 };
@@ -95,19 +96,19 @@ impl<T: Real> Elimination<T> {
             let watched = Watched { product: one, most: one, least: one, growth: one };
             return Factored { pivot_ratio: 1.0, positive: true, determinant: one, watched };
         }
-        // Written so that NaN is looked at again, too.
+        // Written so that NaN also chooses the order again.
         let (found, growth) = self.eliminate();
         if growth <= self.most_growth {
             return found;
         }
         self.choose_order();
         let (found, growth) = self.eliminate();
-        // Where no order serves better, one would be looked for in vain at every step.
+        // If no order is better, the limit is raised: otherwise the search would repeat at every step.
         self.most_growth = f64::max(MOST_GROWTH, 2.0 * growth);
         found
     }
 
-    /// Eliminates in the present order; returns the largest factor, too.
+    /// Eliminates in the present order; also returns the largest factor.
     #[inline(always)]
     fn eliminate(&mut self) -> (Factored<T>, f64) {
         let n = self.n;
@@ -116,7 +117,7 @@ impl<T: Real> Elimination<T> {
             to.copy_from_slice(&rows[from * n..(from + 1) * n]);
         }
         let (zero, one) = (T::zero(), T::one());
-        // The largest of the pivots and of their inverses, the product of the pivots, the largest factor.
+        // Largest pivot, largest inverse of a pivot, product of the pivots, and largest factor.
         let (mut most, mut least, mut determinant, mut growth) = (zero, zero, one, zero);
         for k in 0..n {
             let pivot = a[k * n + k];
@@ -142,7 +143,7 @@ impl<T: Real> Elimination<T> {
         (Factored { pivot_ratio, positive, determinant: determinant.abs(), watched }, growth.decisive())
     }
 
-    /// Chooses the order of the pivots by their sizes.
+    /// Chooses the pivot order by the sizes of the entries.
     #[inline(never)]
     fn choose_order(&mut self) {
         let n = self.n;
@@ -205,7 +206,7 @@ impl<T: Real> Elimination<T> {
 
     /// Replaces the right-hand side by the solution with the transposed matrix.
     ///
-    /// With `P A = L U` that is `U^T y = b`, `L^T z = y`, `P x = z`.
+    /// With `P A = L U`: `U^T y = b`, `L^T z = y`, `P x = z`.
     #[inline(always)]
     pub fn solve_transposed(&mut self, b: &mut [T]) {
         let n = self.n;
@@ -213,7 +214,7 @@ impl<T: Real> Elimination<T> {
         let x = &mut self.scratch[..n];
         x.copy_from_slice(&b[..n]);
         for k in 0..n {
-            // U^T y = b, column by column: y_k = b_k / u_kk, and off with it from all later ones
+            // U^T y = b, column by column: y_k = b_k / u_kk, then subtracted from all later ones
             x[k] = x[k] * a[k * n + k];
             for c in k + 1..n {
                 x[c] = (-a[k * n + c]).times_plus(x[k], x[c]);

@@ -1,5 +1,5 @@
-//! Linear algebra: factors of the loop's equations, rank, least squares, splines. Written once over any
-//! [`Real`](crate::number::Real) where kernels are recorded from it.
+//! Linear algebra: factors of the loop equations, rank, least squares, splines. Code that kernels are recorded from is
+//! written over any [`Real`](crate::number::Real).
 
 mod factors;
 mod least_squares;

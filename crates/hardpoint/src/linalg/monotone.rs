@@ -1,14 +1,15 @@
-//! Curves through points that rise and fall where the points do, and nowhere else.
+//! Shape-preserving cubic interpolation: curves that rise and fall only where their points do.
 
 use super::Segment;
 use super::spline::hermite;
 
-/// The piecewise cubic through these points, at least two with x increasing, with a continuous slope and without
-/// overshoot: between two points it stays between their values. Segments are in the distance from their first point.
+/// Piecewise cubic through these points (at least two, x increasing), with a continuous slope and without overshoot:
+/// between two points the curve stays between their values. Segments are polynomials in the distance from their first
+/// point.
 ///
-/// Slope at a point is the weighted harmonic mean of those of the chords beside it, and zero where these have different
-/// signs (F. N. Fritsch and J. Butland 1984); at the ends that of the parabola through three points, as far as it keeps
-/// the curve monotone.
+/// The slope at a point is the weighted harmonic mean of the slopes of the adjacent chords, and zero if these have
+/// opposite signs (F. N. Fritsch and J. Butland 1984). At the ends it is that of the parabola through three points,
+/// limited to keep the curve monotone.
 pub(crate) fn monotone(points: &[[f64; 2]]) -> Vec<Segment> {
     let chords: Vec<[f64; 2]> = points.windows(2).map(|p| [p[1][0] - p[0][0], p[1][1] - p[0][1]]).collect();
     let last = chords.len();
@@ -23,7 +24,7 @@ pub(crate) fn monotone(points: &[[f64; 2]]) -> Vec<Segment> {
     (0..last).map(|k| hermite(chords[k][0], 1, |end, order| at(k + end, order))).collect()
 }
 
-/// The slope between two chords.
+/// Slope at the point between two chords.
 fn between([h, rise]: [f64; 2], [g, next]: [f64; 2]) -> f64 {
     let (d, e) = (rise / h, next / g);
     if d * e <= 0.0 {
@@ -34,10 +35,10 @@ fn between([h, rise]: [f64; 2], [g, next]: [f64; 2]) -> f64 {
     (w1 + w2) / (w1 / d + w2 / e)
 }
 
-/// The slope at the end of a chord, with the next one inwards.
+/// Slope at the outer end of a chord, given the next chord inwards.
 fn at_end([h, rise]: [f64; 2], [g, next]: [f64; 2]) -> f64 {
     let (d, e) = (rise / h, next / g);
-    // ((2 h + g) d - h e) / (h + g), no other sign than the chord's, and at most three times as steep
+    // ((2 h + g) d - h e) / (h + g), limited to the sign of the chord and to three times its slope
     let slope = ((2.0 * h + g) * d - h * e) / (h + g);
     if slope * d <= 0.0 {
         0.0
@@ -52,7 +53,7 @@ fn at_end([h, rise]: [f64; 2], [g, next]: [f64; 2]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A cubic is evaluated to this, of values about 1.
+    /// Accuracy of an evaluated cubic with values of about 1.
     const EXACT: f64 = 1e-14;
 
     fn at(points: &[[f64; 2]], segments: &[Segment], x: f64) -> [f64; 2] {
@@ -81,7 +82,7 @@ mod tests {
             assert!((below[0] - p[1]).abs() < 1e-7 && (above[0] - p[1]).abs() < 1e-7);
             assert!((below[1] - above[1]).abs() < 1e-5, "{below:?} {above:?}");
         }
-        // Flat before zero, so that it is flat there, and rises at once behind it.
+        // Flat before zero, so the slope is zero there; it rises immediately after.
         assert_eq!(at(&points, &segments, 0.0)[1], 0.0);
         assert!(at(&points, &segments, 0.05)[0] > 0.0);
     }

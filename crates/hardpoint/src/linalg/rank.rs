@@ -1,38 +1,38 @@
-//! Independent rows of a matrix: for set-up, when redundancy is normal.
+//! Independent rows of a matrix, for set-up, where redundancy is normal.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Up to this many columns the pivot is searched in the whole matrix. That takes n^3 steps: 10 ms here, seconds
-/// with a thousand columns, where threshold pivots in sparse rows take milliseconds.
+/// Largest number of columns for which the pivot is searched in the whole matrix. The search takes n^3 operations: 10
+/// ms at this size, seconds with a thousand columns, where threshold pivots in sparse rows take milliseconds.
 const LARGEST_COMPLETE: usize = 100;
-/// Sparse pivots are first taken from entries above this part of the largest entry, then above this part of
-/// that, and so on: nearly complete pivoting, so that a small pivot never represents an independent row while
-/// a large one is left.
+/// Sparse pivots are first taken from entries above this fraction of the largest entry, then above this fraction of
+/// that, and so on. This is nearly complete pivoting: a small pivot never represents an independent row while a large
+/// one is left.
 const STAGE: f64 = 1e-2;
-/// A sparse pivot is at least this part of the largest entry in its row, which bounds the growth of round-off.
+/// Minimum size of a sparse pivot relative to the largest entry in its row, which bounds the growth of round-off.
 const THRESHOLD: f64 = 0.1;
-/// ... and this part of the largest entry in its column: rows are chosen for good, and one that says little of a column
-/// while another says more makes a bad choice. Loops that hang on each other in a row multiply it: of a 20 x 20 grid of
-/// scissors without this, rows are chosen whose least singular value is 4e-9 (with a third of it still 5e-7), with it
-/// 3e-3; all rows together have 1e-2.
+/// Minimum size of a sparse pivot relative to the largest entry in its column. The choice of rows is final, and a row
+/// with a small entry in a column is a bad choice if another has a larger one. Loops that depend on each other in
+/// series amplify the error: without this limit, the rows chosen for a 20 x 20 grid of scissors have a minimum singular
+/// value of 4e-9 (5e-7 with a third of it), with it 3e-3; all rows together have 1e-2.
 const CHOICE: f64 = 0.9;
-/// Remainders of the elimination below this part of the tolerance are set to zero, so that rounded redundancy does not
-/// fill the rows.
+/// Remainders of the elimination below this fraction of the tolerance are set to zero, so that rounded redundancy does
+/// not fill the rows.
 const DUST: f64 = 1e-4;
 
-/// Elimination of an m x n matrix for its rank: an independent set of its rows, and the motions it leaves free.
+/// Elimination of an m x n matrix for its rank: an independent set of rows, and the free motions that remain.
 #[derive(Clone, Debug)]
 pub(crate) struct FullPivot {
     /// Independent rows, best pivot first; their number is the rank.
     pub rows: Vec<usize>,
-    /// A basis of the columns' null space: the columns that each vector moves, and by how much.
+    /// A basis of the columns' null space: the non-zero entries of each vector, as (column, value).
     pub free: Vec<Vec<(usize, f64)>>,
 }
 
 impl FullPivot {
-    /// Complete pivoting over the rows of the matrix in `a`; a pivot below `tolerance`, or below `tolerance` times the
-    /// largest, counts as zero.
+    /// Complete pivoting over the rows of the matrix in `a`. A pivot below `tolerance`, or below `tolerance` times the
+    /// largest pivot, counts as zero.
     pub fn of(mut a: Vec<Vec<f64>>, n: usize, tolerance: f64) -> Self {
         let m = a.len();
         let mut rows: Vec<usize> = (0..m).collect();
@@ -43,7 +43,7 @@ impl FullPivot {
             let mut best = (k, 0, 0.0);
             for r in k..m {
                 for c in (0..n).filter(|&c| !used[c]) {
-                    // Near-ties go to the earlier row and column, so that round-off decides nothing.
+                    // Ties within round-off go to the earlier row and column, so that the choice is reproducible.
                     if a[r][c].abs() > best.2 * (1.0 + 1e-9) {
                         best = (r, c, a[r][c].abs());
                     }
@@ -58,7 +58,8 @@ impl FullPivot {
             rows.swap(r, k);
             used[c] = true;
             columns.push(c);
-            // Gauss and Jordan: the pivot becomes 1, and all other rows, those of earlier pivots too, lose column c.
+            // Gauss-Jordan: the pivot becomes 1, and column c is eliminated from all other rows, including those of
+            // earlier pivots.
             let inverse = 1.0 / a[k][c];
             for x in &mut a[k] {
                 *x *= inverse;
@@ -76,8 +77,8 @@ impl FullPivot {
         let free = (0..n)
             .filter(|&c| !used[c])
             .map(|c| {
-                // x_c = 1 and x_p = -a_kc, p the column of pivot k: the null vector that moves, besides the pivots'
-                // columns, only c
+                // x_c = 1 and x_p = -a_kc, p the column of pivot k: the null vector that moves only c and the pivots'
+                // columns
                 let others = columns.iter().enumerate().map(|(k, &p)| (p, -a[k][c]));
                 others.chain([(c, 1.0)]).filter(|(_, x)| *x != 0.0).collect()
             })
@@ -86,10 +87,11 @@ impl FullPivot {
         Self { rows, free }
     }
 
-    /// The same for sparse rows of (column, entry), each column at most once; with few columns, exactly the same.
+    /// Elimination of sparse rows of (column, entry), each column at most once; with few columns, identical to
+    /// [`of`](Self::of).
     ///
-    /// With many, rows with few entries are eliminated first, in columns with few entries (Markowitz's rule,
-    /// with threshold pivots), so that a block of loops costs little more than its entries.
+    /// With many columns, rows with few entries are eliminated first, in columns with few entries (Markowitz's rule,
+    /// with threshold pivots). The cost for a block of loops is then little more than proportional to its entries.
     pub fn of_sparse(rows: Vec<Vec<(usize, f64)>>, n: usize, tolerance: f64) -> Self {
         if n > LARGEST_COMPLETE {
             return Sparse::new(rows, n).reveal(tolerance);
@@ -105,17 +107,17 @@ impl FullPivot {
 
 /// A matrix under elimination.
 struct Sparse {
-    /// Entries by row, in the order of their columns; of a row that was a pivot's: what is above the diagonal.
+    /// Entries by row, in column order; for a pivot row, the entries above the diagonal.
     rows: Vec<Vec<(usize, f64)>>,
-    /// By column: rows that have, or had, an entry there.
+    /// By column: rows that have, or had, an entry in it.
     rows_of: Vec<Vec<usize>>,
-    /// By column: how many rows that are not eliminated have an entry there.
+    /// By column: number of remaining rows with an entry in it.
     counts: Vec<usize>,
-    /// True if a row was a pivot's.
+    /// By row: true if it is a pivot row.
     done: Vec<bool>,
-    /// Rows to try, those with the fewest entries first; some numbers may be out of date.
+    /// Rows to try, those with the fewest entries first; some counts may be out of date.
     queue: BinaryHeap<Reverse<(usize, usize)>>,
-    /// The pivots' rows and columns.
+    /// (row, column) of each pivot.
     pivots: Vec<(usize, usize)>,
 }
 
@@ -161,7 +163,7 @@ impl Sparse {
         FullPivot { rows: self.pivots.into_iter().map(|(r, _)| r).collect(), free }
     }
 
-    /// The column of row r to eliminate, if any entry is large enough in row and column: the one with the fewest
+    /// Column of row r to eliminate, if an entry is large enough in its row and column: the column with the fewest
     /// entries.
     fn pivot_of(&self, r: usize, stage: f64) -> Option<usize> {
         let most = self.rows[r].iter().map(|(_, x)| x.abs()).fold(0.0, f64::max);
@@ -179,7 +181,7 @@ impl Sparse {
         self.rows[r].binary_search_by_key(&c, |e| e.0).map_or(0.0, |at| self.rows[r][at].1)
     }
 
-    /// Queues the rows that may have become pivots because row r is one now.
+    /// Queues the rows that may have become eligible for a pivot because row r is now a pivot row.
     fn ask_again(&mut self, r: usize) {
         for &(column, _) in &self.rows[r] {
             for &other in self.rows_of[column].iter().filter(|&&other| !self.done[other]) {
@@ -188,7 +190,7 @@ impl Sparse {
         }
     }
 
-    /// Takes column c out of all rows that remain, with row r.
+    /// Eliminates column c from all remaining rows, with row r.
     fn eliminate(&mut self, r: usize, c: usize, dust: f64) {
         let pivot_row = std::mem::take(&mut self.rows[r]);
         let at = pivot_row.binary_search_by_key(&c, |e| e.0).expect("the pivot is an entry of its row");
@@ -212,7 +214,7 @@ impl Sparse {
         self.rows[r] = pivot_row;
     }
 
-    /// `row - factor * pivot_row` without column c, and the counts that go with it.
+    /// `row - factor * pivot_row` without column c, with the counts updated.
     fn combined(
         &mut self,
         r: usize,
@@ -249,7 +251,7 @@ impl Sparse {
         }
     }
 
-    /// For each column without a pivot: how the others follow it.
+    /// Null vectors: one for each column without a pivot, with the resulting entries of the others.
     fn free(&self) -> Vec<Vec<(usize, f64)>> {
         let n = self.counts.len();
         let mut bound = vec![false; n];
@@ -271,7 +273,7 @@ impl Sparse {
                             sum += x * v[column];
                         }
                     }
-                    // From the last pivot back: u_cc v_c + sum_{j != c} u_cj v_j = 0
+                    // Back substitution from the last pivot: u_cc v_c + sum_{j != c} u_cj v_j = 0
                     v[c] = -sum / pivot;
                 }
                 (0..n).filter(|&c| v[c] != 0.0).map(|c| (c, v[c])).collect()

@@ -1,12 +1,12 @@
-//! Symmetric matrices that are positive semidefinite: correlations, and the curvature of convex functions.
+//! Symmetric positive semidefinite matrices: correlations, and the curvature of convex functions.
 
-/// A pivot below this part of the diagonal's largest is none: such a matrix of correlations has ones on its diagonal,
-/// and its coefficients are written with few digits.
+/// Pivots below this fraction of the largest diagonal entry count as zero: a matrix of correlations has ones on its
+/// diagonal, and its coefficients are written with few digits.
 const NOTHING: f64 = 1e-12;
-/// Beside such a pivot nothing may be left that is larger than this: by rounding, the root of it.
+/// Largest entry allowed in the column of a zero pivot: the square root of the rounding error.
 const LEFT: f64 = 1e-6;
 
-/// The lower triangle L with L L' = A, row by row; columns without a pivot are zero. `None` where A is not positive
+/// The lower triangle L with L L^T = A, row by row; columns without a pivot are zero. `None` if A is not positive
 /// semidefinite.
 pub(crate) fn root(a: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let n = a.len();
@@ -30,7 +30,7 @@ pub(crate) fn root(a: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     Some(l)
 }
 
-/// The solution of `A x = b` by the root of A, which must have all its pivots.
+/// Solves `A x = b` in place by the root of A, which must have all its pivots.
 pub(crate) fn solve(root: &[Vec<f64>], b: &mut [f64]) {
     let n = b.len();
     for k in 0..n {
@@ -60,7 +60,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_together_has_no_root() {
-        // Two that go with a third go against each other.
+        // Two variables that are each correlated with a third, but against each other.
         assert!(
             root(&[vec![1.0, 0.9, 0.9], vec![0.9, 1.0, -0.9], vec![0.9, -0.9, 1.0]].map(|r| r)).is_none()
         );

@@ -1,5 +1,4 @@
-//! Sparse factors of a large block: an order of elimination that is chosen once, and straight loops over lists of
-//! places.
+//! Sparse factors of a large block: the order of elimination is chosen once, then straight loops run over index lists.
 
 use std::ops::Range;
 
@@ -7,38 +6,39 @@ use crate::number::{Function, Real};
 
 use super::matrix::{Factored, MOST_GROWTH, Watched};
 
-/// A pivot is at least this part of the largest entry that its column has left. Factors are then no larger than 2, and
-/// a change of the values may double them before [`MOST_GROWTH`] asks for another order. Chains of scissors fill by a
-/// tenth more with 0.9, and solve no better.
+/// Minimum size of a pivot relative to the largest remaining entry of its column. The entries of L are then at most 2,
+/// and a change of the values may double them before [`MOST_GROWTH`] requires another order. With 0.9, chains of
+/// scissors have a tenth more fill, and no better accuracy.
 const IN_COLUMN: f64 = 0.5;
-/// ... and this part of the largest entry that its row has left: so a small pivot does not stand while a large one
-/// waits.
+/// Minimum size of a pivot relative to the largest remaining entry of its row: a small pivot is not chosen while a
+/// large one is available.
 const IN_ROW: f64 = 0.1;
-/// A pivot is looked for in that many of the shortest rows and columns; more find hardly less fill, and take longer.
+/// Number of the shortest rows and columns searched for a pivot; a longer search reduces fill very little, and takes
+/// more time.
 const LOOKED_AT: usize = 4;
-/// Number of pivots that are multiplied before the logarithm is taken: each may change by a factor of 2^30 since the
-/// order was chosen.
+/// Number of pivots multiplied before the logarithm is taken: each may change by a factor of 2^30 after the order was
+/// chosen.
 const MULTIPLIED: usize = 32;
-/// No row, or no column.
+/// No row or column.
 const NONE: u32 = u32::MAX;
 
-/// LU factors of a sparse square matrix whose pattern does not change.
+/// LU factors of a sparse square matrix with a fixed pattern.
 ///
-/// With the rows and columns in the order of their pivots, `A = L U`, `l_ii = 1`. Row by row,
+/// With rows and columns in pivot order, `A = L U`, `l_ii = 1`. Row by row,
 ///
 /// ```text
 /// l_ik = (a_ik - sum l_im u_mk) / u_kk    m < k,    for k < i
 /// u_ij =  a_ij - sum l_im u_mj            m < i,    for j >= i
 /// ```
 ///
-/// over the places that are not always zero. The order is chosen by the values of the first factorisation ([`Choice`])
-/// and watched by the size of the factors: from one step to the next it hardly ever changes. Until it does, nothing is
+/// over the entries of the pattern. The order is chosen by the values of the first factorisation ([`Choice`]) and
+/// monitored by the size of the factors: it hardly ever changes from one step to the next. Until it does, nothing is
 /// allocated.
 #[derive(Clone, Debug)]
 pub(crate) struct SparseLu<T> {
-    /// By row: the columns that it has entries in, in the order in which they are filled.
+    /// By row: the columns of its entries, in the order in which they are filled.
     columns: Lists,
-    /// Entries, in the same order, and their places in the order of the pivots.
+    /// Entries in this order, and their positions in pivot order.
     values: Vec<T>,
     places: Vec<u32>,
     order: Order,
@@ -50,24 +50,24 @@ pub(crate) struct SparseLu<T> {
     work: Vec<T>,
 }
 
-/// In which order a matrix is eliminated, and where its factors have entries.
+/// The order of elimination, and the pattern of its factors.
 #[derive(Clone, Debug, Default)]
 struct Order {
-    /// The pivots' rows and columns; none where the matrix was singular.
+    /// Rows and columns of the pivots; empty if the matrix was singular.
     rows: Vec<u32>,
     columns: Vec<u32>,
-    /// True if both together are an even permutation.
+    /// True if the two permutations together are even.
     even: bool,
     /// By pivot: the k of its l_ik, and the j of its u_ij, in ascending order.
     lower: Lists,
     upper: Lists,
-    /// By pivot: a power of two that brings its size to about 1 where the order was chosen; the logarithm of what that
-    /// takes out.
+    /// By pivot: a power of two that scales it to about 1 at the time the order was chosen; and the logarithm of the
+    /// product of the scales removed.
     units: Vec<f64>,
     logarithm: f64,
 }
 
-/// Lists one after another.
+/// Lists stored one after another.
 #[derive(Clone, Debug, Default)]
 struct Lists {
     starts: Vec<usize>,
@@ -84,7 +84,7 @@ impl Lists {
         this
     }
 
-    /// By item below n: the lists that have it, in ascending order.
+    /// By item below n: the lists that contain it, in ascending order.
     fn transposed(&self, n: usize) -> Self {
         let mut starts = vec![0; n + 1];
         self.items.iter().for_each(|&item| starts[item as usize + 1] += 1);
@@ -117,7 +117,7 @@ impl Lists {
 }
 
 impl<T: Real> SparseLu<T> {
-    /// Factors of the n x n matrix that may have entries in these columns of its rows, each at most once.
+    /// Factors of the n x n matrix with entries in these columns of its rows, each column at most once.
     pub fn new(rows: &[Vec<usize>]) -> Self {
         let columns = Lists::of(rows.iter().map(|row| row.iter().map(|&c| index(c)).collect()));
         let zero = T::zero();
@@ -141,12 +141,12 @@ impl<T: Real> SparseLu<T> {
         }
     }
 
-    /// Factors what the rows were filled with.
+    /// Factorises the matrix of the present rows.
     #[inline(never)]
     pub fn factor(&mut self) -> Factored<T> {
         if self.is_ordered() {
             let found = self.eliminate();
-            // Written so that NaN is looked at again, too.
+            // Written so that NaN also chooses the order again.
             if found.watched.growth.decisive() <= MOST_GROWTH {
                 return found;
             }
@@ -176,7 +176,7 @@ impl<T: Real> SparseLu<T> {
         let n = rows.len();
         let (work, inverse) = (&mut self.work[..n], &mut self.inverse[..n]);
         let mut logarithm = T::constant(self.order.logarithm);
-        // The sign of the determinant, the product of some pivots, the largest pivot, inverse and factor.
+        // Sign of the determinant, product of some pivots, largest pivot, largest inverse, largest factor.
         let (mut sign, mut product, mut most, mut least, mut growth) = (one, one, zero, zero, zero);
         for i in 0..n {
             let row = self.columns.range(rows[i] as usize);
@@ -201,13 +201,13 @@ impl<T: Real> SparseLu<T> {
             (inverse[i], work[i]) = (one / pivot, zero);
             most = most.larger(pivot.abs());
             least = least.larger(inverse[i].abs());
-            // abs(det) = prod abs(u_ii) = e^logarithm prod abs(u_ii units_i), the factors about 1: no power of two too
-            // large or small
+            // abs(det) = prod abs(u_ii) = e^logarithm prod abs(u_ii units_i), with factors of about 1, so that no
+            // product overflows or underflows
             product = product * (pivot * units[i]);
             if i % MULTIPLIED == MULTIPLIED - 1 || i + 1 == n {
                 let size = product.abs();
                 logarithm += size.map(Function::Ln);
-                // NaN, as of a pivot of zero, is no sign either.
+                // NaN, which a pivot of zero produces, has no sign either.
                 (sign, product) = (sign * (product / size), one);
             }
         }
@@ -216,7 +216,7 @@ impl<T: Real> SparseLu<T> {
         Factored { pivot_ratio, positive: positive == *even, determinant: logarithm, watched }
     }
 
-    /// Chooses the order of the pivots by the values at hand.
+    /// Chooses the pivot order by the present values.
     #[inline(never)]
     fn choose_order(&mut self) {
         let (n, zero) = (self.inverse.len(), T::zero());
@@ -234,7 +234,7 @@ impl<T: Real> SparseLu<T> {
             Lists::of(lists.into_iter().map(|list| list.into_iter().map(|k| places[k as usize]).collect()))
         };
         let lower = placed(below, &row_places).transposed(n);
-        // Twice turned over, a list is in ascending order.
+        // Transposing twice sorts the lists in ascending order.
         let upper = placed(beside, &column_places).transposed(n).transposed(n);
         (self.lower, self.upper) = (vec![zero; lower.items.len()], vec![zero; upper.items.len()]);
         // units_i = 2^-round(log2 abs(u_ii)),    logarithm = sum round(log2 abs(u_ii)) ln 2
@@ -281,7 +281,7 @@ impl<T: Real> SparseLu<T> {
 
     /// Replaces the right-hand side by the solution with the transposed matrix, NaN if there is none.
     ///
-    /// With `P A Q = L U` that is `U^T y = Q^T b`, `L^T z = y`, `P x = z`.
+    /// With `P A Q = L U`: `U^T y = Q^T b`, `L^T z = y`, `P x = z`.
     #[inline(never)]
     pub fn solve_transposed(&mut self, b: &mut [T]) {
         if !self.is_ordered() {
@@ -302,7 +302,7 @@ impl<T: Real> SparseLu<T> {
         }
         for i in (0..rows.len()).rev() {
             let s = x[i];
-            // L^T z = y likewise from the last one on, and x = P^T z
+            // L^T z = y likewise, from the last pivot on, and x = P^T z
             for (k, l) in lower.with(i, &self.lower) {
                 x[k] = (-l).times_plus(s, x[k]);
             }
@@ -313,7 +313,7 @@ impl<T: Real> SparseLu<T> {
     }
 }
 
-/// A row or column as it is listed.
+/// Row or column number as stored in lists.
 fn index(k: usize) -> u32 {
     u32::try_from(k).expect("a block has fewer unknowns than 2^32")
 }
@@ -327,7 +327,7 @@ fn inverse(permutation: &[u32]) -> Vec<u32> {
     inverse
 }
 
-/// True if a permutation is odd: each cycle of even length turns that over.
+/// True if a permutation is odd: each cycle of even length flips the parity.
 fn is_odd(permutation: &[u32]) -> bool {
     let mut seen = vec![false; permutation.len()];
     let mut odd = false;
@@ -336,47 +336,47 @@ fn is_odd(permutation: &[u32]) -> bool {
         while !seen[at] {
             seen[at] = true;
             at = permutation[at] as usize;
-            // Going back to the start is no exchange.
+            // The return to the start of the cycle is not an exchange.
             odd ^= at != start;
         }
     }
     odd
 }
 
-/// The choice of an order: elimination in which each pivot is one that brings little fill (Markowitz' rule: few other
-/// entries in its row times few in its column) among those that are large enough in both.
+/// Choice of the pivot order: each pivot is one that causes little fill (Markowitz's rule: the number of other entries
+/// in its row times that in its column) among those that are large enough in both.
 ///
-/// Entries that happen to be zero remain entries of the pattern, places where others may appear.
+/// Entries that happen to be zero remain in the pattern, since other values may appear there.
 struct Choice {
     /// Remaining rows: column and value of their entries.
     rows: Vec<Vec<(u32, f64)>>,
-    /// By column: the rows that have an entry there.
+    /// By column: the rows with an entry in it.
     columns: Vec<Vec<u32>>,
-    /// Both by how many entries they have.
+    /// Rows and columns by their number of entries.
     short_rows: ByLength,
     short_columns: ByLength,
-    /// By column: the largest entry, negative where that is to be found out.
+    /// By column: the largest entry; negative if it must be found again.
     largest: Vec<f64>,
     /// Positions of the entries of the current row, by column; out of date for all other columns.
     places: Vec<u32>,
     pivots: Vec<Pivot>,
-    /// By pivot: the rows below it that have an entry in its column, and the other columns of its row.
+    /// By pivot: the rows below it with an entry in its column, and the other columns of its row.
     below: Vec<Vec<u32>>,
     beside: Vec<Vec<u32>>,
 }
 
-/// An entry to eliminate with.
+/// An entry chosen as a pivot.
 #[derive(Clone, Copy)]
 struct Pivot {
     row: u32,
     column: u32,
     size: f64,
-    /// The most entries that it may bring.
+    /// Maximum number of entries that it may fill.
     cost: usize,
 }
 
 impl Choice {
-    /// For a matrix with these entries in its rows; none if it is singular or not finite.
+    /// Chooses the order for a matrix with these rows; `None` if it is singular or not finite.
     fn of(rows: Vec<Vec<(u32, f64)>>) -> Option<Self> {
         let n = rows.len();
         let by_row = Lists::of(rows.iter().map(|row| row.iter().map(|e| e.0).collect()));
@@ -400,13 +400,13 @@ impl Choice {
         Some(this)
     }
 
-    /// The next pivot. One that is the largest of all entries would always do, so that only zeros and NaN are left if
-    /// none is found.
+    /// Returns the next pivot. The largest of all entries would always qualify, so if no pivot is found, only zeros and
+    /// NaN are left.
     fn next(&mut self) -> Option<Pivot> {
         let mut best: Option<Pivot> = None;
         let mut looked_at = 0;
         for length in 1..=self.rows.len() {
-            // What is not shorter costs at least so much, whatever is crossed.
+            // Longer rows and columns cost at least this, whatever they cross.
             // (r - 1) (c - 1) >= (length - 1) (crossed - 1) for r >= length, c >= crossed
             let is_least = |best: &Pivot, crossed: usize| best.cost <= (length - 1) * (crossed - 1);
             if best.is_some_and(|best| is_least(&best, length)) {
@@ -441,16 +441,15 @@ impl Choice {
         best
     }
 
-    /// Takes this entry for the best pivot if it is cheaper, and large enough.
+    /// Makes this entry the best pivot if it is cheaper, and large enough.
     fn consider(&mut self, row: u32, column: u32, best: &mut Option<Pivot>) {
-        // Markowitz: (entries of the row - 1) (entries of the column - 1), the most places that eliminating here may
-        // fill
+        // Markowitz: (entries of the row - 1) (entries of the column - 1), the maximum fill of this pivot
         let cost = (self.rows[row as usize].len() - 1) * (self.columns[column as usize].len() - 1);
         if best.is_some_and(|best| cost >= best.cost) {
             return;
         }
         let size = self.size(row, column);
-        // Written so that NaN is no pivot.
+        // Written so that NaN is never a pivot.
         // abs(l) <= 1 / IN_COLUMN = 2
         if !(size > 0.0 && size >= IN_COLUMN * self.largest(column)) {
             return;
@@ -465,7 +464,7 @@ impl Choice {
         self.rows[r as usize].iter().find(|e| e.0 == c).map_or(0.0, |e| e.1.abs())
     }
 
-    /// The largest entry of a column.
+    /// Largest entry of a column.
     fn largest(&mut self, c: u32) -> f64 {
         if self.largest[c as usize] < 0.0 {
             let rows = self.columns[c as usize].iter();
@@ -474,7 +473,7 @@ impl Choice {
         self.largest[c as usize]
     }
 
-    /// Takes the pivot's column out of all rows that remain, with its row.
+    /// Eliminates the pivot's column from all remaining rows, with its row.
     fn eliminate(&mut self, pivot: Pivot) {
         let Pivot { row: r, column: c, .. } = pivot;
         let mut pivot_row = std::mem::take(&mut self.rows[r as usize]);
@@ -523,7 +522,7 @@ fn place_of<E>(entries: &[E], is_it: impl Fn(&E) -> bool) -> usize {
     entries.iter().position(is_it).expect("rows and columns list the same entries")
 }
 
-/// Rows, or columns, by how many entries they have: a doubly linked list for each length.
+/// Rows or columns by their number of entries: a doubly linked list for each length.
 struct ByLength {
     first: Vec<u32>,
     next: Vec<u32>,
@@ -543,7 +542,7 @@ impl ByLength {
         this
     }
 
-    /// Puts row k first among those of this length.
+    /// Inserts row k at the head of the list of this length.
     fn put(&mut self, k: u32, length: usize) {
         let next = std::mem::replace(&mut self.first[length], k);
         let at = k as usize;
@@ -553,7 +552,7 @@ impl ByLength {
         }
     }
 
-    /// Takes row k out.
+    /// Removes row k.
     fn take(&mut self, k: u32) {
         let (before, next) = (self.before[k as usize], self.next[k as usize]);
         match before {
@@ -595,8 +594,8 @@ mod tests {
         lu
     }
 
-    /// Relative residuals of x: over all equations, relative to the possible sum of an equation of this size; and of
-    /// the worst equation, relative to its own terms.
+    /// Relative residuals of x: over all equations, relative to the magnitude that the sum of such an equation can
+    /// have; and of the worst equation, relative to its own terms.
     fn residual(rows: &Rows, x: &[f64], b: &[f64]) -> [f64; 2] {
         let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.map(f64::abs).fold(0.0, Real::larger);
         let terms = |row: &Vec<(usize, f64)>| row.iter().map(|&(c, a)| a * x[c]).collect::<Vec<_>>();
@@ -664,8 +663,8 @@ mod tests {
         }
     }
 
-    /// A matrix as it changes from step to step: entries at a permutation's places and some more, rows and columns
-    /// scaled by up to 10^6 either way.
+    /// A matrix that changes from step to step: entries at the places of a permutation and some more, with rows and
+    /// columns scaled by up to 10^6 in either direction.
     fn changing() -> impl Strategy<Value = Vec<Rows>> {
         (1_usize..40).prop_flat_map(|n| {
             let order = Just((0..n).collect::<Vec<_>>()).prop_shuffle();
@@ -699,7 +698,7 @@ mod tests {
                 fill(&mut kept, rows);
                 let mut anew = filled(rows);
                 let (found, want) = (kept.factor(), anew.factor());
-                // Equal rows may come up.
+                // Equal rows may occur.
                 if found.pivot_ratio == 0.0 {
                     continue;
                 }
@@ -763,7 +762,7 @@ mod tests {
             lu.solve(&mut b);
             assert!(!good || b.iter().all(|x| x.is_finite()), "{values:?}");
         }
-        // A column that no row has an entry in.
+        // An empty column.
         let mut lu = filled(&vec![vec![(0, 1.0)], vec![(0, 2.0)]]);
         assert_eq!(lu.factor().pivot_ratio, 0.0);
         let mut nothing = filled(&Vec::new());

@@ -1,14 +1,14 @@
 //! Interpolating splines of degree 3 and 5.
 //!
-//! The spline of degree 2m - 1 through given points is the curve through them with the least ∫ (f⁽ᵐ⁾)² dt. Between two
-//! knots it is the Hermite polynomial of the values and the m - 1 derivatives at both, so that integral is a quadratic
-//! form in the derivatives at the knots. Its matrix is positive definite and has entries between neighbours only:
-//! Cholesky's method needs no pivots, time and room grow with the number of knots. Ends that are free come out natural,
-//! ends that are fixed are no unknowns, and in a periodic spline the last knot *is* the first.
+//! The spline of degree 2m - 1 through given points is the curve that minimises ∫ (f⁽ᵐ⁾)² dt. Between two knots it is
+//! the Hermite polynomial of the values and the m - 1 derivatives at both, so the integral is a quadratic form in the
+//! derivatives at the knots. The matrix of this form is positive definite and couples neighbouring knots only:
+//! Cholesky's method needs no pivots, and time and memory are proportional to the number of knots. Free ends are
+//! natural, the derivatives at clamped ends are not unknowns, and in a periodic spline the last knot *is* the first.
 
 use std::sync::OnceLock;
 
-/// The coefficients between two knots: of 1, s, s², ... with s the time since the first of the two.
+/// Coefficients between two knots: of 1, s, s², ... with s the time since the first of the two.
 pub(crate) type Segment = [f64; 6];
 
 /// Kind of boundary condition at the ends.
@@ -19,10 +19,10 @@ pub(crate) enum EndKind {
     Periodic,
 }
 
-/// The gradient of h^(2m-1)/2 ∫ (f⁽ᵐ⁾)² dt by the scaled derivatives h d, h² dd at both ends; rows and columns in the
+/// Gradient of h^(2m-1)/2 ∫ (f⁽ᵐ⁾)² dt by the scaled derivatives h d, h² dd at both ends. Rows and columns are in the
 /// order value, derivatives, value, derivatives; the rows of the values are not needed.
 ///
-/// That is K of `∫ (f⁽ᵐ⁾)² dt = y^T K y / h^(2m-1)`, y = (f, h d, h² dd) at both ends (`docs/theory.md` (33)).
+/// This is K of `∫ (f⁽ᵐ⁾)² dt = y^T K y / h^(2m-1)`, y = (f, h d, h² dd) at both ends (`docs/theory.md` (33)).
 const CUBIC: [[f64; 4]; 4] = [[0.0; 4], [6.0, 4.0, -6.0, 2.0], [0.0; 4], [6.0, 2.0, -6.0, 4.0]];
 const QUINTIC: [[f64; 6]; 6] = [
     [0.0; 6],
@@ -35,28 +35,28 @@ const QUINTIC: [[f64; 6]; 6] = [
 
 /// Source of the value or of a derivative at a knot.
 enum Datum {
-    /// From the data that the spline is made for.
+    /// Datum of the spline, by number.
     Data(usize),
-    /// It is an unknown.
+    /// Unknown of the equations, by number.
     Unknown(usize),
 }
 
-/// All splines with the same knots and the same kind of ends: they are linear in their data, which are the values at
-/// the knots (but the last, if periodic), then, if clamped, the derivatives at the start and those at the end.
+/// All splines with the same knots and the same kind of ends. They are linear in their data: the values at the knots
+/// (without the last, if periodic), then, if clamped, the derivatives at the start and those at the end.
 #[derive(Debug)]
 pub(crate) struct Basis {
     times: Vec<f64>,
     /// Number of derivatives per knot: 1 for cubics, 2 for quintics.
     rates: usize,
     ends: EndKind,
-    /// The Cholesky factor L: of every row, the columns from its first that is not zero to the diagonal.
+    /// The Cholesky factor L: the entries of each row from its first non-zero column to the diagonal.
     factor: Vec<Vec<f64>>,
-    /// For every datum, the spline whose data are zero but for this one, which is one.
+    /// For every datum, the spline for which this datum is one and all others are zero.
     cardinals: Vec<OnceLock<Vec<Segment>>>,
 }
 
 impl Basis {
-    /// The splines with these knots, strictly increasing; two at least, three if periodic or natural and quintic.
+    /// Splines with these knots, strictly increasing: at least two, or three if periodic or if natural and quintic.
     pub(crate) fn new(times: &[f64], rates: usize, ends: EndKind) -> Self {
         let times = times.to_vec();
         let mut basis = Self { times, rates, ends, factor: Vec::new(), cardinals: Vec::new() };
@@ -70,12 +70,12 @@ impl Basis {
         basis
     }
 
-    /// The number of data.
+    /// Number of data.
     pub(crate) fn len(&self) -> usize {
         self.cardinals.len()
     }
 
-    /// The spline for these data, segment by segment.
+    /// The spline with these data, segment by segment.
     pub(crate) fn segments(&self, data: &[f64]) -> Vec<Segment> {
         let mut unknowns = vec![0.0; self.factor.len()];
         self.for_entries(|row, column, entry| {
@@ -94,7 +94,7 @@ impl Basis {
         pairs.map(|(k, t)| hermite(t[1] - t[0], self.rates, |end, order| at(k + end, order))).collect()
     }
 
-    /// The spline that is the derivative of [`segments`](Self::segments) by one of the data.
+    /// Derivative of [`segments`](Self::segments) with respect to one of the data, itself a spline.
     pub(crate) fn cardinal(&self, datum: usize) -> &[Segment] {
         self.cardinals[datum].get_or_init(|| {
             let mut data = vec![0.0; self.len()];
@@ -118,7 +118,7 @@ impl Basis {
         }
     }
 
-    /// Calls with the row of an unknown, a column, and what a segment adds to the matrix there.
+    /// Calls `add` with the row of an unknown, a column, and the contribution of a segment to the matrix there.
     fn for_entries(&self, mut add: impl FnMut(usize, Datum, f64)) {
         let m = self.rates + 1;
         for (k, t) in self.times.windows(2).enumerate() {
@@ -137,7 +137,7 @@ impl Basis {
         }
     }
 
-    /// The factor L of the matrix L Lᵀ.
+    /// Cholesky factor L of the matrix L L^T.
     fn factorised(&self) -> Vec<Vec<f64>> {
         let mut entries = Vec::new();
         self.for_entries(|row, column, entry| match column {
@@ -173,7 +173,7 @@ impl Basis {
         rows
     }
 
-    /// Solves L Lᵀ x = b in place.
+    /// Solves L L^T x = b in place.
     fn solve(&self, b: &mut [f64]) {
         let parts = |i: usize| {
             let (diagonal, left) = self.factor[i].split_last().expect("a row reaches to its diagonal");
@@ -196,7 +196,7 @@ impl Basis {
     }
 }
 
-/// Value and first two derivatives of a segment, s after its first knot.
+/// Value and first two derivatives of a segment, at time s after its first knot.
 pub(crate) fn segment_at(c: &Segment, s: f64) -> [f64; 3] {
     let value = c.iter().rev().fold(0.0, |sum, c| sum * s + c);
     let first = (1..6).rev().fold(0.0, |sum, k| sum * s + k as f64 * c[k]);

@@ -1,11 +1,11 @@
-//! Singular values by one-sided rotations: small ones come out as exactly as large ones.
+//! Singular values by one-sided Jacobi rotations: small ones have the same relative accuracy as large ones.
 
-/// Columns are as good as perpendicular where their cosine is below this.
+/// Columns count as perpendicular if their cosine is below this.
 const PERPENDICULAR: f64 = 1e-15;
-/// Rotations converge in a handful of sweeps over all pairs; more are never needed.
+/// Maximum number of sweeps over all pairs of columns; a handful suffices.
 const MOST_SWEEPS: usize = 60;
 
-/// Singular values, the largest first, and the direction that belongs to each.
+/// Singular values, largest first, and the right singular vector of each.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Singular {
     pub values: Vec<f64>,
@@ -13,7 +13,7 @@ pub(crate) struct Singular {
     pub directions: Vec<Vec<f64>>,
 }
 
-/// Singular values of a matrix given by its rows, each of n numbers.
+/// Singular values of a matrix given by its rows of n numbers.
 pub(crate) fn singular(rows: &[Vec<f64>], n: usize) -> Singular {
     let mut columns: Vec<Vec<f64>> = (0..n).map(|j| rows.iter().map(|row| row[j]).collect()).collect();
     let mut v: Vec<Vec<f64>> =

@@ -1,17 +1,17 @@
-//! A number with its derivative by one variable.
+//! Dual numbers: a value with its derivative with respect to one variable.
 
 use std::cmp::Ordering;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::{Function, Real};
 
-/// A number and its derivative. What is written once over [`Real`] is differentiated by running it on these; a dual of
-/// duals has second derivatives.
+/// A value and its derivative. Code written over [`Real`] is differentiated by running it on duals; a dual of duals
+/// carries second derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<T = f64> {
     /// The value.
     pub v: T,
-    /// Derivative.
+    /// Derivative of the value with respect to the variable.
     pub d: T,
 }
 
@@ -28,8 +28,8 @@ impl<T: Real> Dual<T> {
         Self { v, d: T::zero() }
     }
 
-    /// A function's value `v` with the derivative that it makes of this number's. What does not depend on the variable
-    /// does not, also where the function has a vertical tangent.
+    /// The function value `v`, with its derivative computed from this number's derivative by `d`. A number that does
+    /// not depend on the variable has a constant as its function value, even where the function has a vertical tangent.
     #[inline(always)]
     fn or_constant(self, v: T, d: impl FnOnce(T) -> T) -> Self {
         Self { v, d: if self.d.vanishes() { T::zero() } else { d(self.d) } }
@@ -109,7 +109,7 @@ impl<T: Real> SubAssign for Dual<T> {
     }
 }
 
-/// Comparisons and tests of a number use its value.
+/// Comparisons and tests use the value only.
 impl<T: Real> Real for Dual<T> {
     #[inline(always)]
     fn operation<R>(operation: impl FnOnce() -> R) -> R {
@@ -175,7 +175,7 @@ impl<T: Real> Real for Dual<T> {
         Self { v: self.v.held(), d: self.d.held() }
     }
     fn pow(self, exponent: Self) -> Self {
-        // d xᵖ = p x^(p-1) dx + xᵖ ln x dp; what vanishes wins over what is infinite.
+        // d xᵖ = p x^(p-1) dx + xᵖ ln x dp; a zero factor takes precedence over an infinite one.
         let (x, p, zero) = (self.v, exponent.v, T::zero());
         let power = x.pow(p);
         let by_base = self.or_constant(power, |d| d * zero.select(p * x.pow(p + -1.0), p.is_zero()));

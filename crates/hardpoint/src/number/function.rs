@@ -1,19 +1,19 @@
-//! The functions of one number: each is named, evaluated and differentiated here, in one row.
+//! The functions of one number, each with its name, its value and its derivatives in one row.
 
 use super::Real;
 
-/// Rows of a variant, its name in expressions, the function of a plain number, and its first three derivatives at `x`,
-/// where its value is `y`.
+/// Generates [`Function`] from rows: a variant, its name in expressions, the function of an `f64`, and its first three
+/// derivatives at `x`, where its value is `y`.
 macro_rules! functions {
     (|$x:ident, $y:ident| $($(#[$doc:meta])* $function:ident $name:literal, $of:expr, $derivatives:expr;)*) => {
-        /// A function of one number, which knows its name in expressions and its own derivatives.
+        /// A function of one number, with its name in expressions and its derivatives.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Function {
             $($(#[$doc])* $function,)*
         }
 
         impl Function {
-            /// All there are, in the order in which help lists them.
+            /// All functions, in the order in which help lists them.
             pub const ALL: &[Self] = &[$(Self::$function),*];
 
             /// Name in expressions.
@@ -23,7 +23,7 @@ macro_rules! functions {
                 }
             }
 
-            /// Value, by the standard library.
+            /// Value at `x`, computed by the standard library.
             pub(super) fn of(self, x: f64) -> f64 {
                 match self {
                     $(Self::$function => $of(x),)*
@@ -103,11 +103,11 @@ functions! { |x, y|
         let (d, inverse) = (T::constant(0.5) / y, T::one() / x);
         [d, d * inverse * -0.5, d * inverse * inverse * 0.75]
     };
-    /// Magnitude.
+    /// Absolute value.
     Abs "abs", f64::abs, [x.sign(), T::zero(), T::zero()];
 }
 
-/// The derivatives of the arc sine: s, x s³, (1 + 2 x²) s⁵ with s = 1/√(1 - x²).
+/// Derivatives of the arc sine: s, x s³, (1 + 2 x²) s⁵ with s = 1/√(1 - x²).
 #[inline(always)]
 fn of_asin<T: Real>(x: T) -> [T; 3] {
     // Factored, because 1 - x² loses digits where |x| is close to 1.
@@ -116,7 +116,7 @@ fn of_asin<T: Real>(x: T) -> [T; 3] {
     [s, x * s * s2, (x * x * 2.0 + 1.0) * s * s2 * s2]
 }
 
-/// The derivatives of the natural logarithm.
+/// Derivatives of the natural logarithm.
 #[inline(always)]
 fn of_ln<T: Real>(x: T) -> [T; 3] {
     let inverse = T::one() / x;

@@ -1,15 +1,15 @@
-//! Truncated Taylor arithmetic in the time.
+//! Truncated Taylor arithmetic in time.
 
 use std::cmp::Ordering;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::{Function, Real};
 
-/// A quantity's value and its first N - 1 time derivatives at one instant; N is 4 at most.
+/// The value of a quantity and its first N - 1 time derivatives at one instant; N is at most 4.
 ///
-/// In the quantity's own unit per s⁰, s, s², s³. Every operation is exact up to rounding: products follow Leibniz' rule
-/// and functions of one argument that of Faà di Bruno, no differences are taken. Where a quantity is not smooth its
-/// derivatives are those of the side that is active just after the instant.
+/// Units are those of the quantity per s⁰, s, s², s³. Every operation is exact up to rounding: products follow Leibniz'
+/// rule, and functions of one argument that of Faà di Bruno; no finite differences are used. Where a quantity is not
+/// smooth, its derivatives are those of the branch that is active just after the instant.
 ///
 /// ```
 /// use hardpoint::number::Jet;
@@ -18,18 +18,18 @@ use super::{Function, Real};
 /// assert_eq!((t * t).derivatives(), [9.0, 6.0, 2.0]);
 /// ```
 ///
-/// Over [`Dual`](super::Dual)s all of them are differentiated by a variable too.
+/// Over [`Dual`](super::Dual)s, the value and all time derivatives are also differentiated with respect to a variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jet<T = f64, const N: usize = 4>(pub [T; N]);
 
-/// A number and its first two time derivatives.
+/// A value and its first two time derivatives.
 ///
-/// Measures are written once over [`Real`]; on these they get their rates by the product and chain rules, on
-/// [`Dual`](super::Dual)s of these the design derivatives of all three as well.
+/// Measures are written once over [`Real`]. Evaluated on this type they also have their rates, by the product and chain
+/// rules; on [`Dual`](super::Dual)s of it, the design derivatives of all three as well.
 pub type Rates<T = f64> = Jet<T, 3>;
 
 impl<T: Real, const N: usize> Jet<T, N> {
-    /// The quantity that is `value` at all times.
+    /// A quantity that is constant in time.
     #[inline(always)]
     pub fn constant(value: T) -> Self {
         let mut f = [T::zero(); N];
@@ -37,7 +37,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
         Self(f)
     }
 
-    /// The time itself, at time `t` in seconds.
+    /// The time itself as a quantity, at time `t`, s.
     #[inline(always)]
     pub fn time(t: T) -> Self {
         let mut time = Self::constant(t);
@@ -88,7 +88,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
         Self([T::constant(f64::NAN); N])
     }
 
-    /// This quantity times one that is the same at all times.
+    /// This quantity times a factor that is constant in time.
     #[inline(always)]
     pub(crate) fn times(mut self, factor: T) -> Self {
         T::operation(|| {
@@ -99,14 +99,14 @@ impl<T: Real, const N: usize> Jet<T, N> {
         })
     }
 
-    /// This quantity plus one that is the same at all times.
+    /// This quantity plus an offset that is constant in time.
     #[inline(always)]
     pub(crate) fn plus(mut self, offset: T) -> Self {
         self.0[0] += offset;
         self
     }
 
-    /// g(self), from g and its first three derivatives at the value.
+    /// g(self), from g and its first three derivatives at this value.
     #[inline(always)]
     pub(crate) fn compose(self, [g, g_d, g_dd, g_ddd]: [T; 4]) -> Self {
         T::operation(|| {
@@ -127,7 +127,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
         })
     }
 
-    /// A function that is none of the commonest, apart from the code of those.
+    /// A less common function, compiled separately from the common ones.
     #[inline(never)]
     fn compose_rare(self, function: Function) -> Self {
         let x = self.0[0];
@@ -136,12 +136,12 @@ impl<T: Real, const N: usize> Jet<T, N> {
         self.compose([y, d, dd, ddd])
     }
 
-    /// The power with an exponent that is the same at all times.
+    /// The power with an exponent that is constant in time.
     #[inline(always)]
     fn power(self, exponent: T) -> Self {
         T::operation(|| {
-            // g⁽ᵏ⁾ = p (p - 1) ... (p - k + 1) x^(p - k). A vanishing coefficient wins over an infinite power: the
-            // third derivative of x² is zero at x = 0 also.
+            // g⁽ᵏ⁾ = p (p - 1) ... (p - k + 1) x^(p - k). A zero coefficient takes precedence over an infinite power:
+            // the third derivative of x² is zero at x = 0, too.
             let (x, zero) = (self.0[0], T::zero());
             let mut g = [x.pow(exponent), zero, zero, zero];
             let mut coefficient = exponent;
@@ -156,7 +156,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
         })
     }
 
-    /// The square root, from that of the value.
+    /// The square root, given the root of the value.
     #[inline(always)]
     fn root(self, root: T) -> Self {
         T::operation(|| {
@@ -177,13 +177,13 @@ impl<T: Real, const N: usize> Jet<T, N> {
         })
     }
 
-    /// The sine and the cosine, from those of the value.
+    /// Sine and cosine, given those of the value.
     #[inline(always)]
     fn turned(self, (sin, cos): (T, T)) -> (Self, Self) {
         (self.compose([sin, cos, -sin, -cos]), self.compose([cos, -sin, -cos, sin]))
     }
 
-    /// True if it is the same just before and after.
+    /// True if all time derivatives are zero.
     #[inline(always)]
     fn is_still(self) -> bool {
         self.0[1..].iter().all(|x| x.is_zero())
@@ -309,7 +309,7 @@ impl<T: Real, const N: usize> SubAssign for Jet<T, N> {
     }
 }
 
-/// Comparisons and tests of a number use its value.
+/// Comparisons and tests use the value only.
 impl<T: Real, const N: usize> Real for Jet<T, N> {
     #[inline(always)]
     fn operation<R>(operation: impl FnOnce() -> R) -> R {
@@ -387,13 +387,13 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
         if exponent.is_still() {
             return self.power(exponent.0[0]);
         }
-        // xᵖ = exp(p ln x), of a positive base and with the value that is more accurate.
+        // xᵖ = exp(p ln x), for a positive base; the value itself comes from `pow`, which is more accurate.
         let power = self.0[0].pow(exponent.0[0]);
         (exponent * self.map(Function::Ln)).compose([power; 4])
     }
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
-        // As in `power`, a vanishing coefficient wins over an infinite power.
+        // As in `power`, a zero coefficient takes precedence over an infinite power.
         let x = self.0[0];
         let mut g = [x.powi(exponent), T::zero(), T::zero(), T::zero()];
         let mut coefficient = f64::from(exponent);
@@ -408,7 +408,7 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
     #[inline(always)]
     fn hypot(self, o: Self) -> Self {
         T::operation(|| {
-            // Scaled, so that no square overflows.
+            // Scaled to prevent squares from overflowing.
             let length = self.0[0].hypot(o.0[0]);
             let scale = T::one() / length;
             let (x, y) = (self.times(scale), o.times(scale));
@@ -443,8 +443,8 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
         T::operation(|| {
-            // The angle is the imaginary part of l = log(x + i y). From z' = l' z with w⁽ⁿ⁾ = z⁽ⁿ⁾/z follow
-            // l' = w', l'' = w'' - w'², l''' = w''' - 3 w' w'' + 2 w'³. Scaled, so that no square overflows.
+            // The angle is the imaginary part of l = log(x + i y). With w⁽ⁿ⁾ = z⁽ⁿ⁾/z and z' = l' z: l' = w', l'' = w''
+            // - w'², l''' = w''' - 3 w' w'' + 2 w'³. Scaled to prevent squares from overflowing.
             let mut angle = self.0;
             angle[0] = self.0[0].atan2(x.0[0]);
             let scale = T::one() / self.0[0].hypot(x.0[0]);
@@ -475,10 +475,10 @@ mod tests {
     use super::*;
     use crate::number::Dual;
 
-    /// A few roundings on each side; the largest condition number among the points below is about 100.
+    /// A few roundings on each side; the largest condition number at the points below is about 100.
     const TOLERANCE: f64 = 1e3 * f64::EPSILON;
 
-    /// An argument's own derivatives: all different from zero, so that no term of the chain rule drops out.
+    /// Derivatives of the argument: all different from zero, so that every term of the chain rule contributes.
     const SLOPES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.7, -0.4, 1.3], [-1.9, 2.3, -0.6]];
 
     fn dual(jet: Jet) -> Dual3_64 {
@@ -568,10 +568,10 @@ mod tests {
         assert!((y.atan2(x).d() * 1e200 + 0.48).abs() <= TOLERANCE);
     }
 
-    /// A measure: its rates, and the derivatives of all three by one variable.
+    /// A measure with its rates, and the derivatives of all three with respect to one variable.
     type Varied = Dual<Rates>;
 
-    /// f(t, b) with independent code for its derivatives: mixed partials by hyper-hyper-dual numbers.
+    /// f(t, b) with its derivatives from independent code: mixed partials by hyper-hyper-dual numbers.
     fn partials(f: impl Fn(HyperHyperDual<f64>, HyperHyperDual<f64>) -> HyperHyperDual<f64>) -> Varied {
         // t + t' + t'', b: eps1 and eps2 on t, eps3 on b, at t = 0.3, b = 0.7.
         let g = |[t1, t2, b]: [HyperHyperDual<f64>; 3]| f(t1 + t2, b);

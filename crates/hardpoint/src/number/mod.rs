@@ -1,15 +1,15 @@
-//! The numbers that everything is written over: plain ones, and ones that carry something besides.
+//! Scalar types: plain numbers, and numbers that carry derivatives or record their arithmetic.
 //!
-//! | number | what it carries |
+//! | number | carries |
 //! |---|---|
-//! | `f64` | itself |
-//! | [`Dual`] | the derivative by one variable; nested, second ones |
+//! | `f64` | the value only |
+//! | [`Dual`] | the derivative with respect to one variable; nested: second derivatives |
 //! | [`Jet`] | up to three time derivatives |
-//! | [`hardpoint_tape::Number`] | how it came about: kernels are recorded with it |
+//! | [`hardpoint_tape::Number`] | its recorded arithmetic: kernels are recorded with it |
 //!
-//! All of them are [`Real`], and so are they of each other: a `Dual<Jet<f64, 3>>` is a measure with its rates, and the
-//! derivatives of all three by a design variable. What is written once over [`Real`] runs on each. A [`Function`] of
-//! one number is written down once, with its name and its derivatives.
+//! All of them implement [`Real`], and they nest: a `Dual<Jet<f64, 3>>` is a measure with its rates, and the
+//! derivatives of all three with respect to a design variable. Code written once over [`Real`] runs on each of them. A
+//! [`Function`] of one number is defined once, with its name and its derivatives.
 
 mod dual;
 mod function;

@@ -1,4 +1,4 @@
-//! The number that everything is written over, and the plain one: `f64`.
+//! The trait of scalar types, and its implementation for `f64`.
 
 use std::cmp::Ordering;
 use std::fmt::Debug;
@@ -6,7 +6,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::Function;
 
-/// A number, with whatever it carries besides: derivatives, or how it came about.
+/// A scalar: a number that may also carry derivatives or record its arithmetic.
 ///
 /// Plain numbers enter as constants: `T::constant(2.0)`.
 pub trait Real:
@@ -28,8 +28,8 @@ pub trait Real:
     /// The constant `x`.
     fn constant(x: f64) -> Self;
 
-    /// One operation of a compound number over these. What records runs it in a function of its own: it runs once per
-    /// model, and its code, inlined, would be a third of the crate's.
+    /// Runs one operation of a compound number over this type. The recording scalar runs it in a function of its own: a
+    /// recording is made once per model, and inlined its code would be a third of the crate.
     #[inline(always)]
     fn operation<R>(operation: impl FnOnce() -> R) -> R {
         operation()
@@ -47,14 +47,15 @@ pub trait Real:
         Self::constant(1.0)
     }
 
-    /// The plain value. What is recorded is no arithmetic then: a program would take what is made of it for a constant.
-    /// What a number has for a `value` of its own is another thing.
+    /// The plain value. A recording in which it is read is not arithmetic, since a program would treat everything
+    /// computed from the value as constant. Not to be confused with the inherent `value` of some number types.
     fn value(self) -> f64;
 
-    /// The plain value to decide by, where a recording is reported otherwise what must hold for the decision to stand.
+    /// The plain value for a decision, if the condition under which the decision holds is recorded separately (see
+    /// [`exceeds`](Real::exceeds)).
     fn decisive(self) -> f64;
 
-    /// `self * factor + addend`; programs may round once.
+    /// `self * factor + addend`; programs may round only once.
     #[inline(always)]
     fn times_plus(self, factor: Self, addend: Self) -> Self {
         self * factor + addend
@@ -63,31 +64,32 @@ pub trait Real:
     /// Square root.
     fn sqrt(self) -> Self;
 
-    /// Magnitude.
+    /// Absolute value.
     fn abs(self) -> Self;
 
     /// Nearest integer.
     fn round(self) -> Self;
 
-    /// 1 or -1, whichever its sign is; `next` where it is zero. A recording has no number there.
+    /// 1 or -1 by the sign of the value, or `next` where it is zero. A recording is NaN there.
     fn sign_or(self, next: Self) -> Self;
 
-    /// 1 or -1, as its sign is just after the instant; of what stays zero 1.
+    /// 1 or -1 by the sign just after the instant; 1 for a value that remains zero.
     #[inline(always)]
     fn sign(self) -> Self {
         self.sign_or(Self::constant(1.0))
     }
 
-    /// True if its value is above another one. A recording takes that for granted, and a limit for where it is run.
+    /// True if this value is larger than the other. A recording assumes so, and adds the condition to its limits.
     fn exceeds(self, o: Self) -> bool;
 
-    /// This value if `first`, else the `other`; what is not taken may be NaN. What is recorded is no arithmetic then.
+    /// This value if `first`, else the `other`; the one not selected may be NaN. A recording in which this is called is
+    /// not arithmetic.
     fn select(self, other: Self, first: bool) -> Self;
 
-    /// The function of this value; by the standard library.
+    /// The function of this value; by the standard library for plain numbers.
     fn map(self, function: Function) -> Self;
 
-    /// True if it is zero, derivatives that it may carry included.
+    /// True if it is zero, including any derivatives that it carries.
     fn is_zero(self) -> bool;
 
     /// Ordering of this value and another just after the instant: for numbers with time derivatives, the first
@@ -97,13 +99,13 @@ pub trait Real:
         self.value().partial_cmp(&o.value())
     }
 
-    /// This value held: what depends on no time has no time derivatives, whatever infinities its parts brought.
+    /// This value as a constant in time: all time derivatives are zero, even where its operands had infinite ones.
     #[inline(always)]
     fn held(self) -> Self {
         self
     }
 
-    /// This value to a power.
+    /// This value to the power `exponent`.
     #[inline(always)]
     fn pow(self, exponent: Self) -> Self {
         Self::constant(self.value().powf(exponent.value()))
@@ -115,7 +117,7 @@ pub trait Real:
         self.pow(Self::constant(exponent))
     }
 
-    /// This value to a whole power, by repeated squaring, in the order in which `f64::powi` multiplies.
+    /// This value to an integer power, by repeated squaring, in the order in which `f64::powi` multiplies.
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
         let mut power = Self::one();
@@ -133,22 +135,22 @@ pub trait Real:
         if exponent < 0 { Self::one() / power } else { power }
     }
 
-    /// The length of the vector (self, o).
+    /// Length of the vector (self, o).
     #[inline(always)]
     fn hypot(self, o: Self) -> Self {
         Self::constant(self.value().hypot(o.value()))
     }
 
-    /// The larger of two; NaN if either is NaN.
+    /// The larger of two values; NaN if either is NaN.
     fn larger(self, o: Self) -> Self;
 
-    /// True if it is known to be zero, derivatives that it may carry included.
+    /// True if it is known to be zero, including any derivatives that it carries.
     #[inline(always)]
     fn vanishes(self) -> bool {
         self.decisive() == 0.0
     }
 
-    /// Time derivative, of numbers that carry it; NaN of all others, and where they carry it no further.
+    /// Time derivative, for numbers that carry it; NaN for all others, and for the highest derivative carried.
     #[inline(always)]
     fn rate(self) -> Self {
         Self::constant(f64::NAN)
@@ -166,12 +168,12 @@ pub trait Real:
         Self::constant(self.value().atan2(x.value()))
     }
 
-    /// Sine and cosine of an angle of any size; of a plain number as the standard library has them.
+    /// Sine and cosine of an angle of any size, rad; for plain numbers, those of the standard library.
     fn sin_cos_of_any(self) -> (Self, Self);
 
-    /// Sine and cosine, to about one unit in the last place for |x| up to 1e5 turns.
+    /// Sine and cosine of an angle, rad, to about one unit in the last place for |x| up to 1e5 turns.
     ///
-    /// Reduced by multiples of pi/2 in three parts (Cody and Waite), then the polynomials of
+    /// The angle is reduced by multiples of pi/2 in three parts (Cody and Waite), then evaluated by the polynomials of
     /// fdlibm's kernels.
     #[inline(always)]
     #[expect(clippy::excessive_precision, reason = "the constants are written as published")]
@@ -192,7 +194,7 @@ pub trait Real:
             + z * (c(2.480_158_728_947_673e-5) + z * (c(-2.755_731_435_139_066_3e-7) + z * k));
         let half = c(0.5) * z;
         let cos = c(1.0) - (half - z * z * (c(4.166_666_666_666_66e-2) + z * k));
-        // The quadrant as numbers 0 or +-1, so that nothing branches: (cos, sin) of n * 90 degrees.
+        // The quadrant as numbers 0 or +-1, without branches: (cos, sin) of n * 90 degrees.
         let q = n - c(4.0) * (n * c(0.25)).round(); // -2, -1, 0, 1, 2
         let odd = q * q * (c(4.0) - q * q) * c(1.0 / 3.0); // 1 where |q| = 1, else 0
         let odd = odd.round();
@@ -202,7 +204,7 @@ pub trait Real:
     }
 }
 
-/// Up to this angle, rad, [`Real::sin_cos`] is good to the last place.
+/// Largest angle, rad, for which [`Real::sin_cos`] is accurate to the last place.
 pub(super) const LARGEST_ANGLE: f64 = 1e5 * std::f64::consts::TAU;
 
 impl Real for f64 {
@@ -260,8 +262,8 @@ impl Real for f64 {
     }
     #[inline(always)]
     fn round(self) -> Self {
-        // Adding and taking away 1.5 * 2^52 rounds to the nearest integer without the library call
-        // that `round_ties_even` is on a baseline CPU; exact for |x| < 2^51.
+        // Adding and subtracting 1.5 * 2^52 rounds to the nearest integer without the library call that
+        // `round_ties_even` is on a baseline CPU; exact for |x| < 2^51.
         const SHIFT: f64 = 6_755_399_441_055_744.0;
         (self + SHIFT) - SHIFT
     }

@@ -1,4 +1,4 @@
-//! The recording scalar as a [`Real`]: kernels are recorded by running them with it.
+//! The recording scalar as a [`Real`]: kernels are recorded by running them on it.
 
 use std::cell::{Cell, RefCell};
 
@@ -8,21 +8,21 @@ use super::Function;
 use super::real::{LARGEST_ANGLE, Real};
 
 thread_local! {
-    /// True if the value of something that is recorded on this thread was looked at.
+    /// True if the value of a recorded number was read on this thread.
     static LOOKED_AT: Cell<bool> = const { Cell::new(false) };
     static STRICT: Cell<bool> = const { Cell::new(false) };
     static LIMITS: RefCell<Vec<Number>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Forgets what was recorded before.
+/// Discards what was recorded before.
 pub(crate) fn begin() {
     LOOKED_AT.set(false);
     STRICT.set(false);
     LIMITS.take();
 }
 
-/// Records what depends on no value that is unknown: where a number that may be another is looked at and is zero by
-/// chance, it is no arithmetic.
+/// Runs `f` as part of a recording that must hold for all values of its inputs: a decision on an input-dependent number
+/// that happens to be zero makes the recording non-arithmetic.
 pub(crate) fn strictly<R>(f: impl FnOnce() -> R) -> R {
     STRICT.set(true);
     let result = f();
@@ -35,13 +35,13 @@ pub(crate) fn limits() -> Vec<Number> {
     LIMITS.take()
 }
 
-/// True if everything since [`begin`] is arithmetic: no value was looked at, since a program takes what is made of it
-/// for a constant.
+/// True if everything since [`begin`] is arithmetic: no value was read, since a program would treat everything computed
+/// from it as constant.
 pub(crate) fn is_arithmetic() -> bool {
     !LOOKED_AT.get()
 }
 
-/// Decisions depend on the values of the run that is recorded.
+/// Decisions depend on the values of the recorded run.
 impl Real for Number {
     #[inline(never)]
     fn operation<R>(operation: impl FnOnce() -> R) -> R {
@@ -74,7 +74,7 @@ impl Real for Number {
         Number::round(self)
     }
     fn sign_or(self, next: Self) -> Self {
-        // What is zero by chance has either sign.
+        // A value that is zero by chance may have either sign.
         let is_zero = self.decisive() == 0.0;
         if is_zero && self.known().is_some() { next } else { self.abs() / self }
     }
@@ -150,7 +150,7 @@ mod tests {
         assert_eq!(run([-2.0, 3.0]), [2.0, -3.0, -3.0]);
         assert_eq!(run([2.0, 3.0]), [2.0, 3.0, -7.0]);
         assert_eq!(run([-6.0, 0.0])[2], 1.0);
-        // Zero has two sides, and a program takes neither.
+        // Zero has two sides, and a program chooses neither.
         assert!(run([0.0, 3.0])[..2].iter().all(|x| x.is_nan()));
     }
 
