@@ -379,7 +379,7 @@ impl Link {
         let along = (self.ends[1] - self.ends[0]).unit().unwrap_or(X.into());
         let square = |a: Vec3, b: Vec3| Some([a.unit()?, from_z_and_x(a, b)?.cols[0]]);
         let own = self.pins.and_then(|[a, b]| square(a, b));
-        own.or_else(|| square(along.any_square(), along.cross(along.any_square())))
+        own.or_else(|| square(along.any_perpendicular(), along.cross(along.any_perpendicular())))
             .unwrap_or([X.into(), Y.into()])
     }
 }

@@ -228,7 +228,7 @@ pub fn linked(
         notes.refused(called.kind, called.name, called.at, "both its markers are on the same body");
         return;
     }
-    let along = across.unit().unwrap_or_else(|| axis.any_square());
+    let along = across.unit().unwrap_or_else(|| axis.any_perpendicular());
     let end = foot + along * distance;
     let same = is_drawn(m, distance, drawn);
     let rot = from_z_and_x(axis, along).unwrap_or_else(none);
@@ -367,7 +367,7 @@ pub fn counted(text: &str, drawn: f64, turns: bool) -> String {
 impl Marker {
     /// A frame at a place, its z along an axis; none where that has no direction.
     pub fn along(body: usize, at: Vec3, axis: Vec3) -> Option<Self> {
-        let rot = from_z_and_x(axis, axis.any_square())?;
+        let rot = from_z_and_x(axis, axis.any_perpendicular())?;
         Some(Self { body, pose: Pose { rot, r: at } })
     }
 }

@@ -844,7 +844,7 @@ fn solid_of(kind: &str, size: &[f64], ends: Option<[f64; 6]>, mut place: Pose) -
         let (from, to) = (Vec3::from([a, b, c]), Vec3::from([d, e, f]));
         let axis = to - from;
         half = axis.norm() / 2.0;
-        if let Some(rot) = from_z_and_x(axis, axis.any_square()) {
+        if let Some(rot) = from_z_and_x(axis, axis.any_perpendicular()) {
             place = place.compose(Pose { rot, r: (from + to) * 0.5 });
         }
     }

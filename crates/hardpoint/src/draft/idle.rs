@@ -40,7 +40,7 @@ impl Model {
             let is_ball = |j: &JointId| self.joints[j.0].kind.is_ball();
             let Some(ball) = joints.iter().copied().find(is_ball) else { continue };
             let Some(axis) = self.spin(&bodies, &joints, ball, &prescribed, size) else { continue };
-            let z = axis.any_square();
+            let z = axis.any_perpendicular();
             let frame = Mat3 { cols: [axis.cross(z), z.cross(axis.cross(z)), z] };
             let held = &mut self.joints[ball.0];
             (held.kind, held.frames) = (&crate::joint::UNIVERSAL, [frame; 2]);

@@ -1,12 +1,12 @@
-//! Orientations as three angles, for input and output only: stored orientations have no singularity.
+//! Orientations as three angles, for input and output only: stored orientations are free of singularities.
 
 use crate::number::Real;
 
 use super::{Mat3, Vec3};
 
-/// The rotation with 3-1-3 Euler angles `theta` in rad: `C = Rz(t1) Rx(t2) Rz(t3)`.
+/// Rotation with 3-1-3 Euler angles `theta`, rad: `C = Rz(t1) Rx(t2) Rz(t3)`.
 ///
-/// Paper Eq. 2.2; its first element is misprinted there, `c1 c3 - s1 c2 s3` is right.
+/// Paper Eq. 2.2; its first element is misprinted there and should read `c1 c3 - s1 c2 s3`.
 pub fn rotation_from_euler_313<T: Real>(theta: [T; 3]) -> Mat3<T> {
     // Columns of Rz(t1) Rx(t2) Rz(t3)                                                                      (paper 2.2)
     let [(s1, c1), (s2, c2), (s3, c3)] = theta.map(T::sin_cos);
@@ -21,7 +21,7 @@ pub fn rotation_from_euler_313<T: Real>(theta: [T; 3]) -> Mat3<T> {
 
 /// 3-1-3 Euler angles of a rotation, rad, with t2 in `[0, pi]`.
 ///
-/// Where t2 is 0 or pi only t1 +- t3 is defined; t3 is then 0.
+/// If t2 is 0 or pi, only t1 +- t3 is defined; t3 is then 0.
 pub fn euler_313_from_rotation(c: Mat3) -> [f64; 3] {
     let [f, g, h] = c.cols;
     // h = (s1 s2, -c1 s2, c2),    (f_z, g_z) = (s2 s3, s2 c3)
@@ -32,23 +32,24 @@ pub fn euler_313_from_rotation(c: Mat3) -> [f64; 3] {
     [h.x.atan2(-h.y), s2.atan2(h.z), f.z.atan2(g.z)]
 }
 
-/// Three turns one after the other, each about an axis that the turns before it have carried along.
+/// Three successive rotations, each about an axis of the frame rotated by the previous ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Angles {
     /// 3-1-3 Euler angles: about z, the new x, the new z.
     Euler,
     /// Cardan angles: about x, the new y, the new z.
     Cardan,
-    /// Roll, pitch and yaw: the last one first, yaw about z, pitch about the new y, roll about the new x.
+    /// Roll, pitch and yaw, in reverse order of rotation: yaw about z, then pitch about the new y, then roll about the
+    /// new x.
     RollPitchYaw,
 }
 
-/// If the first and the last rotation axis are closer to parallel than this, as a sine, only the sum or difference of
-/// their angles is known: a thousandth of a degree moves them by a whole turn.
+/// Sine of the smallest angle between the first and the last rotation axis for which both angles are defined. Below it
+/// only their sum or difference is: a thousandth of a degree would change them by a whole turn.
 const SAME_AXIS: f64 = 1e-6;
 
 impl Angles {
-    /// The rotation with these angles, rad.
+    /// Rotation matrix of these angles, rad.
     pub fn rotation<T: Real>(self, angles: [T; 3]) -> Mat3<T> {
         let [x, y, z] = Vec3::AXES;
         let [a, b, c] = angles;
@@ -62,8 +63,8 @@ impl Angles {
         }
     }
 
-    /// The angles of a rotation, rad: the first one and the last one in (-pi, pi], the middle one in [0, pi] of Euler's
-    /// and in [-pi/2, pi/2] of the others. NaN where only the sum or difference of the first and the last is known.
+    /// The angles of a rotation, rad. The first and the last are in (-pi, pi], the middle one in [0, pi] for Euler
+    /// angles and in [-pi/2, pi/2] otherwise. NaN if only the sum or difference of the first and the last is defined.
     pub fn of<T: Real>(self, rotation: Mat3<T>) -> [T; 3] {
         let [f, g, h] = rotation.cols;
         let length = |a: T, b: T| (a * a + b * b).sqrt();
@@ -88,10 +89,10 @@ impl Angles {
     }
 }
 
-/// The rotation vector rate `R(theta) U` of the Euler angle rates `u` (paper Eqs. 3.7 to 3.10).
+/// Angular velocity `R(theta) U` of the Euler angle rates `u`, rad per unit (paper Eqs. 3.7 to 3.10).
 ///
-/// The second column of the paper's Eq. 3.8 is misprinted; `(c1, s1, 0)` is right. R is singular
-/// at t2 = 0 and is therefore only ever multiplied by, never inverted.
+/// The second column of the paper's Eq. 3.8 is misprinted and should read `(c1, s1, 0)`. R is singular at t2 = 0, so it
+/// is only used as a factor, never inverted.
 pub fn euler_rates(theta: [f64; 3], u: Vec3) -> Vec3 {
     // R U = U_1 (0, 0, 1) + U_2 (c1, s1, 0) + U_3 (s1 s2, -c1 s2, c2)                                      (paper 3.8)
     let (s1, c1) = theta[0].sin_cos();
@@ -126,7 +127,7 @@ mod tests {
                     assert!((angles[k] - back[k]).abs() < 1e-12, "{all:?} {angles:?} {back:?}");
                 }
             }
-            // Where two turns are about one axis, there are none.
+            // The angles are undefined where two rotation axes coincide.
             let locked = if all == Angles::Euler { 0.0 } else { std::f64::consts::FRAC_PI_2 };
             assert!(all.of(all.rotation([0.3, locked, -1.1])).iter().all(|x| x.is_nan()), "{all:?}");
         }
@@ -134,13 +135,13 @@ mod tests {
 
     #[test]
     fn each_angle_turns_about_its_axis() {
-        // A car that heads to the left by 30 deg, then noses down by 20 deg: its own x axis says both.
+        // A car that heads 30 deg to the left, then pitches nose-down by 20 deg: its own x axis shows both.
         let (yaw, pitch) = (30f64.to_radians(), 20f64.to_radians());
         let x = Angles::RollPitchYaw.rotation([0.4, pitch, yaw]).cols[0];
         let expected = Vec3::new(pitch.cos() * yaw.cos(), pitch.cos() * yaw.sin(), -pitch.sin());
         assert!((x - expected).norm() < 1e-15);
-        // Of a universal joint whose input turns about x and whose pins are y and z, these are Cardan angles: z ends up where the first two
-        // take it.
+        // For a universal joint with its input along x and its pins along y and z, these are Cardan angles: the first
+        // two determine the direction of z.
         let z = Angles::Cardan.rotation([yaw, pitch, 0.4]).cols[2];
         let expected = Vec3::new(pitch.sin(), -yaw.sin() * pitch.cos(), yaw.cos() * pitch.cos());
         assert!((z - expected).norm() < 1e-15);

@@ -6,10 +6,10 @@ use crate::number::Real;
 
 use super::Vec3;
 
-/// A rotation, as the unit vectors of the turned frame: `A = [f g h]` (paper Eq. 2.1).
+/// Rotation matrix, stored as the unit vectors of the rotated frame: `A = [f g h]` (paper Eq. 2.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mat3<T = f64> {
-    /// Columns f, g, h: the frame's x, y and z axes.
+    /// Columns f, g, h: the x, y and z axes of the rotated frame.
     pub cols: [Vec3<T>; 3],
 }
 
@@ -17,14 +17,14 @@ impl Mat3<f64> {
     /// No rotation.
     pub const IDENTITY: Self = Self { cols: Vec3::AXES };
 
-    /// The same rotation in any numbers.
+    /// This rotation in another scalar type, as a constant.
     #[inline(always)]
     pub fn spread<T: Real>(self) -> Mat3<T> {
         let [f, g, h] = self.cols;
         Mat3 { cols: [f.spread(), g.spread(), h.spread()] }
     }
 
-    /// The rotation by the rotation vector `v` (angle = length, in rad; axis = direction).
+    /// Rotation by the rotation vector `v` (its length is the angle, rad; its direction is the axis).
     pub fn from_rotation_vector(v: Vec3) -> Self {
         let angle = v.norm();
         if angle == 0.0 {
@@ -33,18 +33,18 @@ impl Mat3<f64> {
         Self::about(v * (1.0 / angle), angle)
     }
 
-    /// Angle of the rotation from this orientation to another, 0 to pi.
+    /// Angle of the rotation from this orientation to another, rad, 0 to pi.
     pub fn angle_to(self, o: Self) -> f64 {
         let d = self.transpose() * o;
         let [f, g, h] = d.cols;
-        // Half the antisymmetric part is the axis times the sine; exact for small angles, where the trace is not.
+        // Half the antisymmetric part is the axis times the sine; it is accurate for small angles, the trace is not.
         let sine = 0.5 * Vec3::new(g.z - h.y, h.x - f.z, f.y - g.x).norm();
         sine.atan2(0.5 * (f.x + g.y + h.z - 1.0))
     }
 }
 
 impl<T: Real> Mat3<T> {
-    /// The rotation by an angle in rad about a unit vector.
+    /// Rotation by `angle`, rad, about a unit vector.
     pub fn about(axis: Vec3, angle: T) -> Self {
         let (s, c) = angle.sin_cos();
         let one = T::one();
@@ -56,7 +56,7 @@ impl<T: Real> Mat3<T> {
         Self { cols: Vec3::AXES.map(turn) }
     }
 
-    /// The smallest rotation that carries unit vector `a` into unit vector `b` (not opposite to it).
+    /// Smallest rotation that maps unit vector `a` to unit vector `b`, which must not be opposite.
     pub fn between(a: Vec3<T>, b: Vec3<T>) -> Self {
         let v = a.cross(b);
         let one = T::one();
@@ -76,13 +76,13 @@ impl<T: Real> Mat3<T> {
         Self { cols: [Vec3::new(f.x, g.x, h.x), Vec3::new(f.y, g.y, h.y), Vec3::new(f.z, g.z, h.z)] }
     }
 
-    /// The transpose times a vector: components of a world vector in the turned frame.
+    /// Transpose times a vector: maps world components to components in the rotated frame.
     #[inline(always)]
     pub fn transpose_mul(self, v: Vec3<T>) -> Vec3<T> {
         Vec3::new(self.cols[0].dot(v), self.cols[1].dot(v), self.cols[2].dot(v))
     }
 
-    /// Turned further about its own axis `k` by the angle with this sine and cosine.
+    /// This orientation rotated about its own axis `k` by the angle with this sine and cosine.
     #[inline(always)]
     pub fn turned(self, k: usize, sin: T, cos: T) -> Self {
         let (a, b) = ((k + 1) % 3, (k + 2) % 3);
@@ -93,14 +93,14 @@ impl<T: Real> Mat3<T> {
         Self { cols }
     }
 
-    /// This times a vector, plus another.
+    /// This matrix times a vector, plus another vector.
     #[inline(always)]
     pub fn times_plus(self, v: Vec3<T>, addend: Vec3<T>) -> Vec3<T> {
         let [f, g, h] = self.cols;
         h.times_plus(v.z, g.times_plus(v.y, f.times_plus(v.x, addend)))
     }
 
-    /// The rotation in plain values.
+    /// This rotation as plain numbers.
     #[inline(always)]
     pub fn value(self) -> Mat3<f64> {
         let [f, g, h] = &self.cols;

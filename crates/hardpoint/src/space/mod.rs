@@ -1,7 +1,7 @@
-//! Points, rotations, poses, twists and wrenches, generic over the number.
+//! Points, rotations, poses, twists and wrenches, generic over the scalar type.
 //!
-//! Everything here is written once over [`Real`]. A [`Twist`] is what moves, a [`Wrench`] is what resists; their
-//! product is the rate at which a constraint is violated (`docs/theory.md`, section 1).
+//! Everything here is written once over [`Real`]. A [`Twist`] describes a motion, a [`Wrench`] a constraint or force;
+//! their product is the rate of a constraint residual, or a power (`docs/theory.md`, section 1).
 
 mod euler;
 mod mat3;

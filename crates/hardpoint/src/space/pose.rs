@@ -9,15 +9,15 @@ use super::{Mat3, Twist, Vec3, Wrench};
 pub struct Pose<T = f64> {
     /// Orientation of the inner frame.
     pub rot: Mat3<T>,
-    /// Position of the inner frame's origin.
+    /// Position of the origin of the inner frame, m.
     pub r: Vec3<T>,
 }
 
 impl Pose<f64> {
-    /// The frame itself.
+    /// Identity: the two frames coincide.
     pub const IDENTITY: Self = Self { rot: Mat3::IDENTITY, r: Vec3::ZERO };
 
-    /// The same pose in any numbers.
+    /// This pose in another scalar type, as a constant.
     #[inline(always)]
     pub fn spread<T: Real>(self) -> Pose<T> {
         Pose { rot: self.rot.spread(), r: self.r.spread() }
@@ -25,14 +25,14 @@ impl Pose<f64> {
 }
 
 impl<T: Real> Pose<T> {
-    /// The pose of `inner`, given in this frame, in the outer frame.
+    /// Pose in the outer frame of `inner`, which is given in this frame.
     #[inline(always)]
     pub fn compose(self, inner: Self) -> Self {
         // (A, r) (A', r') = (A A', r + A r')
         Self { rot: self.rot * inner.rot, r: self.point(inner.r) }
     }
 
-    /// The outer frame seen from the inner one.
+    /// Inverse: the pose of the outer frame in the inner one.
     #[inline(always)]
     pub fn inverse(self) -> Self {
         let rot = self.rot.transpose();
@@ -40,13 +40,13 @@ impl<T: Real> Pose<T> {
         Self { rot, r: -(rot * self.r) }
     }
 
-    /// A point of the inner frame, in the outer frame.
+    /// Maps a point from the inner to the outer frame.
     #[inline(always)]
     pub fn point(self, s: Vec3<T>) -> Vec3<T> {
         self.rot.times_plus(s, self.r)
     }
 
-    /// A twist of the inner frame carried into the outer one: `Ad(X) e` (`docs/theory.md` (2)).
+    /// Maps a twist from the inner to the outer frame: `Ad(X) e` (`docs/theory.md` (2)).
     #[inline(always)]
     pub fn carry(self, e: Twist<T>) -> Twist<T> {
         // Ad(X) [w; v] = [A w;  A v + r x A w]                                                                (2)
@@ -54,14 +54,14 @@ impl<T: Real> Pose<T> {
         Twist { w, v: self.r.cross_plus(w, self.rot * e.v) }
     }
 
-    /// A wrench of the outer frame, seen from the inner one: `l . Ad(X) e = carry_back(l) . e`.
+    /// Maps a wrench from the outer to the inner frame: `l . Ad(X) e = carry_back(l) . e`.
     #[inline(always)]
     pub fn carry_back(self, l: Wrench<T>) -> Wrench<T> {
         // Ad(X)^T [m; f] = [A^T (m - r x f);  A^T f]
         Wrench { m: self.rot.transpose_mul(l.m - self.r.cross(l.f)), f: self.rot.transpose_mul(l.f) }
     }
 
-    /// The pose in plain values.
+    /// This pose as plain numbers.
     #[inline(always)]
     pub fn value(self) -> Pose<f64> {
         Pose { rot: self.rot.value(), r: self.r.value() }
@@ -69,12 +69,12 @@ impl<T: Real> Pose<T> {
 }
 
 impl<T: Real> Pose<Dual<T>> {
-    /// The pose, and the twist at which it changes, fixed in the outer frame: `[w; v]` with v at the outer frame's
-    /// origin.
+    /// Splits a dual pose into the pose and its twist `[w; v]`, in components of the outer frame, with v at the outer
+    /// frame's origin.
     pub fn split(self) -> (Pose<T>, Twist<T>) {
         let value =
             Pose { rot: Mat3 { cols: self.rot.cols.map(|c| c.map(|x| x.v)) }, r: self.r.map(|x| x.v) };
-        // The rate of every unit vector c is w x c: w is half the sum of c x c'.
+        // The rate of every unit vector c is w x c; w is half the sum of c x c'.
         let turn = |k: usize| value.rot.cols[k].cross(self.rot.cols[k].map(|x| x.d));
         let w = (turn(0) + turn(1) + turn(2)) * T::constant(0.5);
         // r' = v + w x r

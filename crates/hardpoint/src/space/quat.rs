@@ -1,4 +1,4 @@
-//! Unit quaternions: the rotation of a spherical joint, stored without singularity.
+//! Unit quaternions: the rotation of a spherical joint, stored without singularities.
 
 use crate::number::Real;
 
@@ -17,29 +17,29 @@ impl Quat<f64> {
     /// No rotation.
     pub const IDENTITY: Self = Self { w: 1.0, v: Vec3::ZERO };
 
-    /// The same rotation in any numbers.
+    /// This rotation in another scalar type, as a constant.
     #[inline(always)]
     pub fn spread<T: Real>(self) -> Quat<T> {
         Quat { w: T::constant(self.w), v: self.v.spread() }
     }
 
-    /// The quaternion `[w, x, y, z]`, normalised; `None` where it is null or not finite.
+    /// Normalised quaternion `[w, x, y, z]`; `None` if it is zero or not finite.
     pub fn from_array(q: [f64; 4]) -> Option<Self> {
         let n = q.iter().map(|x| x * x).sum::<f64>().sqrt();
         let [w, x, y, z] = q.map(|c| c / n);
         (n > 1e-12 && n.is_finite()).then_some(Self { w, v: Vec3::new(x, y, z) })
     }
 
-    /// `[w, x, y, z]` with w >= 0.
+    /// Components `[w, x, y, z]` with w >= 0.
     pub fn to_array(self) -> [f64; 4] {
         let s = if self.w < 0.0 { -1.0 } else { 1.0 };
         [s * self.w, s * self.v.x, s * self.v.y, s * self.v.z]
     }
 
-    /// The quaternion of a rotation matrix, from its largest component (Shepperd).
+    /// Quaternion of a rotation matrix, computed from its largest component (Shepperd).
     pub fn from_rotation(a: Mat3) -> Self {
         let [f, g, h] = a.cols;
-        // 1 + sizes = 4 w^2, 4 x^2, 4 y^2, 4 z^2; the largest is at least 1, so that nothing is divided by little.
+        // 1 + sizes = 4 w^2, 4 x^2, 4 y^2, 4 z^2; the largest is at least 1, so that no divisor is small.
         let sizes = [f.x + g.y + h.z, f.x - g.y - h.z, g.y - f.x - h.z, h.z - f.x - g.y];
         let k = (0..4).fold(0, |best, k| if sizes[k] > sizes[best] { k } else { best });
         let s = 0.5 / (1.0 + sizes[k]).sqrt();
@@ -55,10 +55,10 @@ impl Quat<f64> {
 }
 
 impl<T: Real> Quat<T> {
-    /// Turned further by the small rotation `d` about the *fixed* axes, normalised.
+    /// This rotation followed by the small rotation `d` about the *fixed* axes, rad; normalised.
     ///
-    /// The increment is Cayley's `(1, d/2)`, whose angle is |d| up to |d|^3 / 12: exact enough for a
-    /// Newton update (only the fixed point matters) and for a second-order predictor.
+    /// The increment is Cayley's `(1, d/2)`, whose angle is |d| up to |d|^3 / 12. This is sufficient for a Newton
+    /// update (only the fixed point matters) and for a second-order predictor.
     #[inline(always)]
     pub fn nudged(self, d: Vec3<T>) -> Self {
         let h = d * T::constant(0.5);
@@ -68,20 +68,20 @@ impl<T: Real> Quat<T> {
         Self { w, v }.normalised()
     }
 
-    /// The rotation in plain values.
+    /// This rotation as plain numbers.
     #[inline(always)]
     pub fn value(self) -> Quat<f64> {
         Quat { w: self.w.value(), v: self.v.value() }
     }
 
-    /// The same rotation, of unit length.
+    /// This quaternion scaled to unit length.
     #[inline(always)]
     pub fn normalised(self) -> Self {
         let k = T::one() / (self.w * self.w + self.v.dot(self.v)).sqrt();
         Self { w: self.w * k, v: self.v * k }
     }
 
-    /// Rate of change where the frame turns with `w` about the *fixed* axes: `(0, w) q / 2`.
+    /// Time derivative if the frame rotates with angular velocity `w` in *fixed* axes: `(0, w) q / 2`.
     #[inline(always)]
     pub(crate) fn rate(self, w: Vec3<T>) -> Self {
         // (0, w/2) q
@@ -89,19 +89,19 @@ impl<T: Real> Quat<T> {
         Self { w: -h.dot(self.v), v: h * self.w + h.cross(self.v) }
     }
 
-    /// Component by component; no rotation any more.
+    /// Componentwise sum; not a rotation.
     #[inline(always)]
     pub(crate) fn plus(self, o: Self) -> Self {
         Self { w: self.w + o.w, v: self.v + o.v }
     }
 
-    /// Component 0 (scalar) to 3.
+    /// Component 0 (scalar part) to 3.
     #[inline(always)]
     pub(crate) fn component(self, k: usize) -> T {
         if k == 0 { self.w } else { self.v[k - 1] }
     }
 
-    /// The rotation matrix.
+    /// Rotation matrix of this quaternion.
     #[inline(always)]
     pub fn rotation(self) -> Mat3<T> {
         let two = T::constant(2.0);
@@ -139,7 +139,7 @@ mod tests {
         let a = q.nudged(d).rotation();
         let b = Mat3::from_rotation_vector(d) * q.rotation();
         for k in 0..3 {
-            // Cayley's increment is short by |d|^3 / 12.
+            // Cayley's increment is too small by |d|^3 / 12.
             assert!((a.cols[k] - b.cols[k]).norm() < 2e-12);
         }
     }

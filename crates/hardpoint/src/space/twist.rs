@@ -1,7 +1,7 @@
-//! Twists and wrenches, all at the world origin and in world components.
+//! Twists and wrenches, all referred to the world origin, in world components.
 //!
-//! `docs/theory.md`, section 1: W = [w; v] and l = [m; f]. A body's point at p goes with `v + w x p`; a wrench is the
-//! same at any point, so that sums over bodies and joints need no lever arms.
+//! `docs/theory.md`, section 1: W = [w; v] and l = [m; f]. The body point at p moves with `v + w x p`. All wrenches
+//! refer to the world origin, so sums over bodies and joints need no lever arms.
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
@@ -9,21 +9,21 @@ use crate::number::Real;
 
 use super::Vec3;
 
-/// A first-order motion of a body: angular part, and velocity of the body point at the world origin.
+/// First-order motion of a body: angular velocity, and velocity of the body point at the world origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Twist<T = f64> {
-    /// Angular part, rad per unit.
+    /// Angular velocity, rad per unit of time or of the design variable.
     pub w: Vec3<T>,
-    /// Velocity of the body point that passes the world origin, m per unit.
+    /// Velocity of the body point that coincides with the world origin, m per unit of time or of the design variable.
     pub v: Vec3<T>,
 }
 
-/// Generalised force of a constraint: moment about the world origin, and force.
+/// Wrench of a force or constraint: moment about the world origin, and force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wrench<T = f64> {
-    /// Moment about the world origin.
+    /// Moment about the world origin, N m; for a constraint row, per unit of its multiplier.
     pub m: Vec3<T>,
-    /// Force.
+    /// Force, N; for a constraint row, per unit of its multiplier.
     pub f: Vec3<T>,
 }
 
@@ -31,7 +31,7 @@ impl Twist<f64> {
     /// No motion.
     pub const ZERO: Self = Self { w: Vec3::ZERO, v: Vec3::ZERO };
 
-    /// The same twist in any numbers.
+    /// This twist in another scalar type, as a constant.
     #[inline(always)]
     pub fn spread<T: Real>(self) -> Twist<T> {
         Twist { w: self.w.spread(), v: self.v.spread() }
@@ -45,28 +45,28 @@ impl<T: Real> Twist<T> {
         Self { w: Vec3::zero(), v: Vec3::zero() }
     }
 
-    /// The turn at unit rate about the line through `point` along `axis`.
+    /// Rotation at unit rate about the line through `point` along the unit vector `axis`.
     #[inline(always)]
     pub fn turn(axis: Vec3<T>, point: Vec3<T>) -> Self {
-        // x = [h; c x h]: the points of the line stand, v + h x c = 0
+        // x = [h; c x h]: points of the line are at rest, v + h x c = 0
         Self { w: axis, v: point.cross(axis) }
     }
 
-    /// The slide at unit rate along `axis`.
+    /// Translation at unit rate along the unit vector `axis`.
     #[inline(always)]
     pub fn slide(axis: Vec3<T>) -> Self {
         // x = [0; h]
         Self { w: Vec3::zero(), v: axis }
     }
 
-    /// Rate of a twist fixed in a body that moves with `self`: `ad(self) o` (`docs/theory.md` (3)).
+    /// Rate of a twist `o` fixed in a body that moves with twist `self`: `ad(self) o` (`docs/theory.md` (3)).
     #[inline(always)]
     pub fn ad(self, o: Self) -> Self {
         // ad(V) x = [V_w x x_w;  V_w x x_v + V_v x x_w]                                                      (3)
         Self { w: self.w.cross(o.w), v: self.w.cross_plus(o.v, self.v.cross(o.w)) }
     }
 
-    /// Wrench that does the same work as the rate of a carried twist o: `l . ad(self) o = ad_transposed(l) . o`.
+    /// Transpose of [`ad`](Self::ad): `l . ad(self) o = ad_transposed(l) . o`.
     #[inline(always)]
     pub fn ad_transposed(self, l: Wrench<T>) -> Wrench<T> {
         // ad(V)^T l = [m x V_w + f x V_v;  f x V_w], from  m . (V_w x x_w) + f . (V_w x x_v + V_v x x_w)
@@ -86,7 +86,7 @@ impl<T: Real> Twist<T> {
         Self { w: self.w.times_plus(k, addend.w), v: self.v.times_plus(k, addend.v) }
     }
 
-    /// The twist in plain values.
+    /// This twist as plain numbers.
     #[inline(always)]
     pub fn value(self) -> Twist<f64> {
         Twist { w: self.w.value(), v: self.v.value() }
@@ -94,7 +94,7 @@ impl<T: Real> Twist<T> {
 }
 
 impl Wrench<f64> {
-    /// The same wrench in any numbers.
+    /// This wrench in another scalar type, as a constant.
     #[inline(always)]
     pub fn spread<T: Real>(self) -> Wrench<T> {
         Wrench { m: self.m.spread(), f: self.f.spread() }
@@ -102,7 +102,7 @@ impl Wrench<f64> {
 }
 
 impl<T: Real> Wrench<T> {
-    /// No wrench.
+    /// Zero wrench.
     #[inline(always)]
     pub fn zero() -> Self {
         Self { m: Vec3::zero(), f: Vec3::zero() }
@@ -114,20 +114,20 @@ impl<T: Real> Wrench<T> {
         Self { m: self.m.times_plus(k, addend.m), f: self.f.times_plus(k, addend.f) }
     }
 
-    /// The force `f` acting through `point`.
+    /// Wrench of the force `f` acting at `point`.
     #[inline(always)]
     pub fn force(f: Vec3<T>, point: Vec3<T>) -> Self {
         // l = [p x f; f]
         Self { m: point.cross(f), f }
     }
 
-    /// The pure moment `m`.
+    /// Wrench of the pure moment `m`.
     #[inline(always)]
     pub fn moment(m: Vec3<T>) -> Self {
         Self { m, f: Vec3::zero() }
     }
 
-    /// Power on a motion: `m . w + f . v`.
+    /// Power of this wrench on a twist: `m . w + f . v`.
     #[inline(always)]
     pub fn on(self, t: Twist<T>) -> T {
         // l . W = m . w + f . v                                                                               (1)

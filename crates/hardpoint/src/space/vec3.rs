@@ -1,10 +1,10 @@
-//! Vectors of three components.
+//! Vectors with three components.
 
 use std::ops::{Add, AddAssign, Index, Mul, Neg, Sub, SubAssign};
 
 use crate::number::Real;
 
-/// A point or a direction with components along x, y and z.
+/// Point or direction with components along x, y and z.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Vec3<T = f64> {
     /// Component along x.
@@ -16,13 +16,13 @@ pub struct Vec3<T = f64> {
 }
 
 impl Vec3<f64> {
-    /// The null vector.
+    /// Zero vector.
     pub const ZERO: Self = Self::new(0.0, 0.0, 0.0);
     /// Unit vectors along x, y and z.
     pub const AXES: [Self; 3] =
         [Self::new(1.0, 0.0, 0.0), Self::new(0.0, 1.0, 0.0), Self::new(0.0, 0.0, 1.0)];
 
-    /// The same vector in any numbers.
+    /// This vector in another scalar type, as a constant.
     #[inline(always)]
     pub fn spread<T: Real>(self) -> Vec3<T> {
         Vec3::new(T::constant(self.x), T::constant(self.y), T::constant(self.z))
@@ -33,19 +33,19 @@ impl Vec3<f64> {
         [self.x, self.y, self.z]
     }
 
-    /// True if every component is a finite number.
+    /// True if all components are finite.
     pub fn is_finite(self) -> bool {
         self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
     }
 
-    /// The unit vector along this one, or `None` if it is shorter than `1e-12` or not finite.
+    /// Unit vector along this one; `None` if it is shorter than `1e-12` or not finite.
     pub fn unit(self) -> Option<Self> {
         let n = self.norm();
         (n > 1e-12 && n.is_finite()).then(|| self * (1.0 / n))
     }
 
-    /// A unit vector perpendicular to this unit vector, chosen the same way every time.
-    pub fn any_square(self) -> Self {
+    /// A unit vector perpendicular to this unit vector; the choice is deterministic.
+    pub fn any_perpendicular(self) -> Self {
         let a = self.to_array().map(f64::abs);
         let k = (0..3).fold(0, |best, k| if a[k] < a[best] { k } else { best });
         let e = Self::AXES[k];
@@ -61,13 +61,13 @@ impl From<[f64; 3]> for Vec3 {
 }
 
 impl<T> Vec3<T> {
-    /// The vector with these components.
+    /// Vector with these components.
     #[inline(always)]
     pub const fn new(x: T, y: T, z: T) -> Self {
         Self { x, y, z }
     }
 
-    /// The vector with `f` of every component.
+    /// Applies `f` to every component.
     #[inline(always)]
     pub fn map<U>(self, f: impl Fn(T) -> U) -> Vec3<U> {
         Vec3::new(f(self.x), f(self.y), f(self.z))
@@ -75,7 +75,7 @@ impl<T> Vec3<T> {
 }
 
 impl<T: Real> Vec3<T> {
-    /// The null vector.
+    /// Zero vector.
     #[inline(always)]
     pub fn zero() -> Self {
         let o = T::zero();
@@ -118,7 +118,7 @@ impl<T: Real> Vec3<T> {
         )
     }
 
-    /// The mirror image in the plane perpendicular to this unit normal: `v - 2 (v . n) n`.
+    /// Mirror image in the plane through the origin with this unit normal: `v - 2 (v . n) n`.
     pub fn mirrored(self, normal: Self) -> Self {
         self - normal * (T::constant(2.0) * self.dot(normal))
     }
@@ -129,7 +129,7 @@ impl<T: Real> Vec3<T> {
         self.dot(self).sqrt()
     }
 
-    /// The vector in plain values.
+    /// This vector as plain numbers.
     #[inline(always)]
     pub fn value(self) -> Vec3<f64> {
         Vec3::new(self.x.value(), self.y.value(), self.z.value())

@@ -369,7 +369,7 @@ impl<'a> Side<'_, 'a> {
         let z = line("axis")?;
         let x = || match table.contains_key("axis2") {
             true => line("axis2"),
-            false => z.unit().map(Vec3::any_square),
+            false => z.unit().map(Vec3::any_perpendicular),
         };
         let direction = match along {
             0 => x()?,

@@ -94,7 +94,7 @@ impl Checker<'_> {
                 };
                 let (axis, z) = self.line(about, &d.name, here, "about")?;
                 let (body, base) = (body?, base?);
-                let axes = Axes { axis, axis2: None, frames: [frame_along(z, z.any_square()); 2] };
+                let axes = Axes { axis, axis2: None, frames: [frame_along(z, z.any_perpendicular()); 2] };
                 let at = self.place_on(body)?;
                 self.driven_joint(d, &joint::HEADING, [base, body], [at, at], Some(axes), Zero::None)
             }
@@ -128,7 +128,7 @@ impl Checker<'_> {
         let along = self.line_at(along, &d.name, at_line);
         let (point, (axis, z)) = (point?, along?);
         let BodyPoint { body, at, .. } = self.model.points[point.0];
-        let axes = Axes { axis, axis2: None, frames: [frame_along(z, z.any_square()); 2] };
+        let axes = Axes { axis, axis2: None, frames: [frame_along(z, z.any_perpendicular()); 2] };
         self.driven_joint(d, &joint::TRAVEL, [GROUND, body], [at, at], Some(axes), Zero::Position)
     }
 
@@ -201,7 +201,7 @@ impl Checker<'_> {
                 let (body, centre, side, axis2) = stands?;
                 let s = side.sign();
                 let travel = |c: &mut Self, z: Vec3| {
-                    let frames = [frame_along(z, z.any_square()); 2];
+                    let frames = [frame_along(z, z.any_perpendicular()); 2];
                     let axes = Axes { axis: Direction::Along(z), axis2: None, frames };
                     c.driven_joint(
                         d,
@@ -298,7 +298,7 @@ impl Checker<'_> {
             self.fault("HP0213", at.clone(), message).help("give another `about` direction");
             return None;
         }
-        let frames = [frame_along(z, x), frame_along(e, e.any_square())];
+        let frames = [frame_along(z, x), frame_along(e, e.any_perpendicular())];
         let axes = Axes { axis: Direction::Along(z), axis2: Some(axis2), frames };
         self.driven_joint(d, &joint::COURSE, [GROUND, body], [place, place], Some(axes), zero)
     }

@@ -13,7 +13,7 @@ use super::{Checker, Here, SAME_POINT, SQUARE_TOLERANCE, UNPLACED, degrees_betwe
 /// default.
 fn default_x(z: Vec3, mirror: Option<usize>) -> Vec3 {
     let reflected = |v: Vec3| mirror.map_or(v, |k| v - Vec3::AXES[k] * (2.0 * v.dot(Vec3::AXES[k])));
-    reflected(reflected(z).any_square())
+    reflected(reflected(z).any_perpendicular())
 }
 
 impl Checker<'_> {
