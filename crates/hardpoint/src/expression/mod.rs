@@ -1,4 +1,4 @@
-//! Numbers that are written as expressions: over the time (the law of a driver), or over other numbers of the model.
+//! Numbers written as expressions: of time (the law of a driver), or of other numbers of the model.
 //!
 //! # The language of expressions
 //!
@@ -31,10 +31,10 @@ pub(crate) use term::ExpressionValue;
 
 use crate::number::Real;
 
-/// A number of a model that is written as an expression in the [language](self), without the time: `hub + shim/2`.
+/// A number of a model, written as an expression in the [language](self) without the time: `hub + shim/2`.
 ///
-/// Names that are no functions stand for parameters of the model, and those of two parts, like `ball.x`, for
-/// coordinates of its hardpoints. Angles are in radians.
+/// Names other than functions refer to parameters of the model; names of two parts, like `ball.x`, to coordinates of
+/// its hardpoints. Angles are in radians.
 ///
 /// ```
 /// use hardpoint::expression::Expression;
@@ -53,29 +53,29 @@ pub struct Expression {
 }
 
 impl Expression {
-    /// The number that `text` writes, with lengths in metres.
+    /// Parses an expression whose lengths are in metres.
     ///
     /// # Errors
-    /// When `text` is not an expression; the error says where, and what to write instead.
+    /// Returns an error with its position and a correction if `text` is not an expression.
     pub fn parse(text: &str) -> Result<Self, ExpressionError> {
         let (program, names) = parse_open(text)?;
         let names = names.into_iter().map(str::to_owned).collect();
         Ok(Self { text: text.to_owned(), names, program, per_metre: 1.0 })
     }
 
-    /// The expression that is this number.
+    /// Constant expression with this value.
     pub fn constant(value: f64) -> Self {
         let program = Program::constant(value);
         Self { text: value.to_string(), names: Vec::new(), program, per_metre: 1.0 }
     }
 
-    /// The same text, whose lengths are in a unit of which that many make a metre.
+    /// This expression with its lengths in a unit of which `per_metre` make a metre.
     #[must_use]
     pub fn with_unit(self, per_metre: f64) -> Self {
         Self { per_metre, ..self }
     }
 
-    /// Number of its units of length per metre.
+    /// Number of its length units per metre.
     pub fn per_metre(&self) -> f64 {
         self.per_metre
     }
@@ -85,25 +85,25 @@ impl Expression {
         &self.text
     }
 
-    /// The names in it, in the order of their first use.
+    /// Names in the expression, in the order of their first use.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// The value for these numbers in place of the [names](Self::names), as the text means them.
+    /// Value for these numbers in place of the [names](Self::names), in the units of the text.
     ///
     /// # Panics
-    /// When there are fewer numbers than names.
+    /// Panics if there are fewer numbers than names.
     pub fn at(&self, numbers: &[f64]) -> f64 {
         self.over(|k| numbers[k])
     }
 
-    /// As [`at`](Self::at), over any scalar.
+    /// Value over any scalar type; see [`at`](Self::at).
     pub(crate) fn over<T: Real>(&self, number: impl Fn(usize) -> T) -> T {
         self.program.at(T::constant(f64::NAN), number)
     }
 
-    /// The expression with numbers in place of those names that have one; it has the other names.
+    /// This expression with numbers in place of the names for which `number` returns one; the other names remain.
     pub(crate) fn with_some(&self, number: impl Fn(usize) -> Option<f64>) -> Self {
         let numbers: Vec<Option<f64>> = (0..self.names.len()).map(number).collect();
         let mut left = 0;
@@ -125,14 +125,14 @@ impl Expression {
         }
     }
 
-    /// True if expressions can use what has this name: letters, digits and `_`, no digit first, and none of the names
-    /// that they know already.
+    /// True if `name` is valid in expressions: letters, digits and `_`, not beginning with a digit, and not a built-in
+    /// name.
     pub fn can_name(name: &str) -> bool {
         parse::is_free_name(name)
     }
 }
 
-/// Written the same, in the same unit.
+/// Equal if the text and the unit are the same.
 impl PartialEq for Expression {
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text && self.names == other.names && self.per_metre == other.per_metre
@@ -146,7 +146,7 @@ mod tests {
     use crate::law::Law;
     use crate::number::Dual;
 
-    /// Every operation, with an `a` between 0.2 and 0.9 and a `b` near 2.
+    /// Every operation, with `a` between 0.2 and 0.9 and `b` near 2.
     const TEXTS: [&str; 26] = [
         "-a + 2*b - a/b",
         "sin(a*b)",

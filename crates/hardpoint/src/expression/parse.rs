@@ -1,7 +1,7 @@
-//! Reading the text of an expression.
+//! Parser of expressions.
 //!
-//! Tokens are cut by `winnow`; the grammar is a descent with one token in hand, which knows at every error what the
-//! author was about to write:
+//! `winnow` splits the text into tokens. The grammar is a recursive descent with one token of lookahead, so that every
+//! error knows what was expected:
 //!
 //! ```text
 //! sum     = product (("+" | "-") product)*
@@ -11,7 +11,7 @@
 //! primary = number | "t" | "pi" | parameter | function "(" arguments ")" | "(" sum ")"
 //! ```
 //!
-//! A parameter is one of those that are given; or, in a text that is not a law, any other name, also one of two parts:
+//! A parameter is one of the given names. In a text that is not a law it is any other name, including one of two parts:
 //! `ball.x`.
 
 use std::collections::HashMap;
@@ -37,27 +37,27 @@ pub struct ExpressionError {
     pub span: Range<usize>,
     /// Description of the error, as a complete phrase.
     pub message: String,
-    /// Instruction that corrects the error, if there is one.
+    /// Instruction to correct the error, if there is one.
     pub help: Option<String>,
 }
 
-/// The most parentheses, calls and exponents that may be open at once.
+/// Maximum number of nested parentheses, calls and exponents.
 const MAX_NESTING: usize = 64;
 
-/// Rule that turns a name with arguments into an operation.
+/// Translation of a name with arguments into an operation.
 #[derive(Clone, Copy)]
 enum Call {
     One(Function),
     Two(Binary),
-    /// A function of two or more arguments, applied to two at a time.
+    /// Function of two or more arguments, applied to two at a time.
     Fold(Binary),
     Power,
     Step,
     If,
 }
 
-/// Functions with more than one argument: the function of one argument that precedes it in lists, its name, and its
-/// call.
+/// Functions with more than one argument: the preceding function of one argument in lists, the name, the signature, and
+/// the call.
 const OF_MORE: [(Function, &str, &str, Call); 7] = [
     (Function::Atan, "atan2", "atan2(y, x)", Call::Two(Binary::Atan2)),
     (Function::Sqrt, "pow", "pow(x, p)", Call::Power),
@@ -68,7 +68,7 @@ const OF_MORE: [(Function, &str, &str, Call); 7] = [
     (Function::Abs, "if", "if(a < b, x, y)", Call::If),
 ];
 
-/// All functions in the order in which help lists them, each with the way to call it where that is not `name(x)`.
+/// All functions in the order in which help lists them, each with its signature if that is not `name(x)`.
 fn functions() -> impl Iterator<Item = (&'static str, Option<&'static str>, Call)> {
     Function::ALL.iter().flat_map(|&function| {
         let following = OF_MORE.iter().filter(move |(after, ..)| *after == function);
@@ -77,7 +77,7 @@ fn functions() -> impl Iterator<Item = (&'static str, Option<&'static str>, Call
     })
 }
 
-/// The program that `text` writes, with `parameters` for further names.
+/// Parses a law, with `parameters` as additional names.
 pub(crate) fn parse(text: &str, parameters: &[&str]) -> Result<Program, ExpressionError> {
     let mut descent = Descent::new(text, parameters);
     descent.program = Program::of_time();
@@ -103,8 +103,7 @@ pub(crate) fn parse(text: &str, parameters: &[&str]) -> Result<Program, Expressi
     }
 }
 
-/// The program that `text` writes, which does not know the time, and the other names in it in the order of their first
-/// use.
+/// Parses an expression without the time. Also returns the other names in it, in the order of their first use.
 pub(crate) fn parse_open(text: &str) -> Result<(Program, Vec<&str>), ExpressionError> {
     let mut descent = Descent::new(text, &[]);
     descent.free = Some(Free::default());
@@ -119,7 +118,7 @@ pub(crate) fn parse_open(text: &str) -> Result<(Program, Vec<&str>), ExpressionE
     }
 }
 
-/// The names in a text that expressions do not know, each once.
+/// Names in a text that are not built in, each once.
 pub(crate) fn names(text: &str) -> Vec<&str> {
     let (mut descent, mut free) = (Descent::new(text, &[]), Free::default());
     while descent.token != Token::End {
@@ -133,7 +132,7 @@ pub(crate) fn names(text: &str) -> Vec<&str> {
     free.names
 }
 
-/// The names that a text uses freely.
+/// Names in a text that are not declared in advance.
 #[derive(Default)]
 struct Free<'a> {
     names: Vec<&'a str>,
@@ -142,7 +141,7 @@ struct Free<'a> {
 }
 
 impl<'a> Free<'a> {
-    /// Index of a name; the next free one if it is new.
+    /// Index of a name; a new one gets the next index.
     fn number(&mut self, name: &'a str) -> usize {
         let next = self.names.len();
         let number = *self.numbers.entry(name).or_insert(next);
@@ -180,7 +179,7 @@ fn number(input: &mut Input<'_>) -> Result<f64, EmptyError> {
     (mantissa, opt(exponent)).take().parse_to().parse_next(input)
 }
 
-/// A name, or two joined by a point.
+/// A name, or two names joined by a point.
 fn dotted<'a>(input: &mut Input<'a>) -> Result<&'a str, EmptyError> {
     (name, opt(('.', name))).take().parse_next(input)
 }
@@ -191,17 +190,17 @@ fn name<'a>(input: &mut Input<'a>) -> Result<&'a str, EmptyError> {
     (first, rest).take().parse_next(input)
 }
 
-/// The descent; each rule leaves one operand in the program.
+/// Recursive descent; each rule leaves one operand in the program.
 struct Descent<'a> {
     text: &'a str,
     parameters: &'a [&'a str],
     is_used: Vec<bool>,
-    /// In a text that is not a law: the names that it uses.
+    /// Names used so far, in a text that is not a law.
     free: Option<Free<'a>>,
     rest: Input<'a>,
     token: Token<'a>,
     span: Range<usize>,
-    /// The span of the token before; empty at the start.
+    /// Span of the previous token; empty at the start.
     previous: Range<usize>,
     nesting: usize,
     program: Program,
@@ -225,19 +224,19 @@ impl<'a> Descent<'a> {
         descent
     }
 
-    /// True if the name of a parameter, new among the parameters or not, can be distinguished from all others.
+    /// Checks that the name of a parameter is valid and unique; `is_new` if it is not yet among the parameters.
     fn check_parameter(&self, name: &str, is_new: bool) -> Result<(), ExpressionError> {
         let is_known = is_taken(name);
         let (message, help) = if is_known {
             (
-                format!("a parameter can not be called `{name}`: the expression knows that name already"),
+                format!("a parameter cannot be called `{name}`: the expression knows that name already"),
                 "rename it",
             )
         } else if !is_new {
             (format!("two parameters are named `{name}`"), "rename one of them")
         } else if (self::name, eof).parse_next(&mut LocatingSlice::new(name)).is_err() {
             let help = "use letters, digits and `_`, and begin with a letter or `_`";
-            (format!("`{}` can not be the name of a parameter", name.escape_debug()), help)
+            (format!("`{}` cannot be the name of a parameter", name.escape_debug()), help)
         } else {
             return Ok(());
         };
@@ -373,7 +372,7 @@ impl<'a> Descent<'a> {
             arguments.push((first_operation, start..self.previous.end));
             match function {
                 Call::Fold(fold) if arguments.len() > 1 => self.program.emit(Operation::Two(fold)),
-                // To be counted only.
+                // Counted only, for the error message.
                 _ if arguments.len() > most => self.program.drop_operand(first_operation),
                 _ => {}
             }
@@ -407,7 +406,7 @@ impl<'a> Descent<'a> {
         Ok(())
     }
 
-    /// Reads `a < b`, leaves a and b in the program.
+    /// Parses `a < b`; leaves a and b in the program.
     fn condition(&mut self) -> Result<Relation, ExpressionError> {
         let start = self.span.start;
         self.nested(Self::sum)?;
@@ -440,7 +439,7 @@ impl<'a> Descent<'a> {
         Ok(comparison)
     }
 
-    /// Checks the order of a step's ends if they are plain numbers: an error here avoids a NaN later.
+    /// Checks the order of the ends of a step if they are plain numbers: an error here prevents a NaN later.
     fn check_step_order(&self, arguments: &[(usize, Range<usize>)]) -> Result<(), ExpressionError> {
         let [_, x0, h0, x1, h1] = arguments else {
             return Ok(());
@@ -496,7 +495,7 @@ impl<'a> Descent<'a> {
             .unwrap_or((Token::End, end));
     }
 
-    /// The error that an operand was wanted where the current token is.
+    /// Error for a missing operand at the current token.
     fn missing_value(&self) -> ExpressionError {
         match self.token {
             Token::Symbol("*" | "/" | "^" | "**" | "<" | "<=" | ">" | ">=" | ")" | ",") | Token::End => {}
@@ -516,7 +515,7 @@ impl<'a> Descent<'a> {
         )
     }
 
-    /// The error that the current token can not follow the operand before it.
+    /// Error for a token that cannot follow the preceding operand.
     fn unexpected(&self) -> ExpressionError {
         let (before, shown) = (self.shown(&self.previous), self.shown(&self.span));
         let (message, help) = match self.token {
@@ -575,18 +574,18 @@ impl<'a> Descent<'a> {
         error(self.span.clone(), "the expression is nested too deeply", Some(help))
     }
 
-    /// The text at `span`, with control characters made visible.
+    /// Text at `span`, with control characters escaped.
     fn shown(&self, span: &Range<usize>) -> String {
         self.text[span.clone()].escape_debug().to_string()
     }
 }
 
-/// True if expressions give the name a meaning of their own.
+/// True if the name is built in.
 fn is_taken(name: &str) -> bool {
     ["t", "pi"].contains(&name) || functions().any(|(known, ..)| known == name)
 }
 
-/// True if expressions can use what has this name.
+/// True if the name is valid in expressions and not built in.
 pub(crate) fn is_free_name(name: &str) -> bool {
     !is_taken(name) && (self::name, eof).parse_next(&mut LocatingSlice::new(name)).is_ok()
 }

@@ -1,7 +1,6 @@
-//! The form in which an expression is evaluated: operations in postfix order on a small stack.
+//! Compiled form of an expression: operations in postfix order on a small stack.
 //!
-//! Being flat, a sum of ten thousand terms needs no deep recursion, neither to be evaluated nor to be dropped; and
-//! nothing is allocated per call.
+//! The form is flat: a sum of ten thousand terms is evaluated and dropped without deep recursion. No call allocates.
 
 use std::cmp::Ordering;
 
@@ -9,20 +8,20 @@ use crate::number::{Function, Jet, Real};
 
 use super::term::{Binary, ExpressionValue, Relation};
 
-/// The most operands that may wait for their operation.
+/// Maximum number of operands on the stack.
 pub(crate) const MAX_WAITING: usize = 256;
 
-/// Stack size that suffices for most expressions; clearing a larger one would cost more than the evaluation.
+/// Stack size sufficient for most expressions; clearing a larger one would cost more than the evaluation.
 const FEW_WAITING: usize = 4;
 
-/// Stack size that suffices for nearly every expression.
+/// Stack size sufficient for nearly all expressions.
 const USUALLY_WAITING: usize = 12;
 
-/// One operation: takes its operands from the stack, the last on top, and leaves one result.
+/// One operation: takes its operands from the stack (the last one on top) and leaves one result.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Operation {
     Constant(f64),
-    /// A named parameter, by its place in the list.
+    /// Named parameter, by its index in the list.
     Parameter(usize),
     Time,
     Neg,
@@ -32,9 +31,9 @@ pub(crate) enum Operation {
     Powf(f64),
     /// x, x0, h0, x1, h1
     Step,
-    /// Of a, b, x, y: x if the comparison of a with b holds, else y.
+    /// Of a, b, x, y: x if the comparison of a with b is true, else y.
     Select(Relation),
-    /// The value alone, of what depends on parameters only.
+    /// Drops the time derivatives of an operand that depends on parameters only.
     Settle,
 }
 
@@ -49,7 +48,7 @@ impl Operation {
         }
     }
 
-    /// The result for these operands; of an operation that has any.
+    /// Result for these operands; only for operations with operands.
     #[inline(always)]
     fn of<V: ExpressionValue>(self, operands: &[V]) -> V {
         match (self, operands) {
@@ -65,14 +64,14 @@ impl Operation {
         }
     }
 
-    /// Side that a piecewise operation takes for these operands. Sides that join smoothly may be distinguished.
+    /// Branch of a piecewise operation for these operands. Branches that join smoothly may be distinguished.
     fn side(self, operands: &[Jet]) -> Option<u8> {
         let sign = |order: Option<Ordering>| order.map_or(9, |order| order as u8);
         let zero = Jet::constant(0.0);
         Some(match self {
             Self::One(Function::Abs) => u8::from(operands[0].order(zero) == Some(Ordering::Less)),
             Self::Two(Binary::Min | Binary::Max) => sign(operands[0].order(operands[1])),
-            // The angle jumps by 2π where the point crosses the negative x axis.
+            // The angle jumps by 2π if the point crosses the negative x axis.
             Self::Two(Binary::Atan2) if operands[1].value() >= 0.0 => 7,
             Self::Two(Binary::Atan2) => u8::from(operands[0].value() >= 0.0),
             Self::Step => {
@@ -87,31 +86,31 @@ impl Operation {
     }
 }
 
-/// The operations of an expression.
+/// Operations of an expression.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Program {
     operations: Vec<Operation>,
-    /// For every operand that waits, whether it depends on the time.
+    /// For every operand on the stack: true if it depends on the time.
     waiting: Vec<bool>,
     most_waiting: usize,
-    /// True if its parameters are the same at all times, so that what depends on them only has no time derivatives.
+    /// True if its parameters are constant in time, so that subexpressions of them have no time derivatives.
     is_of_time: bool,
 }
 
 impl Program {
-    /// An empty program for a function of the time, with parameters that do not depend on it.
+    /// Empty program for a function of time, with parameters that do not depend on it.
     pub(crate) fn of_time() -> Self {
         Self { is_of_time: true, ..Self::default() }
     }
 
-    /// The program that is a number.
+    /// Program with a constant result.
     pub(crate) fn constant(value: f64) -> Self {
         let mut program = Self::default();
         program.emit(Operation::Constant(value));
         program
     }
 
-    /// The number of operations so far; an operand begins at the length before it was emitted.
+    /// Number of operations so far. An operand starts at the length before it was emitted.
     pub(crate) fn len(&self) -> usize {
         self.operations.len()
     }
@@ -121,7 +120,7 @@ impl Program {
         self.waiting.len() == MAX_WAITING
     }
 
-    /// The number that is the operation at `index`, if it is one.
+    /// Value of the operation at `index` if it is a number.
     pub(crate) fn constant_at(&self, index: usize) -> Option<f64> {
         match self.operations.get(index) {
             Some(&Operation::Constant(value)) => Some(value),
@@ -129,7 +128,7 @@ impl Program {
         }
     }
 
-    /// Appends an operation whose operands are there already.
+    /// Appends an operation whose operands have been emitted.
     pub(crate) fn emit(&mut self, operation: Operation) {
         let operands = operation.operands();
         let left = self.waiting.len() - operands;
@@ -143,8 +142,9 @@ impl Program {
         if operands == 0 || is_timed {
             return;
         }
-        // What does not depend on t has no derivatives, also where its jet's are infinite times zero: sqrt(0). An
-        // operand that is a number is one operation, so the operands are all numbers if that many operations are.
+        // A subexpression that does not depend on t has no derivatives, even if its jet would have infinity times zero,
+        // as for sqrt(0). An operand that is a number is one operation, so all operands are numbers if all operations
+        // since `start` are.
         if (start..self.len() - 1).all(|index| self.constant_at(index).is_some()) {
             let mut stack = [f64::NAN; USUALLY_WAITING];
             let operations = &self.operations[start..];
@@ -156,7 +156,7 @@ impl Program {
         }
     }
 
-    /// Appends the power of the last two operands; with the faster rules if the exponent is a number.
+    /// Appends the power of the last two operands; with faster rules if the exponent is a number.
     pub(crate) fn emit_power(&mut self) {
         let exponent = self.constant_at(self.len() - 1);
         let Some(exponent) = exponent else {
@@ -164,7 +164,7 @@ impl Program {
         };
         self.operations.pop();
         self.waiting.pop();
-        // Longer products of the base would cost digits.
+        // Longer products of the base would lose accuracy.
         let is_small_integer = exponent.fract() == 0.0 && exponent.abs() <= 16.0;
         self.emit(if is_small_integer {
             Operation::Powi(exponent as i32)
@@ -173,18 +173,18 @@ impl Program {
         });
     }
 
-    /// Drops the last operand, which began at `start`.
+    /// Removes the last operand, which starts at `start`.
     pub(crate) fn drop_operand(&mut self, start: usize) {
         self.operations.truncate(start);
         self.waiting.pop();
     }
 
-    /// The program with numbers for its parameters: the one that the text with these numbers in it would have given.
+    /// This program with numbers for its parameters, identical to that of the text with these numbers.
     pub(crate) fn with_values(&self, values: &[f64]) -> Self {
         self.with_leaves(|parameter| Operation::Constant(values[parameter]))
     }
 
-    /// The program with a number, or another parameter, for each of its parameters.
+    /// This program with each parameter replaced by a number or by another parameter.
     pub(crate) fn with_leaves(&self, leaf: impl Fn(usize) -> Operation) -> Self {
         let mut program = Self { is_of_time: self.is_of_time, ..Self::default() };
         for &operation in &self.operations {
@@ -198,13 +198,13 @@ impl Program {
         program
     }
 
-    /// The program's result at a time, for the given parameters; in whatever the time is given.
+    /// Result at a time for the given parameters, in the scalar type of the time.
     #[inline(always)]
     pub(crate) fn at<V: ExpressionValue>(&self, time: V, parameter: impl Fn(usize) -> V) -> V {
         self.watched(time, parameter, |_, _| ())
     }
 
-    /// The same; `watch` sees each operation with its operands first.
+    /// Result like [`at`](Self::at); `watch` is called before each operation, with its operands.
     #[inline(always)]
     fn watched<V: ExpressionValue>(
         &self,
@@ -225,7 +225,7 @@ impl Program {
         run(&self.operations, time, parameter, watch, stack)
     }
 
-    /// Apart, so that no other program pays for room on the stack that only this one needs.
+    /// A separate function, so that other programs do not pay for the large stack.
     #[cold]
     #[inline(never)]
     fn with_full_stack<V: ExpressionValue>(
@@ -237,7 +237,7 @@ impl Program {
         run(&self.operations, time, parameter, watch, &mut [time; MAX_WAITING])
     }
 
-    /// True if any operation has sides that it could switch between.
+    /// True if any operation has several branches.
     pub(crate) fn has_sides(&self) -> bool {
         self.operations.iter().any(|operation| {
             use Operation::{One, Select, Step, Two};
@@ -248,7 +248,8 @@ impl Program {
         })
     }
 
-    /// The sides that the operations with sides take at time `t`, in the order of the operations; without parameters.
+    /// Branches of the piecewise operations at time `t`, in the order of the operations; for programs without
+    /// parameters.
     pub(crate) fn sides(&self, t: f64, sides: &mut Vec<u8>) {
         sides.clear();
         let watch = |operation: Operation, operands: &[Jet]| sides.extend(operation.side(operands));

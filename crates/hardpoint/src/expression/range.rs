@@ -1,9 +1,9 @@
-//! Between which bounds an expression stays over a stretch of time.
+//! Bounds of an expression over an interval of time.
 //!
-//! Expressions are evaluated in intervals that carry an interval for their rate: `f([a, b])` lies in the interval that
-//! the operations give, and in `f(m) + f'([a, b]) [-h/2, h/2]` about the middle m, which is the tighter one when the
-//! stretch is short (the mean value form, whose excess falls with h^2). Polynomials and splines lie within their
-//! Bernstein coefficients. All of it holds but for rounding.
+//! Expressions are evaluated in intervals that carry an interval for their rate. The range `f([a, b])` is bounded by
+//! the interval result of the operations, and by `f(m) + f'([a, b]) [-h/2, h/2]` about the midpoint m (mean value form,
+//! whose excess falls with h^2), which is tighter for short intervals. Polynomials and splines are bounded by their
+//! Bernstein coefficients. All bounds are exact except for rounding.
 
 use std::f64::consts::{FRAC_PI_2, LN_10, PI, TAU};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -12,22 +12,22 @@ use crate::number::Function;
 
 use super::term::{ExpressionValue, Relation};
 
-/// All numbers from `low` to `high`. What is undefined anywhere is unbounded.
+/// All numbers from `low` to `high`. A quantity that is undefined anywhere in the interval is unbounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// The least number.
+    /// Lower bound.
     pub low: f64,
-    /// The largest number.
+    /// Upper bound.
     pub high: f64,
 }
 
-/// Polynomials up to this degree are bounded without memory of their own; others are not bounded.
+/// Maximum degree of polynomials that are bounded, without allocation; others are unbounded.
 const HIGHEST_DEGREE: usize = 24;
 
 impl Range {
     pub(crate) const UNBOUNDED: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
-    /// From one number to another, in either order; unbounded if either is none.
+    /// Range between two numbers in either order; unbounded if either is NaN.
     pub(crate) fn between(a: f64, b: f64) -> Self {
         if a.is_nan() || b.is_nan() { Self::UNBOUNDED } else { Self { low: a.min(b), high: a.max(b) } }
     }
@@ -36,18 +36,18 @@ impl Range {
         Self::between(x, x)
     }
 
-    /// The least range that holds both.
+    /// Smallest range that contains both.
     pub(crate) fn or(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// Intersection of two ranges; after rounding they may be disjoint by a small amount.
+    /// Intersection of two ranges, which may be disjoint by a rounding error.
     fn and(self, other: Self) -> Self {
         let (low, high) = (self.low.max(other.low), self.high.min(other.high));
         Self { low: low.min(high), high: high.max(low) }
     }
 
-    /// True if both of its ends are finite.
+    /// True if both ends are finite.
     pub fn is_bounded(self) -> bool {
         self.low.is_finite() && self.high.is_finite()
     }
@@ -56,18 +56,18 @@ impl Range {
         self.low <= x && x <= self.high
     }
 
-    /// Maximum distance of the range from a number.
+    /// Maximum distance of the range from `x`.
     pub fn reach_from(self, x: f64) -> f64 {
         let reach = f64::max(self.high - x, x - self.low);
         if reach.is_nan() { f64::INFINITY } else { reach.max(0.0) }
     }
 
-    /// g of all numbers, for a g that never falls, or never rises.
+    /// Image under a monotone g.
     fn monotone(self, g: impl Fn(f64) -> f64) -> Self {
         Self::between(g(self.low), g(self.high))
     }
 
-    /// The same where g is defined on these numbers only.
+    /// Image under a monotone g that is defined on `domain` only.
     fn monotone_on(self, domain: Self, g: impl Fn(f64) -> f64) -> Self {
         if self.low >= domain.low && self.high <= domain.high { self.monotone(g) } else { Self::UNBOUNDED }
     }
@@ -101,16 +101,16 @@ impl Range {
     }
 
     pub(crate) fn sin(self) -> Self {
-        // So far out no digit of the angle is left.
+        // Beyond this, the angle has no accurate digit left.
         const FARTHEST: f64 = 1e15;
         let width = self.high - self.low;
         if !(width < TAU && self.low.abs() < FARTHEST) {
             return Self { low: -1.0, high: 1.0 };
         }
-        // Whether an angle at + 2 pi k is among them, also by a hair.
+        // True if some angle at + 2 pi k is in the range, within round-off.
         let reaches = |at: f64| {
             let hair = 4.0 * f64::EPSILON * (1.0 + self.low.abs());
-            // The first at + 2 pi k that is not below the range
+            // Smallest at + 2 pi k that is not below the range
             let next = at + TAU * ((self.low - hair - at) / TAU).ceil();
             next <= self.high + hair
         };
@@ -159,7 +159,7 @@ impl Mul for Range {
     type Output = Self;
 
     fn mul(self, o: Self) -> Self {
-        // Nothing times an unbounded number is nothing: the bound only says that it is not known.
+        // Zero times an unbounded number is zero: the bound only means that the number is unknown.
         let product = |x: f64, y: f64| if x == 0.0 || y == 0.0 { 0.0 } else { x * y };
         let [a, b] = [product(self.low, o.low), product(self.low, o.high)];
         let [c, d] = [product(self.high, o.low), product(self.high, o.high)];
@@ -175,12 +175,12 @@ impl Div for Range {
     }
 }
 
-/// The range of a quantity over a stretch of time, and that of its rate.
+/// Range of a quantity over an interval of time, and range of its rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
     /// Range of the quantity.
     pub value: Range,
-    /// Range of its rate, per s.
+    /// Range of the rate, per s.
     pub rate: Range,
 }
 
@@ -196,17 +196,18 @@ impl Stretch {
         Self { value: Range::exactly(x), rate: Range::exactly(0.0) }
     }
 
-    /// Intersection of both forms, for a quantity that is `middle` in the middle of an interval of this length.
+    /// Intersection with the mean value form, for a quantity with the value `middle` at the middle of an interval of
+    /// this length.
     pub(crate) fn settled(self, middle: f64, length: f64) -> Self {
         let half = 0.5 * length;
-        // Of what is not defined all along, the middle says nothing.
+        // If the quantity is not defined over the whole interval, its value in the middle proves nothing.
         let known = self.value.is_bounded();
         // f(m) + f'([a, b]) [-h/2, h/2], by the mean value theorem
         let mean = Range::exactly(middle) + self.rate * Range::between(-half, half);
         Self { value: if known && mean.is_bounded() { self.value.and(mean) } else { self.value }, ..self }
     }
 
-    /// Range of c0 + c1 x + c2 x^2 + ... for x from one number to another.
+    /// Range of c0 + c1 x + c2 x^2 + ... for x between `from` and `to`.
     pub(crate) fn of_polynomial(coefficients: &[f64], from: f64, to: f64) -> Self {
         let n = coefficients.len();
         if n > HIGHEST_DEGREE + 1 {
@@ -221,18 +222,18 @@ impl Stretch {
         Self { value: of_polynomial(coefficients, from, to), rate }
     }
 
-    /// The largest size of the rate, per s.
+    /// Maximum magnitude of the rate, per s.
     pub(crate) fn fastest(self) -> f64 {
         self.rate.reach_from(0.0)
     }
 
-    /// g of it, with the ranges of g and of its derivative.
+    /// Composition with g, given the ranges of g and of its derivative.
     fn chain(self, g: Range, slope: Range) -> Self {
         // (g(x)). = g'(x) x.
         Self { value: g, rate: slope * self.rate }
     }
 
-    /// The least stretch that holds both.
+    /// Smallest ranges that contain both.
     pub(crate) fn or(self, o: Self) -> Self {
         Self { value: self.value.or(o.value), rate: self.rate.or(o.rate) }
     }
@@ -288,8 +289,7 @@ impl ExpressionValue for Stretch {
         self.chain(power(exponent), Range::exactly(exponent) * power(exponent - 1.0))
     }
 
-    /// Range of a power with a positive base: with other bases it is undefined for all but integer exponents, which are
-    /// constant.
+    /// Power with a positive base. With other bases it is undefined for all but integer exponents, which are constant.
     fn to(self, exponent: Self) -> Self {
         (exponent * self.function(Function::Ln)).function(Function::Exp)
     }
@@ -299,7 +299,7 @@ impl ExpressionValue for Stretch {
         let (across, along) = (y.value, x.value);
         // atan2(y, x). = (x y. - y x.) / (x^2 + y^2)
         let rate = (along * y.rate - across * x.rate) / (along.square() + across.square());
-        // On the negative x axis the angle jumps.
+        // The angle jumps on the negative x axis.
         let value = if along.low <= 0.0 && across.has(0.0) {
             Range { low: -PI, high: PI }
         } else {
@@ -315,7 +315,7 @@ impl ExpressionValue for Stretch {
         // r = sqrt(x^2 + y^2),    r. = (x x. + y y.) / r,    abs(r.) <= abs(x.) + abs(y.)
         let length = (self.value.square() + o.value.square()).sqrt();
         let rate = (self.value * self.rate + o.value * o.rate) / length;
-        // Whatever the direction, a length changes no faster than its components together.
+        // In any direction, a length changes no faster than the sum of its components.
         let fastest = self.rate.abs() + o.rate.abs();
         Self { value: length, rate: rate.and(fastest.or(-fastest)) }
     }
@@ -354,23 +354,23 @@ impl ExpressionValue for Stretch {
         h0 + (h1 - h0) * s
     }
 
-    /// As far as it is known which.
+    /// The selected range if the comparison is decided, else both.
     fn choose(self, comparison: Relation, b: Self, x: Self, y: Self) -> Self {
         match comparison.holds_between(self.value, b.value) {
             Some(true) => x,
             Some(false) => y,
-            // The value may jump, so that its rate means nothing.
+            // The value may jump, so the rate is unbounded.
             None => Self { rate: Range::UNBOUNDED, ..x.or(y) },
         }
     }
 
-    /// Returns the value itself: what depends on parameters alone is constant.
+    /// Returns the value itself: subexpressions of parameters only are constant.
     fn settled(self) -> Self {
         self
     }
 }
 
-/// 1 / sqrt(1 - x^2).
+/// Range of 1 / sqrt(1 - x^2).
 fn asin_slope(x: Range) -> Range {
     Range::exactly(1.0) / (Range::exactly(1.0) - x.square()).sqrt()
 }
@@ -416,7 +416,7 @@ impl Neg for Stretch {
     }
 }
 
-/// The range of c0 + c1 x + c2 x^2 + ... for x between two numbers: that of its Bernstein coefficients there.
+/// Range of c0 + c1 x + c2 x^2 + ... for x between two numbers, bounded by its Bernstein coefficients there.
 fn of_polynomial(coefficients: &[f64], from: f64, to: f64) -> Range {
     let n = coefficients.len().saturating_sub(1);
     let mut c = [0.0; HIGHEST_DEGREE + 1];

@@ -1,4 +1,4 @@
-//! Number types of expressions, and their operations with two and more operands.
+//! Scalar types of expressions, with their operations of two and more operands.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -7,38 +7,38 @@ use crate::number::{Function, Real};
 
 use super::range::Range;
 
-/// Type in which an expression is evaluated: a number with its derivatives, or [bounds](super::range::Stretch) of a
-/// number.
+/// Scalar type in which an expression is evaluated: a number with its derivatives, or [bounds](super::range::Stretch)
+/// of a number.
 pub(crate) trait ExpressionValue:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// The number `x`, at all times.
+    /// Constant `x`.
     fn number(x: f64) -> Self;
-    /// A function of one argument.
+    /// Function of one argument.
     fn function(self, function: Function) -> Self;
-    /// The power with a whole exponent.
+    /// Power with an integer exponent.
     fn to_whole(self, exponent: i32) -> Self;
-    /// The power with a constant exponent.
+    /// Power with a constant exponent.
     fn to_constant(self, exponent: f64) -> Self;
-    /// The power with any exponent.
+    /// Power with any exponent.
     fn to(self, exponent: Self) -> Self;
-    /// The angle of the point (`x`, `self`).
+    /// Angle of the point (`x`, `self`), rad.
     fn angle(self, x: Self) -> Self;
-    /// The length of the vector (`self`, `o`).
+    /// Length of the vector (`self`, `o`).
     fn length(self, o: Self) -> Self;
-    /// The smaller of the two; not a number if either is.
+    /// Minimum of the two; NaN if either is.
     fn smaller(self, o: Self) -> Self;
-    /// The larger of the two; not a number if either is.
+    /// Maximum of the two; NaN if either is.
     fn greater(self, o: Self) -> Self;
-    /// The cubic step in `self` from `h0`, up to `x0`, to `h1`, from `x1` on; `x0 < x1`, else not a number.
+    /// Cubic step in `self` from `h0` at `x0` and below to `h1` at `x1` and above; NaN unless `x0 < x1`.
     fn step(self, x0: Self, h0: Self, x1: Self, h1: Self) -> Self;
-    /// `x` where the comparison of `self` with `b` holds, else `y`; not a number if either is not.
+    /// `x` if the comparison of `self` with `b` is true, else `y`; NaN if either operand is.
     fn choose(self, comparison: Relation, b: Self, x: Self, y: Self) -> Self;
     /// Value of a term that depends on constants alone.
     fn settled(self) -> Self;
 }
 
-/// Of two sides, the one that is active just after the instant.
+/// Piecewise operations use the branch that is active just after the instant.
 impl<T: Real> ExpressionValue for T {
     #[inline(always)]
     fn number(x: f64) -> Self {
@@ -55,7 +55,7 @@ impl<T: Real> ExpressionValue for T {
         self.powi(exponent)
     }
 
-    // What only few expressions need is apart from the code of all the others.
+    // Rare operations are compiled separately from the common ones.
     #[inline(never)]
     fn to_constant(self, exponent: f64) -> Self {
         self.powf(exponent)
@@ -111,13 +111,13 @@ impl<T: Real> ExpressionValue for T {
     }
 }
 
-/// A number without value and derivatives: NaN.
+/// NaN in value and derivatives.
 #[inline(always)]
 fn undefined<T: Real>(like: T) -> T {
     T::constant(f64::NAN) * like
 }
 
-/// True if `x` is at least as far on a side as `o` is; or, of two that do not compare, the one without a value.
+/// True if `x` is at least as far on a side as `o`; or, if they do not compare, if `x` is the one that is NaN.
 #[inline(always)]
 fn is_it<T: Real>(x: T, o: T, side: Ordering) -> bool {
     match x.order(o) {
@@ -126,7 +126,7 @@ fn is_it<T: Real>(x: T, o: T, side: Ordering) -> bool {
     }
 }
 
-/// A function of two quantities.
+/// Function of two quantities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Binary {
     Add,
@@ -157,7 +157,7 @@ impl Binary {
     }
 }
 
-/// A comparison of two values.
+/// Comparison of two values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Relation {
     Less,
@@ -167,7 +167,7 @@ pub(crate) enum Relation {
 }
 
 impl Relation {
-    /// True if `a` compares with `b` in this way; `None` if either is not a number.
+    /// True if `a` compares with `b` in this way; `None` if either is NaN.
     pub(crate) fn holds(self, a: f64, b: f64) -> Option<bool> {
         let order = a.partial_cmp(&b)?;
         Some(match self {
@@ -178,7 +178,7 @@ impl Relation {
         })
     }
 
-    /// True if it holds for all numbers of two ranges, or for none; `None` if that depends.
+    /// True if the comparison holds for all numbers of two ranges, false if it holds for none; `None` otherwise.
     pub(crate) fn holds_between(self, a: Range, b: Range) -> Option<bool> {
         let corners = [(a.low, b.low), (a.low, b.high), (a.high, b.low), (a.high, b.high)];
         let first = self.holds(a.low, b.high)?;
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn step_between_its_ends_agrees_with_num_dual_to_third_order() {
-        // Own derivatives all different from zero, so that no term of the chain rule drops out.
+        // Derivatives of the arguments: all different from zero, so that every term of the chain rule contributes.
         const SLOPES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.7, -0.4, 1.3], [-1.9, 2.3, -0.6]];
         let jet = |x, [d, dd, ddd]: [f64; 3]| Jet([x, d, dd, ddd]);
         let dual = |Jet([x, d, dd, ddd]): Jet| Dual3_64::new(x, d, dd, ddd);

@@ -17,7 +17,7 @@ const CLAMPED: SplineEnds = SplineEnds::Clamped {
     end: SplineEndRates { speed: -0.4, acceleration: 0.0 },
 };
 
-/// One law of every kind and variant, named by its text, all smooth about t = 0.7 s and t = 1.9 s.
+/// One law of every kind and variant, labelled by its text, all smooth at t = 0.7 s and t = 1.9 s.
 fn every_kind() -> Vec<Law> {
     let (times, values) = ([0.0, 0.4, 1.1, 1.7, 2.2], [0.3, -0.5, 1.4, 0.9, 0.3]);
     let expression = "a*exp(-b*t)*sin(c*t + sqrt(a)) + t^b + step(t, b, c, 3 + b, a) + atan2(a, t)*hypot(b, t) + pow(c, t)";
@@ -52,7 +52,7 @@ fn every_kind() -> Vec<Law> {
     laws
 }
 
-/// The smallest error of central differences as the step is halved, which first falls by 4 each time.
+/// Smallest error of central differences under halving of the step; the error must first fall by 4 each time.
 fn difference_error(what: &str, f: impl Fn(f64) -> f64, at: f64, exact: f64, size: f64) -> f64 {
     let errors: Vec<f64> = (8..20)
         .map(|halvings| {
@@ -102,7 +102,7 @@ fn parameter_derivatives_of_every_kind_are_the_limits_of_differences() {
                 }
             }
         }
-        // Where a sequence starts anew, what went before only shifts the time.
+        // A piece of a sequence that is not continued only has its start shifted by the preceding ones.
         let is_sequence = matches!(law.kind, AnyLaw::Sequence(_));
         assert!(is_sequence || is_used.iter().all(|is_used| *is_used), "{law}: {is_used:?}");
     }
@@ -204,7 +204,7 @@ fn a_law_that_is_no_expression_says_what_it_is() {
 #[test]
 fn parameters_of_an_expression_act_as_the_numbers_they_stand_for() {
     let with = Law::parse_with("a^2*t^n + sqrt(z)*sin(t)", &[("a", 3.0), ("n", 2.0), ("z", 0.0)]).unwrap();
-    // t^2 has derivatives at t = 0, and sqrt(0) has none.
+    // t^2 has derivatives at t = 0; sqrt(0) has none.
     assert_eq!(with.at(0.0), Law::parse("3^2*t^2 + sqrt(0)*sin(t)").unwrap().at(0.0));
     assert_eq!(with.derivative(0, 1.0).value(), 6.0);
     assert_eq!(with.with_parameter(1, 3.0).at(2.0).value(), 72.0);
@@ -213,15 +213,15 @@ fn parameters_of_an_expression_act_as_the_numbers_they_stand_for() {
         (
             "sin*t",
             "sin",
-            "a parameter can not be called `sin`: the expression knows that name already",
+            "a parameter cannot be called `sin`: the expression knows that name already",
             "rename it",
         ),
-        ("t", "t", "a parameter can not be called `t`: the expression knows that name already", "rename it"),
+        ("t", "t", "a parameter cannot be called `t`: the expression knows that name already", "rename it"),
         ("2*t", "a", "the parameter `a` is not used in the expression", "use it, or remove it"),
         (
             "t",
             "a b",
-            "`a b` can not be the name of a parameter",
+            "`a b` cannot be the name of a parameter",
             "use letters, digits and `_`, and begin with a letter or `_`",
         ),
     ];

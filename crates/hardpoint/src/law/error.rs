@@ -3,13 +3,13 @@
 use super::kind::LawKind;
 use super::parameter::Parameter;
 
-/// Error in the numbers of a law; for a law's text see [`ExpressionError`](super::ExpressionError).
+/// Error in the numbers of a law; for errors in its text see [`ExpressionError`](super::ExpressionError).
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct LawError {
     /// Description of the error, as a complete phrase.
     pub message: String,
-    /// Instruction that corrects the error, if there is one.
+    /// Instruction to correct the error, if there is one.
     pub help: Option<String>,
 }
 
@@ -20,7 +20,7 @@ impl LawError {
     }
 }
 
-/// That each parameter of a law is finite.
+/// Checks that all parameters of a law are finite.
 pub(super) fn check_finite(law: &impl LawKind) -> Result<(), LawError> {
     match law.parameters().into_iter().find(|p| !p.value.is_finite()) {
         Some(Parameter { name, value, .. }) => {

@@ -1,4 +1,4 @@
-//! The law that is an expression in `t`, with named parameters.
+//! Law given by an expression in `t`, with named parameters.
 
 use std::fmt;
 
@@ -9,15 +9,15 @@ use super::jumps::{Break, find_switches};
 use super::kind::LawKind;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 
-/// An expression, its parameters, and what evaluates it.
+/// An expression, its parameters, and its programs.
 #[derive(Clone)]
 pub(super) struct ExpressionLaw {
     text: String,
     names: Vec<String>,
     values: Vec<f64>,
-    /// With the parameters as such.
+    /// Program with symbolic parameters, for derivatives with respect to them.
     symbolic: Program,
-    /// With their values in place: what is evaluated unless derivatives by a parameter are wanted.
+    /// Program with the values of the parameters inserted, for all other evaluations.
     program: Program,
 }
 
@@ -75,7 +75,7 @@ impl LawKind for ExpressionLaw {
     }
 }
 
-/// The text, and what its parameters are.
+/// Writes the text, followed by the values of its parameters.
 impl fmt::Display for ExpressionLaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.text)?;

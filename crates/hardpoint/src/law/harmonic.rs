@@ -1,4 +1,4 @@
-//! The harmonic law.
+//! Harmonic law.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -11,23 +11,23 @@ use super::error::{LawError, check_finite};
 use super::kind::{LawKind, parameters, write_sum};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 
-/// A harmonic law: offset + amplitude sin(2π frequency t + phase).
+/// A harmonic law: offset + amplitude sin(2π frequency t + phase), t in s.
 ///
 /// Parameters, in this order: `amplitude`, `frequency`, `phase`, `offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Harmonic {
-    /// The amplitude, in the driver's unit.
+    /// Amplitude, in the driver's unit.
     pub amplitude: f64,
-    /// The frequency, in Hz.
+    /// Frequency, Hz.
     pub frequency: f64,
-    /// The phase, in radians.
+    /// Phase, rad.
     pub phase: f64,
-    /// The mean value, in the driver's unit.
+    /// Mean value, in the driver's unit.
     pub offset: f64,
 }
 
 impl Law {
-    /// The harmonic law: offset + amplitude sin(2π frequency t + phase).
+    /// Creates a harmonic law: offset + amplitude sin(2π frequency t + phase).
     ///
     /// ```
     /// use hardpoint::law::{Harmonic, Law};
@@ -40,7 +40,7 @@ impl Law {
     ///
     /// # Errors
     ///
-    /// When a number is not finite.
+    /// Returns an error if a number is not finite.
     pub fn harmonic(law: Harmonic) -> Result<Self, LawError> {
         check_finite(&law)?;
         Ok(Self::of(law))
@@ -71,7 +71,7 @@ impl LawKind for Harmonic {
     }
 }
 
-/// The expression that is this law.
+/// Writes the law as an expression.
 impl fmt::Display for Harmonic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let phase = match self.phase {

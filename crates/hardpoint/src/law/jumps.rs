@@ -7,18 +7,18 @@ use super::Law;
 use super::kind::LawKind;
 use super::sequence::backwards;
 
-/// A jump of a law, of its speed or of its acceleration.
+/// Jump of the value, speed or acceleration of a law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jump {
-    /// When, in s.
+    /// Time of the jump, s.
     pub time: f64,
-    /// Order of the jump: 0 for the value, 1 for the speed, 2 for the acceleration; the lowest one that jumps.
+    /// Lowest order that jumps: 0 for the value, 1 for the speed, 2 for the acceleration.
     pub order: usize,
-    /// By how much, from before to after, in the driver's unit per s to the order.
+    /// Value after the jump minus value before, in the driver's unit per s to the order.
     pub size: f64,
 }
 
-/// A place where a law may jump: at a time that lies between two others, between which the law is not to be looked at.
+/// A time at which a law may jump, bracketed by two times between which the law is not evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Break {
     time: f64,
@@ -27,46 +27,46 @@ pub(super) struct Break {
 }
 
 impl Break {
-    /// A break at a time that is known exactly.
+    /// A break at an exactly known time.
     pub(super) fn exactly(time: f64) -> Self {
         Self { time, before: time, after: time }
     }
 
-    /// True if the law has both its sides, if it begins at `start` and ends at `end`.
+    /// True if the break is inside a law that begins at `start` and ends at `end`.
     pub(super) fn is_between(self, start: f64, end: f64) -> bool {
         let room = SAME_TIME * self.time.abs().max(1.0);
         self.time > start + room && self.time < end - room
     }
 
-    /// This break in a law that starts later, with room for the rounding of the difference of times.
+    /// This break in a law that starts later, with tolerance for the rounding of the difference of times.
     pub(super) fn delayed(self, by: f64) -> Self {
         let room = 4.0 * f64::EPSILON * self.time.abs().max(by.abs());
         Self { time: self.time + by, before: self.before + by - room, after: self.after + by + room }
     }
 }
 
-/// In how many parts the time is cut to find where an expression switches. What switches there and back between two
-/// cuts is missed.
+/// Number of subintervals of the time in which an expression is searched for switches. A branch that switches there and
+/// back within one subinterval is missed.
 const CUTS: u32 = 4096;
 
-/// Sides that change more often than this between two cuts change by rounding.
+/// Branches that change more often than this within a subinterval change by rounding.
 const MOST_CHANGES: usize = 4;
 
-/// Breaks nearer to each other than this, relative to the times requested, are one.
+/// Breaks closer together than this, relative to the requested times, are merged.
 const SAME_TIME: f64 = 1e-12;
 
-/// A jump counts if it is more than this, relative to the largest that the same derivative is...
+/// A jump is reported if it exceeds this fraction of the largest magnitude of the same derivative ...
 const RELATIVE: f64 = 1e-9;
 
-/// ... and more than rounding may be, relative to the largest value of the law, per second to the order.
+/// ... and this estimate of rounding, relative to the largest value of the law, per second to the order.
 const ROUNDING: f64 = 1e-12;
 
-/// Appends the places between `from` and `to` where an operation of the program changes sides.
+/// Appends the breaks between `from` and `to` at which an operation of the program changes its branch.
 pub(super) fn find_switches(program: &Program, from: f64, to: f64, breaks: &mut Vec<Break>) {
     if !program.has_sides() {
         return;
     }
-    // So that a switch at either end is between two cuts.
+    // Extended, so that a switch at either end is inside a subinterval.
     let margin = 1e-9 * (to - from) + SAME_TIME * from.abs().max(to.abs());
     let cut = |k: u32| (from - margin) + (to - from + 2.0 * margin) * f64::from(k) / f64::from(CUTS);
     let (mut before, mut after, mut middle) = (Vec::new(), Vec::new(), Vec::new());
@@ -97,7 +97,7 @@ pub(super) fn find_switches(program: &Program, from: f64, to: f64, breaks: &mut 
     }
 }
 
-/// The jumps of a law from one time to another.
+/// Jumps of a law between two times.
 pub(super) fn jumps(law: &Law, from: f64, to: f64) -> Vec<Jump> {
     let mut breaks = Vec::new();
     if !(from <= to && (to - from).is_finite()) {
@@ -121,7 +121,7 @@ pub(super) fn jumps(law: &Law, from: f64, to: f64) -> Vec<Jump> {
     let mut jumps = Vec::new();
     for (at, (before, after)) in breaks.iter().zip(sides) {
         let (before, after) = (before.derivatives(), after.derivatives());
-        // What a smooth law changes by between the two times, rounded as they are.
+        // Change of a smooth law between the two times, including their rounding.
         let room = (at.after - at.before) + 4.0 * f64::EPSILON * at.time.abs();
         let order = (0..3).find(|&n| {
             let smooth = 2.0 * room * before[n + 1].abs().max(after[n + 1].abs());
@@ -135,14 +135,14 @@ pub(super) fn jumps(law: &Law, from: f64, to: f64) -> Vec<Jump> {
     jumps
 }
 
-/// The law at `t`, continued from the times before.
+/// The law just before `t`, by one-sided continuation.
 fn just_before(law: &Law, t: f64) -> Jet {
     let [f, d, dd, ddd] = law.evaluate(backwards(t), None).derivatives();
     // In s = -t: d/dt = -d/ds
     Jet([f, -d, dd, -ddd])
 }
 
-/// The breaks in the order of time, those at the same time as one.
+/// Breaks in order of time; those at the same time are merged.
 fn merged(mut breaks: Vec<Break>, same_time: f64) -> Vec<Break> {
     breaks.sort_by(|a, b| a.time.total_cmp(&b.time));
     let mut merged: Vec<Break> = Vec::new();

@@ -1,4 +1,4 @@
-//! Interface of a kind of law; one file per kind.
+//! Interface of the kinds of laws; one file per kind.
 
 use std::fmt;
 
@@ -10,38 +10,38 @@ use super::parameter::{Parameter, ParameterKind, Seed};
 
 /// A kind of law.
 ///
-/// The time is given as a jet. Where it runs backwards (its derivative is -1) a law takes the side that is active just
-/// *before* the instant, so that one-sided limits need no code of their own.
+/// The time is given as a jet. If it runs backwards (derivative -1), a law uses the branch that is active just *before*
+/// the instant, so that one-sided limits need no code of their own.
 pub(super) trait LawKind: fmt::Display {
-    /// f at a time, and its derivatives; with the derivative by one parameter if there is a seed.
+    /// Value and time derivatives at a time, with the derivative with respect to one parameter if a seed is given.
     fn at<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N>;
 
-    /// All parameters, as written.
+    /// All parameters, in the units in which the law was written.
     fn parameters(&self) -> Vec<Parameter>;
 
-    /// The number of parameters.
+    /// Number of parameters.
     fn parameter_count(&self) -> usize;
 
-    /// Kind of a parameter; the same as in [`parameters`](Self::parameters), without making the list.
+    /// Kind of a parameter, as in [`parameters`](Self::parameters), without building the list.
     fn parameter_kind(&self, parameter: usize) -> ParameterKind;
 
-    /// Changes the value of a parameter, as written.
+    /// Sets the value of a parameter, in the unit in which the law was written.
     fn set(&mut self, parameter: usize, value: f64);
 
-    /// Bounds of f and of its rate from one time to another, both included; unbounded where it is undefined, or jumps,
-    /// anywhere between them.
+    /// Bounds of f and of its rate over the closed interval between two times; unbounded if it is undefined or jumps
+    /// anywhere in it.
     fn over(&self, from: f64, to: f64) -> Stretch;
 
-    /// Appends where the value or the first two derivatives may jump between `from` and `to`.
+    /// Appends the breaks between `from` and `to` at which the value or the first two derivatives may jump.
     fn find_breaks(&self, _from: f64, _to: f64, _breaks: &mut Vec<Break>) {}
 }
 
-/// The kinds of laws, each a type of a module; those that a caller fills in are public.
+/// Declares the kinds of laws, each a type of a module; those that callers fill in are public.
 macro_rules! kinds {
     ($($module:ident: $public:vis $kind:ident),* $(,)?) => {
         $($public use $module::$kind;)*
 
-        /// A law of one of the kinds.
+        /// A law of any kind.
         #[derive(Clone, PartialEq)]
         enum AnyLaw {
             $($kind($kind),)*
@@ -93,7 +93,7 @@ macro_rules! kinds {
 }
 pub(super) use kinds;
 
-/// The parameters of a law that are fields of it: their names, in this order, and what they measure.
+/// Implements the parameters of a law that are its fields: their names, in this order, and their kinds.
 macro_rules! parameters {
     ($($field:ident: $kind:expr),* $(,)?) => {
         fn parameters(&self) -> Vec<Parameter> {
@@ -115,22 +115,22 @@ macro_rules! parameters {
 }
 pub(super) use parameters;
 
-/// True if a time is before an instant: at the instant itself if it runs backwards. What is no number is neither before
-/// nor after.
+/// True if a time is before an instant; at the instant itself, if the time runs backwards. NaN is neither before nor
+/// after.
 #[inline(always)]
 pub(super) fn is_before<T: Real, const N: usize>(time: &Jet<T, N>, instant: f64) -> bool {
     let t = time.value().value();
     t < instant || t == instant && time.d().value() < 0.0
 }
 
-/// True if it is after the instant: at the instant itself unless it runs backwards.
+/// True if a time is after an instant; at the instant itself, unless the time runs backwards.
 #[inline(always)]
 pub(super) fn is_after<T: Real, const N: usize>(time: &Jet<T, N>, instant: f64) -> bool {
     let t = time.value().value();
     t > instant || t == instant && !(time.d().value() < 0.0)
 }
 
-/// Bounds of a law that never turns round, and is fastest in the middle of its way.
+/// Bounds of a monotone law whose speed is largest at the time `middle`.
 pub(super) fn one_way(law: &impl LawKind, middle: f64, from: f64, to: f64) -> Stretch {
     let at = |t: f64| law.at(Jet::<f64, 4>::time(t), None);
     let [start, fastest, end] = [at(from), at(middle.clamp(from, to)), at(to)];
@@ -138,7 +138,7 @@ pub(super) fn one_way(law: &impl LawKind, middle: f64, from: f64, to: f64) -> St
     Stretch { value: Range::between(start.value(), end.value()), rate }
 }
 
-/// A sum as one writes it: signs between the terms, no term that is zero, `0` if none is left.
+/// Writes a sum in the usual notation: signs between the terms, zero terms omitted, `0` if none is left.
 pub(super) fn write_sum(f: &mut fmt::Formatter<'_>, terms: &[(f64, &str)]) -> fmt::Result {
     let mut is_first = true;
     for &(factor, of) in terms.iter().filter(|(factor, _)| *factor != 0.0) {

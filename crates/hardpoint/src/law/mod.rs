@@ -1,16 +1,15 @@
-//! Laws of motion: what a driver prescribes as a function of the time, with exact time derivatives.
+//! Laws of motion: prescribed values of drivers as functions of time, with exact time derivatives.
 //!
-//! Each kind of law has a constructor of [`Law`]; that of an expression in `t` is [`Law::parse`], with named parameters
-//! [`Law::parse_with`].
+//! Each kind of law has a constructor of [`Law`]. Expressions in `t` are created by [`Law::parse`], or with named
+//! parameters by [`Law::parse_with`].
 //!
-//! The language of expressions is that of [`crate::expression`].
+//! [`crate::expression`] defines the language of expressions.
 //!
-//! Whatever its kind, a law is evaluated by [`Law::at`], has
-//! [parameters](Law::parameters) by which it is [differentiated](Law::derivative), and says
-//! [where it is not smooth](Law::jumps).
+//! Laws of all kinds are evaluated by [`Law::at`], have [parameters](Law::parameters) with respect to which they can be
+//! [differentiated](Law::derivative), and report their [jumps](Law::jumps).
 //!
-//! What is *not* here: laws of anything but the time; corners of expressions that no `abs`, `atan2`, `min`, `max`,
-//! `step` or `if` makes, such as those of `asin(sin(t))` or `sqrt(t^2)`, are not among the [jumps](Law::jumps).
+//! Limitations: laws depend on time only. Corners of expressions without `abs`, `atan2`, `min`, `max`, `step` or `if`,
+//! such as those of `asin(sin(t))` or `sqrt(t^2)`, are not among the [jumps](Law::jumps).
 
 mod error;
 mod formula;
@@ -60,9 +59,9 @@ kinds! {
 /// ```
 pub type TimeJet<T = f64> = Jet<T, 4>;
 
-/// The law of motion of a driver, f(t), in the driver's own unit with t in seconds.
+/// Law of motion of a driver, f(t), in the driver's unit, t in seconds.
 ///
-/// Two laws are equal when they were written the same and are scaled the same.
+/// Two laws are equal if they have the same text or numbers and the same scale.
 ///
 /// # Example
 ///
@@ -83,22 +82,21 @@ pub type TimeJet<T = f64> = Jet<T, 4>;
 pub struct Law {
     kind: AnyLaw,
     factor: f64,
-    /// Value of the prescribed quantity in the design configuration, in the driver's own unit, if the text counts from
-    /// zero.
-    as_drawn: Option<f64>,
+    /// Value of the prescribed quantity in the design configuration, in the driver's unit, if the law counts from zero.
+    design_value: Option<f64>,
 }
 
-/// The parameter that a law has when it [counts from zero](Law::from_zero): what is prescribed, in the design
-/// configuration.
-const AS_DRAWN: &str = "as_drawn";
+/// Name of the last parameter of a law that [counts from zero](Law::from_zero): the value of the prescribed quantity in
+/// the design configuration.
+const DESIGN_VALUE: &str = "as_drawn";
 
 impl Law {
-    /// The law that `text` writes, in whatever unit the text's author had in mind.
+    /// Parses a law from `text`, in the unit that the text implies.
     ///
     /// # Errors
     ///
-    /// When `text` is not an expression of the [language](crate::expression). The error says where, and what to write
-    /// instead:
+    /// Returns an error with its position and a correction if `text` is not an expression of the
+    /// [language](crate::expression):
     ///
     /// ```
     /// use hardpoint::law::Law;
@@ -112,7 +110,7 @@ impl Law {
         Self::parse_with(text, &[])
     }
 
-    /// The law that `text` writes, with the names and values of parameters that it uses.
+    /// Parses a law from `text`, given the names and values of its parameters.
     ///
     /// ```
     /// use hardpoint::law::Law;
@@ -126,13 +124,13 @@ impl Law {
     ///
     /// # Errors
     ///
-    /// As [`parse`](Self::parse); and when a parameter has the name of something else, no proper name, no finite value,
-    /// or is not used. The place is then all of the text.
+    /// Returns an error as [`parse`](Self::parse) does; also if the name of a parameter is taken or invalid, its value
+    /// is not finite, or it is not used. The span is then the whole text.
     pub fn parse_with(text: &str, parameters: &[(&str, f64)]) -> Result<Self, ExpressionError> {
         ExpressionLaw::parse(text, parameters).map(Self::of)
     }
 
-    /// The names in the text of a law that stand for parameters: each once, in order.
+    /// Names of the parameters in the text of a law, each once, in order of their first use.
     ///
     /// ```
     /// assert_eq!(hardpoint::law::Law::names("a*sin(w*t + a)"), ["a", "w"]);
@@ -141,16 +139,16 @@ impl Law {
         expression::names(text)
     }
 
-    /// The law that holds `value` at all times, in the driver's own unit.
+    /// Constant law, in the driver's unit.
     pub fn constant(value: f64) -> Self {
         Self::of(ExpressionLaw::constant(value))
     }
 
     fn of(kind: impl Into<AnyLaw>) -> Self {
-        Self { kind: kind.into(), factor: 1.0, as_drawn: None }
+        Self { kind: kind.into(), factor: 1.0, design_value: None }
     }
 
-    /// This law times `factor`, as for a change of unit. The text remains as written.
+    /// This law times `factor`, for a change of unit. The text remains as written.
     ///
     /// ```
     /// use hardpoint::law::Law;
@@ -164,12 +162,12 @@ impl Law {
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
         self.factor *= factor;
-        self.as_drawn = self.as_drawn.map(|value| value * factor);
+        self.design_value = self.design_value.map(|value| value * factor);
         self
     }
 
-    /// This law for a quantity that has the value `as_drawn` in the design configuration, from which drivers count: the
-    /// text gives the whole value. The value in the design configuration becomes the last of the
+    /// This law for a quantity with the design value `design_value`, if the text gives the whole value: drivers
+    /// prescribe the change from the design configuration. The design value becomes the last of the
     /// [parameters](Self::parameters).
     ///
     /// ```
@@ -180,37 +178,36 @@ impl Law {
     /// # Ok::<(), hardpoint::expression::ExpressionError>(())
     /// ```
     #[must_use]
-    pub fn from_zero(mut self, as_drawn: f64) -> Self {
-        self.as_drawn = Some(as_drawn);
+    pub fn from_zero(mut self, design_value: f64) -> Self {
+        self.design_value = Some(design_value);
         self
     }
 
-    /// The parameter that says what is prescribed in the design configuration, and its value, where the law counts from
-    /// zero.
+    /// Index and value of the parameter with the design value of the prescribed quantity, if the law counts from zero.
     pub fn as_drawn(&self) -> Option<(usize, f64)> {
-        self.as_drawn.map(|value| (self.kind.parameter_count(), value))
+        self.design_value.map(|value| (self.kind.parameter_count(), value))
     }
 
-    /// The value and the first three time derivatives at time `t`: driver unit per s⁰, s, s², s³; `t` in seconds. Over
-    /// any number, such as one that carries derivatives.
+    /// Value and first three time derivatives at time `t`, s: driver unit per s⁰, s, s², s³. Over any scalar type, such
+    /// as one that carries derivatives.
     ///
-    /// Where the law is not smooth these are the derivatives of the side that is active just after `t`; of an `if` the
-    /// side whose condition holds at `t`.
+    /// At a corner, the derivatives are those of the branch that is active just after `t`; an `if` uses the branch
+    /// selected at `t`.
     ///
-    /// Where the law is not defined (`sqrt` of a negative number, a division by zero, outside of a table) the result is
-    /// not finite; reporting that is left to whoever knows the driver's name.
+    /// If the law is not defined at `t` (`sqrt` of a negative number, a division by zero, outside of a table) the
+    /// result is not finite; the caller, who knows the name of the driver, reports it.
     pub fn at<T: Real>(&self, t: T) -> TimeJet<T> {
         self.evaluate(Jet::time(t), None)
     }
 
-    /// The same with as many derivatives as are wanted.
+    /// Value and N - 1 time derivatives at time `t`, s.
     pub(crate) fn to_order<T: Real, const N: usize>(&self, t: T) -> Jet<T, N> {
         self.evaluate(Jet::time(t), None)
     }
 
-    /// The numbers in the law that may be varied: those of its kind in the order that the kind documents; of an
-    /// expression those that [`parse_with`](Self::parse_with) was given; of a sequence those of its pieces, named as in
-    /// `piece[0].amplitude`, with `piece[0].duration` first.
+    /// Numbers in the law that can be varied, in the order documented for its kind. For an expression, these are the
+    /// parameters given to [`parse_with`](Self::parse_with); for a sequence, those of its pieces, with names like
+    /// `piece[0].amplitude`, and `piece[0].duration` first.
     ///
     /// ```
     /// use hardpoint::law::{ConstantSpeed, Law, ParameterKind};
@@ -226,15 +223,16 @@ impl Law {
         for parameter in parameters.iter_mut().filter(|parameter| parameter.kind.is_in_driver_unit()) {
             parameter.value *= self.factor;
         }
-        parameters
-            .extend(self.as_drawn.map(|value| parameter::parameter(AS_DRAWN, value, ParameterKind::Value)));
+        parameters.extend(
+            self.design_value.map(|value| parameter::parameter(DESIGN_VALUE, value, ParameterKind::Value)),
+        );
         parameters
     }
 
-    /// The partial derivatives of f and of its first three time derivatives at time `t` by one of the
-    /// [parameters](Self::parameters), in the driver's unit and the parameter's. Exact up to rounding.
+    /// Partial derivatives of f and of its first three time derivatives at time `t`, s, with respect to one of the
+    /// [parameters](Self::parameters), in the driver's unit and that of the parameter. Exact up to rounding.
     ///
-    /// Where a law is not smooth these are, as those of [`at`](Self::at), of one side.
+    /// At a corner, they are one-sided like those of [`at`](Self::at).
     ///
     /// ```
     /// use hardpoint::law::{Harmonic, Law};
@@ -247,7 +245,7 @@ impl Law {
     ///
     /// # Panics
     ///
-    /// When there is no such parameter.
+    /// Panics if there is no such parameter.
     pub fn derivative(&self, parameter: usize, t: f64) -> TimeJet {
         self.check_index(parameter);
         let seed = Seed { parameter, size: Dual::variable(0.0) };
@@ -257,8 +255,8 @@ impl Law {
 
     /// This law with another value of one of its [parameters](Self::parameters).
     ///
-    /// With a value that makes no sense, such as the end of a step before its start, the law has no finite value; nor
-    /// has one that was [scaled](Self::scaled) by zero, for a parameter in the driver's unit.
+    /// With an invalid value, such as the end of a step before its start, the law has no finite value; nor has one that
+    /// was [scaled](Self::scaled) by zero, for a parameter in the driver's unit.
     ///
     /// ```
     /// use hardpoint::law::Law;
@@ -270,7 +268,7 @@ impl Law {
     ///
     /// # Panics
     ///
-    /// When there is no such parameter.
+    /// Panics if there is no such parameter.
     #[must_use]
     pub fn with_parameter(&self, parameter: usize, value: f64) -> Self {
         self.check_index(parameter);
@@ -283,9 +281,10 @@ impl Law {
         law
     }
 
-    /// Bounds of value and rate from one time to another, both included, in the driver's unit and per s. They hold but
-    /// for rounding; those of the value exceed the law by no more than about the square of the time between. Where the
-    /// law is undefined anywhere there both are unbounded, where it jumps the rate is.
+    /// Bounds of value and rate over the closed interval between two times, in the driver's unit and per s. They are
+    /// exact except for rounding; bounds of the value are wider than the law by about the square of the interval's
+    /// length. Both are unbounded if the law is undefined anywhere in the interval; the rate is unbounded if the law
+    /// jumps.
     ///
     /// ```
     /// use hardpoint::law::Law;
@@ -297,20 +296,21 @@ impl Law {
     /// ```
     pub fn over(&self, from: f64, to: f64) -> Stretch {
         let over = self.kind.over(from, to) * Stretch::constant(self.factor);
-        let over = over - Stretch::constant(self.as_drawn.unwrap_or(0.0));
+        let over = over - Stretch::constant(self.design_value.unwrap_or(0.0));
         over.settled(self.at(0.5 * (from + to)).value(), to - from)
     }
 
-    /// The largest size of the rate from one time to another, per s.
+    /// Maximum magnitude of the rate between two times, per s.
     pub(crate) fn fastest(&self, from: f64, to: f64) -> f64 {
         self.kind.over(from, to).fastest() * self.factor.abs()
     }
 
-    /// Times between `from` and `to`, both included, at which the value, the speed or the acceleration jumps, in order.
-    /// A jump counts if it exceeds 1e-9 of the largest such value, speed or acceleration there.
+    /// Times between `from` and `to` (both included) at which the value, the speed or the acceleration jumps, in order.
+    /// A jump is reported if it exceeds 1e-9 of the largest such value, speed or acceleration there.
     ///
-    /// For expressions the time is cut into 4096 parts: an `abs`, `atan2`, `min`, `max`, `step` or `if` that switches
-    /// there and back within one of them may be missed. Where the law has no finite value it does not jump.
+    /// For expressions, the interval is divided into 4096 parts: an `abs`, `atan2`, `min`, `max`, `step` or `if` that
+    /// switches there and back within one of them may be missed. No jumps are reported where the law has no finite
+    /// value.
     ///
     /// ```
     /// use hardpoint::law::{Jump, Law};
@@ -324,7 +324,7 @@ impl Law {
         jumps::jumps(self, from, to)
     }
 
-    /// The law over a time that may run backwards, with the derivative by a parameter if there is a seed.
+    /// The law over a time that may run backwards, with the derivative with respect to a parameter if a seed is given.
     fn evaluate<T: Real, const N: usize>(&self, time: Jet<T, N>, seed: Option<Seed<T>>) -> Jet<T, N> {
         let own = self.kind.parameter_count();
         let as_written = seed.filter(|seed| seed.parameter < own);
@@ -334,19 +334,19 @@ impl Law {
                 false => seed,
             });
         let value = self.kind.at(time, as_written) * self.factor;
-        match self.as_drawn {
-            Some(as_drawn) => value - Jet::constant(parameter::seeded(as_drawn, own, seed)),
+        match self.design_value {
+            Some(design_value) => value - Jet::constant(parameter::seeded(design_value, own, seed)),
             None => value,
         }
     }
 
     fn check_index(&self, parameter: usize) {
-        let count = self.kind.parameter_count() + usize::from(self.as_drawn.is_some());
+        let count = self.kind.parameter_count() + usize::from(self.design_value.is_some());
         assert!(parameter < count, "the law has {count} parameters, so none has the index {parameter}");
     }
 }
 
-/// Shows what the law was made from, without the factor of [`Law::scaled`].
+/// Writes the text or the numbers of the law, without the factor of [`Law::scaled`].
 impl fmt::Display for Law {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.kind.fmt(f)
@@ -355,7 +355,7 @@ impl fmt::Display for Law {
 
 impl fmt::Debug for Law {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Programs and splines are long, and follow from what the text says.
+        // Programs and splines are long, and follow from the text.
         let text = self.to_string();
         f.debug_struct("Law").field("text", &text).field("factor", &self.factor).finish_non_exhaustive()
     }
@@ -363,7 +363,7 @@ impl fmt::Debug for Law {
 
 impl PartialEq for Law {
     fn eq(&self, other: &Self) -> bool {
-        self.kind == other.kind && self.factor == other.factor && self.as_drawn == other.as_drawn
+        self.kind == other.kind && self.factor == other.factor && self.design_value == other.design_value
     }
 }
 

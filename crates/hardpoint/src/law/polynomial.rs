@@ -1,4 +1,4 @@
-//! The law that is a polynomial of the time.
+//! Law given by a polynomial in time.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ use super::error::{LawError, check_finite};
 use super::kind::{LawKind, write_sum};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 
-/// c0 + c1 t + c2 t² + ..., with the coefficients for parameters.
+/// c0 + c1 t + c2 t² + ..., with the coefficients as parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Polynomial {
     coefficients: Vec<f64>,
@@ -31,8 +31,8 @@ impl Polynomial {
 }
 
 impl Law {
-    /// The polynomial c0 + c1 t + c2 t² + ... The coefficient k is in driver unit per s to the k, and is the parameter
-    /// `ck`.
+    /// Creates the polynomial c0 + c1 t + c2 t² + ..., t in s. Coefficient k is in driver unit per s to the k, and is
+    /// the parameter `ck`.
     ///
     /// ```
     /// use hardpoint::law::Law;
@@ -45,7 +45,7 @@ impl Law {
     ///
     /// # Errors
     ///
-    /// When there is no coefficient, or one is not finite.
+    /// Returns an error if there is no coefficient, or one is not finite.
     pub fn polynomial(coefficients: &[f64]) -> Result<Self, LawError> {
         Polynomial::new(coefficients).map(Self::of)
     }
@@ -82,14 +82,14 @@ impl LawKind for Polynomial {
     }
 }
 
-/// c0 + c1 x + c2 x² + ..., that many terms, by Horner's rule.
+/// c0 + c1 x + c2 x² + ... with this number of terms, by Horner's rule.
 #[inline(always)]
 pub(super) fn sum_of_powers<T: Real, const N: usize>(
     of: Jet<T, N>,
     terms: usize,
     coefficient: impl Fn(usize) -> T,
 ) -> Jet<T, N> {
-    // f <- f x + c, differentiated by x: d <- d x + f, dd <- dd x + 2 d, ddd <- ddd x + 3 dd
+    // f <- f x + c, differentiated with respect to x: d <- d x + f, dd <- dd x + 2 d, ddd <- ddd x + 3 dd
     let x = of.value();
     let [mut f, mut d, mut dd, mut ddd] = [T::zero(); 4];
     for k in (0..terms).rev() {
@@ -101,7 +101,7 @@ pub(super) fn sum_of_powers<T: Real, const N: usize>(
     of.compose([f, d, dd, ddd])
 }
 
-/// The expression that is this law.
+/// Writes the law as an expression.
 impl fmt::Display for Polynomial {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let power = |k: usize| match k {

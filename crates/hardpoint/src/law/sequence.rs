@@ -1,4 +1,4 @@
-//! The law that is made of other laws, one after the other.
+//! Law composed of other laws, one after the other.
 
 use std::fmt;
 
@@ -15,27 +15,27 @@ use super::table::ROUNDING_OF_TIME;
 /// A piece of a [sequence](Law::sequence).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// Duration, s; unlimited if `None`, which only the last piece may be.
+    /// Duration, s; `None` for a last piece without end.
     pub duration: Option<f64>,
-    /// Law, whose time starts at 0 when the piece does.
+    /// Law of the piece, with its time starting at 0 with the piece.
     pub law: Law,
-    /// True if its values count from where the piece before ended, so that the value does not jump. Without meaning in
-    /// the first piece, whose values are always its law's own.
+    /// True if the piece continues from the final value of the preceding one, so that the value does not jump. Ignored
+    /// for the first piece, whose values are always those of its law.
     pub continued: bool,
 }
 
 impl Piece {
-    /// A piece of a duration in s, continued.
+    /// A continued piece with this duration, s.
     pub fn lasting(duration: f64, law: Law) -> Self {
         Self { duration: Some(duration), law, continued: true }
     }
 
-    /// A last piece without an end, continued.
+    /// A continued last piece without end.
     pub fn open_ended(law: Law) -> Self {
         Self { duration: None, law, continued: true }
     }
 
-    /// This piece with its law's own values.
+    /// This piece with the values of its law, not continued from the preceding piece.
     #[must_use]
     pub fn not_continued(mut self) -> Self {
         self.continued = false;
@@ -43,15 +43,15 @@ impl Piece {
     }
 }
 
-/// The law of a sequence.
+/// Law of a sequence.
 #[derive(Clone, PartialEq)]
 pub(super) struct Sequence {
     pieces: Vec<Piece>,
-    /// When each piece starts, and the end of the last.
+    /// Start time of each piece, s, and the end of the last.
     starts: Vec<f64>,
-    /// Offsets that are added to the pieces' laws.
+    /// Offsets added to the laws of the pieces.
     offsets: Vec<f64>,
-    /// The index of each piece's first parameter: its duration, if it has one, and then those of its law. Then their
+    /// Index of the first parameter of each piece (its duration, if it has one, then those of its law), and the total
     /// number.
     first_parameters: Vec<usize>,
 }
@@ -97,19 +97,20 @@ impl Sequence {
         Ok(sequence)
     }
 
-    /// Works out where every piece starts.
+    /// Computes the start time and the offset of every piece.
     fn lay_out(&mut self) {
         let places: Vec<(f64, f64)> =
             (0..=self.pieces.len()).map(|k| self.place::<f64, 4>(k, None)).collect();
         (self.starts, self.offsets) = places.into_iter().unzip();
     }
 
-    /// When the piece k starts and what is added to its law. One beyond the last: when that ends.
+    /// Start time of piece k, and the offset added to its law; for k beyond the last piece, its end.
     fn place<T: Real, const N: usize>(&self, k: usize, seed: Option<Seed<T>>) -> (T, T) {
         let zero = T::zero();
         let (mut start, mut offset) = (zero, zero);
         for j in 0..k {
-            // start_j+1 = start_j + duration_j,    offset_j+1 = offset_j + f_j(duration_j) - f_j+1(0) where the next goes on from there
+            // start_j+1 = start_j + duration_j,    offset_j+1 = offset_j + f_j(duration_j) - f_j+1(0) if piece j + 1 is
+            // continued
             let duration = self.duration(j, seed);
             let at_end: Jet<T, N> = backwards(duration);
             let end = self.pieces[j].law.evaluate(at_end, self.seed_in(j, seed)).value();
@@ -126,11 +127,11 @@ impl Sequence {
         (start, offset)
     }
 
-    /// The piece that is active at time `t`, if one is.
+    /// Piece that is active at time `t`, if any.
     fn piece_at(&self, t: f64, is_backwards: bool) -> Option<usize> {
         let end = self.starts[self.pieces.len()];
         let slack = ROUNDING_OF_TIME * t.abs().max(1.0);
-        // Durations that were changed to something impossible leave no order of pieces.
+        // Durations that were changed to invalid values leave the pieces without an order.
         let is_ordered = self.starts.windows(2).all(|pair| pair[0] < pair[1]);
         if !(t >= -slack && t <= end + slack && is_ordered) {
             return None;
@@ -147,7 +148,7 @@ impl Sequence {
         }
     }
 
-    /// The seed as the law of the piece k counts its parameters, if it is one of them.
+    /// Seed with the parameter's index in the law of piece k, if the parameter belongs to that law.
     fn seed_in<T: Real>(&self, k: usize, seed: Option<Seed<T>>) -> Option<Seed<T>> {
         let Seed { parameter, size } = seed?;
         match self.owner(parameter) {
@@ -156,7 +157,7 @@ impl Sequence {
         }
     }
 
-    /// The piece that a parameter belongs to, and its index there; `None` for the piece's duration.
+    /// Piece that a parameter belongs to, and its index in that piece's law; `None` for the duration of the piece.
     fn owner(&self, parameter: usize) -> (usize, Option<usize>) {
         let k = self.first_parameters.partition_point(|&first| first <= parameter) - 1;
         let within = parameter - self.first_parameters[k];
@@ -165,8 +166,8 @@ impl Sequence {
 }
 
 impl Law {
-    /// Laws one after the other, from t = 0 on. Before that, and after the end of a last piece that has one, there is
-    /// no finite value.
+    /// Creates a sequence of laws, starting at t = 0. Before that, and after the end of a limited last piece, the law
+    /// has no finite value.
     ///
     /// ```
     /// use hardpoint::law::{Law, Piece};
@@ -182,8 +183,8 @@ impl Law {
     ///
     /// # Errors
     ///
-    /// When there is no piece, a duration is not a finite number greater than zero, a piece other than the last has
-    /// none, or a piece's law has no finite value at the piece's start or end.
+    /// Returns an error if there is no piece, a duration is not a finite number greater than zero, a piece other than
+    /// the last has none, or the law of a piece has no finite value at the start or end of the piece.
     pub fn sequence(pieces: Vec<Piece>) -> Result<Self, LawError> {
         Sequence::new(pieces).map(Self::of)
     }
@@ -213,7 +214,7 @@ impl LawKind for Sequence {
             of_law + Stretch::constant(self.offsets[k])
         };
         (first + 1..=last).fold(piece(first), |all, k| {
-            // A piece that counts from its own zero may begin with a jump.
+            // A piece that is not continued may begin with a jump.
             let rate = if self.pieces[k].continued { piece(k).rate } else { Range::UNBOUNDED };
             all.or(Stretch { rate, ..piece(k) })
         })
@@ -264,14 +265,14 @@ impl LawKind for Sequence {
             if from <= to {
                 piece.law.kind.find_breaks(from - start, to - start, &mut found);
                 let found = found.drain(..).map(|found| found.delayed(start));
-                // At its own ends a sequence has one side only.
+                // At the ends of the sequence only one side exists.
                 breaks.extend(found.filter(|found| found.is_between(0.0, self.starts[self.pieces.len()])));
             }
         }
     }
 }
 
-/// The time `t`, running backwards: what is asked there is what holds just before.
+/// The time `t` running backwards: laws evaluated at it return their values just before `t`.
 pub(super) fn backwards<T: Real, const N: usize>(t: T) -> Jet<T, N> {
     -Jet::time(-t)
 }
@@ -307,7 +308,8 @@ mod tests {
             ["piece[0].duration", "piece[0].speed", "piece[0].offset", "piece[1].speed", "piece[1].offset"]
         );
         assert_eq!(law.at(3.0).value(), 15.0); // 4 + 2 s at 3 + 1 s at 5
-        // By the duration 3 - 5, by the speeds the durations; the first offset counts and the second does not.
+        // With respect to the durations 3 - 5, with respect to the speeds the durations; the first offset matters and
+        // the second does not.
         assert_eq!([0, 1, 2, 3, 4].map(|k| law.derivative(k, 3.0).value()), [-2.0, 2.0, 1.0, 1.0, 0.0]);
         assert!(law.with_parameter(0, -1.0).at(3.0).value().is_nan());
     }

@@ -1,4 +1,4 @@
-//! The law that goes smoothly from one value to another.
+//! Law that changes smoothly from one value to another.
 
 use std::fmt;
 
@@ -12,8 +12,8 @@ use super::kind::{LawKind, is_after, is_before, one_way, parameters};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::polynomial::sum_of_powers;
 
-/// A law that holds `from` up to `start`, `to` from `end` on, and is a polynomial between them:
-/// from + (to - from) s(u) with u = (t - start) / (end - start).
+/// A law that is `from` until `start`, `to` after `end`, and between them the polynomial from + (to - from) s(u) with u
+/// = (t - start) / (end - start).
 ///
 /// | degree | s(u) | at both ends |
 /// |---|---|---|
@@ -21,24 +21,24 @@ use super::polynomial::sum_of_powers;
 /// | 5 | 10u³ - 15u⁴ + 6u⁵ | the acceleration is continuous, the jerk jumps |
 /// | 7 | 35u⁴ - 84u⁵ + 70u⁶ - 20u⁷ | the jerk is continuous too |
 ///
-/// Parameters, in this order: `from`, `to`, `start`, `end`. Where a changed `start` is no longer before `end` the law
+/// Parameters, in this order: `from`, `to`, `start`, `end`. If `start` is changed to a time not before `end`, the law
 /// has no finite value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmoothStep {
-    /// The value before, in the driver's unit.
+    /// Initial value, in the driver's unit.
     pub from: f64,
-    /// The value after, in the driver's unit.
+    /// Final value, in the driver's unit.
     pub to: f64,
     /// Start time, s.
     pub start: f64,
     /// End time, s; after `start`.
     pub end: f64,
-    /// The degree of the polynomial: 3, 5 or 7.
+    /// Degree of the polynomial: 3, 5 or 7.
     pub degree: u32,
 }
 
 impl SmoothStep {
-    /// The degree to take where none is requested: the lowest whose acceleration does not jump.
+    /// Default degree: the lowest with a continuous acceleration.
     pub const USUAL_DEGREE: u32 = 5;
 
     pub(super) fn check(&self) -> Result<(), LawError> {
@@ -57,7 +57,7 @@ impl SmoothStep {
         Ok(())
     }
 
-    /// s(u).
+    /// Normalised rise s(u).
     #[inline(always)]
     fn rise<T: Real, const N: usize>(&self, u: Jet<T, N>) -> Jet<T, N> {
         let (lowest, coefficients): (i32, &[f64]) = match self.degree {
@@ -71,7 +71,7 @@ impl SmoothStep {
 }
 
 impl Law {
-    /// The law that goes smoothly from one value to another; see [`SmoothStep`].
+    /// Creates a law that changes smoothly from one value to another; see [`SmoothStep`].
     ///
     /// ```
     /// use hardpoint::law::{Law, SmoothStep};
@@ -84,7 +84,7 @@ impl Law {
     ///
     /// # Errors
     ///
-    /// When a number is not finite, the step does not end after its start, or the degree is not 3, 5 or 7.
+    /// Returns an error if a number is not finite, the end is not after the start, or the degree is not 3, 5 or 7.
     pub fn smooth_step(law: SmoothStep) -> Result<Self, LawError> {
         law.check()?;
         Ok(Self::of(law))
@@ -100,7 +100,7 @@ impl LawKind for SmoothStep {
         if !(self.start < self.end) {
             return Jet::undefined();
         }
-        // What is not a number is neither before nor after, so that the polynomial hands it on.
+        // NaN is neither before nor after, and propagates through the polynomial.
         if is_before(&time, self.start) {
             return Jet::constant(from);
         }

@@ -1,4 +1,4 @@
-//! The law of constant speed.
+//! Law of constant speed.
 
 use std::fmt;
 
@@ -10,19 +10,19 @@ use super::error::{LawError, check_finite};
 use super::kind::{LawKind, parameters, write_sum};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 
-/// A law of constant speed: offset + speed t.
+/// A law of constant speed: offset + speed t, t in s.
 ///
 /// Parameters, in this order: `speed`, `offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConstantSpeed {
-    /// The speed, in the driver's unit per s.
+    /// Speed, in the driver's unit per s.
     pub speed: f64,
-    /// The value at t = 0, in the driver's unit.
+    /// Value at t = 0, in the driver's unit.
     pub offset: f64,
 }
 
 impl Law {
-    /// The law of constant speed: offset + speed t.
+    /// Creates a law of constant speed: offset + speed t.
     ///
     /// ```
     /// use hardpoint::law::{ConstantSpeed, Law};
@@ -35,7 +35,7 @@ impl Law {
     ///
     /// # Errors
     ///
-    /// When a number is not finite.
+    /// Returns an error if a number is not finite.
     pub fn constant_speed(law: ConstantSpeed) -> Result<Self, LawError> {
         check_finite(&law)?;
         Ok(Self::of(law))
@@ -60,7 +60,7 @@ impl LawKind for ConstantSpeed {
     }
 }
 
-/// The expression that is this law.
+/// Writes the law as an expression.
 impl fmt::Display for ConstantSpeed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write_sum(f, &[(self.offset, ""), (self.speed, "t")])

@@ -1,4 +1,4 @@
-//! The law that is a smooth curve through given points.
+//! Law given by a spline through points.
 
 use std::fmt;
 use std::sync::Arc;
@@ -13,19 +13,19 @@ use super::kind::LawKind;
 use super::parameter::{Parameter, ParameterKind, Seed, parameter};
 use super::polynomial::sum_of_powers;
 
-/// A table of points, and the spline to lay through them.
+/// A table of points, and the kind of spline through them.
 ///
-/// The parameters of its law are `f[0]`, `f[1]`, ... (in a periodic table without the last, which moves with `f[0]`),
-/// then, if the ends are clamped, `start_speed`, `end_speed`, or for a quintic `start_speed`, `start_acceleration`,
-/// `end_speed`, `end_acceleration`.
+/// Parameters: `f[0]`, `f[1]`, ... (for a periodic table without the last, which follows `f[0]`), then, if the ends are
+/// clamped, `start_speed`, `end_speed`, or for a quintic `start_speed`, `start_acceleration`, `end_speed`,
+/// `end_acceleration`.
 ///
-/// Before the first time and after the last the law has no finite value, unless the table is periodic.
+/// Before the first and after the last time the law has no finite value, unless the table is periodic.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// The times of the points, in s, strictly increasing; two at least, three if the table is periodic, or natural and
+    /// Times of the points, s, strictly increasing: at least two, or three if the table is periodic, or natural and
     /// quintic.
     pub times: Vec<f64>,
-    /// The values at these times, in the driver's unit.
+    /// Values at these times, in the driver's unit.
     pub values: Vec<f64>,
     /// Degree of the spline.
     pub degree: SplineDegree,
@@ -36,28 +36,28 @@ pub struct Table {
 /// Degree of the spline of a [`Table`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SplineDegree {
-    /// Degree 3: the acceleration is continuous, and piecewise linear.
+    /// Degree 3: the acceleration is continuous and piecewise linear.
     #[default]
     Cubic,
-    /// Degree 5: the jerk and its rate are continuous too.
+    /// Degree 5: the jerk and its rate are continuous as well.
     Quintic,
 }
 
 /// Boundary conditions at the ends of a [`Table`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SplineEnds {
-    /// Nothing: the curve ends as a thin beam does. The acceleration of a cubic is zero there; of a quintic the jerk
-    /// and its rate are.
+    /// Free ends, like those of a thin beam: a cubic has zero acceleration there, a quintic zero jerk and zero rate of
+    /// jerk.
     Natural,
-    /// Speed and acceleration; a cubic takes the speed only.
+    /// Given speed and acceleration; for a cubic, only the speed.
     Clamped {
         /// At the first point.
         start: SplineEndRates,
         /// At the last point.
         end: SplineEndRates,
     },
-    /// The last point is the first again: the curve repeats for ever, and is as smooth there as elsewhere. The two
-    /// values must be equal.
+    /// The last point coincides with the first one, one period later: the curve repeats, and is as smooth there as
+    /// elsewhere. The two values must be equal.
     Periodic,
 }
 
@@ -71,24 +71,24 @@ impl Default for SplineEnds {
 /// Speed and acceleration at an end of a [`Table`]; zero by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SplineEndRates {
-    /// In the driver's unit per s.
+    /// Speed, in the driver's unit per s.
     pub speed: f64,
-    /// In the driver's unit per s²; zero for a cubic, whose acceleration follows from the points.
+    /// Acceleration, in the driver's unit per s²; must be zero for a cubic, whose acceleration follows from the points.
     pub acceleration: f64,
 }
 
-/// A time this much outside of a range, relative to the range's own times, is meant to be its end: sums of output steps
-/// do not meet the end of a table exactly.
+/// Tolerance for times outside of a range, relative to the times of the range: sums of output steps do not match the
+/// end of a table exactly.
 pub(super) const ROUNDING_OF_TIME: f64 = 1e-12;
 
-/// The law of a table.
+/// Law of a table.
 #[derive(Clone)]
 pub(super) struct Spline {
     times: Vec<f64>,
     is_periodic: bool,
     degree: SplineDegree,
     ends: EndKind,
-    /// The values at the points, then those at the ends: the parameters.
+    /// Parameters: values at the points, then the rates at the ends.
     data: Vec<f64>,
     basis: Arc<Basis>,
     segments: Vec<Segment>,
@@ -118,36 +118,36 @@ impl Spline {
         Ok(Self { times, is_periodic, degree, ends, data, basis: Arc::new(basis), segments })
     }
 
-    /// The number of values among the data.
+    /// Number of point values among the data.
     fn values(&self) -> usize {
         self.times.len() - usize::from(self.is_periodic)
     }
 
-    /// Number of coefficients of a segment that may differ from zero.
+    /// Number of coefficients of a segment that may be non-zero.
     fn order(&self) -> usize {
         if self.degree == SplineDegree::Cubic { 4 } else { 6 }
     }
 
-    /// True if the time `t`, in the first period, is one of the table's.
+    /// True if the time `t`, in the first period, is within the table.
     fn reaches(&self, t: f64) -> bool {
         let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
         let slack = ROUNDING_OF_TIME * first.abs().max(last.abs());
         t >= first - slack && t <= last + slack
     }
 
-    /// The segment of a time that the table reaches.
+    /// Segment of a time within the table.
     fn segment_at(&self, t: f64, is_backwards: bool) -> usize {
         let knots = self.times.partition_point(|&knot| if is_backwards { knot < t } else { knot <= t });
         knots.saturating_sub(1).min(self.segments.len() - 1)
     }
 
-    /// The curve of one segment, at the time since it began.
+    /// Polynomial of one segment, at the time since its start.
     #[inline(always)]
     fn curve<T: Real, const N: usize>(&self, segment: &Segment, since: Jet<T, N>) -> Jet<T, N> {
         sum_of_powers(since, self.order(), |power| T::constant(segment[power]))
     }
 
-    /// The whole periods before time `t`, in s.
+    /// Duration of the whole periods before time `t`, s.
     fn periods_before(&self, t: f64, is_backwards: bool) -> f64 {
         if !self.is_periodic {
             return 0.0;
@@ -158,7 +158,7 @@ impl Spline {
     }
 }
 
-/// The segment of a time that no segment reaches.
+/// Segment for times outside of the table.
 const UNDEFINED: Segment = [f64::NAN; 6];
 
 impl Table {
@@ -215,7 +215,7 @@ impl Table {
                         format!("speed and acceleration at the ends of a table must be finite, not {rate}");
                     Err(LawError::new(message, ""))
                 } else if self.degree == SplineDegree::Cubic && (rates[1] != 0.0 || rates[3] != 0.0) {
-                    let message = "the acceleration at the ends of a cubic table can not be chosen";
+                    let message = "the acceleration at the ends of a cubic table cannot be chosen";
                     Err(LawError::new(message, "make the table quintic, or leave the acceleration out"))
                 } else {
                     Ok(())
@@ -227,7 +227,7 @@ impl Table {
 }
 
 impl Law {
-    /// The smooth curve through the points of a table.
+    /// Creates the law of a spline through the points of a table.
     ///
     /// ```
     /// use hardpoint::law::{SplineEnds, Law, SplineDegree, Table};
@@ -243,8 +243,9 @@ impl Law {
     ///
     /// # Errors
     ///
-    /// When there are too few points or not as many values as times, a number is not finite, times do not increase, a
-    /// periodic table does not end with the value it begins with, or an acceleration is given to the end of a cubic.
+    /// Returns an error if there are too few points, the numbers of times and values differ, a number is not finite,
+    /// times do not increase, the last value of a periodic table differs from the first, or an acceleration is given
+    /// for a cubic.
     pub fn table(table: &Table) -> Result<Self, LawError> {
         Spline::new(table).map(Self::of)
     }
@@ -256,7 +257,7 @@ impl LawKind for Spline {
         let (now, is_backwards) = (time.value().value(), time.d().value() < 0.0);
         let before = self.periods_before(now, is_backwards);
         let k = self.reaches(now - before).then(|| self.segment_at(now - before, is_backwards));
-        // The time since the segment began.
+        // Time since the start of the segment.
         let since = time.plus(-T::constant(before)).plus(-T::constant(k.map_or(0.0, |k| self.times[k])));
         let of = |all: &[Segment]| self.curve(k.map_or(&UNDEFINED, |k| &all[k]), since);
         let f = of(&self.segments);
@@ -282,7 +283,7 @@ impl LawKind for Spline {
             }
         };
         if self.is_periodic && to > last {
-            // Beyond the end it begins anew.
+            // Beyond the end it starts again.
             add(first, if to - from >= last - first { last } else { to - (last - first) });
             to = last;
         }
@@ -504,7 +505,7 @@ mod tests {
                 &[0.0; 2],
                 Cubic,
                 rising,
-                "the acceleration at the ends of a cubic table can not be chosen",
+                "the acceleration at the ends of a cubic table cannot be chosen",
                 "make the table quintic, or leave the acceleration out",
             ),
         ];

@@ -1,4 +1,4 @@
-//! The language of laws as a whole: what it means, what it rejects and in which words.
+//! The language of laws as a whole: its meaning, its errors and their messages.
 
 use proptest::prelude::*;
 
@@ -86,8 +86,8 @@ fn numbers_and_names_mean_what_they_say() {
     }
 }
 
-/// Each derivative of each law against central differences of the one before: as the step is halved the error falls
-/// by 4, until rounding takes over.
+/// Compares each derivative of each law with central differences of the preceding one: as the step is halved the error
+/// falls by 4, until rounding dominates.
 #[test]
 fn derivatives_are_the_limits_of_central_differences() {
     let laws = [
@@ -123,11 +123,11 @@ fn derivatives_are_the_limits_of_central_differences() {
 
 #[test]
 fn what_does_not_depend_on_time_has_no_derivatives() {
-    // The jets of these have infinite derivatives times zero.
+    // The jets of these would have infinity times zero as derivatives.
     for text in ["sqrt(0)", "asin(1)", "0^0.5", "hypot(0, 0)", "abs(3 - 5)^1.5", "if(1 < 2, sqrt(0), 1)"] {
         assert_eq!(law(text).at(0.0).derivatives()[1..], [0.0; 3], "{text}");
     }
-    // Not so here, where the truth, 2, can not be had from three derivatives of t^4.
+    // This one is different: its true derivative, 2, cannot be computed from three derivatives of t^4.
     assert!(law("sqrt(t^4)").at(0.0).dd().is_nan());
 }
 
@@ -290,11 +290,11 @@ fn length_alone_is_no_limit() {
     assert_eq!(value(&("-".repeat(long) + "t"), 1.0), 1.0);
     assert_eq!(value(&format!("max(t{})", ", 2*t".repeat(long)), 1.0), 2.0);
     assert_eq!(value(&("(".repeat(60) + "t" + &")".repeat(60)), 1.0), 1.0);
-    // More operands wait than fit the small stack.
+    // More operands than fit the small stack.
     assert_eq!(value(&("t + (2*t + ".repeat(30) + "t" + &")".repeat(30)), 1.0), 91.0);
 }
 
-/// Parsing may fail, but then in the text; what parses also evaluates.
+/// Parsing may fail with an error inside the text; a parsed law can be evaluated.
 fn check_any_text(text: &str) -> Result<(), TestCaseError> {
     match Law::parse(text) {
         Ok(law) => {

@@ -1,4 +1,4 @@
-//! The law that goes from one value to another with constant acceleration, constant speed, constant deceleration.
+//! Law that goes from one value to another with constant acceleration, constant speed and constant deceleration.
 
 use std::fmt;
 
@@ -11,26 +11,26 @@ use super::jumps::Break;
 use super::kind::{LawKind, is_after, is_before, one_way, parameters};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 
-/// A law that holds `from` up to `start` and `to` from `end` on; between them its speed is a trapezoid: it rises evenly
-/// for `ramp` seconds, is constant, and falls evenly for `ramp` seconds. The acceleration jumps at the four corners.
+/// A law that is `from` until `start` and `to` after `end`. Between them the speed is a trapezoid: it rises linearly
+/// for `ramp` seconds, is constant, and falls linearly for `ramp` seconds. The acceleration jumps at the four corners.
 ///
-/// Parameters, in this order: `from`, `to`, `start`, `end`, `ramp`. Where changed ones leave no room for both ramps the
-/// law has no finite value.
+/// Parameters, in this order: `from`, `to`, `start`, `end`, `ramp`. If they are changed so that both ramps do not fit,
+/// the law has no finite value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trapezoid {
-    /// The value before, in the driver's unit.
+    /// Initial value, in the driver's unit.
     pub from: f64,
-    /// The value after, in the driver's unit.
+    /// Final value, in the driver's unit.
     pub to: f64,
     /// Start time, s.
     pub start: f64,
     /// End time, s; after `start`.
     pub end: f64,
-    /// Duration of acceleration and of deceleration, s; positive, at most half of the time from start to end.
+    /// Duration of the acceleration and of the deceleration, s; positive, at most half of the time from start to end.
     pub ramp: f64,
 }
 
-/// Two ramps may take longer than there is by this part: halves of typed numbers are good to this.
+/// Relative tolerance for two ramps in the available time, for halves of decimal numbers.
 const ROUNDING: f64 = 1e-12;
 
 impl Trapezoid {
@@ -47,14 +47,14 @@ impl Trapezoid {
         Ok(())
     }
 
-    /// True if both ramps have room.
+    /// True if both ramps fit.
     fn has_room(&self) -> bool {
         self.ramp > 0.0 && 2.0 * self.ramp <= (self.end - self.start) * (1.0 + ROUNDING)
     }
 }
 
 impl Law {
-    /// The law that goes from one value to another with a trapezoid of speed; see [`Trapezoid`].
+    /// Creates a law that goes from one value to another with a trapezoidal speed; see [`Trapezoid`].
     ///
     /// ```
     /// use hardpoint::law::{Law, Trapezoid};
@@ -67,7 +67,7 @@ impl Law {
     ///
     /// # Errors
     ///
-    /// When a number is not finite, or the ramps do not fit.
+    /// Returns an error if a number is not finite, or the ramps do not fit.
     pub fn trapezoid(law: Trapezoid) -> Result<Self, LawError> {
         law.check()?;
         Ok(Self::of(law))
@@ -83,10 +83,10 @@ impl LawKind for Trapezoid {
         if !self.has_room() {
             return Jet::undefined();
         }
-        // The area of the trapezoid is the way: v (end - start - ramp) = to - from; then a = v / ramp.
+        // The area of the trapezoid is the displacement: v (end - start - ramp) = to - from; then a = v / ramp.
         let speed = (to - from) / (end - start - ramp);
         let half = speed / (ramp + ramp);
-        // What is no number is neither before nor after, and is handed on by the last of these.
+        // NaN is neither before nor after, and propagates through the last branch.
         if is_before(&time, self.start) {
             Jet::constant(from)
         } else if is_after(&time, self.end) {
@@ -153,7 +153,7 @@ mod tests {
         for (t, jump) in
             [(0.5, acceleration), (0.9, -acceleration), (2.1, -acceleration), (2.5, acceleration)]
         {
-            // Backwards in time, speeds have the other sign.
+            // In reversed time, speeds change their sign.
             let [after, before] = [law.at(Jet::<f64>::time(t), None), law.at(-Jet::<f64>::time(-t), None)]
                 .map(|x| x.derivatives());
             assert!((after[0] - before[0]).abs() < 1e-14, "{after:?} {before:?}");
