@@ -1,28 +1,28 @@
-//! Results in one stream: eight output times side by side, number by number, in the order in which they are found.
+//! Storage of results: values of eight output times (or designs) in adjacent lanes, in the order of computation.
 
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 use hardpoint_tape::{LANES, Lanes};
 
-/// Eight numbers where memory is read and written fastest.
+/// Eight numbers, aligned for fast memory access.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub(crate) struct AlignedLanes(pub Lanes);
 
-/// Lines as the lanes that they are.
+/// Views lines as arrays of lanes.
 #[inline(always)]
 pub(crate) fn lanes_of(lines: &mut [AlignedLanes]) -> &mut [Lanes] {
     bytemuck::cast_slice_mut(lines)
 }
 
-/// Results of eight output times, or of eight designs, side by side.
+/// Results of eight output times, or of eight designs, in adjacent lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ResultBlock<'b> {
-    /// Per body but ground 24 numbers: position, columns of the rotation, velocity, angular velocity, acceleration,
-    /// angular acceleration.
+    /// 24 numbers per body except ground: position (m), columns of the rotation matrix, velocity (m/s), angular
+    /// velocity (rad/s), acceleration (m/s^2), angular acceleration (rad/s^2).
     pub states: &'b [[f64; 8]],
-    /// Per variable, and body that it moves, the 18 numbers of a `BodySensitivity` in the order of its fields.
+    /// 18 numbers per variable and per body that it moves: those of a `BodySensitivity` in the order of its fields.
     pub derivatives: &'b [[f64; 8]],
 }
 
@@ -36,9 +36,9 @@ pub(crate) struct Blocks {
 /// Layout of the storage.
 #[derive(Clone, Debug)]
 enum BlockLayout {
-    /// Output times 8n to 8n + 7 stand side by side, the first numbers of all eight first.
+    /// Output times 8n to 8n + 7 in adjacent lanes; the first value of all eight comes first.
     Times(Vec<AlignedLanes>),
-    /// Designs stand side by side, output time after output time; this is one of them.
+    /// Designs in adjacent lanes, output time after output time; this storage is one of the lanes.
     Designs { lines: Arc<Vec<AlignedLanes>>, lane: usize },
 }
 
@@ -49,13 +49,13 @@ impl Default for BlockLayout {
 }
 
 impl Blocks {
-    /// Those of one of the designs that stand side by side, that many numbers per output time.
+    /// Results of one design of a batch, with `width` values per output time.
     pub fn of_design(lines: Arc<Vec<AlignedLanes>>, width: usize, lane: usize) -> Self {
         Self { width, place: BlockLayout::Designs { lines, lane } }
     }
 
-    /// Resizes to `width` values at each of `steps` output times, within the memory at hand. The contents are
-    /// undefined, except for zeros that were never overwritten since the width changed.
+    /// Resizes to `width` values at each of `steps` output times, reusing memory. The contents are undefined, except
+    /// for zeros that were never overwritten since the width changed.
     pub fn shape(&mut self, width: usize, steps: usize) {
         if self.width != width {
             self.place = BlockLayout::default();
@@ -66,7 +66,7 @@ impl Blocks {
         lines.reserve_exact(wanted.saturating_sub(lines.len()));
     }
 
-    /// The lines of output times side by side; none where designs were.
+    /// Lines of a storage by output times; replaces a storage by designs with an empty one.
     #[inline(always)]
     fn times_mut(&mut self) -> &mut Vec<AlignedLanes> {
         if let BlockLayout::Designs { .. } = self.place {
@@ -78,7 +78,7 @@ impl Blocks {
         }
     }
 
-    /// The numbers at output time k.
+    /// Values at output time k.
     #[inline(always)]
     pub fn row(&self, k: usize) -> ResultRow<'_> {
         let (lines, line, lane) = match &self.place {
@@ -99,7 +99,7 @@ impl Blocks {
         lanes_of(&mut lines[first..first + width])
     }
 
-    /// The same of output times side by side that were written.
+    /// Values of the block of eight output times that contains k; only for storage by output times.
     #[inline(always)]
     pub fn block(&self, k: usize) -> &[Lanes] {
         match &self.place {
@@ -108,7 +108,8 @@ impl Blocks {
         }
     }
 
-    /// Copies some numbers, from this one on, of the eight output times that k is one of; of those that there are.
+    /// Copies values, starting at `first`, of the eight output times of the block that contains k, as far as they
+    /// exist.
     #[inline(always)]
     pub fn gather(&self, k: usize, first: usize, to: &mut [Lanes]) {
         let from = |line: usize| line * self.width + first;
@@ -125,7 +126,7 @@ impl Blocks {
         }
     }
 
-    /// Writes some numbers of output time k, from this one on.
+    /// Writes values of output time k, starting at `first`.
     #[inline(always)]
     pub fn set(&mut self, k: usize, first: usize, numbers: impl IntoIterator<Item = f64>) {
         for (lanes, x) in self.block_mut(k)[first..].iter_mut().zip(numbers) {
@@ -133,13 +134,13 @@ impl Blocks {
         }
     }
 
-    /// Takes over output time j of another one, which has as many numbers, as its own output time k.
+    /// Copies output time j of another storage with the same width to output time k.
     pub fn copy(&mut self, k: usize, from: &Self, j: usize) {
         self.width = from.width;
         self.set(k, 0, from.row(j).all());
     }
 
-    /// Drops every second of these output times.
+    /// Keeps every second one of the first `steps` output times.
     pub fn thin(&mut self, steps: usize) {
         for k in 0..steps.div_ceil(2) {
             for column in 0..self.width {
@@ -150,7 +151,7 @@ impl Blocks {
     }
 }
 
-/// The numbers at one output time.
+/// Values at one output time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ResultRow<'b> {
     lines: &'b [AlignedLanes],
@@ -193,12 +194,12 @@ mod tests {
         (0..11).for_each(|k| kept.copy(k, &one_by_one, k + 9));
         kept.thin(11);
         assert!((0..6).all(|k| kept.row(k).get(4) == number(2 * k + 9, 4)));
-        // Memory is used again.
+        // The memory is reused.
         let memory = kept.block_mut(0).as_ptr();
         kept.shape(5, 16);
         kept.set(15, 0, [1.0]);
         assert_eq!((kept.row(15).get(0), kept.block_mut(0).as_ptr()), (1.0, memory));
-        // Two numbers of eight designs at three output times.
+        // Two values of eight designs at three output times.
         let lines = (0..6)
             .map(|n| AlignedLanes(std::array::from_fn(|lane| number(n / 2, n % 2) + lane as f64 / 8.0)));
         let mut design = Blocks::of_design(Arc::new(lines.collect()), 2, 3);

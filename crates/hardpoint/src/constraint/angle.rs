@@ -1,7 +1,7 @@
 //! Angles of marker j relative to marker i: about z_i, about x_j, or seen along z_i.
 //!
-//! All are `atan2(s, c)` of two Dot-1 products. As a constraint their residual is `sin(angle - f)`: zero and of unit
-//! slope at the root, and free of branch cuts over any number of turns.
+//! All are `atan2(s, c)` of two Dot-1 products. As a constraint, the residual is `sin(angle - f)`: it is zero with unit
+//! slope at the solution, and has no branch cuts over any number of turns.
 
 use crate::space::{Real, Vec3, Wrench};
 
@@ -28,22 +28,22 @@ fn sine_of_difference<T: Real>([s, c]: [T; 2], target: T) -> T {
     s * cos - c * sin
 }
 
-/// The angle with this sine and cosine (up to a common factor) that is nearest to `near`.
+/// Angle with this sine and cosine (up to a common factor) that is nearest to `near`, rad.
 #[inline(never)]
 fn unwrapped<T: Real>([s, c]: [T; 2], near: T) -> T {
     const TURN: f64 = 2.0 * std::f64::consts::PI;
-    // angle + 2 pi k, as near to `near` as it gets
+    // angle + 2 pi k, the nearest to `near`
     let angle = s.atan2(c);
     angle + ((near - angle) * (1.0 / TURN)).round() * TURN
 }
 
-/// The angle about z_i nearest to `near`.
+/// Angle about z_i nearest to `near`, rad.
 #[inline(always)]
 pub(super) fn value<T: Real>(ends: &MarkerPair<T>, near: T) -> T {
     unwrapped(about_z_i(ends), near)
 }
 
-/// The angle about x_j nearest to `near`.
+/// Angle about x_j nearest to `near`, rad.
 #[inline(always)]
 pub(super) fn value_on_j<T: Real>(ends: &MarkerPair<T>, near: T) -> T {
     unwrapped(about_x_j(ends), near)
@@ -54,7 +54,7 @@ pub(super) fn residual<T: Real>(ends: &MarkerPair<T>, target: T) -> T {
     sine_of_difference(about_z_i(ends), target)
 }
 
-/// The moment z_i.
+/// Wrench of the angle about z_i: the moment z_i.
 #[inline(always)]
 pub(super) fn wrench<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
     Wrench::moment(axis(&ends.i.rot, 2))
@@ -72,19 +72,19 @@ pub(super) fn residual_on_j<T: Real>(ends: &MarkerPair<T>, target: T) -> T {
     sine_of_difference(about_x_j(ends), target)
 }
 
-/// The moment x_j.
+/// Wrench of the angle about x_j: the moment x_j.
 #[inline(always)]
 pub(super) fn wrench_on_j<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
     Wrench::moment(axis(&ends.j.rot, 0))
 }
 
-/// `sin(angle - f)`, the products divided by the length of x_j seen along z_i.
+/// `sin(angle - f)` for the angle of x_j seen along z_i: the products are divided by the length of x_j in this view.
 #[inline(always)]
 pub(super) fn heading_residual<T: Real>(ends: &MarkerPair<T>, target: T) -> T {
     residual_seen(about_z_i(ends), target)
 }
 
-/// The wrench of the angle of x_j seen along z_i.
+/// Wrench of the angle of x_j seen along z_i.
 #[inline(always)]
 pub(super) fn heading_wrench<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
     wrench_seen(ends, axis(&ends.j.rot, 0), about_z_i(ends))
@@ -97,25 +97,25 @@ fn course_about_z_i<T: Real>(ends: &MarkerPair<T>) -> [T; 2] {
     [axis(&ends.i.rot, 1).dot(z_j), axis(&ends.i.rot, 0).dot(z_j)]
 }
 
-/// The angle of z_j about z_i nearest to `near`.
+/// Angle of z_j about z_i nearest to `near`, rad.
 #[inline(always)]
 pub(super) fn course<T: Real>(ends: &MarkerPair<T>, near: T) -> T {
     unwrapped(course_about_z_i(ends), near)
 }
 
-/// `sin(angle - f)` of the angle of z_j seen along z_i.
+/// `sin(angle - f)` for the angle of z_j seen along z_i.
 #[inline(always)]
 pub(super) fn course_residual<T: Real>(ends: &MarkerPair<T>, target: T) -> T {
     residual_seen(course_about_z_i(ends), target)
 }
 
-/// The wrench of the angle of z_j seen along z_i.
+/// Wrench of the angle of z_j seen along z_i.
 #[inline(always)]
 pub(super) fn course_wrench<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
     wrench_seen(ends, axis(&ends.j.rot, 2), course_about_z_i(ends))
 }
 
-/// `sin(angle - f)` of an axis that points anywhere: the products divided by its length seen along z_i.
+/// `sin(angle - f)` for an axis of any direction: the products are divided by its length seen along z_i.
 #[inline(always)]
 fn residual_seen<T: Real>([s, c]: [T; 2], target: T) -> T {
     sine_of_difference([s, c], target) / (s * s + c * c).sqrt()

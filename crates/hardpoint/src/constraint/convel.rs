@@ -1,8 +1,8 @@
 //! Constant-velocity constraint: the rotation from marker i to marker j is about an axis perpendicular to both z_i and
 //! z_j.
 //!
-//! A rotation about an axis n by the angle t has `R_21 - R_12 = 2 n_z sin t`, so the two shafts turn alike exactly
-//! where that difference of two Dot-1 products vanishes, whatever the angle between them.
+//! A rotation by the angle t about an axis n has `R_21 - R_12 = 2 n_z sin t`. The two shafts therefore rotate equally
+//! if and only if this difference of two Dot-1 products is zero, at any angle between them.
 
 use crate::space::{Real, Wrench};
 

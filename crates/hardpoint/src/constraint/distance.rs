@@ -9,7 +9,7 @@ pub(super) fn residual<T: Real>(ends: &MarkerPair<T>, target: T) -> T {
     (ends.j.r - ends.i.r).norm() - target
 }
 
-/// The unit force u = d / |d| along the rod.
+/// Wrench of the distance: the unit force u = d / |d| along the rod.
 #[inline(always)]
 pub(super) fn wrench<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
     // d abs(d) = u . (V_j at P_j - V_i at P_i) = u . (V_j at P_j - V_i at P_j), since u is along P_j - P_i

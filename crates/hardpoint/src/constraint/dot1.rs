@@ -1,4 +1,4 @@
-//! Dot-1 constraint: `a_i . b_j = c` (paper Eq. 4.1, where c = 0; an angle joint keeps another cosine).
+//! Dot-1 constraint: `a_i . b_j = c` (paper Eq. 4.1, where c = 0; an angle joint has another cosine).
 
 use crate::space::{Real, Wrench};
 
@@ -9,7 +9,7 @@ pub(super) fn residual<T: Real>(a: usize, b: usize, ends: &MarkerPair<T>, target
     axis(&ends.i.rot, a).dot(axis(&ends.j.rot, b)) - target
 }
 
-/// The moment `b_j x a_i`.
+/// Wrench of Dot-1: the moment `b_j x a_i`.
 #[inline(always)]
 pub(super) fn wrench<T: Real>(a: usize, b: usize, ends: &MarkerPair<T>) -> Wrench<T> {
     // d(a . b) = a . (w_j x b) + (w_i x a) . b = (b x a) . (w_j - w_i)

@@ -1,4 +1,4 @@
-//! Dot-2 constraint: `a_i . d = f` with `d = P_j - P_i` (paper Eq. 4.4; f is a driver's value or 0).
+//! Dot-2 constraint: `a_i . d = f` with `d = P_j - P_i` (paper Eq. 4.4; f is the value of a driver, or 0).
 
 use crate::space::{Real, Wrench};
 
@@ -9,7 +9,7 @@ pub(super) fn residual<T: Real>(a: usize, ends: &MarkerPair<T>, target: T) -> T 
     axis(&ends.i.rot, a).dot(ends.j.r - ends.i.r) - target
 }
 
-/// The force a_i through P_j.
+/// Wrench of Dot-2: the force a_i through P_j.
 #[inline(always)]
 pub(super) fn wrench<T: Real>(a: usize, ends: &MarkerPair<T>) -> Wrench<T> {
     // d(a . d) = a . (v_j - v_i) at P_j:  a . (V_j at P_j - V_i at P_i) + (w_i x a) . (P_j - P_i)

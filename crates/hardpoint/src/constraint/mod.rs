@@ -1,8 +1,8 @@
 //! The paper's elementary constraints, one file each, as residuals and wrenches.
 //!
-//! Each constraint row is between marker i and marker j. Its wrench `l` says how any motion W of
-//! the two markers violates it, `d(phi) = l . (W_j - W_i)` (`docs/theory.md` (5)); Jacobian, velocity,
-//! acceleration and every sensitivity are made of `l` and its two time derivatives.
+//! Each constraint row acts between marker i and marker j. Its wrench `l` gives the rate of the residual for any twists
+//! W of the two markers, `d(phi) = l . (W_j - W_i)` (`docs/theory.md` (5)). Jacobian, velocity, acceleration and all
+//! sensitivities are computed from `l` and its first two time derivatives.
 //!
 //! | here | theory, section 2 | paper |
 //! |---|---|---|
@@ -27,7 +27,7 @@ use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 pub enum Row {
     /// One component, along a world axis, of the spherical constraint `d = 0` (paper Eq. 4.7).
     Point(usize),
-    /// The same along an axis of the body on which the loop is, where that moves.
+    /// One component of `d = 0` along an axis of the loop's base, for loops on a moving body.
     PointOnBase(usize),
     /// `a_i . b_j = 0`: axis a of marker i perpendicular to axis b of marker j (paper Eq. 4.1).
     Dot1(usize, usize),
@@ -35,23 +35,23 @@ pub enum Row {
     Dot2(usize),
     /// `|d| = L + f` (paper Eq. 4.10, unsquared so that its residual is a length).
     Distance,
-    /// Angle of marker j about z_i equals f, where x_j is perpendicular to z_i (z_i parallel to z_j, or a universal
+    /// Angle of marker j about z_i equals f, rad; x_j must be perpendicular to z_i (z_i parallel to z_j, or a universal
     /// joint).
     Angle,
-    /// Angle of marker j about its own x axis equals f, where x_j is perpendicular to z_i (a universal joint).
+    /// Angle of marker j about its own x axis equals f, rad; x_j must be perpendicular to z_i (a universal joint).
     AngleOnJ,
-    /// Angle of x_j about z_i, seen along z_i, equals f; the axes may point anywhere.
+    /// Angle of x_j about z_i, seen along z_i, equals f, rad, for axes of any direction.
     Heading,
-    /// Angle of z_j about z_i, seen along z_i, equals its design value and f; the axes may point anywhere.
+    /// Angle of z_j about z_i, seen along z_i, equals its design value plus f, rad, for axes of any direction.
     Course,
-    /// `z_i . z_j` keeps its design value: an angle between two axes (paper Eq. 4.1 with a constant).
+    /// `z_i . z_j` has its design value: an angle between two axes (paper Eq. 4.1 with a constant).
     Cosine,
-    /// `z_i . d` keeps its design value (paper Eq. 4.4 with a constant).
+    /// `z_i . d` has its design value (paper Eq. 4.4 with a constant).
     Offset,
-    /// `y_i . d` keeps its design value, where marker i walks along a curve of its body so that it stays next to P_j:
-    /// x_i along the curve, y_i across.
+    /// `y_i . d` has its design value, where marker i moves along a curve of its body to the point nearest to P_j: x_i
+    /// along the curve, y_i perpendicular to it.
     Contact,
-    /// Marker j does not turn about the line that halves the angle between z_i and z_j.
+    /// No relative rotation of the markers about the bisector of z_i and z_j.
     ConstantVelocity,
 }
 
@@ -64,15 +64,15 @@ pub(crate) const PARALLEL_FRAMES: [Row; 3] = [Row::Dot1(2, 0), Row::Dot1(2, 1), 
 /// P_j on the line through P_i along z_i.
 pub(crate) const ON_LINE: [Row; 2] = [Row::Dot2(0), Row::Dot2(1)];
 
-/// The two markers of a joint in the world.
+/// The two markers of a joint, in world components.
 #[derive(Clone, Copy, Debug)]
 pub struct MarkerPair<T> {
-    /// Marker i in the world.
+    /// Pose of marker i.
     pub i: Pose<T>,
-    /// Marker j in the world.
+    /// Pose of marker j.
     pub j: Pose<T>,
-    /// The axes of the loop's base, along which their points are compared where the base moves. As the points coincide
-    /// it does not matter how these turn.
+    /// Axes of the loop's base, along which points are compared if the base moves. As the points coincide, the rotation
+    /// of these axes has no effect.
     pub axes: Mat3<T>,
 }
 
@@ -83,14 +83,14 @@ pub struct MarkerPairRates<T> {
     pub v_i: Twist<T>,
     /// Twist V of body j.
     pub v_j: Twist<T>,
-    /// dV/dt of body i.
+    /// Rate of the twist, dV/dt, of body i.
     pub a_i: Twist<T>,
-    /// dV/dt of body j.
+    /// Rate of the twist, dV/dt, of body j.
     pub a_j: Twist<T>,
 }
 
 impl<T: Real> MarkerPair<T> {
-    /// The same with the first two time derivatives of the markers.
+    /// This pair with the first two time derivatives of the markers.
     fn moving(&self, rates: &MarkerPairRates<T>) -> MarkerPair<Rates<T>> {
         let vector = |[e, d, dd]: [Vec3<T>; 3]| {
             Vec3::new(Jet([e.x, d.x, dd.x]), Jet([e.y, d.y, dd.y]), Jet([e.z, d.z, dd.z]))
@@ -107,14 +107,14 @@ impl<T: Real> MarkerPair<T> {
     }
 }
 
-/// A joint coordinate between two markers: its value, for couplers and for what a joint keeps of its design.
+/// Rows as joint coordinates: their values, for couplers and for design values of joints.
 impl Row {
-    /// True if it holds what it measures at its value in the design configuration, rather than at zero.
+    /// True if the constrained quantity has its design value as a target, rather than zero.
     pub fn keeps_design_value(self) -> bool {
         matches!(self, Self::Distance | Self::Course | Self::Cosine | Self::Offset | Self::Contact)
     }
 
-    /// Value of the row against a target of zero; angles are unwrapped to within half a turn of `near`.
+    /// Value of the row for a target of zero; angles are unwrapped to within half a turn of `near`.
     #[inline(never)]
     pub fn value<T: Real>(self, ends: &MarkerPair<T>, near: T) -> T {
         match self {
@@ -127,9 +127,9 @@ impl Row {
 }
 
 impl Row {
-    /// The row with the same geometry among those that most mechanisms are made of.
+    /// Row with the same geometry among the common ones.
     ///
-    /// Their formulas are inlined into the hot path; the others are called, so that it stays small.
+    /// Their formulas are inlined into the hot path; the others are function calls, to keep it small.
     #[inline(always)]
     fn common(self) -> Self {
         match self {
@@ -140,8 +140,8 @@ impl Row {
         }
     }
 
-    /// By how much the constraint fails; `target` is what it measures at the design configuration (a rod's length),
-    /// or the driver's value.
+    /// Residual of the constraint, m or rad (or a cosine); `target` is the design value of the constrained quantity
+    /// (the length of a rod), or the value of the driver.
     #[inline(always)]
     pub fn residual<T: Real>(self, ends: &MarkerPair<T>, target: T) -> T {
         match self.common() {
@@ -166,7 +166,7 @@ impl Row {
         }
     }
 
-    /// The wrench l.
+    /// Wrench l, in world components about the world origin.
     #[inline(always)]
     pub fn wrench<T: Real>(self, ends: &MarkerPair<T>) -> Wrench<T> {
         match self.common() {
@@ -191,7 +191,7 @@ impl Row {
         }
     }
 
-    /// The first and second time derivatives of the wrench.
+    /// First and second time derivatives of the wrench.
     #[inline(always)]
     pub fn wrench_rates<T: Real>(self, ends: &MarkerPair<T>, rates: &MarkerPairRates<T>) -> [Wrench<T>; 2] {
         match self.common() {
@@ -205,20 +205,20 @@ impl Row {
         }
     }
 
-    /// By running the wrench on markers that carry their time derivatives. (The common rows have theirs by hand: that
-    /// takes fewer instructions.)
+    /// Evaluates the wrench on markers with their time derivatives. (The common rows have explicit formulas, which take
+    /// fewer instructions.)
     #[inline(never)]
     fn rare_wrench_rates<T: Real>(self, ends: &MarkerPair<T>, rates: &MarkerPairRates<T>) -> [Wrench<T>; 2] {
         let Wrench { m, f } = self.rare_wrench(&ends.moving(rates));
         [1, 2].map(|n| Wrench { m: m.map(|x| x.0[n]), f: f.map(|x| x.0[n]) })
     }
 
-    /// True if it asks for the markers' axes, rather than for their points only.
+    /// True if it depends on the axes of the markers, not only on their origins.
     pub(crate) fn has_axes(self) -> bool {
         !matches!(self, Self::Point(_) | Self::PointOnBase(_) | Self::Distance)
     }
 
-    /// The row for a loop that is on a body in motion: it knows nothing of where its base goes.
+    /// Row for a loop on a moving body, independent of the motion of its base.
     pub(crate) fn on_base(self) -> Self {
         match self {
             Self::Point(k) => Self::PointOnBase(k),
@@ -226,7 +226,7 @@ impl Row {
         }
     }
 
-    /// True if its residual is a length (else it is an angle or a cosine).
+    /// True if the residual is a length, m; otherwise it is an angle or a cosine.
     pub fn is_length(self) -> bool {
         matches!(
             self,
@@ -276,7 +276,7 @@ fn point_rates<T: Real>(p: Vec3<T>, v: Twist<T>, a: Twist<T>) -> [Vec3<T>; 3] {
     [p, d, a.at(p) + v.w.cross(d)]
 }
 
-/// First and second derivative of the vector product of two vectors with known derivatives.
+/// First and second derivatives of the cross product of two vectors with known derivatives.
 #[inline(always)]
 fn cross_rates<T: Real>(a: [Vec3<T>; 3], b: [Vec3<T>; 3]) -> [Vec3<T>; 2] {
     let two = T::constant(2.0);
@@ -284,7 +284,7 @@ fn cross_rates<T: Real>(a: [Vec3<T>; 3], b: [Vec3<T>; 3]) -> [Vec3<T>; 2] {
     [a[1].cross(b[0]) + a[0].cross(b[1]), a[2].cross(b[0]) + a[1].cross(b[1]) * two + a[0].cross(b[2])]
 }
 
-/// Rates of a force `f` through a moving point `p`.
+/// First two time derivatives of the wrench of a force `f` through a moving point `p`.
 #[inline(always)]
 fn force_rates<T: Real>(f: [Vec3<T>; 3], p: [Vec3<T>; 3]) -> [Wrench<T>; 2] {
     // l = [p x f; f]
@@ -292,7 +292,7 @@ fn force_rates<T: Real>(f: [Vec3<T>; 3], p: [Vec3<T>; 3]) -> [Wrench<T>; 2] {
     [Wrench { m: m1, f: f[1] }, Wrench { m: m2, f: f[2] }]
 }
 
-/// Unit vectors of a marker.
+/// Unit vector along axis k of a marker.
 #[inline(always)]
 fn axis<T: Real>(frame: &Mat3<T>, k: usize) -> Vec3<T> {
     frame.cols[k]
@@ -302,7 +302,7 @@ fn axis<T: Real>(frame: &Mat3<T>, k: usize) -> Vec3<T> {
 mod tests {
     use super::*;
 
-    /// Every kind of row; a new constraint joins the battery here.
+    /// All kinds of rows; add new constraints here.
     const BATTERY: [Row; 22] = [
         Row::Point(0),
         Row::Point(1),
@@ -328,7 +328,7 @@ mod tests {
         Row::PointOnBase(2),
     ];
 
-    /// A small generator of numbers in (-1, 1), the same every time.
+    /// Deterministic generator of numbers in (-1, 1).
     fn numbers(seed: u64) -> impl FnMut() -> f64 {
         let mut state = seed;
         move || {
@@ -338,7 +338,7 @@ mod tests {
     }
 
     fn moved(pose: Pose, v: Twist, a: Twist, t: f64) -> Pose {
-        // X(t) whose twist is v and twist rate a at t = 0: exp of v t + a t^2 / 2 is short by order t^3.
+        // X(t) with twist v and twist rate a at t = 0: the error of exp(v t + a t^2 / 2) is of order t^3.
         let turn = Mat3::from_rotation_vector(v.w * t + a.w * (0.5 * t * t));
         let p = point_rates(pose.r, v, a);
         Pose { rot: turn * pose.rot, r: p[0] + p[1] * t + p[2] * (0.5 * t * t) }
@@ -349,13 +349,13 @@ mod tests {
         let i = Pose { rot: Mat3::from_rotation_vector(v() * 2.0), r: v() };
         let mut j = Pose { rot: Mat3::from_rotation_vector(v() * 2.0), r: v() };
         match row {
-            // These wrenches hold on the manifold: markers together, or z axes parallel.
+            // These wrenches are valid on the constraint manifold: markers coincide, or z axes are parallel.
             Row::Point(_) | Row::PointOnBase(_) => j.r = i.r,
             Row::Angle => {
                 let (s, c) = 0.7_f64.sin_cos();
                 j.rot = i.rot.turned(2, s, c);
             }
-            // Where the axes are nearly parallel the angle changes faster than differences can follow.
+            // If the axes are nearly parallel, the angle changes too fast for differences.
             Row::AngleOnJ | Row::Course => {
                 let (s, c) = 0.7_f64.sin_cos();
                 j.rot = i.rot.turned(2, -0.6, 0.8).turned(0, s, c);
@@ -375,7 +375,7 @@ mod tests {
                     || Twist { w: Vec3::new(next(), next(), next()), v: Vec3::new(next(), next(), next()) };
                 let (mut wi, mut wj) = (twist(), twist());
                 if row == Row::Angle {
-                    // Only motions that keep z parallel are motions of this coordinate.
+                    // Only motions that keep the z axes parallel are motions of this coordinate.
                     (wi.w, wj.w) = (ends.i.rot.cols[2] * 0.3, ends.i.rot.cols[2] * -0.9);
                 }
                 if row == Row::AngleOnJ {

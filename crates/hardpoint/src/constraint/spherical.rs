@@ -1,5 +1,5 @@
 //! Spherical constraint, one component: `e_k . (P_j - P_i) = 0` (paper Eq. 4.7), with e_k a world axis, or an axis of
-//! the loop's base where that moves.
+//! the loop's base if that moves.
 
 use crate::space::{Real, Vec3, Wrench};
 
@@ -10,11 +10,11 @@ pub(super) fn residual<T: Real>(k: usize, ends: &MarkerPair<T>) -> T {
     ends.j.r[k] - ends.i.r[k]
 }
 
-/// The force e_k through the common point.
+/// Wrench of the component: the force e_k through the common point.
 #[inline(always)]
 pub(super) fn wrench<T: Real>(k: usize, ends: &MarkerPair<T>) -> Wrench<T> {
-    // l = [P x e_k; e_k], d(phi) = e_k . (V_j at P - V_i at P); off the common point wrong by (w_i x d) . e_k, which
-    // Newton sees vanish
+    // l = [P x e_k; e_k], d(phi) = e_k . (V_j at P - V_i at P); away from the common point the error is (w_i x d) .
+    // e_k, which vanishes as Newton converges
     Wrench { m: across(ends.j.r, k), f: Vec3::AXES[k].spread() }
 }
 
@@ -39,8 +39,8 @@ pub(super) fn wrench_on_base<T: Real>(k: usize, ends: &MarkerPair<T>) -> Wrench<
     Wrench::force(axis(&ends.axes, k), ends.j.r)
 }
 
-/// As if the base stood: the relative velocity of the points vanishes along every axis, so that how these turn has no
-/// part in any rate of the constraint.
+/// Rates as for a base at rest: the relative velocity of the points is zero along every axis, so the rotation of the
+/// axes does not contribute to any rate of the constraint.
 #[inline(always)]
 pub(super) fn wrench_rates_on_base<T: Real>(
     k: usize,

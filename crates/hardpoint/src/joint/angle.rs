@@ -6,7 +6,7 @@ use crate::constraint::Row;
 
 use super::{JointType, Need, VectorKind};
 
-/// z_i . z_j keeps its design value: one constraint.
+/// z_i . z_j has its design value: one constraint.
 pub static ANGLE: JointType = JointType {
     name: "angle",
     aliases: &[],

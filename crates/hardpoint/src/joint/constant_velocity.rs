@@ -6,8 +6,8 @@ use crate::constraint::{COINCIDE, Row};
 
 use super::{Freedom, JointType, Need, VectorKind};
 
-/// d = 0 and no turn about the line that halves the shafts' angle: four constraints. `axis` is the shaft on body i,
-/// `axis2` the shaft on body j, both pointing the same way along the train.
+/// d = 0 and no relative rotation about the bisector of the shafts: four constraints. `axis` is the shaft on body i,
+/// `axis2` the shaft on body j, both pointing in the same direction along the drive train.
 pub static CONSTANT_VELOCITY: JointType = JointType {
     name: "constant_velocity",
     aliases: &["cv", "convel"],

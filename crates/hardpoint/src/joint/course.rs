@@ -7,9 +7,9 @@ use crate::joint::Quantity;
 
 use super::{CoordinateType, JointType, Need, VectorKind};
 
-/// No constraint of its own, and none of the [types of model files](super::ALL): the coordinate of a driver that
-/// prescribes an angle that is measured, like a wheel's toe. The angle of `axis2` on body j is counted from its course
-/// in the design configuration.
+/// No constraint, and not among the [types of model files](super::ALL): it carries the coordinate of a driver that
+/// prescribes a measured angle, like the toe of a wheel. The angle is that of `axis2` on body j, relative to its
+/// direction in the design configuration.
 pub static COURSE: JointType = JointType {
     name: "course",
     aliases: &[],

@@ -6,7 +6,7 @@ use crate::constraint::{ON_LINE, PARALLEL_Z};
 
 use super::{Freedom, JointType, Need, VectorKind, angle, displacement};
 
-/// z_j parallel to z_i and d parallel to z_i: four constraints, a displacement and an angle.
+/// z_j parallel to z_i and d parallel to z_i: four constraints, one displacement and one angle.
 pub static CYLINDRICAL: JointType = JointType {
     name: "cylindrical",
     aliases: &[],

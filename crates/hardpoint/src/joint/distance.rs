@@ -6,7 +6,7 @@ use crate::constraint::Row;
 
 use super::{JointType, LENGTH, Need, VectorKind};
 
-/// |d| = design length: one constraint.
+/// d| = design length: one constraint.
 pub static DISTANCE: JointType = JointType {
     name: "distance",
     aliases: &["rod", "spherical_spherical", "universal_spherical"],

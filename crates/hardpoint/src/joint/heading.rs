@@ -7,8 +7,8 @@ use crate::joint::Quantity;
 
 use super::{CoordinateType, JointType, Need, VectorKind};
 
-/// No constraint of its own; a driver prescribes the angle (a platform's roll), or a measure reads it. `axis2` is the
-/// direction on body j whose angle it is.
+/// No constraint; a driver prescribes the angle (a platform's roll), or a measure reads it. `axis2` is the direction on
+/// body j whose angle it is.
 pub static HEADING: JointType = JointType {
     name: "heading",
     aliases: &[],

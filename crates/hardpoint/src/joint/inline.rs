@@ -6,7 +6,7 @@ use crate::constraint::ON_LINE;
 
 use super::{Freedom, JointType, Need, VectorKind, displacement};
 
-/// Body j's point on the line along z_i: two constraints.
+/// P_j on the line through P_i along z_i: two constraints.
 pub static INLINE: JointType = JointType {
     name: "inline",
     aliases: &["point_on_line"],

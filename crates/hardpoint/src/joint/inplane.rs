@@ -6,7 +6,7 @@ use crate::constraint::Row;
 
 use super::{Freedom, JointType, Need, VectorKind, displacement_along};
 
-/// Body j's point on the plane normal to z_i: one constraint.
+/// P_j on the plane through P_i normal to z_i: one constraint.
 pub static INPLANE: JointType = JointType {
     name: "inplane",
     aliases: &["point_on_plane"],

@@ -4,7 +4,7 @@
 
 use super::{JointType, LENGTH, Need, VectorKind};
 
-/// No constraint of its own; its length is a coordinate.
+/// No constraint; the length is a coordinate.
 pub static LEG: JointType = JointType {
     name: "leg",
     aliases: &[],

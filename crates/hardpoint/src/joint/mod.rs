@@ -1,15 +1,16 @@
-//! The joint types: one file each, all of the same shape.
+//! Joint types, one file each.
 //!
-//! A joint is data. As a *tree* joint it is a chain of [`Freedom`]s that places body j relative to body i; as a *cut*
-//! joint it is a list of elementary constraints ([`Row`]) between its two markers. The engine knows freedoms and rows,
-//! not joints: a new joint is one file, named here.
+//! A joint is data. As a *tree* joint it is a chain of [`Freedom`]s that positions body j relative to body i; as a
+//! *cut* joint it is a list of elementary constraints ([`Row`]) between its two markers. The solver uses freedoms and
+//! rows only: to add a joint, add a file and list it here.
 //!
 //! # Frames, signs and units
 //!
 //! A joint connects body i, the first of its `bodies`, with body j, the second. It has a marker on each: an origin P
 //! and right-handed axes x, y, z fixed in the body. In the design configuration both origins are at the joint's
 //! hardpoint (or each at its own, for joints with two), z points along `axis`, and x along `axis2` if the type has one.
-//! Where only z matters, x is any perpendicular direction, the same for both markers.
+//! If only z matters, x is any perpendicular direction, the same for both markers. If `axis2` belongs to body j
+//! ([`Need::OnBodyJ`]), it is the z axis of marker j.
 //!
 //! ```text
 //!          z_i   z_j                       d = P_j - P_i, from marker i to marker j
@@ -20,8 +21,9 @@
 //!             P_j ---- j    displacement of j relative to i: d . z_i, positive along z_i
 //! ```
 //!
-//! Angles are in rad and displacements in m. All coordinates are zero in the design configuration, except for lengths,
-//! which are whole distances. Reactions are the force and the moment that the joint applies to body j.
+//! Angles are in rad and displacements in m. Angles and displacements are zero in the design configuration. A length is
+//! the distance |d|; a driver prescribes its change from the design length. Reactions are the force (N) and the moment
+//! (N m) that the joint applies to body j.
 
 mod angle;
 mod constant_velocity;
@@ -56,7 +58,7 @@ macro_rules! joints {
     ($($file:ident $TYPE:ident)*) => {
         $(pub use $file::$TYPE;)*
 
-        /// Every joint type that a model may use.
+        /// All joint types that models can use.
         pub const ALL: &[&JointType] = &[$(&$TYPE),*];
     };
 }
@@ -87,63 +89,63 @@ joints! {
     heading HEADING
 }
 
-/// A joint type: its geometry, its freedoms as a tree joint, its constraints as a cut joint.
+/// A joint type: its geometry, its freedoms as a tree joint, and its constraints as a cut joint.
 ///
-/// Both markers have their z axis along the joint's `axis` and their x axis along `axis2` (or any
-/// direction perpendicular to `axis`, the same for both), and coincide in orientation at the design
-/// configuration; only where `axis2` is [`Need::OnBodyJ`] is it the z axis of marker j.
+/// Both markers have their z axis along the joint's `axis` and their x axis along `axis2` (or any direction
+/// perpendicular to `axis`, the same for both), and their orientations coincide in the design configuration. Exception:
+/// if `axis2` is [`Need::OnBodyJ`], it is the z axis of marker j.
 #[derive(Debug)]
 pub struct JointType {
-    /// The name in model files.
+    /// Name in model files.
     pub name: &'static str,
-    /// Other names by which people know it.
+    /// Alternative names in model files.
     pub aliases: &'static [&'static str],
-    /// One line for documentation and editors.
+    /// Description in one line, for documentation and editors.
     pub summary: &'static str,
-    /// Number of hardpoints of the joint: 1 shared by both bodies, 2, one on each, or 0 if only directions matter.
+    /// Number of hardpoints of the joint: 1 (shared by both bodies), 2 (one on each), or 0 (only directions matter).
     pub places: usize,
-    /// True if it needs an axis.
+    /// Requirement for `axis`.
     pub axis: Need,
-    /// True if it needs a second axis, perpendicular to the first.
+    /// Requirement for `axis2`.
     pub axis2: Need,
-    /// Rules by which a mirror makes the images of `axis` and of `axis2`.
+    /// Kinds of vector of `axis` and `axis2`, for their images in a mirror.
     pub vector_kinds: [VectorKind; 2],
-    /// True if `axis` is perpendicular to the plane of a planar model unless the file gives it.
+    /// True if `axis` defaults to the normal of the plane in a planar model.
     pub normal_in_plane: bool,
-    /// Motions of body j relative to body i, in order from i to j; `None` if it is always cut.
+    /// Motions of body j relative to body i, in order from i to j; `None` if the joint is always cut.
     pub freedoms: Option<&'static [Freedom]>,
-    /// Elementary constraints that its freedoms in the tree do not keep by themselves.
+    /// Elementary constraints that the freedoms of the tree joint do not satisfy by themselves.
     pub tree_rows: &'static [Row],
-    /// Elementary constraints where it is cut (paper, section 4).
+    /// Elementary constraints of the cut joint (paper, section 4).
     pub rows: &'static [Row],
-    /// The coordinates that a driver or a measure may name.
+    /// Coordinates that drivers and measures can use.
     pub coordinates: &'static [CoordinateType],
 }
 
-/// True if a piece of geometry belongs to a joint type.
+/// Requirement for an axis of a joint type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
-    /// Must be given; a second axis perpendicular to the first.
+    /// Required; as a second axis, perpendicular to the first.
     Required,
-    /// May be given.
+    /// Optional.
     Optional,
-    /// Must be given, and belongs to body j, at any angle to the axis of body i.
+    /// Required, on body j, at any angle to the axis of body i.
     OnBodyJ,
-    /// Has no meaning for this joint.
+    /// Not used by this type.
     Unused,
 }
 
-/// Rule by which a mirror makes the image of a direction.
+/// Kind of a vector, which determines its image in a mirror.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VectorKind {
-    /// As of an arrow: a direction to move along.
+    /// Polar vector: a direction of translation.
     Polar,
-    /// As of a turn: a direction to turn about, or the normal of a plane. It is the opposite of the image of an arrow.
+    /// Axial vector: an axis of rotation or the normal of a plane. Its image is the opposite of that of a polar vector.
     Axial,
 }
 
 impl VectorKind {
-    /// The sign of a direction of this kind relative to the image of an arrow.
+    /// Sign of the image of this kind relative to that of a polar vector.
     const fn sign(self) -> i8 {
         match self {
             Self::Polar => 1,
@@ -152,25 +154,25 @@ impl VectorKind {
     }
 }
 
-/// The part of its joint's axes in a coordinate.
+/// Marker axis of a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CoordinateAxis {
-    /// A displacement along axis 0, 1 or 2 of a marker (x, y, z).
+    /// Displacement along axis 0, 1 or 2 of a marker (x, y, z).
     Along(usize),
-    /// A turn about one of them.
+    /// Rotation about axis 0, 1 or 2 of a marker.
     About(usize),
-    /// None: a distance.
+    /// No axis: a distance.
     Scalar,
 }
 
-/// One step of a tree joint's chain, in the axes of the frame reached so far.
+/// Freedom in the chain of a tree joint, in the axes of the frame reached so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Freedom {
-    /// A turn about axis 0, 1 or 2 (x, y, z).
+    /// Rotation about axis 0, 1 or 2 (x, y, z), rad.
     Turn(usize),
-    /// A slide along axis 0, 1 or 2.
+    /// Translation along axis 0, 1 or 2, m.
     Slide(usize),
-    /// Any rotation: three quasi-coordinates about the axes of the frame reached so far.
+    /// Arbitrary rotation: three quasi-coordinates about the axes of the frame reached so far.
     Ball,
 }
 
@@ -184,21 +186,21 @@ impl Freedom {
     }
 }
 
-/// A coordinate of a joint: what a driver prescribes or a measure reads.
+/// Coordinate of a joint that a driver prescribes or a measure reads.
 #[derive(Debug)]
 pub struct CoordinateType {
-    /// The name in model files: `angle`, `displacement`, `length`, ...
+    /// Name in model files: `angle`, `displacement`, `length`, ...
     pub name: &'static str,
-    /// Quantity of the coordinate, hence its unit.
+    /// Quantity of the coordinate, which determines its unit.
     pub quantity: Quantity,
-    /// Freedom of the tree joint that it is, if the joint has freedoms.
+    /// Index of the corresponding freedom of the tree joint, if the joint has freedoms.
     pub freedom: Option<usize>,
-    /// The constraint that a driver on a cut joint adds.
+    /// Constraint row that a driver adds to a cut joint.
     pub row: Row,
 }
 
 impl CoordinateType {
-    /// The axis of a marker that it is along or about.
+    /// Marker axis along or about which the coordinate is measured.
     pub const fn axis(&self) -> CoordinateAxis {
         match self.row {
             Row::Dot2(k) => CoordinateAxis::Along(k),
@@ -216,55 +218,55 @@ impl CoordinateType {
     }
 }
 
-/// Angle of body j relative to body i about z_i, counter-clockwise, rad.
+/// Angle of body j relative to body i about z_i, right-handed, rad.
 pub(crate) const fn angle(freedom: usize) -> CoordinateType {
     CoordinateType { name: "angle", quantity: Quantity::Angle, freedom: Some(freedom), row: Row::Angle }
 }
 
-/// Displacement of marker j along z_i, m.
+/// Displacement of marker j relative to marker i along z_i, m.
 pub(crate) const fn displacement(freedom: usize) -> CoordinateType {
     displacement_along("displacement", 2, freedom)
 }
 
-/// Displacement of marker j along axis 0, 1 or 2 of marker i, m.
+/// Displacement of marker j relative to marker i along axis 0, 1 or 2 of marker i, m.
 pub(crate) const fn displacement_along(name: &'static str, axis: usize, freedom: usize) -> CoordinateType {
     CoordinateType { name, quantity: Quantity::Length, freedom: Some(freedom), row: Row::Dot2(axis) }
 }
 
-/// Change of the distance between the two markers from the design length, m.
+/// Distance between the two markers, m; a driver prescribes its change from the design length.
 pub(crate) const LENGTH: CoordinateType =
     CoordinateType { name: "length", quantity: Quantity::Length, freedom: None, row: Row::Distance };
 
-/// Quantity of a number; the user's units follow from it.
+/// Physical quantity of a number, which determines its unit for the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Quantity {
-    /// Metres inside.
+    /// Length, internally in m.
     Length,
-    /// Radians inside.
+    /// Angle, internally in rad.
     Angle,
-    /// A plain number, like the parameter tau of a velocity field.
+    /// Dimensionless number, like the parameter tau of a velocity field.
     Number,
 }
 
-/// Quantity of a constraint's residual; cosines count as angles.
+/// Quantity of the residual of a constraint; cosines count as angles.
 impl From<Row> for Quantity {
     fn from(row: Row) -> Self {
         if row.is_length() { Self::Length } else { Self::Angle }
     }
 }
 
-/// The joint type of that name, or with that alias.
+/// Returns the joint type with this name or alias.
 pub fn named(name: &str) -> Option<&'static JointType> {
     ALL.iter().copied().find(|t| t.name == name || t.aliases.contains(&name))
 }
 
 impl JointType {
-    /// The coordinate of that name.
+    /// Returns the index and type of the coordinate with this name.
     pub fn coordinate(&self, name: &str) -> Option<(usize, &CoordinateType)> {
         self.coordinates.iter().enumerate().find(|(_, c)| c.name == name)
     }
 
-    /// Quantity of the coordinate with this name, or of the first one without a name.
+    /// Quantity of the coordinate with this name, or of the first one if no name is given.
     pub fn quantity_of(&self, coordinate: Option<&str>) -> Option<Quantity> {
         let coordinate = match coordinate {
             Some(name) => self.coordinate(name).map(|c| c.1),
@@ -273,16 +275,16 @@ impl JointType {
         Some(coordinate?.quantity)
     }
 
-    /// Returns whether a coordinate of the image of a joint is the opposite of the joint's own while both move as
-    /// mirror images.
+    /// Returns true if a coordinate of the mirrored joint is the opposite of that of the joint when both move as mirror
+    /// images.
     pub fn is_reversed_in_mirror(&self, coordinate: &CoordinateType) -> bool {
         let [z, axis2] = self.vector_kinds.map(VectorKind::sign);
         let x = match self.axis2 {
             Need::Required | Need::Optional => axis2,
-            // Any direction, mirrored as an arrow.
+            // Any direction, mirrored as a polar vector.
             Need::OnBodyJ | Need::Unused => VectorKind::Polar.sign(),
         };
-        // y = z x x, and the image of a product of arrows is the opposite of the product of their images.
+        // y = z x x, and the image of a product of polar vectors is the opposite of the product of their images.
         let signs = [x, -z * x, z];
         match coordinate.axis() {
             CoordinateAxis::Along(k) => signs[k] < 0,
@@ -291,22 +293,22 @@ impl JointType {
         }
     }
 
-    /// True if it is a ball and nothing else.
+    /// True if it is a spherical joint.
     pub fn is_ball(&self) -> bool {
         self.freedoms == Some(&[Freedom::Ball]) && self.tree_rows.is_empty()
     }
 
-    /// True if its two bodies turn as one, and slide along one line at most.
+    /// True if the two bodies have no relative rotation, and at most one relative translation.
     pub fn turns_as_one(&self) -> bool {
         matches!(self.freedoms, Some([] | [Freedom::Slide(_)]))
     }
 
-    /// True if the distance of its two points is kept, or may be driven.
+    /// True if the distance of its two points is constant, or a coordinate.
     pub fn is_rod(&self) -> bool {
         self.coordinates.iter().any(|c| c.row == Row::Distance)
     }
 
-    /// True if its point j follows a curve on body i.
+    /// True if its point j follows a curve of body i.
     pub fn follows_curve(&self) -> bool {
         self.rows.contains(&Row::Contact)
     }
@@ -316,7 +318,7 @@ impl JointType {
         std::ptr::eq(self, &SCREW)
     }
 
-    /// Number of coordinates of the joint in the tree; `None` if it is always cut.
+    /// Number of coordinates as a tree joint; `None` if it is always cut.
     pub fn freedom_count(&self) -> Option<usize> {
         self.freedoms.map(|f| f.iter().map(|f| f.coordinates()).sum())
     }

@@ -6,8 +6,8 @@ use crate::constraint::{PARALLEL_Z, Row};
 
 use super::{Freedom, JointType, Need, VectorKind, angle, displacement_along};
 
-/// d along x_i, the slot, and z_j, the pin, parallel to z_i: four constraints, a displacement and an angle. What a
-/// block with a hinge and a slide would be, without the block.
+/// d along x_i, the slot, and z_j, the pin, parallel to z_i: four constraints, one displacement and one angle.
+/// Equivalent to a revolute and a translational joint in series, without the intermediate block.
 pub static PIN_IN_SLOT: JointType = JointType {
     name: "pin_in_slot",
     aliases: &["slotted_pin"],

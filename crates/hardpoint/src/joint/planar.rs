@@ -6,7 +6,8 @@ use crate::constraint::{PARALLEL_Z, Row};
 
 use super::{Freedom, JointType, Need, VectorKind, angle, displacement_along};
 
-/// z_j parallel to z_i and the point on the plane: three constraints. x and y are along and across `axis2`.
+/// z_j parallel to z_i and P_j on the plane through P_i: three constraints. x_i is along `axis2`, y_i perpendicular to
+/// it.
 pub static PLANAR: JointType = JointType {
     name: "planar",
     aliases: &[],

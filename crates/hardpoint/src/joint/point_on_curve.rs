@@ -6,8 +6,8 @@ use crate::constraint::Row;
 
 use super::{JointType, Need, VectorKind};
 
-/// Seen along z_i, body j's point keeps its distance from a curve of body i: zero for a pin in a slot, a roller's
-/// radius for a cam. One constraint. The first place carries the curve, the second is the point.
+/// Seen along z_i, P_j has a constant distance from a curve of body i: zero for a pin in a slot, the radius of the
+/// roller for a cam. One constraint. The first location is that of the curve, the second is the point.
 pub static POINT_ON_CURVE: JointType = JointType {
     name: "point_on_curve",
     aliases: &["cam", "slot"],

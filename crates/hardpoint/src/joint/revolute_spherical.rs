@@ -6,7 +6,7 @@ use crate::constraint::Row;
 
 use super::{JointType, LENGTH, Need, VectorKind};
 
-/// |d| and z_i . d keep their design values: the ball stays on a circle about the hinge's axis. Two constraints.
+/// d| and z_i . d have their design values: P_j moves on a circle about the axis of the hinge. Two constraints.
 pub static REVOLUTE_SPHERICAL: JointType = JointType {
     name: "revolute_spherical",
     aliases: &[],

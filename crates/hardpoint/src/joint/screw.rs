@@ -6,7 +6,7 @@ use crate::constraint::{ON_LINE, PARALLEL_Z};
 
 use super::{Freedom, JointType, Need, VectorKind, angle, displacement};
 
-/// A cylindrical joint whose displacement is coupled to its angle by `lead`, the advance of one turn: five constraints,
+/// A cylindrical joint whose displacement is coupled to its angle by `lead`, the advance per turn: five constraints,
 /// the last of which is a coupler ([`crate::model::Coupler`]).
 pub static SCREW: JointType = JointType {
     name: "screw",

@@ -7,7 +7,7 @@ use crate::joint::Quantity;
 
 use super::{CoordinateType, JointType, Need, VectorKind};
 
-/// No constraint of its own; a driver prescribes the point's coordinate (wheel travel), or a measure reads it.
+/// No constraint; a driver prescribes the displacement of the point (wheel travel), or a measure reads it.
 pub static TRAVEL: JointType = JointType {
     name: "travel",
     aliases: &[],

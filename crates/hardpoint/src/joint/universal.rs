@@ -6,8 +6,8 @@ use crate::constraint::{COINCIDE, Row};
 
 use super::{CoordinateType, Freedom, JointType, Need, Quantity, VectorKind, angle};
 
-/// d = 0 and z_i perpendicular to x_j: four constraints. `axis` is the pin on body i, `axis2` that on body j;
-/// `angle` is the turn about the first, `angle2` about the second.
+/// d = 0 and z_i perpendicular to x_j: four constraints. `axis` is the pin on body i (z_i), `axis2` that on body j
+/// (x_j); `angle` is the rotation about the first, `angle2` about the second.
 pub static UNIVERSAL: JointType = JointType {
     name: "universal",
     aliases: &[],
