@@ -45,6 +45,7 @@ pub(crate) struct Watched<T> {
     pub product: T,
     /// Largest pivot magnitude.
     pub most: T,
+    /// Largest inverse of a pivot, in magnitude.
     pub least: T,
     /// Largest entry of the factor L.
     pub growth: T,
