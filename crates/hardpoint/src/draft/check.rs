@@ -340,8 +340,8 @@ impl<'a> Checker<'a> {
                         index + 1
                     ));
                 } else if section == Section::Bodies && *name == "ground" {
-                    self.fault("HP0201", at, "`ground` is the name of the body that does not move")
-                        .help("give this body another name; `ground` is predefined");
+                    self.fault("HP0201", at, "the name `ground` is reserved for the fixed body")
+                        .help("give this body another name");
                 }
             }
         }
@@ -404,7 +404,7 @@ impl<'a> Checker<'a> {
         }
         match on_a_body.or_else(|| close.map(|close| format!("did you mean `{close}`?"))) {
             Some(help) => drop(fault.help(help)),
-            None if valid.is_empty() => drop(fault.help(format!("the model declares no {what}"))),
+            None if valid.is_empty() => drop(fault.help(format!("declare `{name}` first: the model has no {what}"))),
             None => {}
         }
         None
@@ -496,7 +496,7 @@ impl<'a> Checker<'a> {
                 Some(u) => Some((Direction::Along(u), u)),
                 None => {
                     self.fault("HP0205", at, format!("the {key} of `{owner}` has no direction"))
-                        .note(format!("it is written as [{}, {}, {}]", v.x, v.y, v.z))
+                        .note(format!("its value is [{}, {}, {}]", v.x, v.y, v.z))
                         .help("give a non-zero vector, like [0, 0, 1]");
                     None
                 }
@@ -508,12 +508,12 @@ impl<'a> Checker<'a> {
                 match self.apart(a_id, b_id)?.and_then(Vec3::unit) {
                     Some(u) => Some((Direction::Through(a_id, b_id), u)),
                     None => {
-                        let message = format!("the {key} of `{owner}` passes through one point only");
+                        let message = format!("the two points of the {key} of `{owner}` coincide");
                         self.fault("HP0205", at, message)
                             .note(if a == b {
                                 format!("both of its hardpoints are `{a}`")
                             } else {
-                                format!("hardpoints `{a}` and `{b}` are at the same place")
+                                format!("hardpoints `{a}` and `{b}` coincide")
                             })
                             .help("name two different hardpoints");
                         None
@@ -543,7 +543,7 @@ impl<'a> Checker<'a> {
                 FrameDraft::Points(origin, x, xy) => {
                     let mut at = |k: usize, p: &LocationDraft| match p {
                         LocationDraft::Formula(_) => {
-                            let message = format!("the frame of body `{}` is given by an expression", b.name);
+                            let message = format!("the frame of body `{}` contains an expression", b.name);
                             self.fault("HP0230", here.item("frame", k), message)
                                 .help("give numbers: body frames do not change with the design");
                             None
@@ -569,7 +569,7 @@ impl<'a> Checker<'a> {
                             }
                             _ => {
                                 let message =
-                                    format!("the frame points of body `{}` lie on one line", b.name);
+                                    format!("the frame points of body `{}` are collinear", b.name);
                                 self.fault("HP0206", here.key("frame"), message).help(
                                     "give an origin, a point on the x axis, and a third point off that axis",
                                 );
@@ -599,7 +599,7 @@ impl<'a> Checker<'a> {
         for (index, b) in self.draft.bodies.iter().enumerate() {
             if !named.contains(b.name.as_str()) && all_known {
                 let at = Here { section: Section::Bodies, index }.key("name");
-                self.fault("HP0212", at, format!("no joint holds body `{}`", b.name))
+                self.fault("HP0212", at, format!("body `{}` is not connected to any joint", b.name))
                     .help("connect it with a joint, or remove it");
             }
             let (sum, count) = ends[index + 1];
@@ -652,12 +652,12 @@ impl<'a> Checker<'a> {
     /// HP0219: output times that do not go on.
     fn times_of(&mut self, times: &[f64], at: DraftLocation) {
         if times.is_empty() {
-            self.fault("HP0219", at, "there are no output times")
+            self.fault("HP0219", at, "the model has no output times")
                 .help("give a `[time]` table with `end` and `steps`");
         } else if let Some(k) =
             (0..times.len()).find(|&k| !times[k].is_finite() || (k > 0 && times[k] <= times[k - 1]))
         {
-            self.fault("HP0219", at, "output times must be finite and increase").note(format!(
+            self.fault("HP0219", at, "the output times are not finite and increasing").note(format!(
                 "time number {} is {} s",
                 k + 1,
                 times[k]

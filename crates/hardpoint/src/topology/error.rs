@@ -23,7 +23,7 @@ pub enum TopologyError {
     },
     /// The configuration in the design configuration is singular: motions are free there that are not free nearby
     /// (HP0304).
-    #[error("the design configuration is singular ({})", dozen(.bodies))]
+    #[error("the mechanism is singular in the design configuration ({})", dozen(.bodies))]
     Singular {
         /// Number of motions that are free in that position only.
         freedom: usize,
@@ -53,7 +53,7 @@ pub enum TopologyError {
         joint_names: Vec<String>,
     },
     /// The joints hold each other: nothing that a driver moves can move (HP0303).
-    #[error("the mechanism is immovable: its joints constrain each other ({})", dozen(.bodies))]
+    #[error("the mechanism is immovable: its joints prevent any motion ({})", dozen(.bodies))]
     Immovable {
         /// The joints whose constraints fail as soon as something moves.
         joints: Vec<JointId>,
@@ -94,11 +94,11 @@ impl TopologyError {
     pub fn notes(&self) -> Vec<String> {
         match self {
             Self::UnderDriven { joint_names, .. } => {
-                vec![format!("the joints that still move: {}", dozen(joint_names))]
+                vec![format!("joints that still move: {}", dozen(joint_names))]
             }
             Self::Singular { freedom, joint_names, .. } => vec![
                 format!(
-                    "to first order {} there that {} not a little further on: a dead point or a change point",
+                    "to first order {} there that {} not free nearby: a dead point or a change point",
                     if *freedom == 1 {
                         "a motion is free".into()
                     } else {
@@ -106,14 +106,14 @@ impl TopologyError {
                     },
                     if *freedom == 1 { "is" } else { "are" }
                 ),
-                format!("the joints of that motion: {}", dozen(joint_names)),
+                format!("joints of that motion: {}", dozen(joint_names)),
             ],
             Self::OverDriven { driver_names, joint_names, .. } => vec![
-                format!("drivers that contradict each other: {}", dozen(driver_names)),
-                format!("where they meet: {}", dozen(joint_names)),
+                format!("contradicting drivers: {}", dozen(driver_names)),
+                format!("constraints that fail: {}", dozen(joint_names)),
             ],
             Self::Immovable { joint_names, .. } => {
-                vec![format!("the constraints that fail with any motion: {}", dozen(joint_names))]
+                vec![format!("constraints that fail with any motion: {}", dozen(joint_names))]
             }
         }
     }
@@ -122,23 +122,23 @@ impl TopologyError {
     pub fn help(&self) -> String {
         match self {
             Self::UnderDriven { freedom: 1, .. } => {
-                "add a driver on one of these joints, or a joint or rod that holds the motion".into()
+                "add a driver on one of these joints, or a joint or rod that prevents the motion".into()
             }
             Self::UnderDriven { freedom, .. } => {
-                format!("add {freedom} drivers on these joints, or joints or rods that hold the motions")
+                format!("add {freedom} drivers on these joints, or joints or rods that prevent the motions")
             }
-            Self::Singular { .. } => "move the design configuration a little along the motion, away from the position in which its bars line up; if it moves only because of its special proportions, a driver may be missing on one of these joints"
+            Self::Singular { .. } => "move the design configuration a little along its motion, away from the position in which its links line up; if the mechanism moves only because of its special proportions, add a driver on one of these joints"
                 .into(),
             Self::OverDriven { driver_names, mobility, .. } => {
                 let excess = match driver_names.len().saturating_sub(*mobility) {
                     0 | 1 => "one".into(),
                     n => n.to_string(),
                 };
-                format!("remove any {excess} of these drivers, or free a joint")
+                format!("remove any {excess} of these drivers, or use a joint with more freedom")
             }
             Self::Immovable { .. } => {
-                "make parallel axes exactly parallel, or use joints with more freedom (a spherical joint in \
-                 place of a revolute, a cylindrical joint in place of a slide)"
+                "make parallel axes exactly parallel, or use joints with more freedom (a spherical joint instead of \
+                 a revolute joint, a cylindrical joint instead of a translational one)"
                     .into()
             }
         }

@@ -82,7 +82,7 @@ impl Checker<'_> {
         if faulty || !laws.map(|(law, driver)| law.as_ref().unwrap_or(&driver.law)).all(rests) {
             return;
         }
-        let message = format!("nothing moves in case `{}`", c.name);
+        let message = format!("case `{}` has no motion", c.name);
         let named: BTreeSet<&str> = c.laws.iter().map(|law| law.0.as_str()).collect();
         let held: Vec<String> = draft
             .drivers
@@ -95,13 +95,13 @@ impl Checker<'_> {
         if !held.is_empty() && c.rest == OtherDrivers::Held {
             let [are, them] = if held.len() == 1 { ["is", "it"] } else { ["are", "them"] };
             fault.note(format!(
-                "{} {are} fixed in the design configuration, since the case gives no law for {them}",
+                "{} {are} fixed in the design configuration, because the case has no law for {them}",
                 held.join(", ")
             ));
         }
         let example = draft.drivers.first().map_or("DRIVER", |d| d.name.as_str());
         fault.help(format!(
-            "give a driver a law in it, like `laws = {{ {example} = \"10*t\" }}`, or write `other_drivers = \"as_in_model\"` for those in `[drivers]`"
+            "give a driver a law in this case, like `laws = {{ {example} = \"10*t\" }}`, or write `other_drivers = \"as_in_model\"` to use the laws of `[drivers]`"
         ));
     }
 }

@@ -18,9 +18,9 @@ impl Checker<'_> {
         for (index, v) in draft.design.iter().enumerate() {
             let here = Here { section: Section::Design, index };
             if v.changes.is_empty() && !draft.unread.any(Section::Design, index) {
-                let message = format!("design variable `{}` changes nothing", v.name);
+                let message = format!("design variable `{}` has no effect", v.name);
                 self.fault("HP0217", here.key("name"), message)
-                    .help("say which hardpoint it moves, which joint it tilts, or give a velocity field");
+                    .help("name a hardpoint to move or a joint to tilt, or give a velocity field");
             }
             let mut changes = Vec::new();
             for (k, change) in v.changes.iter().enumerate() {
@@ -56,7 +56,7 @@ impl Checker<'_> {
             } else if !(low <= 0.0 && high >= 0.0) {
                 let message = format!("the nominal design is outside the bounds of `{}`", v.name);
                 self.fault("HP0229", here.key("bounds"), message).help(
-                    "bounds of a parameter enclose its value, those of another design variable enclose 0",
+                    "give bounds that enclose the nominal value: the value of a parameter, 0 for other design variables",
                 );
             }
         }
@@ -64,12 +64,12 @@ impl Checker<'_> {
         if is_none(v.typical) {
             let message = format!("the typical size of design variable `{}` is not positive", v.name);
             self.fault("HP0229", here.key("typical"), message)
-                .help("give the size of a typical change, or leave it out");
+                .help("give the size of a typical change, or remove `typical`");
         }
         if is_none(v.tolerance) {
             let message = format!("the tolerance of design variable `{}` is not positive", v.name);
             self.fault("HP0229", here.key("tolerance"), message)
-                .help("give the half width of the tolerance, or leave it out");
+                .help("give the half width of the tolerance, or remove `tolerance`");
         }
     }
 
@@ -118,8 +118,8 @@ impl Checker<'_> {
             }
         }
         if changes.is_empty() && !self.joint_ids.contains(&None) {
-            let message = format!("the field of design variable `{owner}` moves nothing on its bodies");
-            self.fault("HP0217", at, message).help("the field does not move any joint or point on them");
+            let message = format!("the velocity field of design variable `{owner}` moves no joint or point of its bodies");
+            self.fault("HP0217", at, message).help("give a field that is not zero at a joint or point of these bodies, or name other bodies");
             return None;
         }
         Some(changes)
@@ -155,8 +155,8 @@ impl Checker<'_> {
                 let Some(towards) = square else {
                     let message = format!("the bend of design variable `{owner}` has no direction");
                     self.fault("HP0205", key(), message)
-                        .note("its two hardpoints are at one place, or `towards` is along the line between them")
-                        .help("name two different hardpoints, and a direction across their line");
+                        .note("its two hardpoints coincide, or `towards` is parallel to the line between them")
+                        .help("name two different hardpoints, and a direction that is not parallel to their line");
                     return None;
                 };
                 ShapeField::Bend { from, to, towards }
@@ -172,9 +172,9 @@ impl Checker<'_> {
                 let moves =
                     velocities.iter().any(|v| v.norm() > 0.0) && velocities.iter().all(|v| v.is_finite());
                 let Some(found) = found.filter(|_| moves) else {
-                    let message = format!("no field of design variable `{owner}` goes through these points");
+                    let message = format!("the points of design variable `{owner}` define no velocity field");
                     self.fault("HP0217", key(), message)
-                        .note("none of them moves, or two of them are at one place and move differently")
+                        .note("none of them moves, or two of them coincide and move differently")
                         .help("give different points, each with its displacement per unit");
                     return None;
                 };
@@ -192,7 +192,7 @@ impl Checker<'_> {
                 if self.curve_points.contains(&hardpoint) {
                     let message = format!("design variable `{owner}` moves `{name}`, a point of a curve");
                     self.fault("HP0226", at, message)
-                        .note("the shape of a curve cannot be a design variable; its place and direction can")
+                        .note("the shape of a curve cannot be a design variable; its position and direction can")
                         .help(
                             "write the curve's points as coordinates, and move the hardpoint that carries it",
                         );
@@ -217,10 +217,10 @@ impl Checker<'_> {
                 let j = &self.model.joints[joint.0];
                 if j.length.is_none() {
                     let (name, kind) = (j.name.clone(), j.kind.name);
-                    let message = format!("joint `{name}` has no `length` of its own that could change");
+                    let message = format!("joint `{name}` has no `length` that can change");
                     let fault = self.fault("HP0225", at, message);
                     fault.note(format!(
-                        "it is a {kind} joint; the length of a rod is measured between its hardpoints"
+                        "it is a {kind} joint; without `length`, the length of a rod is the distance between its hardpoints"
                     ));
                     fault.help(format!("give rod `{name}` a `length`, or move one of its hardpoints"));
                     return None;
@@ -274,7 +274,7 @@ impl Checker<'_> {
     /// HP0217: a change that changes nothing.
     fn not_null(&mut self, does_something: bool, owner: &str, at: DraftLocation) {
         if !does_something {
-            let message = format!("a velocity of design variable `{owner}` is null or not finite");
+            let message = format!("a velocity of design variable `{owner}` is zero or not finite");
             self.fault("HP0217", at, message);
         }
     }

@@ -142,7 +142,7 @@ impl Checker<'_> {
         let (a, b) = (self.point(points[0], &d.name, from), self.point(points[1], &d.name, to.clone()));
         let [i, j] = [a?, b?].map(|p| self.model.points[p.0].clone());
         if self.apart(i.at, j.at) == Some(None) {
-            let message = format!("the two points of driver `{}` are at the same place", d.name);
+            let message = format!("the two points of driver `{}` coincide", d.name);
             self.fault("HP0211", to, message).help("an actuator needs two different points");
         }
         self.driven_joint(d, &joint::LEG, [i.body, j.body], [i.at, j.at], None, Zero::Kept)
@@ -177,9 +177,9 @@ impl Checker<'_> {
                     self.fault(
                         "HP0213",
                         at,
-                        format!("measure `{name}` of driver `{}` has no angle to count from", d.name),
+                        format!("measure `{name}` of driver `{}` has no zero angle", d.name),
                     )
-                    .help("its `from` must not be along its `about`");
+                    .help("give the measure a `from` that is not parallel to its `about`");
                     return None;
                 };
                 self.driven_course(d, body, place, [z, x], axis2, Zero::Kept, &at)
@@ -250,7 +250,7 @@ impl Checker<'_> {
                 format!("`{what}` of a wheel is not the value of one coordinate that a driver can prescribe")
             }
         });
-        fault.help("drivers prescribe `coordinate`, `position`, `distance`, `angle`, `toe`, `steer_angle`, `wheel_travel` and `wheel_recession`; drive one of these, and use the other as the abscissa");
+        fault.help("prescribe a `coordinate`, `position`, `distance`, `angle`, `toe`, `steer_angle`, `wheel_travel` or `wheel_recession`, and use this measure as the abscissa");
         None
     }
 
@@ -334,10 +334,10 @@ impl Checker<'_> {
         let between = |[a, b]: [&[String; 3]; 2]| [0, 1, 2].map(|k| format!("({} - {})", b[k], a[k]));
         let text = match (driven.zero, joint.axis) {
             (Zero::None, ..) if d.from_zero => {
-                let message = format!("the coordinate of driver `{}` has no zero of its own", d.name);
+                let message = format!("the coordinate of driver `{}` has no absolute zero", d.name);
                 self.fault("HP0213", here.key("counted_from"), message)
                     .note("lengths of rods, distances and positions have one; joint angles and displacements count from the design configuration")
-                    .help("leave `counted_from` out, or prescribe a measure with `measure = \"NAME\"`");
+                    .help("remove `counted_from`, or prescribe a measure with `measure = \"NAME\"`");
                 return None;
             }
             (Zero::None | Zero::AsDrawn, ..) => return None,

@@ -43,9 +43,9 @@ impl Checker<'_> {
             ElementKind::Rigid { centre, about, .. } => {
                 self.on_moving(*centre, &e.name, here, "centre");
                 if about.is_some_and(|about| self.body_of(about) != self.body_of(*centre)) {
-                    let message = format!("`about` of `{}` is on another body than its centre", e.name);
+                    let message = format!("`about` of `{}` is not on the body of its centre", e.name);
                     self.fault("HP0251", here.key("about"), message)
-                        .help("give both on the body that it belongs to");
+                        .help("put both points on the body that has the mass");
                 }
             }
             ElementKind::Block { centre, .. } => self.on_moving(*centre, &e.name, here, "centre"),
@@ -57,24 +57,24 @@ impl Checker<'_> {
             ElementKind::Bar { from, to, .. } => {
                 self.on_moving(*from, &e.name, here, "from");
                 if self.body_of(*from) != self.body_of(*to) {
-                    let message = format!("the ends of `{}` are on two bodies", e.name);
+                    let message = format!("the ends of `{}` are on different bodies", e.name);
                     self.fault("HP0251", here.key("to"), message)
-                        .help("give both ends on the body that it belongs to");
+                        .help("put both ends on the body that has the mass");
                 } else if self.at_one_place(*from, *to) {
-                    let message = format!("the ends of `{}` are at the same place", e.name);
+                    let message = format!("the ends of `{}` coincide", e.name);
                     self.fault("HP0251", here.key("to"), message).help("give two different ends");
                 }
             }
             ElementKind::Spring { from, to, stiffness, free_length, preload, .. } => {
                 if self.body_of(*from) == self.body_of(*to) {
-                    let message = format!("both ends of `{}` are on one body, which it cannot move", e.name);
+                    let message = format!("both ends of `{}` are on the same body, where it has no effect", e.name);
                     self.fault("HP0251", here.key("to"), message)
-                        .help("put its ends on two bodies; `ground` is one");
+                        .help("put its ends on two different bodies; `ground` is also a body");
                 } else if self.at_one_place(*from, *to) {
-                    let message = format!("the ends of `{}` are at the same place", e.name);
+                    let message = format!("the ends of `{}` coincide", e.name);
                     self.fault("HP0251", here.key("to"), message)
                         .note("a spring of zero length has no direction")
-                        .help("separate its ends, or use a `bushing`");
+                        .help("move its ends apart, or use a `bushing`");
                 }
                 self.spring_forces(&kind, &e.name, here);
                 let table = kind.table().is_some();
@@ -87,18 +87,18 @@ impl Checker<'_> {
                     let message = format!("`{}` has both a table and a `preload`", e.name);
                     self.fault("HP0251", here.key("preload"), message)
                         .note("without a `free_length` the deflection counts from the design configuration, and the table's force at 0 acts there")
-                        .help("leave the preload out: shift the table by it, or give the `free_length`");
+                        .help("remove `preload` and shift the table by it, or give the `free_length`");
                 } else if free_length.is_some() && preload.is_some() {
                     let message = format!("`{}` has both a `free_length` and a `preload`", e.name);
                     self.fault("HP0251", here.key("preload"), message)
-                        .help("leave one of them out: with the stiffness each follows from the other");
+                        .help("remove one of the two: each follows from the other and the stiffness");
                 }
             }
             ElementKind::Bushing { from, to, .. } => {
                 if self.body_of(*from) == self.body_of(*to) {
-                    let message = format!("both sides of `{}` are on one body", e.name);
+                    let message = format!("both sides of `{}` are on the same body", e.name);
                     self.fault("HP0251", here.key("to"), message)
-                        .help("put them on two bodies; `ground` is one");
+                        .help("put them on two different bodies; `ground` is also a body");
                 }
             }
             ElementKind::JointSpring { joint, coordinate, .. }
@@ -111,8 +111,8 @@ impl Checker<'_> {
                 };
                 if found.quantity != wanted {
                     let message = format!(
-                        "the {} of joint `{}` is not what `{}` acts on",
-                        found.name, joint.name, e.name
+                        "`{}` cannot act on the {} of joint `{}`",
+                        e.name, found.name, joint.name
                     );
                     self.fault("HP0251", here.key("joint"), message)
                         .help(format!("write `type = \"{other}\"`, or name another coordinate"));
@@ -124,7 +124,7 @@ impl Checker<'_> {
                     let help = match kind {
                         "translational" => "write `type = \"slide_friction\"` for a slide",
                         "universal" => {
-                            "of a universal joint make two revolutes and a body between; for viscous friction alone use the `damping` of a `torsion_spring`"
+                            "replace the universal joint by two revolute joints with a body between them; for viscous friction alone use the `damping` of a `torsion_spring`"
                         }
                         _ => {
                             "name a revolute, cylindrical or spherical joint; for viscous friction of others use the `damping` of a `torsion_spring`"
@@ -132,8 +132,8 @@ impl Checker<'_> {
                     };
                     self.no_friction(&e.name, *joint, "hinge or ball joint", here, help);
                 } else if let (Some(_), "spherical") = (length, kind) {
-                    let message = format!("`{}` has a length, but a ball has none", e.name);
-                    self.fault("HP0251", here.key("length"), message).help("remove it");
+                    let message = format!("`{}` has a `length`, which does not apply to a spherical joint", e.name);
+                    self.fault("HP0251", here.key("length"), message).help("remove `length`");
                 }
                 let numbers = [(coefficient.0, "coefficient"), (radius.0, "radius")];
                 let length = length.map(|n| (n.0, "length"));
@@ -161,9 +161,9 @@ impl Checker<'_> {
                 } else if let Some(normal) = ignored_direction {
                     let z = self.model.joints[joint.0].frames[0].cols[2];
                     if normal.cross(z).norm() < ACROSS {
-                        let message = format!("`ignored_direction` of `{}` runs along its slide", e.name);
+                        let message = format!("`ignored_direction` of `{}` is parallel to its sliding axis", e.name);
                         self.fault("HP0251", here.key("ignored_direction"), message)
-                            .help("give a direction across the slide, or leave it out");
+                            .help("give a direction across the sliding axis, or remove `ignored_direction`");
                     }
                 }
                 let length = length.map(|n| (n.0, "length"));
@@ -195,9 +195,9 @@ impl Checker<'_> {
                     self.fault("HP0251", here.key("type"), message)
                         .help("give it a stiffness along or about one of its axes, or remove it");
                 } else if given.iter().any(|n| !(self.value(*n) > 0.0)) {
-                    let message = format!("a stiffness of `{}` is not above zero", e.name);
+                    let message = format!("a stiffness of `{}` is not positive", e.name);
                     self.fault("HP0252", here.key("joint"), message)
-                        .help("correct it, or leave that direction out: then it is rigid");
+                        .help("give a positive stiffness, or remove the key to make that direction rigid");
                 }
                 if self.model.joints[joint.0].kind.places == 0 {
                     let message = format!(
@@ -265,8 +265,8 @@ impl Checker<'_> {
     fn above(&mut self, numbers: impl Iterator<Item = (NumberId, &'static str)>, name: &str, here: Here) {
         for (number, key) in numbers {
             if !(self.value(number) > 0.0) {
-                let message = format!("the {key} of `{name}` is not above zero");
-                self.fault("HP0252", here.key(key), message).help("correct it, or remove the friction");
+                let message = format!("the {key} of `{name}` is not positive");
+                self.fault("HP0252", here.key(key), message).help("give a positive number, or remove the friction");
             }
         }
     }
@@ -274,7 +274,7 @@ impl Checker<'_> {
     /// HP0252: a number below zero that would drive what it should brake.
     fn not_below(&mut self, number: Option<NumberId>, key: &'static str, name: &str, here: Here) {
         if number.is_some_and(|n| !(self.value(n) >= 0.0)) {
-            let message = format!("`{key}` of `{name}` is below zero");
+            let message = format!("`{key}` of `{name}` is negative");
             self.fault("HP0252", here.key(key), message).help("correct it, or leave it out");
         }
     }
@@ -301,14 +301,14 @@ impl Checker<'_> {
     fn spring_forces(&mut self, kind: &ElementKind, name: &str, here: Here) {
         let ElementKind::Spring { compression, extension, scale, .. } = kind else { return };
         if compression.is_some() && extension.is_some() {
-            let message = format!("`{name}` has two tables");
+            let message = format!("`{name}` has both `compression` and `extension`");
             self.fault("HP0251", here.key("extension"), message)
                 .note("compression is negative extension, and a compressive force is a negative tension")
-                .help("combine both in one table");
+                .help("combine the two tables in one");
         }
         if scale.is_some() && compression.is_none() && extension.is_none() {
-            let message = format!("`{name}` has a `scale` but no table");
-            self.fault("HP0251", here.key("scale"), message).help("remove it, or scale its `stiffness`");
+            let message = format!("`{name}` has a `scale`, but no table");
+            self.fault("HP0251", here.key("scale"), message).help("remove `scale`, or change its `stiffness`");
         }
     }
 
@@ -340,8 +340,8 @@ impl Checker<'_> {
         }
         for (number, key) in above {
             if !(self.value(number) > 0.0) {
-                let message = format!("the {key} of `{name}` is not above zero");
-                self.fault("HP0252", here.key(key), message).help("correct it, or remove the mass");
+                let message = format!("the {key} of `{name}` is not positive");
+                self.fault("HP0252", here.key(key), message).help("give a positive number, or remove the mass");
             }
         }
     }
@@ -367,10 +367,10 @@ impl Checker<'_> {
         let below = below.filter(|((n, _), i)| n.is_some() && !(*i >= 0.0)).map(|((_, key), _)| key).next();
         if let Some(key) = below {
             let message =
-                format!("`{key}` of `{name}` is below zero{}", if moved { " about its centre" } else { "" });
+                format!("`{key}` of `{name}` is negative{}", if moved { " about its centre" } else { "" });
             let fault = self.fault("HP0252", here.key(key), message);
             if moved {
-                fault.note(shown()).help("moments about another point are never less than those of the mass at its centre: check `about`, `centre` and the units");
+                fault.note(shown()).help("check `about`, `centre` and the units: moments of inertia about another point are never less than those about the centre of mass");
             } else {
                 fault.help("correct it, or leave it out");
             }
@@ -390,9 +390,9 @@ impl Checker<'_> {
         let determinant = x * (y * z - e * e) - d * (d * z - e * f) + f * (d * e - y * f);
         let cubed = slack * slack * slack;
         if !(minors.iter().all(|m| *m >= 0.0) && determinant >= -cubed) {
-            let message = format!("the moments of inertia of `{name}` are impossible");
+            let message = format!("the moments of inertia of `{name}` are physically impossible");
             let fault = self.fault("HP0252", here.key("ixx"), message);
-            fault.note("each is at most the sum of the other two, in any axes; products are the integrals of x y, y z and z x");
+            fault.note("each is at most the sum of the other two, about any axes; products of inertia are the integrals of x y, y z and z x");
             if moved {
                 fault.note(shown());
             }

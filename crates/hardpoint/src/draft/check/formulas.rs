@@ -34,9 +34,9 @@ impl<'a> Checker<'a> {
         for (index, p) in draft.parameters.iter().enumerate() {
             let at = Here { section: Section::Parameters, index };
             if !p.name.trim().is_empty() && !Expression::can_name(&p.name) {
-                let message = format!("invalid name of a parameter: `{}`", p.name);
+                let message = format!("invalid parameter name: `{}`", p.name);
                 self.fault("HP0201", at.key("name"), message).help(
-                    "use letters, digits and `_`, and no name that expressions know already, such as `t` or `sin`",
+                    "use letters, digits and `_`, and no name that is built into expressions, such as `t` or `sin`",
                 );
             }
             if !p.value.is_finite() {
@@ -179,7 +179,7 @@ impl<'a> Checker<'a> {
             let shown = |k: &usize| format!("`{}`", written[*k].name);
             let first = &written[circle[0]];
             let message = match circle.as_slice() {
-                [one] => format!("{} is defined by itself", shown(one)),
+                [one] => format!("the formula of {} refers to itself", shown(one)),
                 _ => format!("the formula of {} is circular", shown(&circle[0])),
             };
             let way = circle.iter().take(LISTED_NAMES).chain([&circle[0]]).map(shown).collect::<Vec<_>>();
@@ -187,7 +187,7 @@ impl<'a> Checker<'a> {
             if circle.len() > 1 {
                 fault.note(way.join(" uses "));
             }
-            fault.help("define one of them by a number, or by other names");
+            fault.help("define one of them by a number, or by an expression of other names");
         }
         for k in (0..written.len()).filter(|k| waits[*k] > 0) {
             self.spoil(written[k].formula.of);
@@ -220,7 +220,7 @@ impl<'a> Checker<'a> {
             if !numbers.is_empty() {
                 fault.note(format!("with {}", numbers.join(", ")));
             }
-            fault.help("it divides by zero or takes a root of a negative number there; change the expression or its parameters");
+            fault.help("change the expression or its parameters: it divides by zero or takes a root of a negative number there");
             self.spoil(of);
             return None;
         }
@@ -416,15 +416,15 @@ impl<'a> Checker<'a> {
                 let message = format!("the expression for `{name}` has no derivative in the nominal design");
                 let names: Vec<_> = formula.expression.names().iter().map(|n| format!("`{n}`")).collect();
                 self.fault("HP0228", at.clone(), message)
-                    .note(format!("it cannot be differentiated by {}", names.join(", ")))
-                    .help("change the expression or its numbers: a root of zero and an arc sine of 1 have no derivative");
+                    .note(format!("it cannot be differentiated with respect to {}", names.join(", ")))
+                    .help("change the expression or its numbers: the square root at 0 and the arcsine at 1 have no derivative");
             }
             if let Target::Coordinate(h, _) = formula.of
                 && self.curve_points.contains(&h)
             {
                 let message = format!("the expression for `{name}` moves a point of a curve");
                 self.fault("HP0226", at, message)
-                    .note("the shape of a curve cannot be a design variable; its place and direction can")
+                    .note("the shape of a curve cannot be a design variable; its position and direction can")
                     .help(
                         "write `design = false` for the parameters in it, or the curve's points as numbers",
                     );

@@ -30,7 +30,7 @@ impl Checker<'_> {
                 if !(way > 0.0 && way.is_finite() && rises) {
                     let message = format!("driver `{driver}` has no range in the grid of case `{}`", g.name);
                     self.fault("HP0240", here.item("grid", k), message)
-                        .help("give at least two finite positions, each above the one before");
+                        .help("give at least two finite positions in ascending order");
                     continue;
                 }
                 // A faulty driver has been reported.
@@ -44,9 +44,9 @@ impl Checker<'_> {
                 };
                 let [x, y] = [0, 1].map(|k| draft.drivers.get(k).map_or("DRIVER", |d| d.name.as_str()));
                 let fault = self.fault("HP0240", at, message);
-                fault.note("a grid has two drivers; all others are fixed in the design configuration");
+                fault.note("a grid moves two drivers; all others are fixed in the design configuration");
                 fault.help(match draft.drivers.len() {
-                    0 | 1 => "a mechanism with fewer than two drivers has no grid: give the case `laws` instead".into(),
+                    0 | 1 => "give the case `laws` instead: a grid needs two drivers".into(),
                     _ => format!(
                         "name two, like `grid = {{ {x} = {{ from = -10, to = 10, steps = 8 }}, {y} = {{ from = -10, to = 10, steps = 8 }} }}`"
                     ),
@@ -62,7 +62,7 @@ impl Checker<'_> {
             if positions > MOST_POSITIONS {
                 let message = format!("the grid of case `{}` has {positions} positions", g.name);
                 self.fault("HP0240", at, message)
-                    .help(format!("ask for fewer `steps`: at most {MOST_POSITIONS} positions are solved"));
+                    .help(format!("use fewer `steps`: a grid has at most {MOST_POSITIONS} positions"));
                 continue;
             }
             if let [a, b] = drivers[..] {

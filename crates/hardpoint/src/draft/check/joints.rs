@@ -58,7 +58,7 @@ impl Checker<'_> {
                     (None, Need::Optional | Need::Unused) => None,
                     (None, _) if self.unread(here, key) => None,
                     (None, Need::Required | Need::OnBodyJ) => {
-                        let message = format!("joint `{name}` needs `{key}`");
+                        let message = format!("joint `{name}` has no `{key}`");
                         self.fault("HP0208", here.key("type"), message)
                         .note(format!("{}: {}", kind.name, kind.summary))
                         .help(format!(
@@ -67,7 +67,7 @@ impl Checker<'_> {
                         None
                     }
                     (Some(_), Need::Unused) => {
-                        let message = format!("a {} joint has no `{key}`", kind.name);
+                        let message = format!("`{key}` does not apply to a {} joint", kind.name);
                         self.fault("HP0208", here.key(key), message)
                             .help(format!("remove `{key}` from `{name}`"));
                         None
@@ -80,17 +80,17 @@ impl Checker<'_> {
                 let cosine = z.dot(z_j);
                 if kind.rows.contains(&Row::Cosine) && cosine.abs() > 1.0 - SQUARE_TOLERANCE {
                     let message =
-                        format!("the axes of joint `{name}` are parallel, so that their angle is singular");
+                        format!("the axes of joint `{name}` are parallel, where the angle between them is singular");
                     self.fault("HP0209", here.key("axis2"), message).help("use a `parallel` joint");
                 }
                 if kind.rows.contains(&Row::ConstantVelocity) && cosine < SQUARE_TOLERANCE {
-                    let message = format!("the shafts of joint `{name}` are opposite or perpendicular");
+                    let message = format!("the shafts of joint `{name}` are at an angle of 90 deg or more");
                     self.fault("HP0209", here.key("axis2"), message)
                         .note(format!(
                             "the angle between `axis` and `axis2` is {:.4} deg",
                             degrees_between(z, z_j)
                         ))
-                        .help("point both in the same direction along the train, less than 90 deg apart");
+                        .help("point both axes along the train, less than 90 deg apart");
                 }
                 let i = frame_along(z, default_x(z, j.mirror));
                 [i, Mat3::between(z, z_j) * i]
@@ -137,12 +137,12 @@ impl Checker<'_> {
         let draft = match (&j.curve, kind.follows_curve()) {
             (None, false) => return None,
             (Some(_), false) => {
-                self.fault("HP0226", here.key("curve"), format!("a {} joint has no `curve`", kind.name))
+                self.fault("HP0226", here.key("curve"), format!("`curve` does not apply to a {} joint", kind.name))
                     .help(format!("remove `curve` from `{name}`, or make it a `point_on_curve`"));
                 return None;
             }
             (None, true) => {
-                self.fault("HP0226", here.key("type"), format!("joint `{name}` needs a `curve`"))
+                self.fault("HP0226", here.key("type"), format!("joint `{name}` has no `curve`"))
                     .help("give the points of the cam or slot, like `curve = { points = [[0, 0, 0], ...], closed = true }`");
                 return None;
             }
@@ -168,19 +168,19 @@ impl Checker<'_> {
             let message = format!("the curve of `{name}` does not lie in a plane perpendicular to its axis");
             self.fault("HP0226", here.key("curve"), message)
                 .note(format!("point {k} is {:e} m from the plane of point 0", (p.z - local[0].z).abs()))
-                .help("let all points have the same coordinate along `axis`");
+                .help("give all points the same coordinate along `axis`");
             return None;
         }
         let next = |k: usize| local[(k + 1) % local.len()];
         let last = if draft.closed { local.len() } else { local.len() - 1 };
         if let Some(k) = (0..last).find(|&k| (next(k) - local[k]).norm() <= SAME_POINT * size) {
             let message = format!(
-                "points {} and {} of the curve of `{name}` are at the same place",
+                "points {} and {} of the curve of `{name}` coincide",
                 k + 1,
                 (k + 1) % local.len() + 1
             );
             self.fault("HP0226", here.key("curve"), message)
-                .help("leave one of them out; a closed curve does not repeat its first point");
+                .help("remove one of them; a closed curve does not repeat its first point");
             return None;
         }
         let points: Vec<[f64; 2]> = local.iter().map(|p| [p.x, p.y]).collect();
@@ -191,7 +191,7 @@ impl Checker<'_> {
             Ok(_) => {
                 let message = format!("the point of `{name}` is beyond the ends of its curve");
                 self.fault("HP0226", here.key("at"), message)
-                    .help("move it next to the curve, or extend the curve");
+                    .help("move the point next to the curve, or extend the curve");
                 None
             }
             Err(error) => {
@@ -208,12 +208,12 @@ impl Checker<'_> {
             None => j.length?,
         };
         if !kind.is_rod() && !kind.follows_curve() {
-            self.fault("HP0223", here.key("length"), format!("a {} joint has no `length`", kind.name))
+            self.fault("HP0223", here.key("length"), format!("`length` does not apply to a {} joint", kind.name))
                 .help(format!("remove `length` from `{}`", j.name));
         } else if !(length > 0.0 && length.is_finite()) {
-            self.fault("HP0223", here.key("length"), format!("the length of `{}` must be positive", j.name))
+            self.fault("HP0223", here.key("length"), format!("the length of `{}` is not positive", j.name))
                 .help(
-                    "give the distance between its two ends, or leave it out: the distance is then measured",
+                    "give the distance between its two ends, or remove `length` to use the distance in the design configuration",
                 );
         }
         Some(length)
@@ -227,17 +227,17 @@ impl Checker<'_> {
         }
         match j.lead {
             Some(_) if !has_lead => {
-                self.fault("HP0223", here.key("lead"), format!("a {} joint has no `lead`", kind.name))
+                self.fault("HP0223", here.key("lead"), format!("`lead` does not apply to a {} joint", kind.name))
                     .help(format!("remove `lead` from `{}`, or make it a `screw`", j.name));
             }
             Some(lead) if !(lead != 0.0 && lead.is_finite()) => {
-                let message = format!("the lead of screw `{}` must not be zero", j.name);
+                let message = format!("the lead of screw `{}` is zero or not finite", j.name);
                 self.fault("HP0223", here.key("lead"), message)
-                    .help("give the advance of one turn; negative for a left-hand thread");
+                    .help("give the advance per turn, negative for a left-hand thread");
             }
             None if has_lead => {
-                self.fault("HP0223", here.key("type"), format!("screw `{}` needs `lead`", j.name))
-                    .help("give the advance of one turn, like `lead = 5`; negative for a left-hand thread");
+                self.fault("HP0223", here.key("type"), format!("screw `{}` has no `lead`", j.name))
+                    .help("give the advance per turn, like `lead = 5`, negative for a left-hand thread");
             }
             _ => {}
         }
@@ -281,9 +281,9 @@ impl Checker<'_> {
             let fault = self.fault("HP0210", at, message);
             fault.note(format!("{}: {}", kind.name, kind.summary));
             fault.help(match (kind.places, j.at.len()) {
-                (0, _) => "only its directions matter; leave `at` out".to_string(),
-                (1, _) => "name the hardpoint where the bodies meet".into(),
-                _ => format!("first the point on `{}`, then the point on `{}`", j.bodies[0], j.bodies[1]),
+                (0, _) => "remove `at`: only directions matter for this type".to_string(),
+                (1, _) => "name the hardpoint at which the bodies are connected".into(),
+                _ => format!("name the point on `{}` first, then the point on `{}`", j.bodies[0], j.bodies[1]),
             });
             return None;
         }
@@ -291,7 +291,7 @@ impl Checker<'_> {
             j.at.iter().enumerate().map(|(k, p)| self.place(p, name, here.item("at", k))).collect();
         let (first, last) = (places[0]?, places[places.len() - 1]?);
         if kind.is_rod() && self.apart(first, last) == Some(None) {
-            self.fault("HP0211", here.key("at"), format!("the two ends of `{name}` are at the same place"))
+            self.fault("HP0211", here.key("at"), format!("the two ends of `{name}` coincide"))
                 .help("a rod needs two different points");
         }
         Some([first, last])

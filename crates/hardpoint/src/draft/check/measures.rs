@@ -39,9 +39,9 @@ impl Checker<'_> {
                 let message = format!("measure `{}` is the distance of a point from itself", m.name);
                 self.fault("HP0216", here.key("to"), message);
             } else if at_one_place {
-                let message = format!("the two points of measure `{}` are at the same place", m.name);
+                let message = format!("the two points of measure `{}` coincide", m.name);
                 self.fault("HP0216", here.key("to"), message).note("a distance of zero has no rate").help(
-                    "measure the `position` of one of them along each direction, or points that lie apart",
+                    "measure the `position` of one of them along each direction, or name points that do not coincide",
                 );
             }
         }
@@ -53,7 +53,7 @@ impl Checker<'_> {
         let draft = self.draft;
         let nothing = draft.masses.is_empty() && draft.forces.is_empty();
         if kind.is_load() && nothing && !self.lost("mass") && !self.lost("force") {
-            let message = format!("`{}` measures a load, but the model has no masses and no forces", m.name);
+            let message = format!("measure `{}` is a load, but the model has no masses and no forces", m.name);
             self.fault("HP0250", here.key("type"), message).help("add `[masses]`, `[gravity]` or `[forces]`");
         }
         let gives = |e: &Element| {
@@ -71,7 +71,7 @@ impl Checker<'_> {
             && !self.draft.unread.any_of(Section::Forces)
         {
             let message =
-                format!("`{}` measures a compliance, but no part of the model is compliant", m.name);
+                format!("measure `{}` is a compliance, but no part of the model is compliant", m.name);
             self.fault("HP0250", here.key("type"), message)
                 .help("add compliant joints as `[forces]` of `type = \"elastic_joint\"`");
         }
@@ -79,9 +79,9 @@ impl Checker<'_> {
             && at.is_some() == wheel.is_some()
         {
             let (message, help) = match at {
-                Some(_) => ("has a force at a point and at a wheel", "leave `at` or `wheel` out"),
+                Some(_) => ("has both `at` and `wheel`", "leave `at` or `wheel` out"),
                 None => {
-                    ("has no point of action", "give the point as `at`, or the `wheel` that the road acts on")
+                    ("has no point of application", "give the point as `at`, or the `wheel` that the road acts on")
                 }
             };
             self.fault("HP0251", here.key("at"), format!("`{}` {message}", m.name)).help(help);
@@ -91,7 +91,7 @@ impl Checker<'_> {
             if !joint.bodies.contains(on) {
                 let [i, j] = joint.bodies.map(|b| self.model.bodies[b.0].name.clone());
                 let message =
-                    format!("joint `{}` does not hold body `{}`", joint.name, self.model.bodies[on.0].name);
+                    format!("joint `{}` does not connect body `{}`", joint.name, self.model.bodies[on.0].name);
                 self.fault("HP0251", here.key("on"), message).help(format!("write `{i}` or `{j}`"));
             }
         }
@@ -177,19 +177,19 @@ impl Checker<'_> {
             return None;
         }
         if let (Reduction::Slope(_), KnownOrders { orders: 1, .. }) = (&take, self.model.known(of)) {
-            let message = format!("the rate of `{}` is not known, so metric `{}` is not", m.of, m.name);
+            let message = format!("metric `{}` needs the rate of `{}`, which is not known", m.name, m.of);
             self.fault("HP0233", here.key("of"), message)
-                .note("the motion is solved up to accelerations, and slopes over a driver up to their values")
-                .help("take its value, or the slope of something that follows from positions");
+                .note("the motion is solved up to accelerations, and slopes over a driver have no rates")
+                .help("use its value, or the slope of a measure that depends on positions only");
             return None;
         }
         if let Some(over) = over
             && self.model.known(over).orders == 1
         {
             let name = m.over.as_deref().unwrap_or_default();
-            let message = format!("the rate of `{name}` is not known, so it cannot be an abscissa");
+            let message = format!("`{name}` cannot be an abscissa, because its rate is not known");
             self.fault("HP0233", here.key("over"), message)
-                .help("take something that follows from positions or velocities");
+                .help("use a measure that depends on positions or velocities only");
             return None;
         }
         let window = m.window.map(|w| w.map(|end| si(x, end)));
@@ -204,7 +204,7 @@ impl Checker<'_> {
     fn case(&mut self, name: &str, at: DraftLocation) -> Option<CaseId> {
         let draft = self.draft;
         if draft.grids.iter().any(|g| g.name == name) {
-            self.fault("HP0204", at, format!("case `{name}` has a grid, and no motion to take a metric of")).help(
+            self.fault("HP0204", at, format!("case `{name}` is a grid, which has no metrics")).help(
                 "name a case with `laws`; `run` writes every measure of a grid with its derivatives into `maps.json`",
             );
             return None;
@@ -213,7 +213,7 @@ impl Checker<'_> {
         if found.is_none() && draft.cases.is_empty() && !self.lost("case") {
             let fault = self.faults.last_mut().expect("just reported");
             fault.help(format!(
-                "declare it with `[cases.{name}]`, or leave `case` out: without cases there is one motion"
+                "declare it as `[cases.{name}]`, or remove `case`: a model without cases has a single motion"
             ));
         }
         found.map(CaseId)
@@ -229,7 +229,7 @@ impl Checker<'_> {
                 let [a, b] = ends.map(|p| self.model.points[p.0].at);
                 if self.apart(a, b) == Some(None) {
                     let message =
-                        format!("the two points of `{key}` of measure `{owner}` are at the same place");
+                        format!("the two points of `{key}` of measure `{owner}` coincide");
                     self.fault("HP0216", here.key(key), message).help("name two different points");
                     return None;
                 }
@@ -263,7 +263,7 @@ impl Checker<'_> {
         self.find("measure", name, at, draft.measures.iter().map(|m| m.name.as_str()));
         if !draft.points.is_empty() && self.faults.last().is_some_and(|f| f.help.is_none()) {
             let fault = self.faults.last_mut().expect("just reported");
-            fault.help("for a component of a point write `POINT.x`, `POINT.y` or `POINT.z`");
+            fault.help("write a component of a point as `POINT.x`, `POINT.y` or `POINT.z`");
         }
         None
     }
@@ -343,18 +343,18 @@ impl Checker<'_> {
                 self.fault(
                     "HP0233",
                     here.key("of"),
-                    format!("the rate of `{of}` is not known, so `{name}` is not"),
+                    format!("`{name}` needs the rate of `{of}`, which is not known"),
                 )
-                .note("the motion is solved up to accelerations, and slopes over a driver up to their values")
-                .help("measure the rate of something that follows from positions or velocities");
+                .note("the motion is solved up to accelerations, and slopes over a driver have no rates")
+                .help("use a measure that depends on positions or velocities only");
                 false
             }
             MeasureKind::Compliance { of, .. } if !self.model.known(*of).by_position => {
                 let what = self.model.output_name(*of);
                 let message = format!("`{name}` needs the compliance of `{what}`, which is not known");
                 self.fault("HP0233", here.key("of"), message)
-                    .note("deflections are computed at every position by itself")
-                    .help("take a measure that follows from positions alone");
+                    .note("deflections are computed at each position separately")
+                    .help("use a measure that depends on positions only");
                 false
             }
             MeasureKind::Slope { of, over, .. } => {
@@ -364,10 +364,10 @@ impl Checker<'_> {
                         self.fault(
                             "HP0233",
                             here.key(key),
-                            format!("`{name}` needs the slope of `{what}`, which has none"),
+                            format!("`{name}` needs the slope of `{what}`, which is not known"),
                         )
-                        .note("a slope over a driver is of what follows from positions alone")
-                        .help("take measures that are neither rates nor velocities nor slopes themselves");
+                        .note("slopes over a driver exist only for measures that depend on positions only")
+                        .help("use measures that are not rates, velocities or slopes themselves");
                         return false;
                     }
                 }

@@ -31,7 +31,7 @@ impl Checker<'_> {
             |c: &[CoordinateType]| c.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
         let joint_name = self.model.joints[joint.0].name.clone();
         let (message, at) = match (name, kind.coordinates) {
-            (_, []) => (format!("a {} joint has no coordinate to name", kind.name), at_joint),
+            (_, []) => (format!("a {} joint has no coordinates", kind.name), at_joint),
             (None, [_]) => return Some(0),
             (None, _) => (format!("joint `{joint_name}` has more than one coordinate"), at_joint),
             (Some(name), coordinates) => match coordinates.iter().position(|c| c.name == name) {
@@ -42,9 +42,9 @@ impl Checker<'_> {
         let fault = self.fault("HP0213", at, message);
         fault.note(format!("type of `{joint_name}`: {} ({})", kind.name, kind.summary));
         fault.help(if kind.coordinates.is_empty() {
-            "name a joint that has one: a revolute, translational or cylindrical joint, a rod or a leg".into()
+            "name a joint with coordinates: a revolute, translational or cylindrical joint, a rod or a leg".into()
         } else {
-            format!("its coordinates: {}", list(kind.coordinates))
+            format!("name one of its coordinates: {}", list(kind.coordinates))
         });
         None
     }
@@ -75,7 +75,7 @@ impl Checker<'_> {
             let [f, fd, fdd, _] = law.at(t).derivatives();
             let (what, remedy) = match all(t, &|x| x.is_finite()) {
                 false => ("has no finite value", "are finite".to_owned()),
-                true => ("is too fast to be solved", format!("are below {LARGEST_RATE:e}")),
+                true => ("changes too fast", format!("are below {LARGEST_RATE:e}")),
             };
             self.fault("HP0214", at, format!("the law of {of} {what} at t = {t} s"))
                 .note(format!("value {f}, first derivative {fd}, second derivative {fdd} there"))
@@ -116,7 +116,7 @@ impl Checker<'_> {
             if !terms.iter().all(|t| t.coefficient.is_finite() && t.coefficient != 0.0) {
                 let message = format!("coupler `{}` has a ratio that is zero or not finite", c.name);
                 self.fault("HP0224", here.key(ratios), message)
-                    .help("give every joint a number of teeth, a radius or a coefficient other than zero");
+                    .help("give every joint a non-zero number of teeth, radius or coefficient");
             }
             if !c.constant.is_finite() {
                 let message = format!("the constant of coupler `{}` is not finite", c.name);
@@ -126,7 +126,7 @@ impl Checker<'_> {
                 terms[..k].iter().any(|t| t.joint == terms[k].joint && t.coordinate == terms[k].coordinate)
             });
             if terms.len() < 2 || twice {
-                let message = format!("coupler `{}` must couple at least two different coordinates", c.name);
+                let message = format!("coupler `{}` connects fewer than two different coordinates", c.name);
                 self.fault("HP0224", here.key(joints), message)
                     .help("name two joints, or two coordinates of one joint");
             }

@@ -34,14 +34,14 @@ impl Checker<'_> {
         if let Some(margin) = o.margin
             && !(margin > 0.0 && margin < 1.0)
         {
-            let message = format!("the margin of the optimisation cannot be {margin}");
+            let message = format!("invalid `min_margin` of the optimisation: {margin}");
             self.fault("HP0237", here.key("min_margin"), message)
-                .note("it is 0 at a singular position, and 1 far from any")
-                .help("give a number above 0 and below 1, like `min_margin = 0.02`, or leave it out");
+                .note("the margin is 0 at a singular position and 1 far from any")
+                .help("give a number between 0 and 1, like `min_margin = 0.02`, or remove it");
         }
         for (key, count) in [("starts", o.starts), ("max_iterations", o.iterations)] {
             if count == 0 {
-                let message = format!("`{key}` of the optimisation cannot be 0");
+                let message = format!("`{key}` of the optimisation is 0");
                 self.fault("HP0237", here.key(key), message).help("give a whole number from 1");
             }
         }
@@ -81,7 +81,7 @@ impl Checker<'_> {
                 || self.lost("parameter");
             if found.is_empty() && !unknown {
                 self.fault("HP0236", here.key(""), "invalid optimisation: no design variable has bounds").help(
-                    "give bounds to the variables that may change, like `bounds = [-5, 5]` in `[design.NAME]`, or `NAME = { value = 60, bounds = [50, 70] }` in `[parameters]`",
+                    "give bounds to the variables to optimise, like `bounds = [-5, 5]` in `[design.NAME]`, or `NAME = { value = 60, bounds = [50, 70] }` in `[parameters]`",
                 );
             }
             return Some(found);
@@ -92,7 +92,7 @@ impl Checker<'_> {
                 here.key("variables"),
                 "invalid optimisation: the list of variables is empty",
             )
-            .help("name the variables that may change, or leave `variables` out for all that have bounds");
+            .help("name the variables to optimise, or remove `variables` to use all that have bounds");
         }
         let mut first_of: BTreeMap<&str, usize> = BTreeMap::new();
         let mut found = Vec::new();
@@ -100,16 +100,16 @@ impl Checker<'_> {
             let at = here.item("variables", k);
             let first = *first_of.entry(name).or_insert(k);
             if first < k {
-                let message = format!("design variable `{name}` is named twice");
+                let message = format!("design variable `{name}` is listed twice");
                 self.fault("HP0236", at, message)
-                    .note(format!("as number {} and number {} of the list", first + 1, k + 1))
+                    .note(format!("it is number {} and number {} of the list", first + 1, k + 1))
                     .help("remove one of the two");
                 continue;
             }
             let Some(index) = self.optimized_variable(name, at.clone()) else { continue };
             let v = &draft.design[index];
             if v.bounds.is_none() && !draft.unread.any(Section::Design, index) {
-                let message = format!("design variable `{name}` has no bounds to be searched within");
+                let message = format!("design variable `{name}` has no bounds");
                 self.fault("HP0236", at, message).help(bounds_of(v));
             }
             found.push(VariableId(index));
@@ -137,10 +137,10 @@ impl Checker<'_> {
             && !self.draft.unread.has(Section::Model, 0, "design")
         {
             if !parts.is_empty() {
-                fault.help(format!("`[design.{name}]` makes several: {}", parts.join(", ")));
+                fault.help(format!("name one of the variables of `[design.{name}]`: {}", parts.join(", ")));
             } else if derived {
                 fault.help(format!(
-                    "parameter `{name}` is no design variable, since an expression gives it or `design = false` says so; name what it follows"
+                    "name a variable on which parameter `{name}` depends: it is not a design variable itself, because it is defined by an expression or has `design = false`"
                 ));
             }
         }
@@ -156,7 +156,7 @@ impl Checker<'_> {
             let fault = self.faults.last_mut().expect("just reported");
             if is_measure {
                 fault.help(format!(
-                    "`{name}` is a measure, a whole curve; declare a metric of it, like `[metrics.{name}_range]` with `of = \"{name}\"` and `take = \"range\"`"
+                    "declare a metric of measure `{name}`, like `[metrics.{name}_range]` with `of = \"{name}\"` and `take = \"range\"`"
                 ));
             } else if draft.metrics.is_empty() {
                 fault.help("declare it in `[metrics.NAME]`");
@@ -172,9 +172,9 @@ impl Checker<'_> {
             return None;
         }
         if !(g.weight > 0.0 && g.weight.is_finite()) {
-            let message = format!("the weight of goal `{}` cannot be {}", g.name, g.weight);
+            let message = format!("invalid weight of goal `{}`: {}", g.name, g.weight);
             self.fault("HP0237", here.key("weight"), message).help(
-                "give a number above zero, or remove the goal; to maximise a metric, give it a large `target`",
+                "give a positive number, or remove the goal; to maximise a metric, give it a large `target`",
             );
         }
         if g.target.is_some_and(|target| !target.is_finite()) {
@@ -187,9 +187,9 @@ impl Checker<'_> {
             let message =
                 format!("goal `{}` cannot have a target: its metric `{}` is an `rms`", g.name, g.metric);
             let help =
-                format!("remove it; give the curve to be followed as `target` of `[metrics.{}]`", g.metric);
+                format!("remove `target`, and give the curve to follow as `target` of `[metrics.{}]`", g.metric);
             self.fault("HP0237", here.key("target"), message)
-                .note("an `rms` measures the distance of a curve from its target, and is minimised")
+                .note("an `rms` is the distance of a curve from its own target, and is minimised")
                 .help(help);
             return None;
         }
@@ -204,7 +204,7 @@ impl Checker<'_> {
         for (key, bound) in [("min", l.least), ("max", l.most)] {
             if bound.is_some_and(|x| !x.is_finite()) {
                 let message = format!("the `{key}` of limit `{}` is not a finite number", l.name);
-                self.fault("HP0238", here.key(key), message).help("give a number, or leave it out");
+                self.fault("HP0238", here.key(key), message).help("give a finite number, or remove the key");
                 return None;
             }
         }
@@ -212,14 +212,14 @@ impl Checker<'_> {
             (None, None) => {
                 let message = format!("limit `{}` has no bound", l.name);
                 self.fault("HP0238", here.key("name"), message)
-                    .help("give `min`, `max`, both of them, or `equal`");
+                    .help("give `min`, `max` or both, or give `equal`");
                 return None;
             }
             (Some(least), Some(most)) if least > most => {
                 let message = format!("the bounds of limit `{}` contradict each other", l.name);
                 self.fault("HP0238", here.key(side_of(&l.of)), message)
                     .note(format!("its minimum is {least} and its maximum is {most}"))
-                    .help("give the lower one first, or as `min`");
+                    .help("give the lower bound first, or as `min`");
                 return None;
             }
             _ => {}
@@ -229,7 +229,7 @@ impl Checker<'_> {
             let message = format!("limit `{}` is impossible: a length cannot be negative", l.name);
             self.fault("HP0238", here.key("max"), message)
                 .note(format!("its maximum is {most}"))
-                .help("give a length above zero");
+                .help("give a positive length");
             return None;
         }
         let of = of?;
@@ -267,7 +267,7 @@ impl Checker<'_> {
                 let kind = self.model.joints[joint.0].kind;
                 if !kind.is_rod() {
                     let message =
-                        format!("joint `{name}` has no length that limit `{}` could be put on", l.name);
+                        format!("joint `{name}` has no length for limit `{}`", l.name);
                     self.fault("HP0225", here.key("length"), message)
                         .note(format!("it is a {} joint", kind.name))
                         .help("name a rod or a leg; for two hardpoints write `between = [\"A\", \"B\"]`");
@@ -358,8 +358,8 @@ impl Checker<'_> {
         for (at, limit, what) in fixed {
             let message = format!("limit `{limit}` applies to {what}, which no variable changes");
             self.fault("HP0239", at, message)
-                .note(format!("variables that may change: {names}"))
-                .help("add a variable that moves it, with bounds, or remove the limit");
+                .note(format!("optimised variables: {names}"))
+                .help("add a variable with bounds that changes it, or remove the limit");
         }
     }
 }

@@ -57,8 +57,8 @@ impl Checker<'_> {
         if sweeping.count().is_none() && !unknown {
             let message = format!("the sweep has more than {} designs", SweepSettings::MOST);
             self.fault("HP0246", HERE.key("method"), message)
-                .note("every level of a variable multiplies their number")
-                .help("give fewer `levels`, or use `method = \"sobol\"` with as many `samples` as you have time for");
+                .note("the number of designs is the product of the `levels` of all variables")
+                .help("use fewer `levels`, or use `method = \"sobol\"` with a smaller number of `samples`");
         }
         self.model.sweeping = Some(sweeping);
     }
@@ -96,7 +96,7 @@ impl Checker<'_> {
                 let key = if one.low.is_some() { "from" } else { "to" };
                 self.fault("HP0246", here.key(key), message)
                     .note("`from` is the lower end and `to` the upper end; the bounds of the variable are their defaults")
-                    .help("give the lower one as `from`; leave out a variable that is constant");
+                    .help("give the lower end as `from`; remove variables that are constant");
                 continue;
             }
             found.push(SweepRange { variable, low, high, levels });
@@ -109,9 +109,9 @@ impl Checker<'_> {
             self.fault(
                 "HP0246",
                 here.key("levels"),
-                format!("a factorial of {levels} level changes nothing"),
+                format!("a factorial sweep needs at least 2 levels, not {levels}"),
             )
-            .help("give a whole number from 2: both ends of the range, and what is evenly between them");
+            .help("give a whole number from 2: levels are evenly spaced from one end of the range to the other");
         }
     }
 

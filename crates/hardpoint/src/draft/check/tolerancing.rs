@@ -77,9 +77,9 @@ impl Checker<'_> {
             if let Some((v, other)) = variables.iter().find_map(|v| Some((*v, *of.get(v)?))) {
                 let message = format!("design variable `{}` has two tolerances", draft.design[v].name);
                 self.fault("HP0241", here.key("name"), message)
-                    .note(format!("by `{other}` and by `{}`", one.name))
+                    .note(format!("its tolerances are `{other}` and `{}`", one.name))
                     .help(
-                        "remove one of the two: that of a point is a sphere, those of its coordinates a box",
+                        "remove one of the two: the tolerance of a point is a sphere, those of its coordinates are a box",
                     );
                 continue;
             }
@@ -130,17 +130,17 @@ impl Checker<'_> {
         let scatter = self.scatter(one.scatter, t.scatter, here, &format!("the tolerance of `{name}`"));
         if one.cost.is_some_and(|cost| !(cost > 0.0 && cost.is_finite())) {
             let message =
-                format!("the cost of the tolerance of `{name}` cannot be {}", one.cost.unwrap_or_default());
+                format!("invalid cost of the tolerance of `{name}`: {}", one.cost.unwrap_or_default());
             self.fault("HP0241", here.key("cost"), message)
                 .note("a tolerance t costs `cost / t`, relative to the others")
-                .help("give a number above zero, or leave it out for a fixed tolerance");
+                .help("give a positive number, or remove `cost` for a fixed tolerance");
         }
         let reach = match one.reach {
             Some(reach) if !(reach > 0.0 && reach.is_finite()) => {
-                let message = format!("the tolerance of `{name}` cannot be {reach}");
+                let message = format!("invalid tolerance of `{name}`: {reach}");
                 self.fault("HP0241", here.key("tolerance"), message)
-                    .note("it is the half width of the deviations")
-                    .help("give a number above zero, or leave the variable out if it is exact");
+                    .note("a tolerance is the half width of the deviations")
+                    .help("give a positive number, or remove the variable if it is exact");
                 return None;
             }
             Some(reach) => reach / per_si(Dimension::from(quantity?), one.per_metre, one.per_radian),
@@ -166,16 +166,16 @@ impl Checker<'_> {
         if let Some(sigmas) = own.sigmas {
             let even = own.kind.or(all.kind) == Some(0) && here.section == Section::Tolerances;
             if even {
-                let message = format!("{what} is uniform, and has no `sigmas`");
+                let message = format!("{what} is uniform, which takes no `sigmas`");
                 self.fault("HP0241", here.key("sigmas"), message)
                     .help("remove `sigmas`, or write `distribution = \"truncated\"`");
                 return None;
             }
             if !(sigmas > 0.0 && sigmas <= MOST_SIGMAS) {
-                let message = format!("`sigmas` of {what} cannot be {sigmas}");
+                let message = format!("invalid `sigmas` of {what}: {sigmas}");
                 self.fault("HP0241", here.key("sigmas"), message)
-                    .note("it is the number of standard deviations in a tolerance")
-                    .help(format!("give a number above zero, up to {MOST_SIGMAS}, like `sigmas = 3`"));
+                    .note("`sigmas` is the number of standard deviations in a tolerance")
+                    .help(format!("give a positive number up to {MOST_SIGMAS}, like `sigmas = 3`"));
                 return None;
             }
         }
@@ -196,9 +196,9 @@ impl Checker<'_> {
         let mut pairs: BTreeMap<[usize; 2], &str> = BTreeMap::new();
         let mut found = Vec::new();
         if t.correlations.len() > MOST_CORRELATIONS {
-            let message = format!("{} correlations are too many", t.correlations.len());
+            let message = format!("too many correlations: {}", t.correlations.len());
             self.fault("HP0242", HERE.key("correlations"), message).help(format!(
-                "give at most {MOST_CORRELATIONS}, or let one design variable move all that is correlated"
+                "give at most {MOST_CORRELATIONS}, or use one design variable that moves all correlated dimensions"
             ));
             return found;
         }
@@ -210,20 +210,20 @@ impl Checker<'_> {
             let between = [0, 1].map(|k| self.optimized_variable(&one.between[k], here.item("between", k)));
             let [Some(a), Some(b)] = between else { continue };
             if !(one.coefficient.abs() <= 1.0) {
-                let message = format!("correlation `{}` cannot be {}", one.name, one.coefficient);
+                let message = format!("invalid coefficient of correlation `{}`: {}", one.name, one.coefficient);
                 self.fault("HP0242", here.key("coefficient"), message)
                     .help("give a number from -1 to 1: 1 if both deviations are always equal, 0 if they are independent");
                 continue;
             }
             let name = &one.name;
             if a == b {
-                let message = format!("correlation `{name}` is one of `{}` with itself", one.between[0]);
+                let message = format!("correlation `{name}` relates `{}` to itself", one.between[0]);
                 self.fault("HP0242", here.key("between"), message)
                     .help("name two different design variables");
                 continue;
             }
             if let Some(other) = pairs.insert([a.min(b), a.max(b)], name) {
-                let message = format!("correlations `{other}` and `{name}` are of the same two variables");
+                let message = format!("correlations `{other}` and `{name}` relate the same two variables");
                 self.fault("HP0242", here.key("between"), message).help("remove one of the two");
                 continue;
             }
@@ -237,7 +237,7 @@ impl Checker<'_> {
             let message = "the correlations contradict each other";
             self.fault("HP0242", HERE.key("correlations"), message)
                 .note(format!("their matrix is not positive semidefinite: {}", super::super::some_of(&names, ", ", super::LISTED_NAMES)))
-                .help("if a is correlated with b and b with c, so is a with c: at least `r_ab r_bc - sqrt((1 - r_ab^2) (1 - r_bc^2))`");
+                .help("reduce one of them, or correlate the third pair too: if a is correlated with b and b with c, a is correlated with c by at least `r_ab r_bc - sqrt((1 - r_ab^2) (1 - r_bc^2))`");
         }
         found
     }
@@ -268,7 +268,7 @@ impl Checker<'_> {
                 let message =
                     format!("`{name}` of correlation `{}` is {}", one.name, tolerance.scatter.name());
                 self.fault("HP0242", at, message)
-                    .note("a truncated distribution cannot be correlated")
+                    .note("only normal distributions can be correlated")
                     .help("give it `distribution = \"normal\"`, or move both by one design variable");
                 return false;
             }
@@ -282,14 +282,14 @@ impl Checker<'_> {
         if let AllocationRule::Rss { sigmas } = rule
             && !(sigmas > 0.0 && sigmas <= MOST_SIGMAS)
         {
-            let message = format!("`required_sigmas` cannot be {sigmas}");
+            let message = format!("invalid `required_sigmas`: {sigmas}");
             self.fault("HP0243", HERE.key("required_sigmas"), message)
-                .note("it is the number of standard deviations between the nominal value of a metric and its limit")
-                .help(format!("give a number above zero, up to {MOST_SIGMAS}, like `required_sigmas = 3`"));
+                .note("`required_sigmas` is the number of standard deviations between the nominal value of a metric and its limit")
+                .help(format!("give a positive number up to {MOST_SIGMAS}, like `required_sigmas = 3`"));
         }
         if t.limits.is_empty() && !self.unread(HERE, "limits") {
             self.fault("HP0243", HERE.key("allocate"), "invalid allocation: there is no limit").help(
-                "add one, like `[tolerance.limits]` with `toe = { metric = \"toe_range\", max = 0.5 }`",
+                "add a limit, like `[tolerance.limits]` with `toe = { metric = \"toe_range\", max = 0.5 }`",
             );
         }
         if t.tolerances.iter().all(|one| one.cost.is_none()) && !self.draft.unread.any_of(Section::Tolerances)

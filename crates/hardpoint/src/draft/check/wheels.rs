@@ -18,8 +18,8 @@ impl Checker<'_> {
         let here = Here { section: Section::Vehicle, index: 0 };
         for (key, value) in [("wheelbase", v.wheelbase), ("cg_height", v.cg_height)] {
             if value.is_some_and(|x| !(x > 0.0 && x.is_finite())) {
-                self.fault("HP0231", here.key(key), format!("the {key} of the vehicle is not above zero"))
-                    .help("give a length above zero, in the file's length unit");
+                self.fault("HP0231", here.key(key), format!("the {key} of the vehicle is not positive"))
+                    .help("give a positive length, in the file's length unit");
             }
         }
         for (key, value) in
@@ -55,7 +55,7 @@ impl Checker<'_> {
             let id = self.wheel_ids[k]?;
             if self.model.wheels[id.0].side != side {
                 let message =
-                    format!("the {key} wheel of axle `{}` is on the other side of the vehicle", a.name);
+                    format!("the {key} wheel of axle `{}` is on the wrong side of the vehicle", a.name);
                 self.fault("HP0231", here.key(key), message)
                     .help(format!("name the wheel on the {key}; y points left"));
                 return None;
@@ -142,7 +142,7 @@ impl Checker<'_> {
             self.fault(
                 "HP0231",
                 here.key("radius"),
-                format!("the radius of wheel `{}` is not above zero", w.name),
+                format!("the radius of wheel `{}` is not positive", w.name),
             )
             .help("give the distance from the wheel's centre to the ground");
         }
@@ -226,7 +226,7 @@ impl Checker<'_> {
         if !(y.abs() > SAME_POINT * self.extent.size()) {
             let message = format!("wheel `{}` is on neither side of the vehicle", w.name);
             self.fault("HP0231", here.key("centre"), message)
-                .note("the y of its centre is zero")
+                .note("the y coordinate of its centre is zero")
                 .help("give `side = \"left\"` or `side = \"right\"`");
             return None;
         }
@@ -269,7 +269,7 @@ impl Checker<'_> {
                 for (key, angle) in [("toe", toe), ("camber", camber)] {
                     if !(angle.abs() < quarter * (1.0 - HEADLESS)) {
                         upright = false;
-                        let message = format!("the {key} of wheel `{}` is a quarter turn or more", w.name);
+                        let message = format!("the {key} of wheel `{}` is 90 deg or more", w.name);
                         self.fault("HP0231", here.key(key), message)
                             .help("give the angle of the design configuration, in the file's angle unit");
                     }
@@ -290,13 +290,13 @@ impl Checker<'_> {
         let name = &w.name;
         let (message, help) = if !(k.norm() > SAME_POINT * self.extent.size()) {
             (
-                format!("the two points of the kingpin of wheel `{name}` are at the same place"),
+                format!("the two points of the kingpin of wheel `{name}` coincide"),
                 "name a lower and an upper point of the axis that the wheel steers about",
             )
         } else if k.z.abs() <= HEADLESS * k.norm() {
             (
-                format!("the kingpin of wheel `{name}` is level"),
-                "its upper point must lie above its lower one",
+                format!("the kingpin of wheel `{name}` is horizontal"),
+                "name an upper point that lies above the lower one",
             )
         } else if !(k.z > 0.0) {
             (
@@ -327,9 +327,9 @@ impl Checker<'_> {
             (&[a, b], &[p, q]) => (ArmPlane::Square([a, b]), (q - p).norm() > SAME_POINT * size),
             _ => {
                 let message =
-                    format!("the {which} plane of wheel `{name}` is given by {} points", found.len());
+                    format!("the {which} plane of wheel `{name}` has {} points", found.len());
                 self.fault("HP0231", here.item("arm_planes", arm), message).help(
-                    "give three points of an arm, or two of a strut: its top mount, and another one of its axis",
+                    "give three points of an arm, or two of a strut: its top mount and another point of its axis",
                 );
                 return None;
             }
@@ -339,7 +339,7 @@ impl Checker<'_> {
         }
         let message = format!("the points of the {which} plane of wheel `{name}` do not define a plane");
         self.fault("HP0231", here.item("arm_planes", arm), message).help(match plane {
-            ArmPlane::Through(_) => "name two pivots and the ball joint of an arm, which are not on one line",
+            ArmPlane::Through(_) => "name two pivots and the ball joint of an arm that are not on one line",
             ArmPlane::Square(_) => "name a strut's top mount and another point of its axis",
         });
         None
@@ -351,8 +351,8 @@ impl Checker<'_> {
         let ends = [a?, b?];
         let [p, q] = ends.map(|p| self.position(self.model.points[p.0].at));
         if !((q? - p?).norm() > SAME_POINT * self.extent.size()) {
-            let message = format!("the two ends of the spring of wheel `{}` are at the same place", w.name);
-            self.fault("HP0231", here.key("spring"), message).help("name its ends on either body");
+            let message = format!("the two ends of the spring of wheel `{}` coincide", w.name);
+            self.fault("HP0231", here.key("spring"), message).help("name the ends of the spring, one on each body");
             return None;
         }
         Some(ends)
@@ -405,7 +405,7 @@ impl Checker<'_> {
             && end != at
         {
             let message =
-                format!("`{}` applies to {} wheels, and `{name}` is not one", what.name(), end.name());
+                format!("`{}` applies to {} wheels, but `{name}` is not one", what.name(), end.name());
             self.fault("HP0232", here.key("type"), message).help(match end {
                 VehicleEnd::Front => "at the rear measure `anti_lift` or `anti_squat`",
                 VehicleEnd::Rear => "at the front measure `anti_dive` or `anti_rise`",
@@ -417,7 +417,7 @@ impl Checker<'_> {
             return None;
         }
         if !missing.is_empty() {
-            let message = format!("`{}` needs more data of the vehicle", what.name());
+            let message = format!("`{}` needs vehicle data that is missing", what.name());
             let help = format!("add to `[vehicle]`: {}", missing.join(", "));
             self.fault("HP0232", here.key("type"), message).help(help);
             return None;
