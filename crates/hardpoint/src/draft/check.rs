@@ -1,4 +1,4 @@
-//! From a draft to a model: every reference resolved, every fault found.
+//! Check of a draft: resolves all references, reports all errors, and builds the model.
 
 mod cases;
 mod design;
@@ -30,25 +30,25 @@ use crate::model::{
 };
 use crate::space::{Mat3, Pose, Vec3};
 
-/// Tolerance of the right angle between `axis2` and `axis`, as a cosine: typed unit vectors satisfy it.
+/// Tolerance of the right angle between `axis2` and `axis`, as a cosine. Typed unit vectors satisfy it.
 const SQUARE_TOLERANCE: f64 = 1e-6;
-/// Points closer than this part of the mechanism's size are the same point.
+/// Distance, relative to the size of the mechanism, below which two points coincide.
 const SAME_POINT: f64 = 1e-9;
-/// A fault lists at most this many valid names.
+/// Maximum number of valid names in an error.
 const LISTED_NAMES: usize = 24;
-/// The first that many faults guess which name was meant ...
+/// Number of errors up to which the check suggests a name ...
 const GUESSES: usize = 50;
-/// ... as long as that takes no more than that many comparisons of names in all.
+/// ... and the maximum number of name comparisons for suggestions.
 const COMPARISONS: usize = 250_000;
 
 impl Model {
     /// Checks a draft and resolves its names.
     ///
     /// # Errors
-    /// Every [`DraftError`] of the draft, in its order: unknown or duplicate names, axes that are null or missing or
-    /// not square, places that do not fit the joint type, drivers on coordinates that a joint does not have, laws that
-    /// are not finite at an output time, times that do not increase. No fault, but no model either, where something is
-    /// [`UnreadEntries`](crate::draft::UnreadEntries) and all else is right.
+    /// Every [`DraftError`] of the draft, in its order: unknown or duplicate names, missing, null or non-perpendicular
+    /// axes, locations that do not fit the joint type, drivers of coordinates that a joint does not have, laws that are
+    /// not finite at an output time, times that do not increase. If the draft has
+    /// [`UnreadEntries`](crate::draft::UnreadEntries) and no errors, the list is empty.
     ///
     /// ```
     /// use hardpoint::{draft::Draft, model::Model};
@@ -89,7 +89,7 @@ impl Model {
     }
 }
 
-/// A place in the draft that is being looked at.
+/// Entry of the draft that is being checked.
 #[derive(Clone, Copy)]
 struct Here {
     section: Section,
@@ -110,37 +110,37 @@ struct Checker<'a> {
     draft: &'a Draft,
     model: Model,
     faults: Vec<DraftError>,
-    /// Model joint of every joint of the draft; `None` for faulty ones.
+    /// Model joint of each joint of the draft; `None` for faulty ones.
     joint_ids: Vec<Option<JointId>>,
-    /// The same for wheels, and for axles.
+    /// Model wheel of each wheel of the draft, and model axle of each axle.
     wheel_ids: Vec<Option<WheelId>>,
     axle_ids: Vec<Option<AxleId>>,
-    /// Model metric of every metric of the draft.
+    /// Model metric of each metric of the draft; `None` for faulty ones.
     metric_ids: Vec<Option<usize>>,
-    /// The hardpoints that curves pass through.
+    /// Hardpoints that curves pass through.
     curve_points: Vec<HardpointId>,
-    /// The formulas that are read so far, each after those whose results it uses.
+    /// Formulas resolved so far, each after those whose results it uses.
     written: Vec<formulas::Written>,
-    /// Parameters and hardpoints without a known value: unread, or given by a faulty formula.
+    /// Parameters and coordinates of hardpoints without a known value: unread, or defined by a faulty formula.
     spoilt: BTreeSet<Source>,
-    /// The expressions for the length of joints, and for the parameters of drivers' laws, by name.
+    /// Expressions for lengths of joints, and for parameters of drivers' laws, by name.
     length_formulas: HashMap<&'a str, &'a Expression>,
     law_formulas: HashMap<&'a str, Vec<(&'a str, &'a Expression)>>,
-    /// The same of the laws of cases, by the names of case and driver.
+    /// Expressions for parameters of the laws of cases, by the names of case and driver.
     case_formulas: HashMap<(&'a str, &'a str), Vec<(&'a str, &'a Expression)>>,
-    /// By kind of entry: which number a name has. Only looked up, never walked.
+    /// Index of each name, by kind of entry. Only used for lookups, never iterated.
     numbers: HashMap<&'static str, HashMap<&'a str, usize>>,
     /// Driver of a joint coordinate. Only used for lookups, never iterated.
     driver_of: HashMap<(JointId, usize), DriverId>,
-    /// Values in the design configuration of the drivers whose laws count from zero.
+    /// Nominal values of the drivers whose laws give absolute values.
     zeros: HashMap<DriverId, driven::AsDrawn>,
-    /// Comparisons of names that guesses may still take.
+    /// Remaining number of name comparisons for suggestions.
     comparisons: usize,
-    /// The box around the joints' hardpoints, as far as they are known; what no joint uses has no say in what is small.
+    /// Bounding box of the known hardpoints of joints. Hardpoints without joints do not affect the tolerances.
     extent: Extent,
 }
 
-/// The tables that names of a kind stand in.
+/// Table of each kind of entry.
 const TABLES: [(&str, &str); 15] = [
     ("parameter", "parameters"),
     ("hardpoint", "hardpoints"),
@@ -159,7 +159,7 @@ const TABLES: [(&str, &str); 15] = [
     ("vehicle", "vehicle"),
 ];
 
-/// The box around the known hardpoints that joints name; around all of these if they name none.
+/// Bounding box of the known hardpoints that joints use, or of all known hardpoints if joints use none.
 fn extent_of_joints(draft: &Draft, hardpoints: &[Hardpoint], spoilt: &BTreeSet<Source>) -> Extent {
     let known = |(k, _): &(usize, &Hardpoint)| is_known(HardpointId(*k), spoilt);
     let known: Vec<&Hardpoint> = hardpoints.iter().enumerate().filter(known).map(|h| h.1).collect();
@@ -175,7 +175,7 @@ fn extent_of_joints(draft: &Draft, hardpoints: &[Hardpoint], spoilt: &BTreeSet<S
     if extent.size_or_zero() > 0.0 { extent } else { Extent::of(known.iter().map(|h| h.position)) }
 }
 
-/// True if the place of a hardpoint is known, given what faulty formulas should give.
+/// True if all coordinates of a hardpoint are known.
 fn is_known(h: HardpointId, spoilt: &BTreeSet<Source>) -> bool {
     spoilt.is_empty() || (0..3).all(|axis| !spoilt.contains(&Source::Coordinate(h, axis)))
 }
@@ -367,13 +367,14 @@ impl<'a> Checker<'a> {
         self.draft.unread.has(here.section, here.index, field)
     }
 
-    /// True if the table of all these could not be read.
+    /// True if the table of this kind of entry could not be read.
     fn lost(&self, what: &str) -> bool {
         let table = TABLES.iter().find(|t| t.0 == what);
         table.is_some_and(|(_, table)| self.draft.unread.has(Section::Model, 0, table))
     }
 
-    /// Looks a name up among candidates, or says what is there instead; says nothing where these could not be read.
+    /// Returns the index of a name among candidates. Reports HP0204 with the valid names if it is unknown, unless their
+    /// table could not be read.
     fn find<'n>(
         &mut self,
         what: &str,
@@ -390,7 +391,7 @@ impl<'a> Checker<'a> {
             return found;
         }
         let count = numbers.map_or_else(|| candidates.clone().count(), HashMap::len);
-        // A guess compares with every name; past the faults that anybody reads it would only cost time.
+        // A suggestion takes a comparison with every name. Beyond the errors that a user reads, it only costs time.
         let guess = self.faults.len() < GUESSES && count <= self.comparisons;
         let close = if guess { did_you_mean(name, candidates.clone()) } else { None };
         self.comparisons -= if guess { count } else { 0 };
@@ -410,12 +411,12 @@ impl<'a> Checker<'a> {
         None
     }
 
-    /// Suggests text for a point if a hardpoint was named in its place.
+    /// Returns a suggestion if a hardpoint is named instead of a point.
     fn point_at(&self, hardpoint: &str) -> Option<String> {
         self.draft.hardpoints.iter().find(|h| h.name == hardpoint)?;
         let is_there =
             |place: &LocationDraft| matches!(place, LocationDraft::Hardpoint(name) if name == hardpoint);
-        // A joint with one place has it on both of its bodies.
+        // A joint with one location has it on both bodies.
         let bodies = self.draft.joints.iter().filter_map(|joint| {
             let k = joint.at.iter().position(is_there)?;
             Some(joint.bodies[if joint.at.len() == 1 { 1 } else { k.min(1) }].as_str())
@@ -437,14 +438,14 @@ impl<'a> Checker<'a> {
         self.find("hardpoint", name, at, draft.hardpoints.iter().map(|h| h.name.as_str())).map(HardpointId)
     }
 
-    /// The joint of that name; `None`, without a second fault, where the joint itself is faulty.
+    /// Returns the joint with this name; `None`, without a second error, if the joint itself is faulty.
     fn joint(&mut self, name: &str, at: DraftLocation) -> Option<JointId> {
         let draft = self.draft;
         let k = self.find("joint", name, at, draft.joints.iter().map(|j| j.name.as_str()))?;
         self.joint_ids[k]
     }
 
-    /// A hardpoint for a place; coordinates become an unnamed one.
+    /// Returns the hardpoint of a location; coordinates become an unnamed hardpoint.
     fn place(&mut self, place: &LocationDraft, owner: &str, at: DraftLocation) -> Option<HardpointId> {
         match place {
             LocationDraft::Hardpoint(name) => self.hardpoint(name, at),
@@ -472,7 +473,7 @@ impl<'a> Checker<'a> {
         Some((d.norm() > SAME_POINT * self.extent.size()).then_some(d))
     }
 
-    /// A direction, and its unit vector at the design configuration.
+    /// Returns a direction, and its unit vector in the design configuration. HP0205 if it is null.
     fn line(
         &mut self,
         line: &DirectionDraft,
@@ -483,7 +484,7 @@ impl<'a> Checker<'a> {
         self.line_at(line, owner, here.key(key))
     }
 
-    /// The same, written at a place.
+    /// [`Checker::line`], with errors reported at a location.
     fn line_at(
         &mut self,
         line: &DirectionDraft,
@@ -582,7 +583,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// HP0212 for bodies that nothing holds; default frames for the others that gave none.
+    /// HP0212: bodies without joints. Sets the default frames.
     fn default_frames(&mut self) {
         let mut ends = vec![(Vec3::ZERO, 0.0); self.model.bodies.len()];
         for j in self.model.joints.iter().filter(|j| j.at[0] != UNPLACED) {
@@ -594,7 +595,7 @@ impl<'a> Checker<'a> {
         }
         let named: BTreeSet<&str> =
             self.draft.joints.iter().flat_map(|j| &j.bodies).map(String::as_str).collect();
-        // A joint that could not be read may hold any body.
+        // An unread joint may connect any body.
         let all_known = !self.lost("joint") && !self.draft.unread.anywhere(Section::Joints, "bodies");
         for (index, b) in self.draft.bodies.iter().enumerate() {
             if !named.contains(b.name.as_str()) && all_known {
@@ -615,13 +616,13 @@ impl<'a> Checker<'a> {
             let here = Here { section: Section::Points, index };
             let body = self.body(&p.body, here.key("body"));
             let at = if self.unread(here, "at") { None } else { self.place(&p.at, &p.name, here.key("at")) };
-            // A faulty point keeps its place in the list, so that later names still resolve.
+            // A faulty point stays in the list, so that the indices of later points are correct.
             let (body, at) = body.zip(at).unwrap_or((GROUND, UNPLACED));
             self.model.points.push(BodyPoint { name: p.name.clone(), body, at, unnamed: false });
         }
     }
 
-    /// A point; `None`, without a second fault, where a named point itself is faulty.
+    /// Returns a point; `None`, without a second error, if a named point itself is faulty.
     fn point(&mut self, p: &PointRef, owner: &str, at: DraftLocation) -> Option<PointId> {
         match p {
             PointRef::Named(name) => {
@@ -642,14 +643,14 @@ impl<'a> Checker<'a> {
     fn times(&mut self) {
         let cases = &self.draft.cases;
         if self.draft.times.is_empty() && !cases.is_empty() && cases.iter().all(|c| c.times.is_some()) {
-            // Those of the file would only be a default.
+            // The times of the model are only a default for cases.
             self.model.times = cases[0].times.clone().unwrap_or_default();
             return;
         }
         self.times_of(&self.draft.times, Here { section: Section::Time, index: 0 }.key(""));
     }
 
-    /// HP0219: output times that do not go on.
+    /// HP0219: missing output times, or times that are not finite and increasing.
     fn times_of(&mut self, times: &[f64], at: DraftLocation) {
         if times.is_empty() {
             self.fault("HP0219", at, "the model has no output times")
@@ -666,14 +667,14 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// The place of a joint that needs none, until it gets one, and of a faulty point.
+/// Placeholder for the hardpoint of a joint without a location, until it gets one, and of a faulty point.
 const UNPLACED: HardpointId = HardpointId(usize::MAX);
 
 fn degrees_between(a: Vec3, b: Vec3) -> f64 {
     a.dot(b).clamp(-1.0, 1.0).acos().to_degrees()
 }
 
-/// Index of each name; of equal names, the first.
+/// Returns the index of each name; the first one of equal names.
 fn numbered<'a>(names: impl Iterator<Item = &'a str>) -> HashMap<&'a str, usize> {
     let mut numbers = HashMap::new();
     for (k, name) in names.enumerate() {
@@ -682,7 +683,7 @@ fn numbered<'a>(names: impl Iterator<Item = &'a str>) -> HashMap<&'a str, usize>
     numbers
 }
 
-/// The frame with z along `z` and x along `x`, two unit vectors perpendicular to each other.
+/// Returns the frame with axes z and x along two perpendicular unit vectors.
 fn frame_along(z: Vec3, x: Vec3) -> Mat3 {
     Mat3 { cols: [x, z.cross(x), z] }
 }

@@ -1,4 +1,4 @@
-//! Checks of cases: what moves in each, by which laws and when.
+//! Checks of cases: laws, output times, and motion in each case.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -11,7 +11,7 @@ use super::{Checker, Here, LISTED_NAMES};
 impl Checker<'_> {
     pub(super) fn cases(&mut self) {
         let draft = self.draft;
-        // A law of a driver's own is looked at once, whatever cases follow it.
+        // The own law of a driver is reported once, however many cases use it.
         let mut seen = BTreeSet::new();
         let known = self.model.drivers.iter().enumerate().map(|(d, driver)| (driver.name.clone(), d));
         let known: HashMap<String, usize> = known.collect();
@@ -23,7 +23,7 @@ impl Checker<'_> {
             }
             let mut laws =
                 vec![(c.rest == OtherDrivers::Held).then(|| Law::constant(0.0)); self.model.drivers.len()];
-            // The formulas of its laws are kept with it.
+            // The case stores the formulas of its laws.
             let case = CaseId(self.model.cases.len());
             let times_of_case = times.clone();
             let (name, formulas) = (c.name.clone(), Vec::new());
@@ -64,7 +64,7 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0235: a case in which no driver moves, though it has several output times.
+    /// HP0235: a case with several output times in which no driver moves.
     fn moves(&mut self, c: &CaseDraft, laws: &[Option<Law>], times: &[f64], here: Here) {
         let draft = self.draft;
         let faulty = self.model.drivers.len() < draft.drivers.len()

@@ -44,9 +44,9 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0229: bounds between which the model in the design configuration does not lie, or a typical size that is none.
+    /// HP0229: bounds that do not enclose the nominal design, or an invalid typical size or tolerance.
     fn range(&mut self, v: &VariableDraft, here: Here) {
-        // Those of a parameter are counted from its value.
+        // Bounds of a parameter are relative to its value.
         if let Some([low, high]) = v.bounds.filter(|_| !self.unread(here, "value")) {
             if !(low < high && low.is_finite() && high.is_finite()) {
                 let message =
@@ -73,8 +73,8 @@ impl Checker<'_> {
         }
     }
 
-    /// Checks a velocity field over whole bodies: hardpoints of joints and points move, axes along vectors rotate, axes
-    /// through hardpoints follow their hardpoints.
+    /// Resolves a velocity field over whole bodies: hardpoints of joints and points move, axes along vectors rotate,
+    /// axes through hardpoints follow their hardpoints.
     fn shape(
         &mut self,
         bodies: &[String],
@@ -125,7 +125,7 @@ impl Checker<'_> {
         Some(changes)
     }
 
-    /// A velocity field over whole bodies.
+    /// Resolves a velocity field over whole bodies.
     fn shape_field(&mut self, field: &ShapeDraft, owner: &str, here: Here) -> Option<ShapeField> {
         let key = || here.key("field");
         Some(match field {
@@ -183,7 +183,7 @@ impl Checker<'_> {
         })
     }
 
-    /// Resolves a change: its references must exist and must be able to change so.
+    /// Resolves a change. HP0204, HP0218, HP0225 or HP0226 if a reference is unknown or cannot change in this way.
     fn change(&mut self, change: &ChangeDraft, owner: &str, here: Here, k: usize) -> Option<Vec<Change>> {
         let at = here.item("changes", k);
         let change = match change {
@@ -271,7 +271,7 @@ impl Checker<'_> {
         Some(vec![change])
     }
 
-    /// HP0217: a change that changes nothing.
+    /// HP0217: a change with zero velocity.
     fn not_null(&mut self, does_something: bool, owner: &str, at: DraftLocation) {
         if !does_something {
             let message = format!("a velocity of design variable `{owner}` is zero or not finite");
@@ -280,12 +280,12 @@ impl Checker<'_> {
     }
 }
 
-/// True if these velocities together are one.
+/// True if all velocities are finite and one of them is not zero.
 fn vectors(velocities: &[Vec3]) -> bool {
     velocities.iter().all(|v| v.is_finite()) && velocities.iter().any(|v| v.norm() >= 1e-12)
 }
 
-/// True if a rate is one.
+/// True if a rate is finite and not zero.
 fn number(rate: f64) -> bool {
     rate.is_finite() && rate != 0.0
 }

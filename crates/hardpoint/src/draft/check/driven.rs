@@ -1,4 +1,4 @@
-//! Checks of what drivers prescribe: a joint's coordinate, or an unnamed joint that has the request.
+//! Checks of driven quantities: a coordinate of a joint, or of an unnamed joint made for the driver.
 
 use crate::constraint::Row;
 use crate::draft::{
@@ -19,43 +19,43 @@ use super::{Checker, Here, frame_along};
 pub(super) struct Driven {
     pub joint: JointId,
     pub coordinate: usize,
-    /// Value in the design configuration, if the law counts from zero.
+    /// Source of the nominal value, if the law gives absolute values.
     zero: Zero,
 }
 
-/// Value of a driver's coordinate in the design configuration.
+/// Source of the nominal value of a driver's coordinate.
 #[derive(Clone, Copy)]
 enum Zero {
-    /// Nothing: there is nothing else to count from, like a revolute joint's angle.
+    /// No absolute zero, as for the angle of a revolute joint.
     None,
-    /// Zero: what is measured is counted from the design configuration, like wheel travel.
+    /// Zero, because the measure itself counts from the design configuration, like wheel travel.
     AsDrawn,
-    /// Value that the joint keeps of its design configuration: the length of a rod or leg, the course of an axis.
+    /// Constant of the joint in the design configuration: the length of a rod or leg, the angle of an axis.
     Kept,
     /// Position of the joint's hardpoint along its axis.
     Position,
 }
 
-/// The axes of an unnamed joint.
+/// Axes of an unnamed joint.
 struct Axes {
     axis: Direction,
     axis2: Option<Direction>,
     frames: [Mat3; 2],
 }
 
-/// A direction nearer to the line of sight than this, as a sine, has no angle.
+/// Sine of the angle to the line of sight below which a direction has no angle.
 const HEADLESS: f64 = 1e-6;
-/// The body that is.
+/// Name of the fixed body.
 const GROUND_NAME: &str = "ground";
 
-/// Design value of a driver's coordinate, over hardpoints, or as the joint keeps it.
+/// Nominal value of a driver's coordinate as an expression over hardpoints or joint constants.
 pub(super) struct AsDrawn {
     expression: Expression,
     sources: Vec<Source>,
 }
 
 impl AsDrawn {
-    /// The same as what gives a number of the model.
+    /// Returns the formula that defines a number of the model by this value.
     pub fn formula(&self, of: Target) -> Formula {
         let inputs = self.sources.iter().map(|s| (*s, 1.0)).collect();
         Formula { of, expression: self.expression.clone(), inputs, per_unit: 1.0 }
@@ -63,14 +63,14 @@ impl AsDrawn {
 }
 
 impl DriverDraft {
-    /// True if its laws give the whole value of what it prescribes.
+    /// True if the laws give the absolute value of the prescribed quantity.
     pub(super) fn counts_from_zero(&self) -> bool {
         self.from_zero || matches!(self.drives, DrivenDraft::Measure(_))
     }
 }
 
 impl Checker<'_> {
-    /// The joint coordinate that a driver prescribes; for what is no joint's, an unnamed joint that has it.
+    /// Returns the joint coordinate that a driver prescribes. Adds an unnamed joint if no joint has it.
     pub(super) fn driven(&mut self, d: &DriverDraft, here: Here) -> Option<Driven> {
         match &d.drives {
             DrivenDraft::Unread => None,
@@ -148,7 +148,8 @@ impl Checker<'_> {
         self.driven_joint(d, &joint::LEG, [i.body, j.body], [i.at, j.at], None, Zero::Kept)
     }
 
-    /// Coordinate that has the value of a measure, in whole or relative to the design configuration like the measure.
+    /// Returns the coordinate that has the value of a measure, absolute or relative to the design configuration like
+    /// the measure.
     fn driven_measure(&mut self, d: &DriverDraft, name: &str, here: Here) -> Option<Driven> {
         let draft = self.draft;
         let at = here.key("measure");
@@ -194,7 +195,7 @@ impl Checker<'_> {
             MeasureKindDraft::Wheel { wheel, what } => {
                 let names = draft.wheels.iter().map(|w| w.name.as_str());
                 let number = self.find("wheel", wheel, at.clone(), names)?;
-                // What is wrong with the wheel itself is said where wheels are looked at.
+                // The check of wheels reports the errors of the wheel itself.
                 let faults = self.faults.len();
                 let stands = self.wheel_as_drawn(&draft.wheels[number], number);
                 self.faults.truncate(faults);
@@ -254,7 +255,7 @@ impl Checker<'_> {
         None
     }
 
-    /// A ray that one body carries: the body, and the direction in it.
+    /// Returns the body of a ray that is fixed in one body, and its direction. HP0213 otherwise.
     fn ray_of_one_body(
         &mut self,
         d: &DriverDraft,
@@ -280,7 +281,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The course of a direction of a body, seen along z of ground and counted from x.
+    /// Drives the angle of a direction of a body about z of ground, counted from x.
     #[expect(clippy::too_many_arguments, reason = "what a joint is made of")]
     fn driven_course(
         &mut self,
@@ -303,7 +304,7 @@ impl Checker<'_> {
         self.driven_joint(d, &joint::COURSE, [GROUND, body], [place, place], Some(axes), zero)
     }
 
-    /// Direction as a vector in the design configuration.
+    /// Returns a direction as a vector in the design configuration.
     fn vector(&self, direction: Direction) -> Option<Vec3> {
         match direction {
             Direction::Along(v) => Some(v),
@@ -311,13 +312,13 @@ impl Checker<'_> {
         }
     }
 
-    /// A hardpoint where a joint holds a body.
+    /// Returns a hardpoint of a joint of a body.
     fn place_on(&self, body: BodyId) -> Option<HardpointId> {
         self.model.joints.iter().find(|j| j.bodies.contains(&body)).map(|j| j.at[0])
     }
 
-    /// Value of a driver's coordinate in the design configuration, if it is not zero. HP0213 if a law counts from a
-    /// zero that does not exist.
+    /// Returns the nominal value of a driver's coordinate, if it is not zero. HP0213 if the law is absolute and the
+    /// coordinate has no absolute zero.
     pub(super) fn as_drawn(&mut self, d: &DriverDraft, driven: Driven, here: Here) -> Option<AsDrawn> {
         let joint = &self.model.joints[driven.joint.0];
         let mut sources = Vec::new();
@@ -341,7 +342,7 @@ impl Checker<'_> {
                 return None;
             }
             (Zero::None | Zero::AsDrawn, ..) => return None,
-            // What the joint keeps, which `length` and variables of the joint itself change as well as its hardpoints.
+            // The joint constant changes with `length` and variables of the joint itself, not only with its hardpoints.
             (Zero::Kept, ..) => {
                 sources.push(Source::Kept(driven.joint, driven.coordinate));
                 "n0".to_owned()
@@ -363,7 +364,7 @@ impl Checker<'_> {
         Some(AsDrawn { sources: sources.collect(), expression: expression.clone() })
     }
 
-    /// An unnamed joint that has the coordinate that a driver prescribes.
+    /// Adds an unnamed joint with the coordinate that a driver prescribes.
     fn driven_joint(
         &mut self,
         d: &DriverDraft,
@@ -397,7 +398,7 @@ impl Checker<'_> {
         Some(Driven { joint: JointId(self.model.joints.len() - 1), coordinate: 0, zero })
     }
 
-    /// True if a joint's coordinate may be prescribed: by one driver, and not where a constraint keeps it.
+    /// True if a driver may prescribe a joint's coordinate: no other driver does, and no constraint fixes it.
     fn drivable(
         &mut self,
         d: &DriverDraft,

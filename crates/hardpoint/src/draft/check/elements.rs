@@ -1,4 +1,4 @@
-//! Checks of masses and forces: what they name, and whether such a thing can be.
+//! Checks of masses and forces: references and parameters.
 
 use crate::draft::measure::Field;
 use crate::draft::{ElementDraft, FieldDraft, FieldKind, NumberDraft, Section};
@@ -13,10 +13,11 @@ use crate::space::Vec3;
 
 use super::{Checker, Here, MeasureCheck};
 
-/// A direction is across another one where the sine between them is at least this.
+/// Minimum sine of the angle between two directions that count as not parallel.
 const ACROSS: f64 = 1e-3;
 
-/// By so much may a moment of inertia exceed the sum of the other two: what typed digits leave of a flat plate.
+/// Relative tolerance by which a moment of inertia may exceed the sum of the other two: rounding of the typed digits of
+/// a flat plate.
 const FLAT: f64 = 1e-3;
 
 impl Checker<'_> {
@@ -254,14 +255,14 @@ impl Checker<'_> {
             .help("put it on the body that it belongs to, or remove it");
     }
 
-    /// HP0251: friction in a joint that is no such thing.
+    /// HP0251: friction in a joint of the wrong type.
     fn no_friction(&mut self, name: &str, joint: JointId, what: &str, here: Here, help: &str) {
         let message =
             format!("`{name}` acts in joint `{}`, which is not a {what}", self.model.joints[joint.0].name);
         self.fault("HP0251", here.key("joint"), message).help(help);
     }
 
-    /// HP0252: numbers of friction that have to be above zero.
+    /// HP0252: friction parameters that are not positive.
     fn above(&mut self, numbers: impl Iterator<Item = (NumberId, &'static str)>, name: &str, here: Here) {
         for (number, key) in numbers {
             if !(self.value(number) > 0.0) {
@@ -271,7 +272,7 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0252: a number below zero that would drive what it should brake.
+    /// HP0252: a negative friction parameter, which would drive the motion.
     fn not_below(&mut self, number: Option<NumberId>, key: &'static str, name: &str, here: Here) {
         if number.is_some_and(|n| !(self.value(n) >= 0.0)) {
             let message = format!("`{key}` of `{name}` is negative");
@@ -279,7 +280,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The table of a spring, as tension over deflection.
+    /// Returns the table of a spring, as tension over extension.
     pub(super) fn spring_table(
         &mut self,
         points: &[[f64; 2]],
@@ -297,7 +298,7 @@ impl Checker<'_> {
         table.ok()
     }
 
-    /// HP0251: what a spring's force depends on does not fit together.
+    /// HP0251: contradictory keys of a spring.
     fn spring_forces(&mut self, kind: &ElementKind, name: &str, here: Here) {
         let ElementKind::Spring { compression, extension, scale, .. } = kind else { return };
         if compression.is_some() && extension.is_some() {
@@ -316,7 +317,7 @@ impl Checker<'_> {
         self.model.numbers[number.0].value
     }
 
-    /// HP0252: numbers that no such thing can have.
+    /// HP0252: mass parameters that are not positive, or an invalid bore.
     fn sizes(&mut self, kind: &ElementKind, name: &str, here: Here) {
         let mut above = Vec::new();
         match kind {
@@ -346,7 +347,7 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0252: moments of inertia that no body can have, about the centre.
+    /// HP0252: moments of inertia about the centre that are physically impossible.
     fn inertia(&mut self, kind: &ElementKind, name: &str, here: Here) {
         let ElementKind::Rigid { centre, mass, ixx, iyy, izz, ixy, iyz, izx, about } = kind else { return };
         let given = [ixx, iyy, izz].map(|n| n.map(|n| self.value(n.0)));
@@ -376,7 +377,7 @@ impl Checker<'_> {
             }
             return;
         }
-        // Who gives only those that a plane asks for says nothing of the others.
+        // If a planar model gives only some of the moments, the others are unknown.
         if given.iter().any(|n| n.is_none()) {
             return;
         }

@@ -1,5 +1,4 @@
-//! Checks of parameters and formulas: what their names mean, in which order they are evaluated, and what may follow
-//! them.
+//! Checks of parameters and formulas: references, order of evaluation, and dependence on design variables.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -17,18 +16,18 @@ use crate::space::Vec3;
 
 use super::{Checker, Here, LISTED_NAMES, extent_of_joints};
 
-/// A formula, and where it is.
+/// Formula with its location in the draft.
 pub(super) struct Written {
     formula: Formula,
     at: DraftLocation,
-    /// Name of the defined number, as it appears in messages.
+    /// Name of the defined number in messages.
     name: String,
-    /// The case to whose laws it belongs.
+    /// Case whose laws it defines.
     case: Option<CaseId>,
 }
 
 impl<'a> Checker<'a> {
-    /// Parameters, and the formulas that give them and the coordinates of named hardpoints.
+    /// Adds the parameters, and resolves the formulas of parameters and of coordinates of named hardpoints.
     pub(super) fn formulas(&mut self) {
         let draft = self.draft;
         for (index, p) in draft.parameters.iter().enumerate() {
@@ -70,7 +69,7 @@ impl<'a> Checker<'a> {
                     let target = k.map(|k| Target::Coordinate(HardpointId(k), *axis % 3));
                     (target, here.item("position", *axis % 3), name)
                 }
-                // Their joints and drivers ask for them.
+                // Joints and drivers resolve their own formulas.
                 FormulaOf::Length(_) | FormulaOf::Law(..) | FormulaOf::CaseLaw(..) => continue,
             };
             let Some(of) = found else {
@@ -91,7 +90,7 @@ impl<'a> Checker<'a> {
         self.numbers.get(what).and_then(|numbers| numbers.get(name)).copied()
     }
 
-    /// The formula of an expression, with its names resolved.
+    /// Returns the formula of an expression, with its names resolved.
     fn formula(&mut self, of: Target, expression: &Expression, at: &DraftLocation) -> Option<Formula> {
         let per_metre = expression.per_metre();
         let inputs: Vec<_> = expression.names().iter().map(|name| self.source(name, per_metre, at)).collect();
@@ -109,7 +108,7 @@ impl<'a> Checker<'a> {
         Some(Formula { of, expression: expression.clone(), inputs, per_unit })
     }
 
-    /// Source that a name in an expression refers to, with the number of units of the text per SI unit.
+    /// Returns the source that a name in an expression refers to, with the number of units of the text per SI unit.
     fn source(&mut self, name: &str, per_metre: f64, at: &DraftLocation) -> Option<(Source, f64)> {
         let draft = self.draft;
         if let Some((hardpoint, axis)) = name.split_once('.') {
@@ -135,8 +134,7 @@ impl<'a> Checker<'a> {
         Some((Source::Parameter(parameter), if of_length { per_metre } else { 1.0 }))
     }
 
-    /// Takes formulas in an order in which each comes after those whose results it uses; HP0227 for those that have
-    /// none.
+    /// Evaluates formulas in an order in which each comes after those whose results it uses. HP0227 for circular ones.
     fn order(&mut self, written: Vec<Written>) {
         let giver: HashMap<Source, usize> =
             written.iter().enumerate().filter_map(|(k, w)| Some((w.formula.gives()?, k))).collect();
@@ -160,7 +158,7 @@ impl<'a> Checker<'a> {
                 }
             }
         }
-        // From each of the rest a walk along what waits itself runs into a circle, or into one that is known.
+        // From each remaining formula, the path along unresolved formulas ends in a new cycle or in a known one.
         let mut walk_of: Vec<Option<usize>> = vec![None; written.len()];
         let mut circles = Vec::new();
         for start in (0..written.len()).filter(|k| waits[*k] > 0) {
@@ -199,7 +197,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Sets what a formula gives in the nominal design. HP0228 where that is no number.
+    /// Sets the result of a formula in the nominal design. HP0228 if it is not finite.
     fn take(&mut self, w: Written) -> Option<f64> {
         if w.formula.sources().any(|s| self.is_spoilt(s)) {
             self.spoil(w.formula.of);
@@ -251,7 +249,7 @@ impl<'a> Checker<'a> {
         *position = coordinates.into();
     }
 
-    /// Marks the result of a faulty formula as unknown, with all that depends on it.
+    /// Marks the result of a faulty formula as unknown.
     fn spoil(&mut self, of: Target) {
         match of {
             Target::Parameter(p) => drop(self.spoilt.insert(Source::Parameter(p))),
@@ -260,12 +258,12 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// The number that an expression gives in the nominal design, which follows the design from now on.
+    /// Returns the nominal value of an expression, and adds its formula to the model.
     fn given(&mut self, of: Target, expression: &Expression, at: DraftLocation, name: String) -> Option<f64> {
         self.given_in(None, of, expression, at, name)
     }
 
-    /// The same in a case.
+    /// [`Checker::given`] for a number of a case.
     fn given_in(
         &mut self,
         case: Option<CaseId>,
@@ -278,7 +276,7 @@ impl<'a> Checker<'a> {
         self.take(Written { formula, at, name, case })
     }
 
-    /// A new unnamed hardpoint at coordinates that expressions give.
+    /// Adds an unnamed hardpoint at coordinates defined by expressions.
     pub(super) fn formula_place(
         &mut self,
         coordinates: &[Expression; 3],
@@ -297,7 +295,7 @@ impl<'a> Checker<'a> {
         })
     }
 
-    /// A number of a mass or force, by itself or by an expression.
+    /// Adds a number of a mass or force, given as a value or an expression.
     pub(super) fn element_number(
         &mut self,
         number: &NumberDraft,
@@ -321,21 +319,21 @@ impl<'a> Checker<'a> {
         Some(id)
     }
 
-    /// The length that a rod is given by an expression, if it is.
+    /// Returns the length of a rod that is defined by an expression, if any.
     pub(super) fn formula_length(&mut self, name: &str, at: DraftLocation) -> Option<Option<f64>> {
         let expression = self.length_formulas.get(name).copied()?;
         let joint = JointId(self.model.joints.len());
         Some(self.given(Target::Length(joint), expression, at, format!("length of {name}")))
     }
 
-    /// A driver's law with the parameters that expressions give.
+    /// Returns a driver's law with the parameters that are defined by expressions.
     pub(super) fn formula_law(&mut self, name: &str, law: &Law, at: &DraftLocation) -> Option<Law> {
         let driver = DriverId(self.model.drivers.len());
         let given = self.law_formulas.get(name).cloned().unwrap_or_default();
         self.law_with(&given, None, (driver, name), law, at)
     }
 
-    /// The law that a case gives a driver, with the parameters that expressions give.
+    /// Returns the law of a driver in a case, with the parameters that are defined by expressions.
     pub(super) fn formula_law_in(
         &mut self,
         (case, case_name): (CaseId, &str),
@@ -347,7 +345,7 @@ impl<'a> Checker<'a> {
         self.law_with(&given, Some(case), driver, law, at)
     }
 
-    /// A law, with the parameters that expressions give, that counts as its driver does.
+    /// Returns a law with the parameters that are defined by expressions, absolute or relative like its driver.
     fn law_with(
         &mut self,
         given: &[(&str, &Expression)],
@@ -375,8 +373,8 @@ impl<'a> Checker<'a> {
         Some(law.from_zero(value))
     }
 
-    /// Keeps the formulas that follow design variables: HP0228 for those that have no derivative, HP0226 for those that
-    /// would change the shape of a curve.
+    /// Stores the formulas that depend on design variables. HP0228 for those without a derivative, HP0226 for those
+    /// that would change the shape of a curve.
     pub(super) fn formulas_that_vary(&mut self) {
         let mut varying: BTreeSet<Source> = BTreeSet::new();
         for change in self.model.variables.iter().flat_map(|v| &v.changes) {
@@ -409,7 +407,7 @@ impl<'a> Checker<'a> {
             }
             formula.expression = formula.expression.with_some(|k| fixed[k]);
             formula.inputs.retain(|(s, _)| varies(s));
-            // One derivative along all inputs at once is finite only if all are.
+            // The derivative along all inputs at once is finite only if all partial derivatives are.
             let along = |s: Source| Dual { v: model.nominal(s), d: 1.0 };
             let slope = formula.at(along).d;
             if !slope.is_finite() {
@@ -441,11 +439,11 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// The coordinates of a hardpoint, as expressions name them.
+/// Names of the coordinates of a hardpoint in expressions.
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Formula {
-    /// Source that other formulas may use.
+    /// Returns the source that other formulas can use.
     pub(super) fn gives(&self) -> Option<Source> {
         match self.of {
             Target::Parameter(p) => Some(Source::Parameter(p)),
@@ -455,22 +453,21 @@ impl Formula {
     }
 }
 
-/// Values of the parameters and formulas of a draft with all design variables at zero, for numbers that no change of
-/// the design affects.
+/// Nominal values of the parameters and formulas of a draft, for numbers that do not change with the design.
 #[derive(Clone, Debug, Default)]
 pub struct Nominal {
-    /// Position of each hardpoint of the draft, m; null if a formula of it is faulty.
+    /// Position of each hardpoint of the draft, m; zero if one of its formulas is faulty.
     pub positions: Vec<Vec3>,
-    /// By name: its value in SI if it has one, its quantity, and a design variable or hardpoint that it follows.
+    /// Value in SI if known, quantity, and a design variable or hardpoint on which it depends, by name.
     parameters: BTreeMap<String, (Option<f64>, Quantity, Option<String>)>,
 }
 
 /// Reason why an expression is not a constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ConstantError {
-    /// It names what is no parameter.
+    /// It uses a name that is not a parameter.
     Unknown(String),
-    /// It uses this parameter, which follows this (`design variable `b``, or `hardpoint `A``).
+    /// It uses this parameter, which depends on this variable or entry (`design variable `b``, or `hardpoint `A``).
     Follows(String, String),
     /// It uses a parameter that is faulty, which is reported elsewhere.
     Faulty,
@@ -479,8 +476,8 @@ pub enum ConstantError {
 }
 
 impl Nominal {
-    /// Values of the parameters and hardpoints of a draft with all design variables at zero. Faulty entries are left
-    /// out; [`Model::from_draft`](crate::model::Model::from_draft) reports them.
+    /// Evaluates the parameters and hardpoints of a draft with all design variables at zero. Faulty entries have no
+    /// value; [`Model::from_draft`](crate::model::Model::from_draft) reports them.
     pub fn of(draft: &Draft) -> Self {
         let mut c = Checker::new(draft);
         c.formulas();
@@ -512,28 +509,28 @@ impl Nominal {
         Self { positions: c.model.hardpoints.iter().map(|h| h.position).collect(), parameters }
     }
 
-    /// The names of all parameters.
+    /// Returns the names of all parameters.
     pub fn names(&self) -> impl Iterator<Item = &str> + Clone {
         self.parameters.keys().map(String::as_str)
     }
 
-    /// The value in SI and the quantity of a parameter; no value if it is faulty.
+    /// Returns the value in SI and the quantity of a parameter; no value if it is faulty.
     pub fn parameter(&self, name: &str) -> Option<(Option<f64>, Quantity)> {
         self.parameters.get(name).map(|p| (p.0, p.1))
     }
 
-    /// The value of an expression over parameters, as its text means it.
+    /// Returns the value of an expression over parameters, in the units of its text.
     ///
     /// # Errors
-    /// Why it has none; that it follows the design is no reason.
+    /// A [`ConstantError`] if it has no value. A dependence on the design is allowed.
     pub fn value(&self, expression: &Expression) -> Result<f64, ConstantError> {
         self.evaluated(expression, true)
     }
 
-    /// The value of an expression over parameters that no change of the design moves, as its text means it.
+    /// Returns the value of an expression over parameters that do not depend on the design, in the units of its text.
     ///
     /// # Errors
-    /// Why it is no such constant.
+    /// A [`ConstantError`] if it is not a constant.
     pub fn constant(&self, expression: &Expression) -> Result<f64, ConstantError> {
         self.evaluated(expression, false)
     }

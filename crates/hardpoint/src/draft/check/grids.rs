@@ -5,15 +5,15 @@ use crate::model::{DriverId, Grid};
 
 use super::{Checker, Here};
 
-/// More positions than this are surely a slip: each is solved with all its sensitivities, and all are held.
+/// Maximum number of positions of a grid. Each position is solved with all sensitivities, and all are stored.
 const MOST_POSITIONS: usize = 100_000;
 
-/// Positions nearer to each other than this part of a driver's way cannot be distinguished by the times at which it
-/// passes them.
+/// Minimum distance of two positions, relative to the range of the driver. Nearer positions cannot be distinguished by
+/// their times.
 const APART: f64 = 1e-9;
 
 impl Checker<'_> {
-    /// HP0240: grids that are none, or too large to be solved.
+    /// HP0240: invalid grids, or grids that are too large.
     pub(super) fn grids(&mut self) {
         let draft = self.draft;
         for (index, g) in draft.grids.iter().enumerate() {
@@ -33,7 +33,7 @@ impl Checker<'_> {
                         .help("give at least two finite positions in ascending order");
                     continue;
                 }
-                // A faulty driver has been reported.
+                // A faulty driver is already reported.
                 drivers.extend(self.model.drivers.iter().position(|d| d.name == *driver).map(DriverId));
             }
             let [(a, first), (b, second)] = &g.sweeps[..] else {

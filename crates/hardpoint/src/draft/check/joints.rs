@@ -1,4 +1,4 @@
-//! Checks of joints: their bodies, places, axes, lengths, leads and curves.
+//! Checks of joints: bodies, locations, axes, lengths, leads and curves.
 
 use crate::constraint::Row;
 use crate::draft::{DirectionDraft, JointDraft, Section};
@@ -9,8 +9,8 @@ use crate::space::{Mat3, Pose, Vec3};
 
 use super::{Checker, Here, SAME_POINT, SQUARE_TOLERANCE, UNPLACED, degrees_between, frame_along};
 
-/// Direction of the markers' x axis where none is given; of an image across a global axis, the image of the original's
-/// default.
+/// Returns the default direction of the markers' x axis. For a mirror image across a global axis: the image of the
+/// original's default.
 fn default_x(z: Vec3, mirror: Option<usize>) -> Vec3 {
     let reflected = |v: Vec3| mirror.map_or(v, |k| v - Vec3::AXES[k] * (2.0 * v.dot(Vec3::AXES[k])));
     reflected(reflected(z).any_square())
@@ -121,7 +121,8 @@ impl Checker<'_> {
         Some(Joint { name, kind, bodies, at, axis, axis2, frames, length, curve, cut, unnamed: false })
     }
 
-    /// HP0226: a curve that is missing, out of place, or no curve in the plane perpendicular to the joint's axis.
+    /// HP0226: a curve that is missing, does not apply to the joint type, or is invalid in the plane perpendicular to
+    /// the joint's axis.
     fn curve(
         &mut self,
         j: &JointDraft,
@@ -201,7 +202,7 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0223: a length where there is no rod, or that is none.
+    /// HP0223: a length of a joint that is not a rod or follower, or a length that is not positive.
     fn rod_length(&mut self, j: &JointDraft, kind: &'static JointType, here: Here) -> Option<f64> {
         let length = match self.formula_length(&j.name, here.key("length")) {
             Some(given) => given?,
@@ -243,7 +244,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The hardpoints of the two markers: one shared, or one on each body.
+    /// Returns the hardpoints of the two markers: one shared, or one on each body. HP0210 if their number is wrong.
     fn joint_places(
         &mut self,
         j: &JointDraft,
@@ -255,7 +256,7 @@ impl Checker<'_> {
         if let (true, Some(Direction::Through(a, _))) = (j.at.is_empty() && kind.places == 1, axis) {
             return Some([a, a]);
         }
-        // Where the places are, or might be, is not known.
+        // The locations, or the axis that defines them, could not be read.
         let by_axis = matches!(j.axis, Some(DirectionDraft::Through(..))) || self.unread(here, "axis");
         if self.unread(here, "at") || j.at.is_empty() && kind.places == 1 && by_axis {
             return None;
@@ -297,8 +298,7 @@ impl Checker<'_> {
         Some([first, last])
     }
 
-    /// Joints that need no place get one all the same, amid the places of their bodies' other joints, for their
-    /// markers.
+    /// Gives joints without a location one for their markers: the mean of the locations of their bodies' other joints.
     pub(super) fn places_of_directions(&mut self) {
         let mut joints_on = vec![Vec::new(); self.model.bodies.len()];
         for (k, j) in self.model.joints.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Checks of measures: what they name, and whether it can be known.
+//! Checks of measures and metrics: references, and availability of derivatives.
 
 use crate::draft::measure::Field;
 use crate::draft::{
@@ -48,7 +48,8 @@ impl Checker<'_> {
         Some(kind)
     }
 
-    /// HP0250: loads of what has none; HP0251: reactions on a body that the joint does not hold.
+    /// HP0250: loads or compliances of a model without any. HP0251: reactions on a body that the joint does not
+    /// connect.
     fn loads(&mut self, kind: &MeasureKind, m: &MeasureDraft, here: Here) {
         let draft = self.draft;
         let nothing = draft.masses.is_empty() && draft.forces.is_empty();
@@ -97,14 +98,14 @@ impl Checker<'_> {
         }
     }
 
-    /// The wheel of that name.
+    /// Returns the wheel with this name.
     fn wheel_named(&mut self, name: &str, at: DraftLocation) -> Option<WheelId> {
         let draft = self.draft;
         let k = self.find("wheel", name, at, draft.wheels.iter().map(|w| w.name.as_str()))?;
         self.wheel_ids[k]
     }
 
-    /// The force of that name.
+    /// Returns the force with this name.
     fn force(&mut self, name: &str, at: DraftLocation) -> Option<ElementId> {
         let draft = self.draft;
         let k = self.find("force", name, at, draft.forces.iter().map(|f| f.name.as_str()))?;
@@ -132,7 +133,7 @@ impl Checker<'_> {
         };
         let of = of?;
         if self.model.measures.len() < self.draft.measures.len() {
-            // What a faulty measure is measured in is not known.
+            // The unit of a faulty measure is unknown.
             return None;
         }
         let si = |dimension: Dimension, x: f64| {
@@ -200,7 +201,7 @@ impl Checker<'_> {
         Some(Metric { name: m.name.clone(), of, over, take, window, case })
     }
 
-    /// The case of that name.
+    /// Returns the case with this name.
     fn case(&mut self, name: &str, at: DraftLocation) -> Option<CaseId> {
         let draft = self.draft;
         if draft.grids.iter().any(|g| g.name == name) {
@@ -219,7 +220,7 @@ impl Checker<'_> {
         found.map(CaseId)
     }
 
-    /// A direction that an angle is measured from or to.
+    /// Resolves a direction that an angle is measured from or to.
     fn ray(&mut self, ray: &RayDraft, owner: &str, here: Here, key: &'static str) -> Option<Ray> {
         match ray {
             RayDraft::Between([from, to]) => {
@@ -243,7 +244,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The output of that name: a measure, or a component of a point.
+    /// Returns the output with this name: a measure, or a component of a point.
     fn output(&mut self, name: &str, at: DraftLocation) -> Option<OutputSource> {
         let number = |what: &str, name: &str| self.numbers.get(what).and_then(|n| n.get(name)).copied();
         if let Some(k) = number("measure", name) {
@@ -268,7 +269,7 @@ impl Checker<'_> {
         None
     }
 
-    /// True if a wheel or an axle of that name may measure what could not be read.
+    /// True if a wheel or axle with this name may define a measure that could not be read.
     fn may_measure(&self, owner: &str) -> bool {
         let (draft, unread) = (self.draft, &self.draft.unread);
         let wheel = draft.wheels.iter().position(|w| w.name == owner).map(|k| (Section::Wheels, k));
@@ -277,7 +278,7 @@ impl Checker<'_> {
         owners.any(|(section, k)| unread.any(section, k) || self.vehicle_is_unread())
     }
 
-    /// The driver of that name, or the only one there is.
+    /// Returns the driver with this name, or the only driver.
     pub(super) fn driver_or_only(&mut self, name: Option<&str>, owner: &str, here: Here) -> Option<DriverId> {
         let draft = self.draft;
         let names = draft.drivers.iter().map(|d| d.name.as_str());
@@ -296,7 +297,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Measures of other measures: none of itself, and only of what is known.
+    /// Checks measures of other measures: no cycles, and only known derivatives.
     fn measures_of_measures(&mut self) {
         let mut state = vec![Visit::New; self.model.measures.len()];
         for k in 0..state.len() {
@@ -304,7 +305,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Looks at a measure after those that it uses; whether it is sound.
+    /// Checks a measure after those that it uses; true if it is valid.
     fn visit(&mut self, k: usize, state: &mut [Visit]) -> bool {
         let here = Here { section: Section::Measures, index: k };
         let name = self.model.measures[k].name.clone();
@@ -335,7 +336,8 @@ impl Checker<'_> {
         sound
     }
 
-    /// HP0233: rates of what has none, slopes of what is no matter of positions.
+    /// HP0233: rates of measures without rates; slopes and compliances of measures that do not depend on positions
+    /// only.
     fn is_known(&mut self, kind: &MeasureKind, name: &str, here: Here) -> bool {
         match kind {
             MeasureKind::Rate { of } if self.model.known(*of).orders < 2 => {
@@ -377,7 +379,7 @@ impl Checker<'_> {
         }
     }
 
-    /// A combination with its units, whose inputs have theirs already.
+    /// Returns a combination with its units; the units of its inputs are known.
     fn in_units(&self, c: &Combination) -> Combination {
         let per_metre = c.expression.per_metre();
         let per_unit = |d: Dimension| per_metre.powi(d.length_in_units().into());
@@ -388,12 +390,12 @@ impl Checker<'_> {
     }
 }
 
-/// The check of one measure.
+/// Check of one measure.
 pub(in crate::draft) struct MeasureCheck<'c, 'd> {
     check: &'c mut Checker<'d>,
     owner: &'c str,
     here: Here,
-    /// The joint that it names.
+    /// Joint of the measure, for the field that names its coordinate.
     joint: Option<JointId>,
 }
 
@@ -522,14 +524,14 @@ enum Visit {
     Done(bool),
 }
 
-/// A power law holds to this where it holds.
+/// Tolerance of the exponents of a power law.
 const HOMOGENEOUS: f64 = 1e-9;
 
 /// Dimension of an expression: the powers by which it grows with the units of length, angle and time of its inputs. If
 /// that is not a power law, as in `toe + 3`, the result is a plain number in that unit.
 fn dimension_of(expression: &Expression, inputs: &[Dimension]) -> Dimension {
     let value = |powers: &dyn Fn(&Dimension) -> i8, scale: f64| {
-        // Any numbers will do; below 1, so that inverse sines have values.
+        // Arbitrary numbers below 1, so that inverse sines have values.
         let at: Vec<f64> = inputs
             .iter()
             .enumerate()

@@ -1,4 +1,4 @@
-//! Checks of what moves and is moved together: drivers and couplers, and the coordinates that they name.
+//! Checks of drivers and couplers, and of the coordinates that they name.
 
 use crate::draft::{CouplerKindDraft, DraftLocation, Section};
 use crate::joint;
@@ -9,16 +9,17 @@ use crate::model::{Coupler, CouplerTerm, Driver, DriverId, JointId, Transmission
 use super::driven::Driven;
 use super::{Checker, Here};
 
-/// Accelerations go with the square of a speed, jerks with its cube, and these must have room in a number.
+/// Upper bound of the derivatives of a law. Accelerations are quadratic in speeds and jerks cubic, and must not
+/// overflow.
 const LARGEST_RATE: f64 = 1e100;
 
 impl Checker<'_> {
-    /// A coordinate of a joint, by name or as its only one.
+    /// Returns a coordinate of a joint, by name or as its only one.
     pub(super) fn coordinate(&mut self, joint: JointId, name: Option<&str>, here: Here) -> Option<usize> {
         self.coordinate_at(joint, name, [here.key("joint"), here.key("coordinate")])
     }
 
-    /// As [`Checker::coordinate`], where the joint and the coordinate are named at these places.
+    /// [`Checker::coordinate`], with errors reported at these locations of the joint and the coordinate.
     pub(super) fn coordinate_at(
         &mut self,
         joint: JointId,
@@ -83,7 +84,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Couplers, then those that screws are.
+    /// Adds the couplers, then the couplers of screws.
     pub(super) fn couplers(&mut self) {
         let draft = self.draft;
         for (index, c) in draft.couplers.iter().enumerate() {
@@ -153,7 +154,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The terms of two joints.
+    /// Returns the terms of a transmission between two joints.
     fn pair(&mut self, joints: &[String; 2], by: Transmission, here: Here) -> Option<Vec<CouplerTerm>> {
         let relation = by.relation();
         let terms = [0, 1].map(|k| {

@@ -1,4 +1,4 @@
-//! Checks of what a design is to be optimised for: what it names, and whether that can hold.
+//! Checks of the optimisation: variables, goals and limits.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -25,7 +25,7 @@ impl Checker<'_> {
         let Some(o) = &draft.optimization else { return };
         let here = Here { section: Section::Optimize, index: 0 };
         let variables = self.optimized(o, here);
-        // What can be limited follows from all that is checked before.
+        // The check of ineffective limits needs a valid model.
         let sound = self.faults.is_empty() && draft.unread.is_empty();
         if o.goals.is_empty() {
             self.fault("HP0236", here.key("goals"), "invalid optimisation: there are no goals")
@@ -67,7 +67,7 @@ impl Checker<'_> {
             Some(OptimizationSettings { variables, goals, limits, margin, starts, iterations });
     }
 
-    /// HP0236: the variables that may change, each with bounds, each once.
+    /// Returns the optimised variables. HP0236 unless each has bounds and is listed once.
     fn optimized(&mut self, o: &OptimizationSettingsDraft, here: Here) -> Option<Vec<VariableId>> {
         let draft = self.draft;
         if self.unread(here, "variables") {
@@ -117,11 +117,11 @@ impl Checker<'_> {
         Some(found)
     }
 
-    /// The place of a design variable in the draft.
+    /// Returns the index of a design variable in the draft.
     pub(super) fn optimized_variable(&mut self, name: &str, at: DraftLocation) -> Option<usize> {
         let draft = self.draft;
         let known = self.number_of("design variable", name);
-        // What could not be read may be this variable.
+        // An unread entry may be this variable.
         if known.is_some() || self.lost("parameter") || draft.unread.any_of(Section::Design) {
             return known;
         }
@@ -147,7 +147,7 @@ impl Checker<'_> {
         None
     }
 
-    /// The place of a metric in the model; `None`, without a second fault, where the metric itself is faulty.
+    /// Returns the index of a metric in the model; `None`, without a second error, if the metric itself is faulty.
     pub(super) fn metric(&mut self, name: &str, at: DraftLocation) -> Option<usize> {
         let draft = self.draft;
         let known = self.find("metric", name, at, draft.metrics.iter().map(|m| m.name.as_str()));
@@ -165,7 +165,7 @@ impl Checker<'_> {
         self.metric_ids.get(known?).copied().flatten()
     }
 
-    /// HP0237: a goal whose numbers make none.
+    /// Resolves a goal. HP0237 if its weight or target is invalid.
     fn goal(&mut self, g: &GoalDraft, index: usize) -> Option<Goal> {
         let here = Here { section: Section::Goals, index };
         if self.unread(here, "") {
@@ -278,7 +278,7 @@ impl Checker<'_> {
         })
     }
 
-    /// HP0238: limits of one thing that cannot hold together.
+    /// HP0238: contradictory limits of one quantity.
     fn contradiction<'d>(
         &mut self,
         written: &'d LimitDraft,
@@ -309,7 +309,7 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0239: limits on what no variable changes.
+    /// HP0239: limits of quantities that no variable changes.
     fn out_of_reach(&mut self, variables: &[VariableId], limits: &[(Here, Limit)]) {
         let (mut moved, mut joints): (BTreeSet<Source>, BTreeSet<JointId>) = Default::default();
         let model = &self.model;
@@ -364,7 +364,7 @@ impl Checker<'_> {
     }
 }
 
-/// Field that holds the side of a box; for other limits the name.
+/// Field of the bounds of a coordinate limit; the name for other limits.
 fn side_of(of: &LimitTargetDraft) -> &'static str {
     if let LimitTargetDraft::Coordinate(_, axis) = of { AXES[axis % 3] } else { "name" }
 }
@@ -383,7 +383,7 @@ pub(super) fn per_si(of: Dimension, per_metre: f64, per_radian: f64) -> f64 {
     per_metre.powi(of.length_in_units().into()) * per_radian.powi(of.angle.into())
 }
 
-/// Suggests how to give a variable bounds.
+/// Returns a help text that shows the bounds of a variable.
 fn bounds_of(v: &VariableDraft) -> String {
     match v.changes.as_slice() {
         [ChangeDraft::Parameter { parameter, .. }] if *parameter == v.name => format!(

@@ -1,4 +1,4 @@
-//! Checks of which designs are swept over: what is named, and whether there are such designs.
+//! Checks of the sweep: variables, ranges and lists of designs.
 
 use std::collections::BTreeMap;
 
@@ -63,7 +63,7 @@ impl Checker<'_> {
         self.model.sweeping = Some(sweeping);
     }
 
-    /// HP0246: every range of a variable of its own, that rises.
+    /// Resolves the ranges of the variables. HP0246 unless each is in ascending order.
     fn ranges(&mut self, s: &SweepSettingsDraft, ranges: &[SweepRangeDraft]) -> Vec<SweepRange> {
         let draft = self.draft;
         let mut found = Vec::new();
@@ -115,7 +115,7 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0247: the designs of a list, of variables that there are, each once.
+    /// Resolves a list of designs. HP0247 unless each column is a different design variable.
     fn design_list(&mut self, list: &DesignListDraft) -> Option<(Vec<SweepRange>, Vec<Vec<f64>>)> {
         let at = HERE.key("designs");
         let mut first_of: BTreeMap<&str, usize> = BTreeMap::new();
@@ -148,12 +148,13 @@ impl Checker<'_> {
         Some((SweepSettings::spanned(&variables, &rows), rows))
     }
 
-    /// A value of a variable as a file writes it, as a change in SI: of a parameter from its own value.
+    /// Converts a value of a variable from user units to a change in SI; values of a parameter are relative to its
+    /// nominal value.
     fn in_si(&self, variable: VariableId, quantity: Quantity, x: f64, per: [f64; 2]) -> f64 {
         x / per_si(Dimension::from(quantity), per[0], per[1]) - self.model.nominal_value(variable)
     }
 
-    /// The place of a measure in the model.
+    /// Returns the index of a measure in the model.
     pub(super) fn curve_of(&mut self, name: &str, at: crate::draft::DraftLocation) -> Option<usize> {
         let draft = self.draft;
         self.find("measure", name, at, draft.measures.iter().map(|m| m.name.as_str()))?;

@@ -1,4 +1,4 @@
-//! Checks of how far off a design may be made: what is named, and whether that can be.
+//! Checks of the tolerance study: tolerances, correlations, limits and allocation.
 
 use std::collections::BTreeMap;
 
@@ -63,7 +63,7 @@ impl Checker<'_> {
         });
     }
 
-    /// HP0241: every tolerance with a reach that can be, and each variable in one of them.
+    /// Resolves the tolerances. HP0241 unless each is positive and each variable has at most one.
     fn tolerances(&mut self, t: &ToleranceSettingsDraft) -> Vec<Tolerance> {
         let draft = self.draft;
         let mut of: BTreeMap<usize, &str> = BTreeMap::new();
@@ -101,7 +101,7 @@ impl Checker<'_> {
         found
     }
 
-    /// The variables that a tolerance is of: that of its name, or the coordinates that an entry of that name makes.
+    /// Returns the variables of a tolerance: the one with its name, or the coordinates of the entry with its name.
     fn variables_of_tolerance(&mut self, one: &ToleranceDraft, here: Here) -> Vec<usize> {
         if let Some(known) = self.number_of("design variable", &one.name) {
             return vec![known];
@@ -191,7 +191,7 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0242: correlations of normal variables, of each pair one, that can hold together.
+    /// Resolves the correlations. HP0242 unless they relate normal variables, one for each pair, without contradiction.
     fn correlations(&mut self, t: &ToleranceSettingsDraft, tolerances: &[Tolerance]) -> Vec<Correlation> {
         let mut pairs: BTreeMap<[usize; 2], &str> = BTreeMap::new();
         let mut found = Vec::new();
@@ -242,7 +242,7 @@ impl Checker<'_> {
         found
     }
 
-    /// True if both have a tolerance that is normal.
+    /// True if both variables have a normal tolerance.
     fn can_correlate(
         &mut self,
         one: &CorrelationDraft,
@@ -255,7 +255,7 @@ impl Checker<'_> {
             let tolerance = tolerances.iter().find(|t| t.variables.contains(&VariableId(v)));
             let at = here.item("between", k);
             let Some(tolerance) = tolerance else {
-                // It may be one that could not be read.
+                // The tolerance may be an unread entry.
                 if self.draft.unread.any_of(Section::Tolerances) || self.draft.unread.any_of(Section::Design)
                 {
                     return false;
@@ -276,7 +276,7 @@ impl Checker<'_> {
         true
     }
 
-    /// HP0243: an allocation without what it is to find or keep.
+    /// HP0243: an allocation without a limit or a cost, or with invalid `required_sigmas`.
     fn allocation_needs(&mut self, t: &ToleranceSettingsDraft) {
         let Some(rule) = t.allocation else { return };
         if let AllocationRule::Rss { sigmas } = rule
@@ -301,9 +301,9 @@ impl Checker<'_> {
     }
 }
 
-/// More standard deviations than these are surely a slip, and no normal distribution knows them.
+/// Maximum number of standard deviations; a larger value is surely a slip.
 const MOST_SIGMAS: f64 = 30.0;
-/// True if they can hold together takes the cube of their number.
+/// Maximum number of correlations; the check for contradictions is cubic in their number.
 const MOST_CORRELATIONS: usize = 300;
 
 /// Correlation matrix of the correlated variables.

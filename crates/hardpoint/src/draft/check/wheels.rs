@@ -1,4 +1,4 @@
-//! Checks of road wheels and of what is measured at them.
+//! Checks of the vehicle, road wheels, axles and their measures.
 
 use crate::draft::{AxleDraft, PointRef, Section, WheelDraft, WheelSpinDraft};
 use crate::model::{
@@ -9,7 +9,8 @@ use crate::space::Vec3;
 
 use super::{Checker, Here, SAME_POINT};
 
-/// A direction nearer to the vertical than this, as a cosine, has no heading, and one nearer to the horizontal no rise.
+/// Relative horizontal component below which a direction is vertical, and vertical component below which it is
+/// horizontal.
 const HEADLESS: f64 = 1e-6;
 
 impl Checker<'_> {
@@ -46,7 +47,7 @@ impl Checker<'_> {
         }
     }
 
-    /// An axle; `None` where it or one of its wheels is faulty.
+    /// Resolves an axle; `None` if it or one of its wheels is faulty.
     fn one_axle(&mut self, a: &AxleDraft, here: Here) -> Option<Axle> {
         let draft = self.draft;
         let mut wheel = |key: &'static str, name: &str, side: Side| {
@@ -66,7 +67,7 @@ impl Checker<'_> {
         Some(Axle { name: a.name.clone(), wheels: [left?, right?] })
     }
 
-    /// A measure of an axle; `None`, without a second fault, where the axle itself is faulty.
+    /// Resolves a measure of an axle; `None`, without a second error, if the axle itself is faulty.
     pub(super) fn axle_measure(&mut self, name: &str, what: AxleMeasure, here: Here) -> Option<MeasureKind> {
         let draft = self.draft;
         let names = draft.axles.iter().map(|a| a.name.as_str());
@@ -117,7 +118,7 @@ impl Checker<'_> {
             self.wheel_ids.push(wheel.as_ref().map(|_| WheelId(self.model.wheels.len())));
             self.model.wheels.extend(wheel);
         }
-        // A body that carries wheels of both sides is a live axle, with its differential on it.
+        // A body that carries wheels of both sides is a live axle with its differential.
         let carried: Vec<(BodyId, Side)> = self.model.wheels.iter().map(|w| (w.body, w.side)).collect();
         for (id, given) in self.wheel_ids.iter().zip(&draft.wheels) {
             let Some(id) = id.filter(|_| given.drive.is_none()) else { continue };
@@ -128,7 +129,7 @@ impl Checker<'_> {
         }
     }
 
-    /// A wheel, as long as nothing is wrong with it.
+    /// Resolves a wheel; `None` if it is faulty.
     fn one_wheel(&mut self, w: &WheelDraft, here: Here) -> Option<Wheel> {
         let faults = self.faults.len();
         let body = self.body(&w.body, here.key("body"));
@@ -204,7 +205,7 @@ impl Checker<'_> {
         (self.faults.len() == faults && !self.draft.unread.any(here.section, here.index)).then_some(wheel)
     }
 
-    /// Wheel in the design configuration: its body, centre, side and spin axis.
+    /// Returns body, centre, side and spin axis of a wheel in the design configuration.
     pub(super) fn wheel_as_drawn(
         &mut self,
         w: &WheelDraft,
@@ -220,7 +221,7 @@ impl Checker<'_> {
         Some((body, centre, side, self.spin_axis(w, Some(side), here)?))
     }
 
-    /// The side of the vehicle that a wheel's centre is on.
+    /// Returns the side of the vehicle of a wheel's centre; y points left.
     fn side_of(&mut self, w: &WheelDraft, centre: HardpointId, here: Here) -> Option<Side> {
         let y = self.position(centre)?.y;
         if !(y.abs() > SAME_POINT * self.extent.size()) {
@@ -233,7 +234,7 @@ impl Checker<'_> {
         Some(if y > 0.0 { Side::Left } else { Side::Right })
     }
 
-    /// The spin axis, which must point outboard.
+    /// Resolves the spin axis. HP0231 unless it points outboard.
     fn spin_axis(&mut self, w: &WheelDraft, side: Option<Side>, here: Here) -> Option<Direction> {
         match &w.spin {
             WheelSpinDraft::Axis(line) => {
@@ -281,7 +282,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The points of the kingpin, the upper one above the lower.
+    /// Resolves the points of the kingpin. HP0231 unless the upper one is above the lower.
     fn kingpin(&mut self, w: &WheelDraft, points: &[PointRef; 2], here: Here) -> Option<[PointId; 2]> {
         let [lower, upper] = [0, 1].map(|k| self.point(&points[k], &w.name, here.item("kingpin", k)));
         let (lower, upper) = (lower?, upper?);
@@ -310,7 +311,7 @@ impl Checker<'_> {
         None
     }
 
-    /// The plane of an arm, by points that make one.
+    /// Resolves the plane of an arm. HP0231 unless its points define a plane.
     fn arm_plane(&mut self, w: &WheelDraft, points: &[PointRef], arm: usize, here: Here) -> Option<ArmPlane> {
         let found: Vec<Option<PointId>> =
             points.iter().map(|p| self.point(p, &w.name, here.item("arm_planes", arm))).collect();
@@ -345,7 +346,7 @@ impl Checker<'_> {
         None
     }
 
-    /// The ends of the spring, which are apart.
+    /// Resolves the ends of the spring. HP0231 if they coincide.
     fn spring(&mut self, w: &WheelDraft, ends: &[PointRef; 2], here: Here) -> Option<[PointId; 2]> {
         let [a, b] = [0, 1].map(|k| self.point(&ends[k], &w.name, here.item("spring", k)));
         let ends = [a?, b?];
@@ -358,7 +359,7 @@ impl Checker<'_> {
         Some(ends)
     }
 
-    /// A measure of a wheel; `None`, without a second fault, where the wheel itself is faulty.
+    /// Resolves a measure of a wheel; `None`, without a second error, if the wheel itself is faulty.
     pub(super) fn wheel_measure(
         &mut self,
         name: &str,
