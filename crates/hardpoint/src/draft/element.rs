@@ -69,7 +69,7 @@ macro_rules! in_drafts {
         /// Kind of an element as written; see [`ElementKind`].
         #[derive(Clone, Debug)]
         pub enum ElementKindDraft {
-            /// Unread.
+            /// Entry that could not be read.
             Unread,
             $($(#[doc = $doc])* $variant { $($(#[doc = $field_doc])* $field: $draft,)* },)*
         }

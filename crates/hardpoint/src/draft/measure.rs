@@ -132,7 +132,7 @@ macro_rules! in_drafts {
         /// Kind of a measure as written; see [`MeasureKind`].
         #[derive(Clone, Debug)]
         pub enum MeasureKindDraft {
-            /// Unread.
+            /// Entry that could not be read.
             Unread,
             $($(#[doc = $doc])* $variant { $($(#[doc = $field_doc])* $field: $draft,)* },)*
             /// A measure of a wheel.

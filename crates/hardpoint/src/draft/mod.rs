@@ -305,7 +305,7 @@ pub struct DriverDraft {
 /// Quantity that a driver prescribes.
 #[derive(Clone, Debug)]
 pub enum DrivenDraft {
-    /// Unread.
+    /// Entry that could not be read.
     Unread,
     /// Coordinate of a joint.
     Coordinate {
@@ -624,7 +624,7 @@ pub struct LimitDraft {
 /// Quantity that a limit applies to; see [`LimitTarget`](crate::model::LimitTarget). References are names.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LimitTargetDraft {
-    /// Unread.
+    /// Entry that could not be read.
     Unread,
     /// A metric.
     Metric(String),
