@@ -37,9 +37,9 @@ fn arrays_of_other_lengths_are_refused() {
         return;
     }
     assert_eq!([said(0, 1, 0), said(2, 1, 2), said(6, 1, 6)], [None, None, None]);
-    const UNIFORMS: &str = "as many uniforms as the program has";
-    const INPUTS: &str = "as many groups of inputs as of outputs";
-    const OUTPUTS: &str = "whole groups of outputs";
+    const UNIFORMS: &str = "the number of uniforms differs from that of the program";
+    const INPUTS: &str = "inputs and outputs have different numbers of groups";
+    const OUTPUTS: &str = "the number of outputs is not a multiple of that of the program";
     for (inputs, uniforms, outputs, about) in [
         (2, 0, 2, UNIFORMS),
         (2, 2, 2, UNIFORMS),
@@ -93,20 +93,20 @@ fn parts_of_other_lengths_are_refused() {
     ] {
         assert_eq!(said_in_parts(ends, inputs, lengths), None, "{ends:?}, {inputs}, {lengths:?}");
     }
-    const EMPTY: &str = "nothing where a part has no outputs";
-    const WHOLE: &str = "whole groups of outputs";
-    const AS_MANY: &str = "as many groups in every part of the outputs";
-    const INPUTS: &str = "as many groups of inputs as of outputs";
+    const EMPTY: &str = "outputs are given for a part without outputs";
+    const WHOLE: &str = "the number of outputs is not a multiple of that of the program";
+    const DIFFERENT: &str = "parts of the outputs have different numbers of groups";
+    const INPUTS: &str = "inputs and outputs have different numbers of groups";
     for (ends, inputs, lengths, about) in [
         ([1, 2], 2, [1, 1, 1], EMPTY),
         ([0, 1], 2, [1, 1, 1], EMPTY),
         ([2, 2], 0, [0, 0, 2], EMPTY),
         ([0, 2], 2, [0, 3, 0], WHOLE),
         ([0, 0], 0, [0, 0, 1], WHOLE),
-        ([1, 2], 2, [1, 2, 0], AS_MANY),
-        ([1, 2], 4, [2, 1, 0], AS_MANY),
-        ([1, 2], 2, [1, 0, 0], AS_MANY),
-        ([1, 1], 2, [0, 0, 1], AS_MANY),
+        ([1, 2], 2, [1, 2, 0], DIFFERENT),
+        ([1, 2], 4, [2, 1, 0], DIFFERENT),
+        ([1, 2], 2, [1, 0, 0], DIFFERENT),
+        ([1, 1], 2, [0, 0, 1], DIFFERENT),
         ([1, 2], 2, [2, 2, 0], INPUTS),
         ([0, 1], 2, [0, 0, 0], INPUTS),
     ] {
@@ -175,7 +175,7 @@ fn operands_that_do_not_exist_are_refused() {
     let caught = std::panic::catch_unwind(|| Code::with(&program, width)).expect_err("it is refused");
     assert!(caught.downcast_ref::<String>().expect("a message").starts_with("output 2 reads "));
 
-    // What is ignored need not exist.
+    // Ignored operands need not exist.
     let mut program = good;
     program.instructions.push(Instruction::Call(Call::Tan, Operand::Value(0), Operand::Value(9)));
     assert!(Code::with(&program, width).is_ok());
@@ -189,24 +189,24 @@ fn programs_too_large_for_offsets_are_refused_in_words() {
     assert_eq!(refused, UnsupportedProgram::Size { what: "inputs", count: usize::MAX });
     assert_eq!(
         refused.to_string(),
-        "the program has 18446744073709551615 inputs, more than machine code is made for (4194304)"
+        "the program has 18446744073709551615 inputs, more than machine code supports (4194304)"
     );
 }
 
 #[test]
 fn every_reason_is_a_sentence() {
     for (reason, text) in [
-        (UnsupportedProgram::Target, "machine code is made for x86-64 on Unix systems only"),
+        (UnsupportedProgram::Target, "machine code requires x86-64 and a Unix system"),
         (UnsupportedProgram::Cpu, "the CPU has neither AVX2 with fused multiplication nor AVX-512"),
         (UnsupportedProgram::Width(Width::Avx512), "the CPU has no AVX-512"),
     ] {
         assert_eq!(reason.to_string(), text);
     }
     let text = UnsupportedProgram::Memory { error: 13 }.to_string();
-    assert!(text.starts_with("the system does not let memory be made executable ("), "{text}");
+    assert!(text.starts_with("the system does not allow executable memory ("), "{text}");
 }
 
-/// If there is no code, there is a reason, and it is the right one.
+/// A missing width has the right reason.
 #[test]
 fn code_is_made_where_it_can_be() {
     let program = two_inputs_one_uniform_two_outputs();
@@ -258,7 +258,7 @@ fn nothing_beside_the_outputs_is_written_wherever_they_begin() {
             assert!(all[inside.clone()].iter().zip(expected.as_flattened()).all(same), "{width}");
             assert!(all[..inside.start].iter().chain(&all[inside.end..]).all(|x| *x == MARK), "{width}");
 
-            // The same in parts, with margins between them, the last one first.
+            // Outputs in parts, with margins between them, the last one first.
             let ends = random::ends(&mut random, program.outputs.len());
             let expected = plain::parts(&program, ends, &expected);
             let code = Code::in_parts_with(&program, ends, width).expect("the width is here");
@@ -290,7 +290,7 @@ fn nothing_beside_the_outputs_is_written_wherever_they_begin() {
     }
 }
 
-/// Number of bytes can be executed that are of no file, which Linux says.
+/// Number of executable bytes of anonymous mappings, from Linux.
 #[cfg(target_os = "linux")]
 fn executable_bytes() -> usize {
     let maps = std::fs::read_to_string("/proc/self/maps").expect("Linux has it");

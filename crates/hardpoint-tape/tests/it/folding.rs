@@ -131,7 +131,7 @@ fn signs_cost_nothing_but_before_outputs_and_functions() {
         (&program.instructions[..], &program.constants[..]),
         (&[Mul(x, Constant(0))][..], &[-3.0][..])
     );
-    // Nothing does, once for all who ask.
+    // No sign is free: one negation for all readers.
     let program = of(|[x, y, _]| vec![-(x * y), (-(x * y)).sqrt(), (x * y).larger(-x)], false).0;
     assert_eq!(
         program.instructions,
