@@ -74,7 +74,7 @@ pub(crate) struct Interpolation {
 }
 
 /// Tolerance of given velocities, relative to the largest.
-const MET: f64 = 1e-9;
+const INTERPOLATION_TOLERANCE: f64 = 1e-9;
 
 impl Interpolation {
     /// Returns the interpolation of velocities at points; `None` if points that coincide have different velocities.
@@ -105,8 +105,8 @@ impl Interpolation {
             linear: std::array::from_fn(|k| row(n + k)),
         };
         let largest = velocities.iter().map(|v| v.norm()).fold(0.0, f64::max);
-        let meets = |(p, v): (&Vec3, &Vec3)| (this.at(*p)[0] - *v).norm() <= MET * largest;
-        points.iter().zip(velocities).all(meets).then_some(this)
+        let interpolates = |(p, v): (&Vec3, &Vec3)| (this.at(*p)[0] - *v).norm() <= INTERPOLATION_TOLERANCE * largest;
+        points.iter().zip(velocities).all(interpolates).then_some(this)
     }
 
     fn at(&self, s: Vec3) -> [Vec3; 2] {
@@ -119,10 +119,10 @@ impl Interpolation {
         let [x, y, z] = Vec3::AXES;
         let mut curl = x.cross(dx) + y.cross(dy) + z.cross(dz);
         for (p, w) in self.points.iter().zip(&self.weights) {
-            let apart = s - *p;
-            let r = apart.norm();
+            let offset = s - *p;
+            let r = offset.norm();
             v += *w * (r * r * r);
-            curl += (apart * (3.0 * r)).cross(*w);
+            curl += (offset * (3.0 * r)).cross(*w);
         }
         // s is in units of `scale`; the angle is per true length.
         [v, curl * (0.5 / self.scale)]

@@ -31,7 +31,7 @@ use crate::model::{
 use crate::space::{Mat3, Pose, Vec3};
 
 /// Tolerance of the right angle between `axis2` and `axis`, as a cosine. Typed unit vectors satisfy it.
-const SQUARE_TOLERANCE: f64 = 1e-6;
+const PERPENDICULAR_TOLERANCE: f64 = 1e-6;
 /// Distance, relative to the size of the mechanism, below which two points coincide.
 const SAME_POINT: f64 = 1e-9;
 /// Maximum number of valid names in an error.
@@ -57,34 +57,34 @@ impl Model {
     /// ```
     pub fn from_draft(draft: &Draft) -> Result<Self, Vec<DraftError>> {
         let mut c = Checker::new(draft);
-        c.names();
-        c.formulas();
-        c.bodies();
-        c.joints();
-        c.default_frames();
-        c.places_of_directions();
-        c.couplers();
-        c.points();
-        c.drivers();
-        c.cases();
-        c.grids();
-        c.vehicle();
-        c.wheels();
-        c.axles();
-        c.elements();
-        c.measures();
-        c.metrics();
-        c.variables();
-        c.formulas_that_vary();
-        c.times();
-        c.optimization();
-        c.tolerancing();
-        c.sweeping();
+        c.check_names();
+        c.add_formulas();
+        c.add_bodies();
+        c.add_joints();
+        c.set_default_frames();
+        c.place_unplaced_joints();
+        c.add_couplers();
+        c.add_points();
+        c.add_drivers();
+        c.add_cases();
+        c.add_grids();
+        c.check_vehicle();
+        c.add_wheels();
+        c.add_axles();
+        c.add_elements();
+        c.add_measures();
+        c.add_metrics();
+        c.add_variables();
+        c.add_varying_formulas();
+        c.check_times();
+        c.add_optimization();
+        c.add_tolerancing();
+        c.add_sweeping();
         c.faults.retain(|f| !draft.unread.has(f.at.section, f.at.index, f.at.key));
         if !c.faults.is_empty() || !draft.unread.is_empty() {
             return Err(c.faults);
         }
-        c.model.hold_idle_spins();
+        c.model.fix_idle_rotations();
         Ok(c.model)
     }
 }
@@ -120,9 +120,9 @@ struct Checker<'a> {
     /// Hardpoints that curves pass through.
     curve_points: Vec<HardpointId>,
     /// Formulas resolved so far, each after those whose results it uses.
-    written: Vec<formulas::Written>,
+    written: Vec<formulas::LocatedFormula>,
     /// Parameters and coordinates of hardpoints without a known value: unread, or defined by a faulty formula.
-    spoilt: BTreeSet<Source>,
+    unknown_sources: BTreeSet<Source>,
     /// Expressions for lengths of joints, and for parameters of drivers' laws, by name.
     length_formulas: HashMap<&'a str, &'a Expression>,
     law_formulas: HashMap<&'a str, Vec<(&'a str, &'a Expression)>>,
@@ -133,7 +133,7 @@ struct Checker<'a> {
     /// Driver of a joint coordinate. Only used for lookups, never iterated.
     driver_of: HashMap<(JointId, usize), DriverId>,
     /// Nominal values of the drivers whose laws give absolute values.
-    zeros: HashMap<DriverId, driven::AsDrawn>,
+    zeros: HashMap<DriverId, driven::NominalValue>,
     /// Remaining number of name comparisons for suggestions.
     comparisons: usize,
     /// Bounding box of the known hardpoints of joints. Hardpoints without joints do not affect the tolerances.
@@ -160,8 +160,8 @@ const TABLES: [(&str, &str); 15] = [
 ];
 
 /// Bounding box of the known hardpoints that joints use, or of all known hardpoints if joints use none.
-fn extent_of_joints(draft: &Draft, hardpoints: &[Hardpoint], spoilt: &BTreeSet<Source>) -> Extent {
-    let known = |(k, _): &(usize, &Hardpoint)| is_known(HardpointId(*k), spoilt);
+fn extent_of_joints(draft: &Draft, hardpoints: &[Hardpoint], unknown_sources: &BTreeSet<Source>) -> Extent {
+    let known = |(k, _): &(usize, &Hardpoint)| is_known(HardpointId(*k), unknown_sources);
     let known: Vec<&Hardpoint> = hardpoints.iter().enumerate().filter(known).map(|h| h.1).collect();
     let places = draft.joints.iter().flat_map(|j| &j.at);
     let named: BTreeSet<&str> = places
@@ -176,8 +176,8 @@ fn extent_of_joints(draft: &Draft, hardpoints: &[Hardpoint], spoilt: &BTreeSet<S
 }
 
 /// True if all coordinates of a hardpoint are known.
-fn is_known(h: HardpointId, spoilt: &BTreeSet<Source>) -> bool {
-    spoilt.is_empty() || (0..3).all(|axis| !spoilt.contains(&Source::Coordinate(h, axis)))
+fn is_known(h: HardpointId, unknown_sources: &BTreeSet<Source>) -> bool {
+    unknown_sources.is_empty() || (0..3).all(|axis| !unknown_sources.contains(&Source::Coordinate(h, axis)))
 }
 
 impl<'a> Checker<'a> {
@@ -258,7 +258,7 @@ impl<'a> Checker<'a> {
             metric_ids: Vec::new(),
             curve_points: Vec::new(),
             written: Vec::new(),
-            spoilt: BTreeSet::new(),
+            unknown_sources: BTreeSet::new(),
             length_formulas,
             law_formulas,
             case_formulas,
@@ -281,7 +281,7 @@ impl<'a> Checker<'a> {
     }
 
     /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
-    fn names(&mut self) {
+    fn check_names(&mut self) {
         let d = self.draft;
         let lists: [(Section, &str, Vec<&str>); 21] = [
             (Section::Parameters, "parameter", d.parameters.iter().map(|x| x.name.as_str()).collect()),
@@ -355,7 +355,7 @@ impl<'a> Checker<'a> {
                 );
             }
         }
-        if d.bodies.is_empty() && !self.lost("body") {
+        if d.bodies.is_empty() && !self.is_table_unread("body") {
             let at = Here { section: Section::Bodies, index: 0 }.key("");
             self.fault("HP0203", at, "the model has no bodies")
                 .help("declare at least one body besides `ground`");
@@ -368,7 +368,7 @@ impl<'a> Checker<'a> {
     }
 
     /// True if the table of this kind of entry could not be read.
-    fn lost(&self, what: &str) -> bool {
+    fn is_table_unread(&self, what: &str) -> bool {
         let table = TABLES.iter().find(|t| t.0 == what);
         table.is_some_and(|(_, table)| self.draft.unread.has(Section::Model, 0, table))
     }
@@ -387,7 +387,7 @@ impl<'a> Checker<'a> {
             Some(numbers) => numbers.get(name).copied(),
             None => candidates.clone().position(|c| c == name),
         };
-        if found.is_some() || self.lost(what) {
+        if found.is_some() || self.is_table_unread(what) {
             return found;
         }
         let count = numbers.map_or_else(|| candidates.clone().count(), HashMap::len);
@@ -464,11 +464,11 @@ impl<'a> Checker<'a> {
 
     /// Position of a hardpoint, if it is known.
     fn position(&self, h: HardpointId) -> Option<Vec3> {
-        is_known(h, &self.spoilt).then(|| self.model.hardpoints[h.0].position)
+        is_known(h, &self.unknown_sources).then(|| self.model.hardpoints[h.0].position)
     }
 
     /// Vector from one hardpoint to another, if it is known; `Some(None)` if they coincide.
-    fn apart(&self, a: HardpointId, b: HardpointId) -> Option<Option<Vec3>> {
+    fn separation(&self, a: HardpointId, b: HardpointId) -> Option<Option<Vec3>> {
         let d = self.position(b)? - self.position(a)?;
         Some((d.norm() > SAME_POINT * self.extent.size()).then_some(d))
     }
@@ -506,7 +506,7 @@ impl<'a> Checker<'a> {
                 let a_id = self.hardpoint(a, DraftLocation { item: Some(0), ..at.clone() });
                 let b_id = self.hardpoint(b, DraftLocation { item: Some(1), ..at.clone() });
                 let (a_id, b_id) = (a_id?, b_id?);
-                match self.apart(a_id, b_id)?.and_then(Vec3::unit) {
+                match self.separation(a_id, b_id)?.and_then(Vec3::unit) {
                     Some(u) => Some((Direction::Through(a_id, b_id), u)),
                     None => {
                         let message = format!("the two points of the {key} of `{owner}` coincide");
@@ -524,7 +524,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn bodies(&mut self) {
+    fn add_bodies(&mut self) {
         let draft = self.draft;
         for (index, b) in draft.bodies.iter().enumerate() {
             let here = Here { section: Section::Bodies, index };
@@ -584,7 +584,7 @@ impl<'a> Checker<'a> {
     }
 
     /// HP0212: bodies without joints. Sets the default frames.
-    fn default_frames(&mut self) {
+    fn set_default_frames(&mut self) {
         let mut ends = vec![(Vec3::ZERO, 0.0); self.model.bodies.len()];
         for j in self.model.joints.iter().filter(|j| j.at[0] != UNPLACED) {
             for (body, at) in j.bodies.iter().zip(j.at) {
@@ -596,7 +596,7 @@ impl<'a> Checker<'a> {
         let named: BTreeSet<&str> =
             self.draft.joints.iter().flat_map(|j| &j.bodies).map(String::as_str).collect();
         // An unread joint may connect any body.
-        let all_known = !self.lost("joint") && !self.draft.unread.anywhere(Section::Joints, "bodies");
+        let all_known = !self.is_table_unread("joint") && !self.draft.unread.anywhere(Section::Joints, "bodies");
         for (index, b) in self.draft.bodies.iter().enumerate() {
             if !named.contains(b.name.as_str()) && all_known {
                 let at = Here { section: Section::Bodies, index }.key("name");
@@ -610,7 +610,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn points(&mut self) {
+    fn add_points(&mut self) {
         let draft = self.draft;
         for (index, p) in draft.points.iter().enumerate() {
             let here = Here { section: Section::Points, index };
@@ -640,18 +640,18 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn times(&mut self) {
+    fn check_times(&mut self) {
         let cases = &self.draft.cases;
         if self.draft.times.is_empty() && !cases.is_empty() && cases.iter().all(|c| c.times.is_some()) {
             // The times of the model are only a default for cases.
             self.model.times = cases[0].times.clone().unwrap_or_default();
             return;
         }
-        self.times_of(&self.draft.times, Here { section: Section::Time, index: 0 }.key(""));
+        self.check_output_times(&self.draft.times, Here { section: Section::Time, index: 0 }.key(""));
     }
 
     /// HP0219: missing output times, or times that are not finite and increasing.
-    fn times_of(&mut self, times: &[f64], at: DraftLocation) {
+    fn check_output_times(&mut self, times: &[f64], at: DraftLocation) {
         if times.is_empty() {
             self.fault("HP0219", at, "the model has no output times")
                 .help("give a `[time]` table with `end` and `steps`");

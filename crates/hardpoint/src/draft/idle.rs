@@ -13,7 +13,7 @@ const ON_AXIS: f64 = 1e-6;
 
 impl Model {
     /// Finds idle rotations and fixes each by making one spherical joint a universal joint.
-    pub(super) fn hold_idle_spins(&mut self) {
+    pub(super) fn fix_idle_rotations(&mut self) {
         let size = self.size();
         let mut joints_of = vec![Vec::new(); self.bodies.len()];
         for (k, j) in self.joints.iter().enumerate() {
@@ -43,8 +43,8 @@ impl Model {
             let Some(axis) = self.spin(&bodies, &joints, ball, &prescribed, size) else { continue };
             let z = axis.any_square();
             let frame = Mat3 { cols: [axis.cross(z), z.cross(axis.cross(z)), z] };
-            let held = &mut self.joints[ball.0];
-            (held.kind, held.frames) = (&crate::joint::UNIVERSAL, [frame; 2]);
+            let fixed = &mut self.joints[ball.0];
+            (fixed.kind, fixed.frames) = (&crate::joint::UNIVERSAL, [frame; 2]);
             self.idle.push(IdleRotation { bodies, joint: ball, axis });
         }
     }
@@ -92,11 +92,11 @@ impl Model {
         let axis = Vec3::new(free[0], free[1], free[2]).unit()?;
         // A rotation that is possible only in this position is not idle: every other joint must stay on the axis.
         let on_axis = |p: Vec3| (p - centre).cross(axis).norm() <= ON_AXIS * size;
-        let for_good = joints.iter().all(|&j| {
+        let permanent = joints.iter().all(|&j| {
             let joint = &self.joints[j.0];
             let along = joint.axis.is_none() || joint.frames[end(j)].cols[2].cross(axis).norm() <= ON_AXIS;
             on_axis(place(j)) && along
         });
-        (slide.norm() <= ON_AXIS && for_good).then_some(axis)
+        (slide.norm() <= ON_AXIS && permanent).then_some(axis)
     }
 }

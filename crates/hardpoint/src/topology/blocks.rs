@@ -85,7 +85,7 @@ pub(super) fn split(model: &Model, topology: &mut Topology) -> Result<(), Topolo
     let groups = match groups_of(topology, &jacobian) {
         Ok(groups) => groups,
         Err(free) => {
-            let nearby = freedoms_nearby(model, topology);
+            let nearby = count_free_motions_nearby(model, topology);
             // A design configuration that is open and happens to be singular, like aligned bars, is assembled in
             // another position. The plan of a nearby position is valid there.
             let elsewhere = (model.is_drawn_open() && nearby < free.len())
@@ -171,7 +171,7 @@ fn independent_groups(topology: &Topology, jacobian: &[SparseRow]) -> Option<Vec
 ///
 /// If there are fewer than in the design configuration, that is singular, and no driver is missing. Planar mechanisms
 /// remain redundant under such a shift.
-fn freedoms_nearby(model: &Model, topology: &Topology) -> usize {
+fn count_free_motions_nearby(model: &Model, topology: &Topology) -> usize {
     let unknowns: Vec<CoordinateId> = topology.unknown_coordinates().collect();
     let column_of = columns(topology, &unknowns);
     let rows = design_jacobian(&shifted(model), topology).into_iter();

@@ -186,7 +186,7 @@ pub(super) fn free_motions(
 }
 
 /// Returns the error of rows that fail under the drivers' motion, each with its failure per driver.
-pub(super) fn contradicted(
+pub(super) fn contradiction(
     model: &Model,
     topology: &Topology,
     contradictions: &[(RowId, Vec<f64>)],

@@ -67,7 +67,7 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
     if contradictions.is_empty() {
         Ok(())
     } else {
-        Err(error::contradicted(model, topology, &contradictions))
+        Err(error::contradiction(model, topology, &contradictions))
     }
 }
 

@@ -14,13 +14,13 @@ use super::{
 
 /// Cost of a joint that the model requests to cut. A body without any tree joint has six unknowns, so a joint with a
 /// cost of six is never chosen.
-const ASKED_CUT: usize = 6;
+const REQUESTED_CUT: usize = 6;
 
 /// Drivers of each joint, with the freedom of the joint that each prescribes.
 type DriversOf = Vec<Vec<(DriverId, Option<usize>)>>;
 
 /// Chooses the tree and lists links, coordinates and closures. Blocks are assigned later.
-pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
+pub(super) fn choose_tree(model: &Model, formulation: Formulation) -> Topology {
     let mut roles: Vec<JointRole> = model
         .joints
         .iter()
@@ -74,14 +74,14 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
         }
     }
     // Ground has no link, and depth 0.
-    let mut way = vec![PathToGround { link: LinkId(0), depth: 0 }; model.bodies.len()];
+    let mut paths = vec![PathToGround { link: LinkId(0), depth: 0 }; model.bodies.len()];
     for (k, link) in LinkId::each(&topology.links) {
         let depth = depth[link.child.0].expect("every body is placed by now");
-        way[link.child.0] = PathToGround { link: k, depth };
+        paths[link.child.0] = PathToGround { link: k, depth };
     }
     let mut add = |joint: usize, driver: Option<DriverId>, coupler: Option<usize>, rows: Vec<Row>| {
         let owner = Owner { joint: JointId(joint), driver, coupler };
-        add_closure(&mut topology, &way, owner, model.joints[joint].bodies, rows);
+        add_closure(&mut topology, &paths, owner, model.joints[joint].bodies, rows);
     };
     for (k, joint) in model.joints.iter().enumerate() {
         let cut = matches!(roles[k], JointRole::Cut(_));
@@ -144,8 +144,8 @@ impl<'m> Reachable<'m> {
             for (k, j) in model.joints.iter().enumerate() {
                 let Some(freedoms) = j.kind.freedom_count() else { continue };
                 let driven = drivers_of[k].iter().filter(|d| d.1.is_some()).count();
-                let unknowns = if j.cut { ASKED_CUT } else { freedoms - driven };
-                if unknowns < ASKED_CUT {
+                let unknowns = if j.cut { REQUESTED_CUT } else { freedoms - driven };
+                if unknowns < REQUESTED_CUT {
                     for (end, body) in j.bodies.iter().enumerate() {
                         joints_of[body.0].push((k, unknowns, end));
                     }
@@ -251,7 +251,7 @@ struct PathToGround {
 
 fn add_closure(
     topology: &mut Topology,
-    way: &[PathToGround],
+    paths: &[PathToGround],
     Owner { joint, driver, coupler }: Owner,
     bodies: [BodyId; 2],
     rows: Vec<Row>,
@@ -270,7 +270,7 @@ fn add_closure(
             unit: 1.0,
         });
     }
-    let (links, base) = loop_links(topology, way, bodies);
+    let (links, base) = loop_links(topology, paths, bodies);
     let on_base = |row: &Row| if base == GROUND { *row } else { row.on_base() };
     let rows: Vec<Row> = rows.iter().map(on_base).collect();
     let follows = rows.contains(&Row::Contact);
@@ -299,13 +299,13 @@ fn add_closure(
 /// No path is followed further: in a long chain of loops, the last one is far from ground.
 fn loop_links(
     topology: &Topology,
-    way: &[PathToGround],
+    paths: &[PathToGround],
     [mut i, mut j]: [BodyId; 2],
 ) -> (Vec<LoopLink>, BodyId) {
     let (mut from_i, mut from_j) = (Vec::new(), Vec::new());
     while i != j {
         let (PathToGround { link: a, depth: depth_i }, PathToGround { link: b, depth: depth_j }) =
-            (way[i.0], way[j.0]);
+            (paths[i.0], paths[j.0]);
         if depth_i >= depth_j {
             from_i.push(LoopLink { link: a, side: -1.0 });
             i = topology[a].parent;

@@ -13,7 +13,7 @@ use crate::space::Vec3;
 use super::{Checker, Here, SAME_POINT, UNPLACED};
 
 impl Checker<'_> {
-    pub(super) fn variables(&mut self) {
+    pub(super) fn add_variables(&mut self) {
         let draft = self.draft;
         for (index, v) in draft.design.iter().enumerate() {
             let here = Here { section: Section::Design, index };
@@ -31,7 +31,7 @@ impl Checker<'_> {
                 let driver = self.model.drivers.iter().find(|d| d.name == driver)?;
                 Some((&driver.law, self.model.driven(driver).quantity))
             });
-            self.range(v, here);
+            self.check_bounds(v, here);
             self.model.variables.push(DesignVariable {
                 name: v.name.clone(),
                 quantity,
@@ -45,7 +45,7 @@ impl Checker<'_> {
     }
 
     /// HP0229: bounds that do not enclose the nominal design, or an invalid typical size or tolerance.
-    fn range(&mut self, v: &VariableDraft, here: Here) {
+    fn check_bounds(&mut self, v: &VariableDraft, here: Here) {
         // Bounds of a parameter are relative to its value.
         if let Some([low, high]) = v.bounds.filter(|_| !self.unread(here, "value")) {
             if !(low < high && low.is_finite() && high.is_finite()) {
@@ -60,13 +60,13 @@ impl Checker<'_> {
                 );
             }
         }
-        let is_none = |size: Option<f64>| size.is_some_and(|size| !(size > 0.0 && size.is_finite()));
-        if is_none(v.typical) {
+        let is_invalid = |size: Option<f64>| size.is_some_and(|size| !(size > 0.0 && size.is_finite()));
+        if is_invalid(v.typical) {
             let message = format!("the typical size of design variable `{}` is not positive", v.name);
             self.fault("HP0229", here.key("typical"), message)
                 .help("give the size of a typical change, or remove `typical`");
         }
-        if is_none(v.tolerance) {
+        if is_invalid(v.tolerance) {
             let message = format!("the tolerance of design variable `{}` is not positive", v.name);
             self.fault("HP0229", here.key("tolerance"), message)
                 .help("give the half width of the tolerance, or remove `tolerance`");
@@ -87,7 +87,7 @@ impl Checker<'_> {
         let bodies: Vec<_> = bodies.iter().map(|b| self.body(b, at.clone())).collect();
         let field = self.shape_field(field, owner, here);
         let (bodies, field) = (bodies.into_iter().collect::<Option<Vec<BodyId>>>()?, field?);
-        let (mut moved, mut turned): (BTreeSet<usize>, Vec<JointId>) = Default::default();
+        let (mut moved, mut rotated): (BTreeSet<usize>, Vec<JointId>) = Default::default();
         for (j, joint) in self.model.joints.iter().enumerate() {
             if !joint.bodies.iter().any(|b| bodies.contains(b)) {
                 continue;
@@ -96,7 +96,7 @@ impl Checker<'_> {
             let axes = [joint.axis, joint.axis2].into_iter().flatten();
             moved.extend(axes.clone().filter_map(Direction::hardpoints).flatten().map(|h| h.0));
             if axes.clone().any(|a| matches!(a, Direction::Along(_))) {
-                turned.push(JointId(j));
+                rotated.push(JointId(j));
             }
         }
         let points = self.model.points.iter().filter(|p| bodies.contains(&p.body) && p.at != UNPLACED);
@@ -109,7 +109,7 @@ impl Checker<'_> {
                 changes.push(change::Move { hardpoint: HardpointId(h), velocity }.into());
             }
         }
-        for joint in turned {
+        for joint in rotated {
             let place = self.model.joints[joint.0].at[0];
             let [_, rotation] = field.at(self.position(place)?);
             if rotation.norm() > SAME_POINT {
@@ -151,8 +151,8 @@ impl Checker<'_> {
                 let [from, to] = [ends[0]?, ends[1]?];
                 let along =
                     (to - from).unit().filter(|_| (to - from).norm() > SAME_POINT * self.extent.size());
-                let square = along.and_then(|e| (*towards - e * e.dot(*towards)).unit());
-                let Some(towards) = square else {
+                let normal = along.and_then(|e| (*towards - e * e.dot(*towards)).unit());
+                let Some(towards) = normal else {
                     let message = format!("the bend of design variable `{owner}` has no direction");
                     self.fault("HP0205", key(), message)
                         .note("its two hardpoints coincide, or `towards` is parallel to the line between them")
@@ -198,7 +198,7 @@ impl Checker<'_> {
                         );
                     return None;
                 }
-                self.not_null(vectors(&[*velocity]), owner, at);
+                self.check_not_zero(vectors(&[*velocity]), owner, at);
                 change::Move { hardpoint, velocity: *velocity }.into()
             }
             ChangeDraft::Tilt { joint, about } => {
@@ -208,12 +208,12 @@ impl Checker<'_> {
             }
             ChangeDraft::Marker { joint, end, position, rotation } => {
                 let joint = self.joint(joint, at.clone())?;
-                self.not_null(vectors(&[*position, *rotation]), owner, at);
+                self.check_not_zero(vectors(&[*position, *rotation]), owner, at);
                 change::Marker { joint, end: *end, position: *position, rotation: *rotation }.into()
             }
             ChangeDraft::Length { joint, rate } => {
                 let joint = self.joint(joint, at.clone())?;
-                self.not_null(number(*rate), owner, at.clone());
+                self.check_not_zero(number(*rate), owner, at.clone());
                 let j = &self.model.joints[joint.0];
                 if j.length.is_none() {
                     let (name, kind) = (j.name.clone(), j.kind.name);
@@ -230,7 +230,7 @@ impl Checker<'_> {
             ChangeDraft::Parameter { parameter, rate } => {
                 let names = self.draft.parameters.iter().map(|p| p.name.as_str());
                 let parameter = self.find("parameter", parameter, at.clone(), names).map(ParameterId)?;
-                self.not_null(number(*rate), owner, at);
+                self.check_not_zero(number(*rate), owner, at);
                 change::Parameter { parameter, rate: *rate }.into()
             }
             ChangeDraft::Law { driver, parameter, rate } => {
@@ -244,7 +244,7 @@ impl Checker<'_> {
                 let names = parameters.iter().map(|p| p.name.as_str());
                 let what = format!("parameter of the law of `{driver}`");
                 let parameter = self.find(&what, parameter, here.key("parameter"), names)?;
-                self.not_null(number(*rate), owner, at);
+                self.check_not_zero(number(*rate), owner, at);
                 // A faulty driver has been reported.
                 let driver = self.model.drivers.iter().position(|d| d.name == *driver).map(DriverId)?;
                 change::Law { driver, parameter, rate: *rate }.into()
@@ -254,7 +254,7 @@ impl Checker<'_> {
                 let joint = self.joint(joint, at.clone());
                 let body = self.body(body, at.clone());
                 let (joint, body) = (joint?, body?);
-                self.not_null(vectors(&[*v, *u]), owner, at.clone());
+                self.check_not_zero(vectors(&[*v, *u]), owner, at.clone());
                 let bodies = self.model.joints[joint.0].bodies;
                 if !bodies.contains(&body) {
                     let names = bodies.map(|b| format!("`{}`", self.model.bodies[b.0].name)).join(" and ");
@@ -272,7 +272,7 @@ impl Checker<'_> {
     }
 
     /// HP0217: a change with zero velocity.
-    fn not_null(&mut self, does_something: bool, owner: &str, at: DraftLocation) {
+    fn check_not_zero(&mut self, does_something: bool, owner: &str, at: DraftLocation) {
         if !does_something {
             let message = format!("a velocity of design variable `{owner}` is zero or not finite");
             self.fault("HP0217", at, message);

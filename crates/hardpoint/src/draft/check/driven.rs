@@ -29,9 +29,9 @@ enum Zero {
     /// No absolute zero, as for the angle of a revolute joint.
     None,
     /// Zero, because the measure itself counts from the design configuration, like wheel travel.
-    AsDrawn,
+    Nominal,
     /// Constant of the joint in the design configuration: the length of a rod or leg, the angle of an axis.
-    Kept,
+    Constant,
     /// Position of the joint's hardpoint along its axis.
     Position,
 }
@@ -44,17 +44,17 @@ struct Axes {
 }
 
 /// Sine of the angle to the line of sight below which a direction has no angle.
-const HEADLESS: f64 = 1e-6;
+const MIN_SINE: f64 = 1e-6;
 /// Name of the fixed body.
 const GROUND_NAME: &str = "ground";
 
 /// Nominal value of a driver's coordinate as an expression over hardpoints or joint constants.
-pub(super) struct AsDrawn {
+pub(super) struct NominalValue {
     expression: Expression,
     sources: Vec<Source>,
 }
 
-impl AsDrawn {
+impl NominalValue {
     /// Returns the formula that defines a number of the model by this value.
     pub fn formula(&self, of: Target) -> Formula {
         let inputs = self.sources.iter().map(|s| (*s, 1.0)).collect();
@@ -95,7 +95,7 @@ impl Checker<'_> {
                 let (axis, z) = self.line(about, &d.name, here, "about")?;
                 let (body, base) = (body?, base?);
                 let axes = Axes { axis, axis2: None, frames: [frame_along(z, z.any_square()); 2] };
-                let at = self.place_on(body)?;
+                let at = self.hardpoint_on(body)?;
                 self.driven_joint(d, &joint::HEADING, [base, body], [at, at], Some(axes), Zero::None)
             }
             DrivenDraft::Measure(name) => self.driven_measure(d, name, here),
@@ -112,8 +112,8 @@ impl Checker<'_> {
         let joint = self.joint(name, at[0].clone())?;
         let coordinate = self.coordinate_at(joint, coordinate, at.clone())?;
         let row = self.model.joints[joint.0].kind.coordinates[coordinate].row;
-        let zero = if row == Row::Distance { Zero::Kept } else { Zero::None };
-        self.drivable(d, name, joint, coordinate, at[0].clone()).then_some(Driven { joint, coordinate, zero })
+        let zero = if row == Row::Distance { Zero::Constant } else { Zero::None };
+        self.is_drivable(d, name, joint, coordinate, at[0].clone()).then_some(Driven { joint, coordinate, zero })
     }
 
     fn driven_position(
@@ -141,11 +141,11 @@ impl Checker<'_> {
         let [from, to] = at;
         let (a, b) = (self.point(points[0], &d.name, from), self.point(points[1], &d.name, to.clone()));
         let [i, j] = [a?, b?].map(|p| self.model.points[p.0].clone());
-        if self.apart(i.at, j.at) == Some(None) {
+        if self.separation(i.at, j.at) == Some(None) {
             let message = format!("the two points of driver `{}` coincide", d.name);
             self.fault("HP0211", to, message).help("an actuator needs two different points");
         }
-        self.driven_joint(d, &joint::LEG, [i.body, j.body], [i.at, j.at], None, Zero::Kept)
+        self.driven_joint(d, &joint::LEG, [i.body, j.body], [i.at, j.at], None, Zero::Constant)
     }
 
     /// Returns the coordinate that has the value of a measure, absolute or relative to the design configuration like
@@ -171,7 +171,7 @@ impl Checker<'_> {
                 about: Some(about),
             } if base == GROUND_NAME => {
                 let (body, axis2) = self.ray_of_one_body(d, to, name, &at)?;
-                let place = self.place_on(body)?;
+                let place = self.hardpoint_on(body)?;
                 let z = about.unit()?;
                 let x = (*from - z * z.dot(*from)).unit();
                 let Some(x) = x else {
@@ -183,23 +183,23 @@ impl Checker<'_> {
                     .help("give the measure a `from` that is not parallel to its `about`");
                     return None;
                 };
-                self.driven_course(d, body, place, [z, x], axis2, Zero::Kept, &at)
+                self.driven_angle(d, body, place, [z, x], axis2, Zero::Constant, &at)
             }
             MeasureKindDraft::Toe { body, spin_axis } => {
                 let body = self.body(body, at.clone())?;
                 let (axis2, _) = self.line_at(spin_axis, &d.name, at.clone())?;
-                let place = self.place_on(body)?;
+                let place = self.hardpoint_on(body)?;
                 let s = self.model.side_of_axis(axis2).sign();
-                self.driven_course(d, body, place, [up * -s, left * s], axis2, Zero::Kept, &at)
+                self.driven_angle(d, body, place, [up * -s, left * s], axis2, Zero::Constant, &at)
             }
             MeasureKindDraft::Wheel { wheel, what } => {
                 let names = draft.wheels.iter().map(|w| w.name.as_str());
                 let number = self.find("wheel", wheel, at.clone(), names)?;
                 // The check of wheels reports the errors of the wheel itself.
                 let faults = self.faults.len();
-                let stands = self.wheel_as_drawn(&draft.wheels[number], number);
+                let nominal = self.nominal_wheel(&draft.wheels[number], number);
                 self.faults.truncate(faults);
-                let (body, centre, side, axis2) = stands?;
+                let (body, centre, side, axis2) = nominal?;
                 let s = side.sign();
                 let travel = |c: &mut Self, z: Vec3| {
                     let frames = [frame_along(z, z.any_square()); 2];
@@ -210,7 +210,7 @@ impl Checker<'_> {
                         [GROUND, body],
                         [centre, centre],
                         Some(axes),
-                        Zero::AsDrawn,
+                        Zero::Nominal,
                     )
                 };
                 match what {
@@ -218,21 +218,21 @@ impl Checker<'_> {
                     WheelMeasure::WheelRecession => travel(self, -forward),
                     // toe = atan2(e_x, s e_y): seen from where z is -s z, from s y
                     WheelMeasure::Toe => {
-                        self.driven_course(d, body, centre, [up * -s, left * s], axis2, Zero::Kept, &at)
+                        self.driven_angle(d, body, centre, [up * -s, left * s], axis2, Zero::Constant, &at)
                     }
                     WheelMeasure::SteerAngle => {
-                        self.driven_course(d, body, centre, [up, left * s], axis2, Zero::AsDrawn, &at)
+                        self.driven_angle(d, body, centre, [up, left * s], axis2, Zero::Nominal, &at)
                     }
-                    _ => self.no_driver_of(d, name, what.name(), &at),
+                    _ => self.report_not_drivable(d, name, what.name(), &at),
                 }
             }
-            MeasureKindDraft::Angle { .. } => self.no_driver_of(d, name, "angle", &at),
-            _ => self.no_driver_of(d, name, "type", &at),
+            MeasureKindDraft::Angle { .. } => self.report_not_drivable(d, name, "angle", &at),
+            _ => self.report_not_drivable(d, name, "type", &at),
         }
     }
 
     /// HP0213: a measure that no driver can prescribe.
-    fn no_driver_of(
+    fn report_not_drivable(
         &mut self,
         d: &DriverDraft,
         name: &str,
@@ -273,7 +273,7 @@ impl Checker<'_> {
                 let [a, b] = [0, 1].map(|k| self.point(&points[k], &d.name, at.clone()));
                 let [a, b] = [a?, b?].map(|p| self.model.points[p.0].clone());
                 if a.body != b.body {
-                    self.no_driver_of(d, measure, "angle", at);
+                    self.report_not_drivable(d, measure, "angle", at);
                     return None;
                 }
                 Some((a.body, Direction::Through(a.at, b.at)))
@@ -283,7 +283,7 @@ impl Checker<'_> {
 
     /// Drives the angle of a direction of a body about z of ground, counted from x.
     #[expect(clippy::too_many_arguments, reason = "what a joint is made of")]
-    fn driven_course(
+    fn driven_angle(
         &mut self,
         d: &DriverDraft,
         body: BodyId,
@@ -294,7 +294,7 @@ impl Checker<'_> {
         at: &DraftLocation,
     ) -> Option<Driven> {
         let e = self.vector(axis2)?.unit()?;
-        if (e - z * z.dot(e)).norm() < HEADLESS {
+        if (e - z * z.dot(e)).norm() < MIN_SINE {
             let message = format!("the direction of driver `{}` is parallel to its line of sight", d.name);
             self.fault("HP0213", at.clone(), message).help("give another `about` direction");
             return None;
@@ -313,13 +313,13 @@ impl Checker<'_> {
     }
 
     /// Returns a hardpoint of a joint of a body.
-    fn place_on(&self, body: BodyId) -> Option<HardpointId> {
+    fn hardpoint_on(&self, body: BodyId) -> Option<HardpointId> {
         self.model.joints.iter().find(|j| j.bodies.contains(&body)).map(|j| j.at[0])
     }
 
     /// Returns the nominal value of a driver's coordinate, if it is not zero. HP0213 if the law is absolute and the
     /// coordinate has no absolute zero.
-    pub(super) fn as_drawn(&mut self, d: &DriverDraft, driven: Driven, here: Here) -> Option<AsDrawn> {
+    pub(super) fn nominal_value(&mut self, d: &DriverDraft, driven: Driven, here: Here) -> Option<NominalValue> {
         let joint = &self.model.joints[driven.joint.0];
         let mut sources = Vec::new();
         let mut coordinates = |h: HardpointId| {
@@ -341,9 +341,9 @@ impl Checker<'_> {
                     .help("remove `counted_from`, or prescribe a measure with `measure = \"NAME\"`");
                 return None;
             }
-            (Zero::None | Zero::AsDrawn, ..) => return None,
+            (Zero::None | Zero::Nominal, ..) => return None,
             // The joint constant changes with `length` and variables of the joint itself, not only with its hardpoints.
-            (Zero::Kept, ..) => {
+            (Zero::Constant, ..) => {
                 sources.push(Source::Kept(driven.joint, driven.coordinate));
                 "n0".to_owned()
             }
@@ -361,7 +361,7 @@ impl Checker<'_> {
             let k: usize = n[1..].parse().expect("a name that is given here");
             sources[k]
         });
-        Some(AsDrawn { sources: sources.collect(), expression: expression.clone() })
+        Some(NominalValue { sources: sources.collect(), expression: expression.clone() })
     }
 
     /// Adds an unnamed joint with the coordinate that a driver prescribes.
@@ -399,7 +399,7 @@ impl Checker<'_> {
     }
 
     /// True if a driver may prescribe a joint's coordinate: no other driver does, and no constraint fixes it.
-    fn drivable(
+    fn is_drivable(
         &mut self,
         d: &DriverDraft,
         name: &str,

@@ -21,7 +21,7 @@ const ACROSS: f64 = 1e-3;
 const FLAT: f64 = 1e-3;
 
 impl Checker<'_> {
-    pub(super) fn elements(&mut self) {
+    pub(super) fn add_elements(&mut self) {
         let draft = self.draft;
         let masses = draft.masses.iter().enumerate().map(|(k, e)| (Section::Masses, k, e));
         let forces = draft.forces.iter().enumerate().map(|(k, e)| (Section::Forces, k, e));
@@ -42,26 +42,26 @@ impl Checker<'_> {
         let kind = e.kind.resolve(&mut MeasureCheck::new(self, &e.name, here))?;
         match &kind {
             ElementKind::Rigid { centre, about, .. } => {
-                self.on_moving(*centre, &e.name, here, "centre");
+                self.check_on_moving(*centre, &e.name, here, "centre");
                 if about.is_some_and(|about| self.body_of(about) != self.body_of(*centre)) {
                     let message = format!("`about` of `{}` is not on the body of its centre", e.name);
                     self.fault("HP0251", here.key("about"), message)
                         .help("put both points on the body that has the mass");
                 }
             }
-            ElementKind::Block { centre, .. } => self.on_moving(*centre, &e.name, here, "centre"),
+            ElementKind::Block { centre, .. } => self.check_on_moving(*centre, &e.name, here, "centre"),
             ElementKind::Mesh { body, .. } => {
                 if *body == GROUND {
-                    self.mass_on_ground(&e.name, here, "body");
+                    self.report_mass_on_ground(&e.name, here, "body");
                 }
             }
             ElementKind::Bar { from, to, .. } => {
-                self.on_moving(*from, &e.name, here, "from");
+                self.check_on_moving(*from, &e.name, here, "from");
                 if self.body_of(*from) != self.body_of(*to) {
                     let message = format!("the ends of `{}` are on different bodies", e.name);
                     self.fault("HP0251", here.key("to"), message)
                         .help("put both ends on the body that has the mass");
-                } else if self.at_one_place(*from, *to) {
+                } else if self.coincide(*from, *to) {
                     let message = format!("the ends of `{}` coincide", e.name);
                     self.fault("HP0251", here.key("to"), message).help("give two different ends");
                 }
@@ -71,13 +71,13 @@ impl Checker<'_> {
                     let message = format!("both ends of `{}` are on the same body, where it has no effect", e.name);
                     self.fault("HP0251", here.key("to"), message)
                         .help("put its ends on two different bodies; `ground` is also a body");
-                } else if self.at_one_place(*from, *to) {
+                } else if self.coincide(*from, *to) {
                     let message = format!("the ends of `{}` coincide", e.name);
                     self.fault("HP0251", here.key("to"), message)
                         .note("a spring of zero length has no direction")
                         .help("move its ends apart, or use a `bushing`");
                 }
-                self.spring_forces(&kind, &e.name, here);
+                self.check_spring_keys(&kind, &e.name, here);
                 let table = kind.table().is_some();
                 if stiffness.is_none() && !table {
                     let message = format!("`{}` has neither a stiffness nor a table", e.name);
@@ -131,7 +131,7 @@ impl Checker<'_> {
                             "name a revolute, cylindrical or spherical joint; for viscous friction of others use the `damping` of a `torsion_spring`"
                         }
                     };
-                    self.no_friction(&e.name, *joint, "hinge or ball joint", here, help);
+                    self.report_friction_joint(&e.name, *joint, "hinge or ball joint", here, help);
                 } else if let (Some(_), "spherical") = (length, kind) {
                     let message = format!("`{}` has a `length`, which does not apply to a spherical joint", e.name);
                     self.fault("HP0251", here.key("length"), message).help("remove `length`");
@@ -139,8 +139,8 @@ impl Checker<'_> {
                 let numbers = [(coefficient.0, "coefficient"), (radius.0, "radius")];
                 let length = length.map(|n| (n.0, "length"));
                 let transition_velocity = transition_velocity.map(|n| (n.0, "transition_velocity"));
-                self.above(numbers.into_iter().chain(length).chain(transition_velocity), &e.name, here);
-                self.not_below(viscous.map(|n| n.0), "viscous", &e.name, here);
+                self.check_positive(numbers.into_iter().chain(length).chain(transition_velocity), &e.name, here);
+                self.check_not_negative(viscous.map(|n| n.0), "viscous", &e.name, here);
             }
             ElementKind::SlideFriction {
                 joint,
@@ -158,7 +158,7 @@ impl Checker<'_> {
                             "name a translational or cylindrical joint; for viscous friction of others use the `damping` of a `joint_spring`"
                         }
                     };
-                    self.no_friction(&e.name, *joint, "slide", here, help);
+                    self.report_friction_joint(&e.name, *joint, "slide", here, help);
                 } else if let Some(normal) = ignored_direction {
                     let z = self.model.joints[joint.0].frames[0].cols[2];
                     if normal.cross(z).norm() < ACROSS {
@@ -169,12 +169,12 @@ impl Checker<'_> {
                 }
                 let length = length.map(|n| (n.0, "length"));
                 let transition_velocity = transition_velocity.map(|n| (n.0, "transition_velocity"));
-                self.above(
+                self.check_positive(
                     [(coefficient.0, "coefficient")].into_iter().chain(length).chain(transition_velocity),
                     &e.name,
                     here,
                 );
-                self.not_below(viscous.map(|n| n.0), "viscous", &e.name, here);
+                self.check_not_negative(viscous.map(|n| n.0), "viscous", &e.name, here);
             }
             ElementKind::WheelForce { wheel, outboard, forward, up, .. } => {
                 if [outboard, forward, up].iter().all(|n| n.is_none()) {
@@ -221,8 +221,8 @@ impl Checker<'_> {
                 }
             }
         }
-        self.sizes(&kind, &e.name, here);
-        self.inertia(&kind, &e.name, here);
+        self.check_mass_parameters(&kind, &e.name, here);
+        self.check_inertia(&kind, &e.name, here);
         if let Some(law) = kind.law() {
             let times =
                 self.draft.times.iter().chain(self.draft.cases.iter().flat_map(|c| c.times.iter().flatten()));
@@ -238,32 +238,32 @@ impl Checker<'_> {
         self.model.points[point.0].body.0
     }
 
-    fn at_one_place(&self, a: PointId, b: PointId) -> bool {
+    fn coincide(&self, a: PointId, b: PointId) -> bool {
         let [a, b] = [a, b].map(|p| self.model.points[p.0].at);
-        self.apart(a, b) == Some(None)
+        self.separation(a, b) == Some(None)
     }
 
-    fn on_moving(&mut self, point: PointId, name: &str, here: Here, key: &'static str) {
+    fn check_on_moving(&mut self, point: PointId, name: &str, here: Here, key: &'static str) {
         if self.body_of(point) == GROUND.0 {
-            self.mass_on_ground(name, here, key);
+            self.report_mass_on_ground(name, here, key);
         }
     }
 
-    fn mass_on_ground(&mut self, name: &str, here: Here, key: &'static str) {
+    fn report_mass_on_ground(&mut self, name: &str, here: Here, key: &'static str) {
         let message = format!("mass `{name}` is on ground, where it has no effect");
         self.fault("HP0251", here.key(key), message)
             .help("put it on the body that it belongs to, or remove it");
     }
 
     /// HP0251: friction in a joint of the wrong type.
-    fn no_friction(&mut self, name: &str, joint: JointId, what: &str, here: Here, help: &str) {
+    fn report_friction_joint(&mut self, name: &str, joint: JointId, what: &str, here: Here, help: &str) {
         let message =
             format!("`{name}` acts in joint `{}`, which is not a {what}", self.model.joints[joint.0].name);
         self.fault("HP0251", here.key("joint"), message).help(help);
     }
 
     /// HP0252: friction parameters that are not positive.
-    fn above(&mut self, numbers: impl Iterator<Item = (NumberId, &'static str)>, name: &str, here: Here) {
+    fn check_positive(&mut self, numbers: impl Iterator<Item = (NumberId, &'static str)>, name: &str, here: Here) {
         for (number, key) in numbers {
             if !(self.value(number) > 0.0) {
                 let message = format!("the {key} of `{name}` is not positive");
@@ -273,7 +273,7 @@ impl Checker<'_> {
     }
 
     /// HP0252: a negative friction parameter, which would drive the motion.
-    fn not_below(&mut self, number: Option<NumberId>, key: &'static str, name: &str, here: Here) {
+    fn check_not_negative(&mut self, number: Option<NumberId>, key: &'static str, name: &str, here: Here) {
         if number.is_some_and(|n| !(self.value(n) >= 0.0)) {
             let message = format!("`{key}` of `{name}` is negative");
             self.fault("HP0252", here.key(key), message).help("correct it, or leave it out");
@@ -288,8 +288,8 @@ impl Checker<'_> {
         here: Here,
         key: &'static str,
     ) -> Option<SpringTable> {
-        let pushes = key == "compression";
-        let table = SpringTable::new(&if pushes { SpringTable::turned(points) } else { points.to_vec() });
+        let is_compression = key == "compression";
+        let table = SpringTable::new(&if is_compression { SpringTable::turned(points) } else { points.to_vec() });
         if let Err(why) = &table {
             let message = format!("the table of `{name}` {why}");
             self.fault("HP0252", here.key(key), message)
@@ -299,7 +299,7 @@ impl Checker<'_> {
     }
 
     /// HP0251: contradictory keys of a spring.
-    fn spring_forces(&mut self, kind: &ElementKind, name: &str, here: Here) {
+    fn check_spring_keys(&mut self, kind: &ElementKind, name: &str, here: Here) {
         let ElementKind::Spring { compression, extension, scale, .. } = kind else { return };
         if compression.is_some() && extension.is_some() {
             let message = format!("`{name}` has both `compression` and `extension`");
@@ -318,7 +318,7 @@ impl Checker<'_> {
     }
 
     /// HP0252: mass parameters that are not positive, or an invalid bore.
-    fn sizes(&mut self, kind: &ElementKind, name: &str, here: Here) {
+    fn check_mass_parameters(&mut self, kind: &ElementKind, name: &str, here: Here) {
         let mut above = Vec::new();
         match kind {
             ElementKind::Rigid { mass, .. } => above.push((mass.0, "mass")),
@@ -348,15 +348,15 @@ impl Checker<'_> {
     }
 
     /// HP0252: moments of inertia about the centre that are physically impossible.
-    fn inertia(&mut self, kind: &ElementKind, name: &str, here: Here) {
+    fn check_inertia(&mut self, kind: &ElementKind, name: &str, here: Here) {
         let ElementKind::Rigid { centre, mass, ixx, iyy, izz, ixy, iyz, izx, about } = kind else { return };
         let given = [ixx, iyy, izz].map(|n| n.map(|n| self.value(n.0)));
         let products = [ixy, iyz, izx].map(|n| n.map(|n| self.value(n.0)));
-        let way = about.map_or(Vec3::ZERO, |about| {
+        let offset = about.map_or(Vec3::ZERO, |about| {
             let [c, p] = [*centre, about].map(|p| self.model.position(self.model.points[p.0].at));
             c - p
         });
-        let [moments, [d, e, f]] = about_centre(self.value(mass.0), way, [given, products]);
+        let [moments, [d, e, f]] = about_centre(self.value(mass.0), offset, [given, products]);
         let [a, b, c] = moments;
         let shown = || {
             format!(

@@ -17,7 +17,7 @@ use crate::space::Vec3;
 use super::{Checker, Here, LISTED_NAMES, extent_of_joints};
 
 /// Formula with its location in the draft.
-pub(super) struct Written {
+pub(super) struct LocatedFormula {
     formula: Formula,
     at: DraftLocation,
     /// Name of the defined number in messages.
@@ -28,7 +28,7 @@ pub(super) struct Written {
 
 impl<'a> Checker<'a> {
     /// Adds the parameters, and resolves the formulas of parameters and of coordinates of named hardpoints.
-    pub(super) fn formulas(&mut self) {
+    pub(super) fn add_formulas(&mut self) {
         let draft = self.draft;
         for (index, p) in draft.parameters.iter().enumerate() {
             let at = Here { section: Section::Parameters, index };
@@ -43,7 +43,7 @@ impl<'a> Checker<'a> {
                 self.fault("HP0202", at.key("value"), message);
             }
             if self.unread(at, "value") {
-                self.spoilt.insert(Source::Parameter(ParameterId(index)));
+                self.unknown_sources.insert(Source::Parameter(ParameterId(index)));
             }
             let (name, value, quantity) = (p.name.clone(), p.value, p.quantity);
             self.model.parameters.push(NamedNumber { name, value, quantity });
@@ -51,10 +51,10 @@ impl<'a> Checker<'a> {
         for index in 0..draft.hardpoints.len() {
             if self.unread(Here { section: Section::Hardpoints, index }, "position") {
                 let coordinates = (0..3).map(|axis| Source::Coordinate(HardpointId(index), axis));
-                self.spoilt.extend(coordinates);
+                self.unknown_sources.extend(coordinates);
             }
         }
-        let mut written: Vec<Written> = Vec::new();
+        let mut written: Vec<LocatedFormula> = Vec::new();
         for f in &draft.formulas {
             let (found, at, name) = match &f.of {
                 FormulaOf::Parameter(parameter) => {
@@ -78,12 +78,12 @@ impl<'a> Checker<'a> {
                 continue;
             };
             match self.formula(of, &f.expression, &at) {
-                Some(formula) => written.push(Written { formula, at, name, case: None }),
-                None => self.spoil(of),
+                Some(formula) => written.push(LocatedFormula { formula, at, name, case: None }),
+                None => self.mark_unknown(of),
             }
         }
-        self.order(written);
-        self.extent = extent_of_joints(self.draft, &self.model.hardpoints, &self.spoilt);
+        self.evaluate_in_order(written);
+        self.extent = extent_of_joints(self.draft, &self.model.hardpoints, &self.unknown_sources);
     }
 
     pub(super) fn number_of(&self, what: &str, name: &str) -> Option<usize> {
@@ -135,72 +135,72 @@ impl<'a> Checker<'a> {
     }
 
     /// Evaluates formulas in an order in which each comes after those whose results it uses. HP0227 for circular ones.
-    fn order(&mut self, written: Vec<Written>) {
-        let giver: HashMap<Source, usize> =
+    fn evaluate_in_order(&mut self, written: Vec<LocatedFormula>) {
+        let definition: HashMap<Source, usize> =
             written.iter().enumerate().filter_map(|(k, w)| Some((w.formula.gives()?, k))).collect();
-        let uses = |k: usize| written[k].formula.sources().filter_map(|s| giver.get(&s).copied());
+        let uses = |k: usize| written[k].formula.sources().filter_map(|s| definition.get(&s).copied());
         let mut users = vec![Vec::new(); written.len()];
-        let mut waits: Vec<usize> = vec![0; written.len()];
+        let mut open_inputs: Vec<usize> = vec![0; written.len()];
         for k in 0..written.len() {
             for other in uses(k) {
                 users[other].push(k);
-                waits[k] += 1;
+                open_inputs[k] += 1;
             }
         }
-        let mut order: Vec<usize> = (0..written.len()).filter(|k| waits[*k] == 0).collect();
+        let mut order: Vec<usize> = (0..written.len()).filter(|k| open_inputs[*k] == 0).collect();
         let mut next = 0;
         while let Some(&k) = order.get(next) {
             next += 1;
             for &user in &users[k] {
-                waits[user] -= 1;
-                if waits[user] == 0 {
+                open_inputs[user] -= 1;
+                if open_inputs[user] == 0 {
                     order.push(user);
                 }
             }
         }
         // From each remaining formula, the path along unresolved formulas ends in a new cycle or in a known one.
-        let mut walk_of: Vec<Option<usize>> = vec![None; written.len()];
-        let mut circles = Vec::new();
-        for start in (0..written.len()).filter(|k| waits[*k] > 0) {
-            let (mut k, mut walk) = (start, Vec::new());
-            while walk_of[k].is_none() {
-                walk_of[k] = Some(start);
-                walk.push(k);
-                k = uses(k).find(|other| waits[*other] > 0).unwrap_or(k);
+        let mut path_of: Vec<Option<usize>> = vec![None; written.len()];
+        let mut cycles = Vec::new();
+        for start in (0..written.len()).filter(|k| open_inputs[*k] > 0) {
+            let (mut k, mut path) = (start, Vec::new());
+            while path_of[k].is_none() {
+                path_of[k] = Some(start);
+                path.push(k);
+                k = uses(k).find(|other| open_inputs[*other] > 0).unwrap_or(k);
             }
-            if walk_of[k] == Some(start) {
-                let first = walk.iter().position(|w| *w == k).unwrap_or(0);
-                circles.push(walk.split_off(first));
+            if path_of[k] == Some(start) {
+                let first = path.iter().position(|w| *w == k).unwrap_or(0);
+                cycles.push(path.split_off(first));
             }
         }
-        for circle in circles {
+        for cycle in cycles {
             let shown = |k: &usize| format!("`{}`", written[*k].name);
-            let first = &written[circle[0]];
-            let message = match circle.as_slice() {
+            let first = &written[cycle[0]];
+            let message = match cycle.as_slice() {
                 [one] => format!("the formula of {} refers to itself", shown(one)),
-                _ => format!("the formula of {} is circular", shown(&circle[0])),
+                _ => format!("the formula of {} is circular", shown(&cycle[0])),
             };
-            let way = circle.iter().take(LISTED_NAMES).chain([&circle[0]]).map(shown).collect::<Vec<_>>();
+            let chain = cycle.iter().take(LISTED_NAMES).chain([&cycle[0]]).map(shown).collect::<Vec<_>>();
             let fault = self.fault("HP0227", first.at.clone(), message);
-            if circle.len() > 1 {
-                fault.note(way.join(" uses "));
+            if cycle.len() > 1 {
+                fault.note(chain.join(" uses "));
             }
             fault.help("define one of them by a number, or by an expression of other names");
         }
-        for k in (0..written.len()).filter(|k| waits[*k] > 0) {
-            self.spoil(written[k].formula.of);
+        for k in (0..written.len()).filter(|k| open_inputs[*k] > 0) {
+            self.mark_unknown(written[k].formula.of);
         }
-        let mut by_number: Vec<Option<Written>> = written.into_iter().map(Some).collect();
+        let mut by_number: Vec<Option<LocatedFormula>> = written.into_iter().map(Some).collect();
         for k in order {
             let w = by_number[k].take().expect("each comes once");
-            self.take(w);
+            self.evaluate(w);
         }
     }
 
     /// Sets the result of a formula in the nominal design. HP0228 if it is not finite.
-    fn take(&mut self, w: Written) -> Option<f64> {
-        if w.formula.sources().any(|s| self.is_spoilt(s)) {
-            self.spoil(w.formula.of);
+    fn evaluate(&mut self, w: LocatedFormula) -> Option<f64> {
+        if w.formula.sources().any(|s| self.is_unknown(s)) {
+            self.mark_unknown(w.formula.of);
             return None;
         }
         let value = w.formula.at(|s| self.model.nominal(s));
@@ -219,7 +219,7 @@ impl<'a> Checker<'a> {
                 fault.note(format!("with {}", numbers.join(", ")));
             }
             fault.help("change the expression or its parameters: it divides by zero or takes a root of a negative number there");
-            self.spoil(of);
+            self.mark_unknown(of);
             return None;
         }
         match w.formula.of {
@@ -232,12 +232,12 @@ impl<'a> Checker<'a> {
         Some(value)
     }
 
-    fn is_spoilt(&self, source: Source) -> bool {
+    fn is_unknown(&self, source: Source) -> bool {
         match source {
-            Source::Parameter(_) | Source::Coordinate(..) => self.spoilt.contains(&source),
+            Source::Parameter(_) | Source::Coordinate(..) => self.unknown_sources.contains(&source),
             Source::Kept(j, _) => {
                 let coordinates = |h| (0..3).map(move |axis| Source::Coordinate(h, axis));
-                self.model.joints[j.0].hardpoints().flat_map(coordinates).any(|s| self.spoilt.contains(&s))
+                self.model.joints[j.0].hardpoints().flat_map(coordinates).any(|s| self.unknown_sources.contains(&s))
             }
         }
     }
@@ -250,21 +250,21 @@ impl<'a> Checker<'a> {
     }
 
     /// Marks the result of a faulty formula as unknown.
-    fn spoil(&mut self, of: Target) {
+    fn mark_unknown(&mut self, of: Target) {
         match of {
-            Target::Parameter(p) => drop(self.spoilt.insert(Source::Parameter(p))),
-            Target::Coordinate(h, axis) => drop(self.spoilt.insert(Source::Coordinate(h, axis))),
+            Target::Parameter(p) => drop(self.unknown_sources.insert(Source::Parameter(p))),
+            Target::Coordinate(h, axis) => drop(self.unknown_sources.insert(Source::Coordinate(h, axis))),
             Target::Length(_) | Target::Law(..) | Target::Number(_) => {}
         }
     }
 
     /// Returns the nominal value of an expression, and adds its formula to the model.
-    fn given(&mut self, of: Target, expression: &Expression, at: DraftLocation, name: String) -> Option<f64> {
-        self.given_in(None, of, expression, at, name)
+    fn add_formula(&mut self, of: Target, expression: &Expression, at: DraftLocation, name: String) -> Option<f64> {
+        self.add_formula_in(None, of, expression, at, name)
     }
 
     /// [`Checker::given`] for a number of a case.
-    fn given_in(
+    fn add_formula_in(
         &mut self,
         case: Option<CaseId>,
         of: Target,
@@ -273,7 +273,7 @@ impl<'a> Checker<'a> {
         name: String,
     ) -> Option<f64> {
         let formula = self.formula(of, expression, &at)?;
-        self.take(Written { formula, at, name, case })
+        self.evaluate(LocatedFormula { formula, at, name, case })
     }
 
     /// Adds an unnamed hardpoint at coordinates defined by expressions.
@@ -287,7 +287,7 @@ impl<'a> Checker<'a> {
         self.model.hardpoints.push(Hardpoint { name: owner.into(), position: Vec3::ZERO, unnamed: true });
         let given = [0, 1, 2].map(|axis| {
             let name = format!("{} of {owner}", AXES[axis]);
-            self.given(Target::Coordinate(h, axis), &coordinates[axis], at.clone(), name)
+            self.add_formula(Target::Coordinate(h, axis), &coordinates[axis], at.clone(), name)
         });
         given.iter().all(Option::is_some).then(|| {
             self.extent.include(self.model.hardpoints[h.0].position);
@@ -308,7 +308,7 @@ impl<'a> Checker<'a> {
         self.model.numbers.push(ElementNumber { owner: owner.into(), key, value, per_unit });
         match &number.expression {
             Some(expression) => {
-                self.given(Target::Number(id), expression, at, format!("{key} of {owner}"))?;
+                self.add_formula(Target::Number(id), expression, at, format!("{key} of {owner}"))?;
             }
             None if !value.is_finite() => {
                 self.fault("HP0202", at, format!("`{key}` of `{owner}` is not a finite number"));
@@ -323,7 +323,7 @@ impl<'a> Checker<'a> {
     pub(super) fn formula_length(&mut self, name: &str, at: DraftLocation) -> Option<Option<f64>> {
         let expression = self.length_formulas.get(name).copied()?;
         let joint = JointId(self.model.joints.len());
-        Some(self.given(Target::Length(joint), expression, at, format!("length of {name}")))
+        Some(self.add_formula(Target::Length(joint), expression, at, format!("length of {name}")))
     }
 
     /// Returns a driver's law with the parameters that are defined by expressions.
@@ -363,19 +363,19 @@ impl<'a> Checker<'a> {
                 continue;
             };
             let of = Target::Law(driver, p);
-            let value = self.given_in(case, of, expression, at.clone(), parameter.to_owned())?;
+            let value = self.add_formula_in(case, of, expression, at.clone(), parameter.to_owned())?;
             law = law.with_parameter(p, value);
         }
         let Some(zero) = self.zeros.get(&driver) else { return Some(law) };
         let parameters = law.parameters().len();
         let formula = zero.formula(Target::Law(driver, parameters));
-        let value = self.take(Written { formula, at: at.clone(), name: name.to_owned(), case })?;
+        let value = self.evaluate(LocatedFormula { formula, at: at.clone(), name: name.to_owned(), case })?;
         Some(law.from_zero(value))
     }
 
     /// Stores the formulas that depend on design variables. HP0228 for those without a derivative, HP0226 for those
     /// that would change the shape of a curve.
-    pub(super) fn formulas_that_vary(&mut self) {
+    pub(super) fn add_varying_formulas(&mut self) {
         let mut varying: BTreeSet<Source> = BTreeSet::new();
         for change in self.model.variables.iter().flat_map(|v| &v.changes) {
             varying.extend(change.parameter().map(|(parameter, _)| Source::Parameter(parameter)));
@@ -387,7 +387,7 @@ impl<'a> Checker<'a> {
         let changed: BTreeSet<JointId> =
             self.model.variables.iter().flat_map(|v| &v.changes).filter_map(Effect::joint).collect();
         let mut lengths: BTreeSet<JointId> = BTreeSet::new();
-        for Written { mut formula, at, name, case } in std::mem::take(&mut self.written) {
+        for LocatedFormula { mut formula, at, name, case } in std::mem::take(&mut self.written) {
             let model = &self.model;
             let varies = |s: &Source| match *s {
                 Source::Parameter(_) | Source::Coordinate(..) => varying.contains(s),
@@ -480,7 +480,7 @@ impl Nominal {
     /// value; [`Model::from_draft`](crate::model::Model::from_draft) reports them.
     pub fn of(draft: &Draft) -> Self {
         let mut c = Checker::new(draft);
-        c.formulas();
+        c.add_formulas();
         let mut followed: HashMap<&str, String> = HashMap::new();
         for v in &draft.design {
             for change in &v.changes {
@@ -502,7 +502,7 @@ impl Nominal {
             }
         }
         let parameters = c.model.parameters.iter().zip(follows).enumerate().map(|(k, (p, follows))| {
-            let is_known = !c.spoilt.contains(&Source::Parameter(ParameterId(k)));
+            let is_known = !c.unknown_sources.contains(&Source::Parameter(ParameterId(k)));
             (p.name.clone(), (is_known.then_some(p.value), p.quantity, follows))
         });
         let parameters = parameters.collect();

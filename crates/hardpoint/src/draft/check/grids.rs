@@ -10,11 +10,11 @@ const MOST_POSITIONS: usize = 100_000;
 
 /// Minimum distance of two positions, relative to the range of the driver. Nearer positions cannot be distinguished by
 /// their times.
-const APART: f64 = 1e-9;
+const MIN_SEPARATION: f64 = 1e-9;
 
 impl Checker<'_> {
     /// HP0240: invalid grids, or grids that are too large.
-    pub(super) fn grids(&mut self) {
+    pub(super) fn add_grids(&mut self) {
         let draft = self.draft;
         for (index, g) in draft.grids.iter().enumerate() {
             let here = Here { section: Section::Grids, index };
@@ -25,9 +25,9 @@ impl Checker<'_> {
                 if self.find("driver", driver, here.item("grid", k), names).is_none() {
                     continue;
                 }
-                let way = values.last().zip(values.first()).map_or(0.0, |(last, first)| last - first);
-                let rises = values.windows(2).all(|pair| pair[1] - pair[0] > APART * way);
-                if !(way > 0.0 && way.is_finite() && rises) {
+                let range = values.last().zip(values.first()).map_or(0.0, |(last, first)| last - first);
+                let ascends = values.windows(2).all(|pair| pair[1] - pair[0] > MIN_SEPARATION * range);
+                if !(range > 0.0 && range.is_finite() && ascends) {
                     let message = format!("driver `{driver}` has no range in the grid of case `{}`", g.name);
                     self.fault("HP0240", here.item("grid", k), message)
                         .help("give at least two finite positions in ascending order");

@@ -7,7 +7,7 @@ use crate::joint::{JointType, Need};
 use crate::model::{Curve, Direction, GROUND, Hardpoint, HardpointId, Joint, JointId};
 use crate::space::{Mat3, Pose, Vec3};
 
-use super::{Checker, Here, SAME_POINT, SQUARE_TOLERANCE, UNPLACED, degrees_between, frame_along};
+use super::{Checker, Here, SAME_POINT, PERPENDICULAR_TOLERANCE, UNPLACED, degrees_between, frame_along};
 
 /// Returns the default direction of the markers' x axis. For a mirror image across a global axis: the image of the
 /// original's default.
@@ -17,7 +17,7 @@ fn default_x(z: Vec3, mirror: Option<usize>) -> Vec3 {
 }
 
 impl Checker<'_> {
-    pub(super) fn joints(&mut self) {
+    pub(super) fn add_joints(&mut self) {
         let draft = self.draft;
         for (index, j) in draft.joints.iter().enumerate() {
             let before = self.faults.len();
@@ -78,12 +78,12 @@ impl Checker<'_> {
         let frames = match (axis, axis2) {
             (Some((_, z)), Some((_, z_j))) if kind.axis2 == Need::OnBodyJ => {
                 let cosine = z.dot(z_j);
-                if kind.rows.contains(&Row::Cosine) && cosine.abs() > 1.0 - SQUARE_TOLERANCE {
+                if kind.rows.contains(&Row::Cosine) && cosine.abs() > 1.0 - PERPENDICULAR_TOLERANCE {
                     let message =
                         format!("the axes of joint `{name}` are parallel, where the angle between them is singular");
                     self.fault("HP0209", here.key("axis2"), message).help("use a `parallel` joint");
                 }
-                if kind.rows.contains(&Row::ConstantVelocity) && cosine < SQUARE_TOLERANCE {
+                if kind.rows.contains(&Row::ConstantVelocity) && cosine < PERPENDICULAR_TOLERANCE {
                     let message = format!("the shafts of joint `{name}` are at an angle of 90 deg or more");
                     self.fault("HP0209", here.key("axis2"), message)
                         .note(format!(
@@ -96,7 +96,7 @@ impl Checker<'_> {
                 [i, Mat3::between(z, z_j) * i]
             }
             (Some((_, z)), Some((_, x))) => {
-                if z.dot(x).abs() > SQUARE_TOLERANCE {
+                if z.dot(x).abs() > PERPENDICULAR_TOLERANCE {
                     let angle = degrees_between(z, x);
                     let message = format!("the axes of joint `{name}` are not perpendicular to each other");
                     self.fault("HP0209", here.key("axis2"), message)
@@ -109,7 +109,7 @@ impl Checker<'_> {
             _ => [Mat3::IDENTITY; 2],
         };
         let length = self.rod_length(j, kind, here);
-        self.lead(j, kind, here);
+        self.check_lead(j, kind, here);
         let (axis, axis2) = (axis.map(|a| a.0), axis2.map(|a| a.0));
         let bodies = [body_i?, body_j?];
         let (name, cut) = (name.clone(), j.cut);
@@ -164,7 +164,7 @@ impl Checker<'_> {
             return None;
         }
         let off_plane =
-            local.iter().enumerate().find(|(_, p)| (p.z - local[0].z).abs() > SQUARE_TOLERANCE * size);
+            local.iter().enumerate().find(|(_, p)| (p.z - local[0].z).abs() > PERPENDICULAR_TOLERANCE * size);
         if let Some((k, p)) = off_plane {
             let message = format!("the curve of `{name}` does not lie in a plane perpendicular to its axis");
             self.fault("HP0226", here.key("curve"), message)
@@ -221,7 +221,7 @@ impl Checker<'_> {
     }
 
     /// HP0223: a screw without a lead, or a lead without a screw.
-    fn lead(&mut self, j: &JointDraft, kind: &'static JointType, here: Here) {
+    fn check_lead(&mut self, j: &JointDraft, kind: &'static JointType, here: Here) {
         let has_lead = kind.has_lead();
         if self.unread(here, "lead") {
             return;
@@ -291,7 +291,7 @@ impl Checker<'_> {
         let places: Vec<_> =
             j.at.iter().enumerate().map(|(k, p)| self.place(p, name, here.item("at", k))).collect();
         let (first, last) = (places[0]?, places[places.len() - 1]?);
-        if kind.is_rod() && self.apart(first, last) == Some(None) {
+        if kind.is_rod() && self.separation(first, last) == Some(None) {
             self.fault("HP0211", here.key("at"), format!("the two ends of `{name}` coincide"))
                 .help("a rod needs two different points");
         }
@@ -299,7 +299,7 @@ impl Checker<'_> {
     }
 
     /// Gives joints without a location one for their markers: the mean of the locations of their bodies' other joints.
-    pub(super) fn places_of_directions(&mut self) {
+    pub(super) fn place_unplaced_joints(&mut self) {
         let mut joints_on = vec![Vec::new(); self.model.bodies.len()];
         for (k, j) in self.model.joints.iter().enumerate() {
             for body in j.bodies.iter().filter(|body| **body != GROUND) {

@@ -16,7 +16,7 @@ use crate::space::Vec3;
 use super::{Checker, Here};
 
 impl Checker<'_> {
-    pub(super) fn measures(&mut self) {
+    pub(super) fn add_measures(&mut self) {
         let draft = self.draft;
         for (index, m) in draft.measures.iter().enumerate() {
             let here = Here { section: Section::Measures, index };
@@ -25,16 +25,16 @@ impl Checker<'_> {
             }
         }
         if self.model.measures.len() == draft.measures.len() {
-            self.measures_of_measures();
+            self.check_dependencies();
         }
     }
 
     fn one_measure(&mut self, m: &MeasureDraft, here: Here) -> Option<MeasureKind> {
         let kind = m.kind.resolve(&mut MeasureCheck::new(self, &m.name, here))?;
-        self.loads(&kind, m, here);
+        self.check_load(&kind, m, here);
         if let MeasureKind::Distance { from, to } = kind {
             let [a, b] = [from, to].map(|p| self.model.points[p.0].clone());
-            let at_one_place = self.apart(a.at, b.at) == Some(None);
+            let at_one_place = self.separation(a.at, b.at) == Some(None);
             if from == to || a.body == b.body && at_one_place {
                 let message = format!("measure `{}` is the distance of a point from itself", m.name);
                 self.fault("HP0216", here.key("to"), message);
@@ -50,14 +50,14 @@ impl Checker<'_> {
 
     /// HP0250: loads or compliances of a model without any. HP0251: reactions on a body that the joint does not
     /// connect.
-    fn loads(&mut self, kind: &MeasureKind, m: &MeasureDraft, here: Here) {
+    fn check_load(&mut self, kind: &MeasureKind, m: &MeasureDraft, here: Here) {
         let draft = self.draft;
         let nothing = draft.masses.is_empty() && draft.forces.is_empty();
-        if kind.is_load() && nothing && !self.lost("mass") && !self.lost("force") {
+        if kind.is_load() && nothing && !self.is_table_unread("mass") && !self.is_table_unread("force") {
             let message = format!("measure `{}` is a load, but the model has no masses and no forces", m.name);
             self.fault("HP0250", here.key("type"), message).help("add `[masses]`, `[gravity]` or `[forces]`");
         }
-        let gives = |e: &Element| {
+        let deflects = |e: &Element| {
             let rigid = matches!(
                 e.kind,
                 ElementKind::PointForce { .. }
@@ -66,7 +66,7 @@ impl Checker<'_> {
             );
             !e.kind.has_mass() && !rigid && !e.kind.rubs()
         };
-        let rigid = !self.model.elements.iter().any(gives);
+        let rigid = !self.model.elements.iter().any(deflects);
         if matches!(kind, MeasureKind::Compliance { .. })
             && rigid
             && !self.draft.unread.any_of(Section::Forces)
@@ -114,7 +114,7 @@ impl Checker<'_> {
         self.model.elements.iter().position(is_it).map(ElementId)
     }
 
-    pub(super) fn metrics(&mut self) {
+    pub(super) fn add_metrics(&mut self) {
         let draft = self.draft;
         for (index, m) in draft.metrics.iter().enumerate() {
             let here = Here { section: Section::Metrics, index };
@@ -211,7 +211,7 @@ impl Checker<'_> {
             return None;
         }
         let found = self.find("case", name, at, draft.cases.iter().map(|c| c.name.as_str()));
-        if found.is_none() && draft.cases.is_empty() && !self.lost("case") {
+        if found.is_none() && draft.cases.is_empty() && !self.is_table_unread("case") {
             let fault = self.faults.last_mut().expect("just reported");
             fault.help(format!(
                 "declare it as `[cases.{name}]`, or remove `case`: a model without cases has a single motion"
@@ -228,7 +228,7 @@ impl Checker<'_> {
                     (self.point(from, owner, here.item(key, 0)), self.point(to, owner, here.item(key, 1)));
                 let ends = [points.0?, points.1?];
                 let [a, b] = ends.map(|p| self.model.points[p.0].at);
-                if self.apart(a, b) == Some(None) {
+                if self.separation(a, b) == Some(None) {
                     let message =
                         format!("the two points of `{key}` of measure `{owner}` coincide");
                     self.fault("HP0216", here.key(key), message).help("name two different points");
@@ -285,7 +285,7 @@ impl Checker<'_> {
         match name {
             Some(name) => self.find("driver", name, here.key("driver"), names).map(DriverId),
             None if draft.drivers.len() == 1 => Some(DriverId(0)),
-            None if self.lost("driver") => None,
+            None if self.is_table_unread("driver") => None,
             None => {
                 let listed: Vec<String> = names.map(|n| format!("`{n}`")).collect();
                 let message = format!("measure `{owner}` has no driver");
@@ -298,15 +298,15 @@ impl Checker<'_> {
     }
 
     /// Checks measures of other measures: no cycles, and only known derivatives.
-    fn measures_of_measures(&mut self) {
+    fn check_dependencies(&mut self) {
         let mut state = vec![Visit::New; self.model.measures.len()];
         for k in 0..state.len() {
-            self.visit(k, &mut state);
+            self.check_after_sources(k, &mut state);
         }
     }
 
     /// Checks a measure after those that it uses; true if it is valid.
-    fn visit(&mut self, k: usize, state: &mut [Visit]) -> bool {
+    fn check_after_sources(&mut self, k: usize, state: &mut [Visit]) -> bool {
         let here = Here { section: Section::Measures, index: k };
         let name = self.model.measures[k].name.clone();
         match state[k] {
@@ -322,11 +322,11 @@ impl Checker<'_> {
         let mut sound = true;
         for source in kind.sources() {
             if let OutputSource::Measure(other) = source {
-                sound &= self.visit(other, state);
+                sound &= self.check_after_sources(other, state);
             }
         }
         if sound {
-            sound = self.is_known(&kind, &name, here);
+            sound = self.has_known_derivatives(&kind, &name, here);
         }
         if sound && let MeasureKind::Combination { expression } = &kind {
             let expression = self.in_units(expression);
@@ -338,7 +338,7 @@ impl Checker<'_> {
 
     /// HP0233: rates of measures without rates; slopes and compliances of measures that do not depend on positions
     /// only.
-    fn is_known(&mut self, kind: &MeasureKind, name: &str, here: Here) -> bool {
+    fn has_known_derivatives(&mut self, kind: &MeasureKind, name: &str, here: Here) -> bool {
         match kind {
             MeasureKind::Rate { of } if self.model.known(*of).orders < 2 => {
                 let of = self.model.output_name(*of);

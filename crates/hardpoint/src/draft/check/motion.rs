@@ -50,18 +50,18 @@ impl Checker<'_> {
         None
     }
 
-    pub(super) fn drivers(&mut self) {
+    pub(super) fn add_drivers(&mut self) {
         let draft = self.draft;
         for (index, d) in draft.drivers.iter().enumerate() {
             let here = Here { section: Section::Drivers, index };
             let driver = DriverId(self.model.drivers.len());
             let driven = self.driven(d, here);
             let zero =
-                driven.filter(|_| d.counts_from_zero()).and_then(|driven| self.as_drawn(d, driven, here));
+                driven.filter(|_| d.counts_from_zero()).and_then(|driven| self.nominal_value(d, driven, here));
             self.zeros.extend(zero.map(|zero| (driver, zero)));
             let Some(law) = self.formula_law(&d.name, &d.law, &here.key("law")) else { continue };
             if draft.cases.is_empty() {
-                self.law_is_defined(&format!("driver `{}`", d.name), &law, &draft.times, here.key("law"));
+                self.check_law(&format!("driver `{}`", d.name), &law, &draft.times, here.key("law"));
             }
             let Some(Driven { joint, coordinate, .. }) = driven else { continue };
             self.driver_of.insert((joint, coordinate), driver);
@@ -70,7 +70,7 @@ impl Checker<'_> {
     }
 
     /// HP0214: a law that is not finite, or too fast, at an output time.
-    pub(super) fn law_is_defined(&mut self, of: &str, law: &Law, times: &[f64], at: DraftLocation) {
+    pub(super) fn check_law(&mut self, of: &str, law: &Law, times: &[f64], at: DraftLocation) {
         let all = |t: f64, holds: &dyn Fn(&f64) -> bool| law.at(t).derivatives()[..3].iter().all(holds);
         if let Some(&t) = times.iter().find(|&&t| !all(t, &|x| x.abs() < LARGEST_RATE)) {
             let [f, fd, fdd, _] = law.at(t).derivatives();
@@ -85,7 +85,7 @@ impl Checker<'_> {
     }
 
     /// Adds the couplers, then the couplers of screws.
-    pub(super) fn couplers(&mut self) {
+    pub(super) fn add_couplers(&mut self) {
         let draft = self.draft;
         for (index, c) in draft.couplers.iter().enumerate() {
             let here = Here { section: Section::Couplers, index };

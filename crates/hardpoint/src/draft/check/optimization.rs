@@ -20,11 +20,11 @@ type Tightest<'d> = HashMap<Key, [Option<(f64, f64, &'d str)>; 2]>;
 type Key = (u8, usize, usize);
 
 impl Checker<'_> {
-    pub(super) fn optimization(&mut self) {
+    pub(super) fn add_optimization(&mut self) {
         let draft = self.draft;
         let Some(o) = &draft.optimization else { return };
         let here = Here { section: Section::Optimize, index: 0 };
-        let variables = self.optimized(o, here);
+        let variables = self.optimized_variables(o, here);
         // The check of ineffective limits needs a valid model.
         let sound = self.faults.is_empty() && draft.unread.is_empty();
         if o.goals.is_empty() {
@@ -52,13 +52,13 @@ impl Checker<'_> {
             let here = Here { section: Section::Limits, index };
             let found = if self.unread(here, "") { None } else { self.limit(limit, here) };
             if let Some(limit) = &found {
-                self.contradiction(&o.limits[index], limit, &mut tightest, here);
+                self.check_contradiction(&o.limits[index], limit, &mut tightest, here);
             }
             limits.extend(found.map(|limit| (here, limit)));
         }
         let Some(variables) = variables else { return };
         if sound {
-            self.out_of_reach(&variables, &limits);
+            self.check_ineffective_limits(&variables, &limits);
         }
         let limits = limits.into_iter().map(|(_, limit)| limit).collect();
         let (margin, starts, iterations) = (o.margin, o.starts, o.iterations);
@@ -68,7 +68,7 @@ impl Checker<'_> {
     }
 
     /// Returns the optimised variables. HP0236 unless each has bounds and is listed once.
-    fn optimized(&mut self, o: &OptimizationSettingsDraft, here: Here) -> Option<Vec<VariableId>> {
+    fn optimized_variables(&mut self, o: &OptimizationSettingsDraft, here: Here) -> Option<Vec<VariableId>> {
         let draft = self.draft;
         if self.unread(here, "variables") {
             return None;
@@ -77,8 +77,8 @@ impl Checker<'_> {
             let with_bounds = (0..draft.design.len()).filter(|k| draft.design[*k].bounds.is_some());
             let found: Vec<VariableId> = with_bounds.map(VariableId).collect();
             let unknown = draft.unread.anywhere(Section::Design, "bounds")
-                || self.lost("design variable")
-                || self.lost("parameter");
+                || self.is_table_unread("design variable")
+                || self.is_table_unread("parameter");
             if found.is_empty() && !unknown {
                 self.fault("HP0236", here.key(""), "invalid optimisation: no design variable has bounds").help(
                     "give bounds to the variables to optimise, like `bounds = [-5, 5]` in `[design.NAME]`, or `NAME = { value = 60, bounds = [50, 70] }` in `[parameters]`",
@@ -106,7 +106,7 @@ impl Checker<'_> {
                     .help("remove one of the two");
                 continue;
             }
-            let Some(index) = self.optimized_variable(name, at.clone()) else { continue };
+            let Some(index) = self.variable_index(name, at.clone()) else { continue };
             let v = &draft.design[index];
             if v.bounds.is_none() && !draft.unread.any(Section::Design, index) {
                 let message = format!("design variable `{name}` has no bounds");
@@ -118,11 +118,11 @@ impl Checker<'_> {
     }
 
     /// Returns the index of a design variable in the draft.
-    pub(super) fn optimized_variable(&mut self, name: &str, at: DraftLocation) -> Option<usize> {
+    pub(super) fn variable_index(&mut self, name: &str, at: DraftLocation) -> Option<usize> {
         let draft = self.draft;
         let known = self.number_of("design variable", name);
         // An unread entry may be this variable.
-        if known.is_some() || self.lost("parameter") || draft.unread.any_of(Section::Design) {
+        if known.is_some() || self.is_table_unread("parameter") || draft.unread.any_of(Section::Design) {
             return known;
         }
         self.find("design variable", name, at, draft.design.iter().map(|v| v.name.as_str()));
@@ -151,7 +151,7 @@ impl Checker<'_> {
     pub(super) fn metric(&mut self, name: &str, at: DraftLocation) -> Option<usize> {
         let draft = self.draft;
         let known = self.find("metric", name, at, draft.metrics.iter().map(|m| m.name.as_str()));
-        if known.is_none() && !self.lost("metric") {
+        if known.is_none() && !self.is_table_unread("metric") {
             let is_measure = self.number_of("measure", name).is_some();
             let fault = self.faults.last_mut().expect("just reported");
             if is_measure {
@@ -200,7 +200,7 @@ impl Checker<'_> {
 
     /// Resolves a limit to its quantity and its bounds in SI. HP0238 if no number can satisfy it.
     pub(super) fn limit(&mut self, l: &LimitDraft, here: Here) -> Option<Limit> {
-        let of = self.limited(l, here);
+        let of = self.limit_target(l, here);
         for (key, bound) in [("min", l.least), ("max", l.most)] {
             if bound.is_some_and(|x| !x.is_finite()) {
                 let message = format!("the `{key}` of limit `{}` is not a finite number", l.name);
@@ -244,7 +244,7 @@ impl Checker<'_> {
         Some(Limit { name: l.name.clone(), of, least, most })
     }
 
-    fn limited(&mut self, l: &LimitDraft, here: Here) -> Option<LimitTarget> {
+    fn limit_target(&mut self, l: &LimitDraft, here: Here) -> Option<LimitTarget> {
         Some(match &l.of {
             LimitTargetDraft::Unread => return None,
             LimitTargetDraft::Metric(name) => LimitTarget::Metric(self.metric(name, here.key("metric"))?),
@@ -279,7 +279,7 @@ impl Checker<'_> {
     }
 
     /// HP0238: contradictory limits of one quantity.
-    fn contradiction<'d>(
+    fn check_contradiction<'d>(
         &mut self,
         written: &'d LimitDraft,
         limit: &Limit,
@@ -310,7 +310,7 @@ impl Checker<'_> {
     }
 
     /// HP0239: limits of quantities that no variable changes.
-    fn out_of_reach(&mut self, variables: &[VariableId], limits: &[(Here, Limit)]) {
+    fn check_ineffective_limits(&mut self, variables: &[VariableId], limits: &[(Here, Limit)]) {
         let (mut moved, mut joints): (BTreeSet<Source>, BTreeSet<JointId>) = Default::default();
         let model = &self.model;
         for change in variables.iter().flat_map(|v| &model.variables[v.0].changes) {

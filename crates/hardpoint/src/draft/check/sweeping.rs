@@ -12,7 +12,7 @@ use super::{Checker, Here};
 const HERE: Here = Here { section: Section::Sweep, index: 0 };
 
 impl Checker<'_> {
-    pub(super) fn sweeping(&mut self) {
+    pub(super) fn add_sweeping(&mut self) {
         let draft = self.draft;
         let Some(s) = &draft.sweeping else { return };
         let metrics = match &s.metrics {
@@ -24,7 +24,7 @@ impl Checker<'_> {
             }
         };
         let curves = s.curves.iter().enumerate();
-        let curves = curves.filter_map(|(k, name)| self.curve_of(name, HERE.item("curves", k))).collect();
+        let curves = curves.filter_map(|(k, name)| self.measure_index(name, HERE.item("curves", k))).collect();
         let mut sweeping = SweepSettings {
             metrics,
             curves,
@@ -46,7 +46,7 @@ impl Checker<'_> {
             sweeping.ranges = self.ranges(s, ranges);
         } else {
             sweeping.ranges.iter_mut().for_each(|r| r.levels = s.levels);
-            self.levels(s.levels, HERE);
+            self.check_levels(s.levels, HERE);
         }
         let unknown = !draft.unread.is_empty() || !self.faults.is_empty();
         if sweeping.ranges.is_empty() && !unknown {
@@ -73,9 +73,9 @@ impl Checker<'_> {
                 continue;
             }
             let name = &one.name;
-            let Some(k) = self.optimized_variable(name, here.key("name")) else { continue };
+            let Some(k) = self.variable_index(name, here.key("name")) else { continue };
             let levels = one.levels.unwrap_or(s.levels);
-            self.levels(levels, if one.levels.is_some() { here } else { HERE });
+            self.check_levels(levels, if one.levels.is_some() { here } else { HERE });
             let Some(quantity) = self.model.variables.get(k).map(|v| v.quantity) else { continue };
             let variable = VariableId(k);
             let in_si = |x: f64| self.in_si(variable, quantity, x, [one.per_metre, one.per_radian]);
@@ -104,7 +104,7 @@ impl Checker<'_> {
         found
     }
 
-    fn levels(&mut self, levels: usize, here: Here) {
+    fn check_levels(&mut self, levels: usize, here: Here) {
         if levels < 2 {
             self.fault(
                 "HP0246",
@@ -130,7 +130,7 @@ impl Checker<'_> {
                 return None;
             }
             let faults = self.faults.len();
-            let found = self.optimized_variable(name, at.clone());
+            let found = self.variable_index(name, at.clone());
             if let Some(fault) = self.faults.get_mut(faults) {
                 fault.note(format!("it is the title of column {} of `{}`", column + 1, list.file));
             }
@@ -155,7 +155,7 @@ impl Checker<'_> {
     }
 
     /// Returns the index of a measure in the model.
-    pub(super) fn curve_of(&mut self, name: &str, at: crate::draft::DraftLocation) -> Option<usize> {
+    pub(super) fn measure_index(&mut self, name: &str, at: crate::draft::DraftLocation) -> Option<usize> {
         let draft = self.draft;
         self.find("measure", name, at, draft.measures.iter().map(|m| m.name.as_str()))?;
         self.model.measures.iter().position(|m| m.name == name)

@@ -16,7 +16,7 @@ use super::{Checker, Here};
 const HERE: Here = Here { section: Section::Tolerance, index: 0 };
 
 impl Checker<'_> {
-    pub(super) fn tolerancing(&mut self) {
+    pub(super) fn add_tolerancing(&mut self) {
         let draft = self.draft;
         let Some(t) = &draft.tolerancing else { return };
         let default = self.scatter(t.scatter, ScatterDraft::default(), HERE, "the tolerances");
@@ -42,10 +42,10 @@ impl Checker<'_> {
             Some(names) => names
                 .iter()
                 .enumerate()
-                .filter_map(|(k, name)| self.curve_of(name, HERE.item("curves", k)))
+                .filter_map(|(k, name)| self.measure_index(name, HERE.item("curves", k)))
                 .collect(),
         };
-        self.allocation_needs(t);
+        self.check_allocation(t);
         if default.is_none() {
             return;
         }
@@ -110,7 +110,7 @@ impl Checker<'_> {
             AXES.iter().filter_map(|axis| self.number_of("design variable", &format!("{}_{axis}", one.name)));
         let parts: Vec<usize> = parts.collect();
         if parts.is_empty() {
-            self.optimized_variable(&one.name, here.key("name"));
+            self.variable_index(&one.name, here.key("name"));
         }
         parts
     }
@@ -207,7 +207,7 @@ impl Checker<'_> {
             if self.unread(here, "") {
                 continue;
             }
-            let between = [0, 1].map(|k| self.optimized_variable(&one.between[k], here.item("between", k)));
+            let between = [0, 1].map(|k| self.variable_index(&one.between[k], here.item("between", k)));
             let [Some(a), Some(b)] = between else { continue };
             if !(one.coefficient.abs() <= 1.0) {
                 let message = format!("invalid coefficient of correlation `{}`: {}", one.name, one.coefficient);
@@ -277,7 +277,7 @@ impl Checker<'_> {
     }
 
     /// HP0243: an allocation without a limit or a cost, or with invalid `required_sigmas`.
-    fn allocation_needs(&mut self, t: &ToleranceSettingsDraft) {
+    fn check_allocation(&mut self, t: &ToleranceSettingsDraft) {
         let Some(rule) = t.allocation else { return };
         if let AllocationRule::Rss { sigmas } = rule
             && !(sigmas > 0.0 && sigmas <= MOST_SIGMAS)

@@ -11,10 +11,10 @@ use super::{Checker, Here, SAME_POINT};
 
 /// Relative horizontal component below which a direction is vertical, and vertical component below which it is
 /// horizontal.
-const HEADLESS: f64 = 1e-6;
+const MIN_SINE: f64 = 1e-6;
 
 impl Checker<'_> {
-    pub(super) fn vehicle(&mut self) {
+    pub(super) fn check_vehicle(&mut self) {
         let v = &self.draft.vehicle;
         let here = Here { section: Section::Vehicle, index: 0 };
         for (key, value) in [("wheelbase", v.wheelbase), ("cg_height", v.cg_height)] {
@@ -37,7 +37,7 @@ impl Checker<'_> {
         }
     }
 
-    pub(super) fn axles(&mut self) {
+    pub(super) fn add_axles(&mut self) {
         let draft = self.draft;
         for (index, a) in draft.axles.iter().enumerate() {
             let here = Here { section: Section::Axles, index };
@@ -85,18 +85,18 @@ impl Checker<'_> {
             self.model.axles[axle.0].wheels.into_iter().find(|w| self.model.wheels[w.0].bump.is_none());
         if let Some(wheel) = unmoved.filter(|_| what.depends_on_driver()) {
             let wheel = self.model.wheels[wheel.0].name.clone();
-            self.needs_driver(what.name(), &wheel, WheelRequirement::Bump, here);
+            self.report_missing_driver(what.name(), &wheel, WheelRequirement::Bump, here);
             return None;
         }
         Some(MeasureKind::Axle { axle, what })
     }
 
     pub(super) fn vehicle_is_unread(&self) -> bool {
-        self.draft.unread.any(Section::Vehicle, 0) || self.lost("vehicle")
+        self.draft.unread.any(Section::Vehicle, 0) || self.is_table_unread("vehicle")
     }
 
-    fn needs_driver(&mut self, what: &str, wheel: &str, need: WheelRequirement, here: Here) {
-        if self.lost("driver") {
+    fn report_missing_driver(&mut self, what: &str, wheel: &str, need: WheelRequirement, here: Here) {
+        if self.is_table_unread("driver") {
             return;
         }
         let drivers: Vec<String> = self.draft.drivers.iter().map(|d| format!("`{}`", d.name)).collect();
@@ -110,7 +110,7 @@ impl Checker<'_> {
             .help(format!("add `{key} = DRIVER` to the wheel"));
     }
 
-    pub(super) fn wheels(&mut self) {
+    pub(super) fn add_wheels(&mut self) {
         let draft = self.draft;
         for (index, w) in draft.wheels.iter().enumerate() {
             let here = Here { section: Section::Wheels, index };
@@ -206,7 +206,7 @@ impl Checker<'_> {
     }
 
     /// Returns body, centre, side and spin axis of a wheel in the design configuration.
-    pub(super) fn wheel_as_drawn(
+    pub(super) fn nominal_wheel(
         &mut self,
         w: &WheelDraft,
         index: usize,
@@ -241,7 +241,7 @@ impl Checker<'_> {
                 let (axis, e) = self.line(line, &w.name, here, "spin_axis")?;
                 let side = side?;
                 let name = &w.name;
-                let (message, help) = if e.x.hypot(e.y) <= HEADLESS {
+                let (message, help) = if e.x.hypot(e.y) <= MIN_SINE {
                     (
                         format!("the spin axis of wheel `{name}` is vertical"),
                         "give the axis that the wheel spins about",
@@ -268,7 +268,7 @@ impl Checker<'_> {
                 let quarter = std::f64::consts::FRAC_PI_2;
                 let mut upright = true;
                 for (key, angle) in [("toe", toe), ("camber", camber)] {
-                    if !(angle.abs() < quarter * (1.0 - HEADLESS)) {
+                    if !(angle.abs() < quarter * (1.0 - MIN_SINE)) {
                         upright = false;
                         let message = format!("the {key} of wheel `{}` is 90 deg or more", w.name);
                         self.fault("HP0231", here.key(key), message)
@@ -294,7 +294,7 @@ impl Checker<'_> {
                 format!("the two points of the kingpin of wheel `{name}` coincide"),
                 "name a lower and an upper point of the axis that the wheel steers about",
             )
-        } else if k.z.abs() <= HEADLESS * k.norm() {
+        } else if k.z.abs() <= MIN_SINE * k.norm() {
             (
                 format!("the kingpin of wheel `{name}` is horizontal"),
                 "name an upper point that lies above the lower one",
@@ -399,7 +399,7 @@ impl Checker<'_> {
         let id = self.wheel_ids[k]?;
         let (needs, wheel) = (what.needs(), &self.model.wheels[id.0]);
         if needs.depends_on_driver() && wheel.driver(needs).is_none() {
-            self.needs_driver(what.name(), name, needs, here);
+            self.report_missing_driver(what.name(), name, needs, here);
             return None;
         }
         if let (Some(end), Some(at)) = (needs.end(), wheel.end)
