@@ -37,7 +37,7 @@
 //! Unsupported: machines other than x86-64, Windows, and systems that do not allow executable memory.
 //! [`UnsupportedProgram`] is the reason.
 
-#[cfg_attr(not(all(target_arch = "x86_64", unix)), path = "elsewhere.rs")]
+#[cfg_attr(not(all(target_arch = "x86_64", unix)), path = "unsupported.rs")]
 mod x86_64;
 
 use std::fmt;
@@ -58,7 +58,7 @@ impl Width {
     pub const ALL: [Self; 2] = [Self::Avx2, Self::Avx512];
 
     /// True if this CPU and this system support it.
-    pub fn is_here(self) -> bool {
+    pub fn is_available(self) -> bool {
         x86_64::has(self)
     }
 }

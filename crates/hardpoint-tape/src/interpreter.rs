@@ -138,7 +138,12 @@ impl Interpreter {
     fn run_at(&mut self, level: Level, inputs: &[Lanes], uniforms: &[f64], outputs: &mut [Lanes]) {
         assert_eq!(uniforms.len(), self.uniforms, "the program has {} uniforms", self.uniforms);
         let groups = outputs.len().checked_div(self.outputs).unwrap_or(0);
-        assert_eq!(outputs.len(), groups * self.outputs, "the program has {} outputs per group", self.outputs);
+        assert_eq!(
+            outputs.len(),
+            groups * self.outputs,
+            "the program has {} outputs per group",
+            self.outputs
+        );
         assert!(
             self.outputs == 0 || inputs.len() == groups * self.inputs,
             "expected {groups} groups of {} inputs, found {} inputs",

@@ -134,8 +134,16 @@ impl Machine {
                 assert_eq!(length, 0, "outputs are given for a part without outputs");
                 continue;
             };
-            assert_eq!(length, whole * outputs, "the number of outputs is not a multiple of that of the program");
-            assert_eq!(whole, *groups.get_or_insert(whole), "parts of the outputs have different numbers of groups");
+            assert_eq!(
+                length,
+                whole * outputs,
+                "the number of outputs is not a multiple of that of the program"
+            );
+            assert_eq!(
+                whole,
+                *groups.get_or_insert(whole),
+                "parts of the outputs have different numbers of groups"
+            );
         }
         groups
     }

@@ -27,13 +27,13 @@ fn said(inputs: usize, uniforms: usize, outputs: usize) -> Option<String> {
     Some(caught.downcast_ref::<String>().expect("a message").lines().next().unwrap().to_string())
 }
 
-fn is_here() -> bool {
-    Width::ALL.into_iter().any(Width::is_here)
+fn is_available() -> bool {
+    Width::ALL.into_iter().any(Width::is_available)
 }
 
 #[test]
 fn arrays_of_other_lengths_are_refused() {
-    if !is_here() {
+    if !is_available() {
         return;
     }
     assert_eq!([said(0, 1, 0), said(2, 1, 2), said(6, 1, 6)], [None, None, None]);
@@ -80,7 +80,7 @@ fn said_in_parts(ends: [usize; PARTS - 1], inputs: usize, lengths: [usize; PARTS
 
 #[test]
 fn parts_of_other_lengths_are_refused() {
-    if !is_here() {
+    if !is_available() {
         return;
     }
     for (ends, inputs, lengths) in [
@@ -120,7 +120,7 @@ fn parts_of_other_lengths_are_refused() {
 
 #[test]
 fn code_for_several_parts_does_not_run_in_one() {
-    if !is_here() {
+    if !is_available() {
         return;
     }
     let program = two_inputs_one_uniform_two_outputs();
@@ -136,7 +136,7 @@ fn code_for_several_parts_does_not_run_in_one() {
 
 #[test]
 fn parts_that_end_nowhere_are_refused() {
-    if !is_here() {
+    if !is_available() {
         return;
     }
     let program = two_inputs_one_uniform_two_outputs();
@@ -150,7 +150,7 @@ fn parts_that_end_nowhere_are_refused() {
 
 #[test]
 fn operands_that_do_not_exist_are_refused() {
-    let Some(width) = Width::ALL.into_iter().find(|w| w.is_here()) else { return };
+    let Some(width) = Width::ALL.into_iter().find(|w| w.is_available()) else { return };
     let one = |o| Instruction::Neg(o);
     let good = two_inputs_one_uniform_two_outputs();
     for wrong in [
@@ -183,7 +183,7 @@ fn operands_that_do_not_exist_are_refused() {
 
 #[test]
 fn programs_too_large_for_offsets_are_refused_in_words() {
-    let Some(width) = Width::ALL.into_iter().find(|w| w.is_here()) else { return };
+    let Some(width) = Width::ALL.into_iter().find(|w| w.is_available()) else { return };
     let program = Program { inputs: usize::MAX, ..Program::default() };
     let refused = Code::with(&program, width).expect_err("it is refused");
     assert_eq!(refused, UnsupportedProgram::Size { what: "inputs", count: usize::MAX });
@@ -212,13 +212,13 @@ fn code_is_made_where_it_can_be() {
     let program = two_inputs_one_uniform_two_outputs();
     let made = Code::new(&program).map(|c| c.width());
     let target = cfg!(all(target_arch = "x86_64", unix));
-    match Width::ALL.into_iter().rev().find(|w| w.is_here()) {
+    match Width::ALL.into_iter().rev().find(|w| w.is_available()) {
         Some(widest) => assert_eq!(made, Ok(widest)),
         None => {
             assert_eq!(made, Err(if target { UnsupportedProgram::Cpu } else { UnsupportedProgram::Target }))
         }
     }
-    for width in Width::ALL.into_iter().filter(|w| !w.is_here()) {
+    for width in Width::ALL.into_iter().filter(|w| !w.is_available()) {
         let reason = if target { UnsupportedProgram::Width(width) } else { UnsupportedProgram::Target };
         assert_eq!(Code::with(&program, width).err(), Some(reason));
     }
@@ -246,7 +246,7 @@ fn nothing_beside_the_outputs_is_written_wherever_they_begin() {
         let inputs: Vec<f64> = (0..shift + LANES * groups * program.inputs).map(|_| random.tame()).collect();
         let inputs = inputs[shift..].as_chunks().0;
         let expected = plain::evaluate(&program, groups, inputs, &uniforms);
-        for width in Width::ALL.into_iter().filter(|w| w.is_here()) {
+        for width in Width::ALL.into_iter().filter(|w| w.is_available()) {
             const MARK: f64 = 987.654;
             const MARGIN: usize = 100;
             let mut all = vec![MARK; 2 * MARGIN + shift + LANES * expected.len()];
@@ -305,7 +305,7 @@ fn executable_bytes() -> usize {
 #[test]
 #[cfg(target_os = "linux")]
 fn dropped_code_gives_its_pages_back() {
-    let Some(width) = Width::ALL.into_iter().find(|w| w.is_here()) else { return };
+    let Some(width) = Width::ALL.into_iter().find(|w| w.is_available()) else { return };
     let program = two_inputs_one_uniform_two_outputs();
     let before = executable_bytes();
     for _ in 0..5000 {
@@ -323,7 +323,7 @@ fn dropped_code_gives_its_pages_back() {
 #[test]
 #[cfg(target_os = "linux")]
 fn no_page_is_writable_and_executable() {
-    let Some(width) = Width::ALL.into_iter().find(|w| w.is_here()) else { return };
+    let Some(width) = Width::ALL.into_iter().find(|w| w.is_available()) else { return };
     let code = Code::with(&two_inputs_one_uniform_two_outputs(), width).expect("the width is here");
     let maps = std::fs::read_to_string("/proc/self/maps").expect("Linux has it");
     assert!(executable_bytes() >= code.counts().bytes, "the code is among them:\n{maps}");

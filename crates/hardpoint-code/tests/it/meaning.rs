@@ -27,7 +27,7 @@ fn holds(program: &Program, groups: usize, inputs: &[Lanes], uniforms: &[f64]) -
     let expected_in_parts = plain::parts(program, ends, &expected);
     let mut counts = Counts::default();
     let mut scratch = Scratch::default();
-    for width in Width::ALL.into_iter().filter(|w| w.is_here()) {
+    for width in Width::ALL.into_iter().filter(|w| w.is_available()) {
         let code = Code::with(program, width).expect("the width is here");
         let mut outputs = vec![[1234.5; LANES]; expected.len()];
         code.run(&mut scratch, inputs, uniforms, &mut outputs);
@@ -58,8 +58,8 @@ fn holds(program: &Program, groups: usize, inputs: &[Lanes], uniforms: &[f64]) -
 }
 
 /// True if there is anything to test.
-fn is_here() -> bool {
-    Width::ALL.into_iter().any(Width::is_here)
+fn is_available() -> bool {
+    Width::ALL.into_iter().any(Width::is_available)
 }
 
 #[test]
@@ -179,7 +179,7 @@ fn code_and_interpreter_agree() {
         let (inputs, uniforms) = data(&mut random, &program, groups, turn % 3 == 0);
         let mut expected = vec![[0.0; LANES]; groups * program.outputs.len()];
         Interpreter::new(&program).run(&inputs, &uniforms, &mut expected);
-        for width in Width::ALL.into_iter().filter(|w| w.is_here()) {
+        for width in Width::ALL.into_iter().filter(|w| w.is_available()) {
             let mut outputs = vec![[0.0; LANES]; expected.len()];
             Code::with(&program, width).expect("the width is here").run(
                 &mut Scratch::default(),
@@ -369,7 +369,7 @@ fn calls_leave_all_other_numbers_as_they_were() {
 
 #[test]
 fn code_is_shared_by_threads_and_scratch_by_codes() {
-    if !is_here() {
+    if !is_available() {
         return;
     }
     let mut random = Random(8);

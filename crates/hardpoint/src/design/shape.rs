@@ -105,7 +105,8 @@ impl Interpolation {
             linear: std::array::from_fn(|k| row(n + k)),
         };
         let largest = velocities.iter().map(|v| v.norm()).fold(0.0, f64::max);
-        let interpolates = |(p, v): (&Vec3, &Vec3)| (this.at(*p)[0] - *v).norm() <= INTERPOLATION_TOLERANCE * largest;
+        let interpolates =
+            |(p, v): (&Vec3, &Vec3)| (this.at(*p)[0] - *v).norm() <= INTERPOLATION_TOLERANCE * largest;
         points.iter().zip(velocities).all(interpolates).then_some(this)
     }
 

@@ -405,7 +405,9 @@ impl<'a> Checker<'a> {
         }
         match on_a_body.or_else(|| close.map(|close| format!("did you mean `{close}`?"))) {
             Some(help) => drop(fault.help(help)),
-            None if valid.is_empty() => drop(fault.help(format!("declare `{name}` first: the model has no {what}"))),
+            None if valid.is_empty() => {
+                fault.help(format!("declare `{name}` first: the model has no {what}"));
+            }
             None => {}
         }
         None
@@ -569,8 +571,7 @@ impl<'a> Checker<'a> {
                                 frame = Pose { rot: Mat3 { cols: [f, h.cross(f), h] }, r: o };
                             }
                             _ => {
-                                let message =
-                                    format!("the frame points of body `{}` are collinear", b.name);
+                                let message = format!("the frame points of body `{}` are collinear", b.name);
                                 self.fault("HP0206", here.key("frame"), message).help(
                                     "give an origin, a point on the x axis, and a third point off that axis",
                                 );
@@ -596,7 +597,8 @@ impl<'a> Checker<'a> {
         let named: BTreeSet<&str> =
             self.draft.joints.iter().flat_map(|j| &j.bodies).map(String::as_str).collect();
         // An unread joint may connect any body.
-        let all_known = !self.is_table_unread("joint") && !self.draft.unread.anywhere(Section::Joints, "bodies");
+        let all_known =
+            !self.is_table_unread("joint") && !self.draft.unread.anywhere(Section::Joints, "bodies");
         for (index, b) in self.draft.bodies.iter().enumerate() {
             if !named.contains(b.name.as_str()) && all_known {
                 let at = Here { section: Section::Bodies, index }.key("name");

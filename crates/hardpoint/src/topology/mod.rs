@@ -80,7 +80,7 @@ pub enum CutReason {
     /// Joint whose bodies are placed by other joints, with fewer unknowns.
     ClosesLoop,
     /// Cut joint by request of the model.
-    Asked,
+    Requested,
     /// Absolute coordinates, in which every joint is cut.
     Absolute,
 }
@@ -406,7 +406,7 @@ impl Topology {
         }
         for k in 0..self[block].closures.len() {
             let c = self[block].closures[k];
-            let points_only = |(r, row): (RowId, Row)| !(self[r].drives() && row.has_axes());
+            let points_only = |(r, row): (RowId, Row)| !(self[r].has_wrench() && row.has_axes());
             let by_points = self[c].numbered_rows().all(points_only);
             self[c].solved_by_points = by_points;
         }
@@ -426,7 +426,7 @@ impl Topology {
 
 impl RowPlace {
     /// True if the row has a wrench in the solution: it is selected, or a term of a coupler.
-    pub fn drives(&self) -> bool {
+    pub fn has_wrench(&self) -> bool {
         self.selected || self.is_term || !self.terms.is_empty()
     }
 
@@ -458,7 +458,7 @@ impl Link {
 
     /// True if the unit twist is constant: a single freedom relative to ground.
     #[inline(always)]
-    pub fn keeps_its_twist(&self) -> bool {
+    pub fn has_constant_twist(&self) -> bool {
         self.parent == GROUND && self.steps.len() == 1
     }
 

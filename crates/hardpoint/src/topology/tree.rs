@@ -28,7 +28,7 @@ pub(super) fn choose_tree(model: &Model, formulation: Formulation) -> Topology {
             JointRole::Cut(match (formulation, j.kind.freedoms, j.cut) {
                 (Formulation::Absolute, ..) => CutReason::Absolute,
                 (_, None, _) => CutReason::AlwaysCut,
-                (_, _, true) => CutReason::Asked,
+                (_, _, true) => CutReason::Requested,
                 _ => CutReason::ClosesLoop,
             })
         })

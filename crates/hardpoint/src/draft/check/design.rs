@@ -118,8 +118,12 @@ impl Checker<'_> {
             }
         }
         if changes.is_empty() && !self.joint_ids.contains(&None) {
-            let message = format!("the velocity field of design variable `{owner}` moves no joint or point of its bodies");
-            self.fault("HP0217", at, message).help("give a field that is not zero at a joint or point of these bodies, or name other bodies");
+            let message = format!(
+                "the velocity field of design variable `{owner}` moves no joint or point of its bodies"
+            );
+            self.fault("HP0217", at, message).help(
+                "give a field that is not zero at a joint or point of these bodies, or name other bodies",
+            );
             return None;
         }
         Some(changes)

@@ -113,7 +113,11 @@ impl Checker<'_> {
         let coordinate = self.coordinate_at(joint, coordinate, at.clone())?;
         let row = self.model.joints[joint.0].kind.coordinates[coordinate].row;
         let zero = if row == Row::Distance { Zero::Constant } else { Zero::None };
-        self.is_drivable(d, name, joint, coordinate, at[0].clone()).then_some(Driven { joint, coordinate, zero })
+        self.is_drivable(d, name, joint, coordinate, at[0].clone()).then_some(Driven {
+            joint,
+            coordinate,
+            zero,
+        })
     }
 
     fn driven_position(
@@ -319,7 +323,12 @@ impl Checker<'_> {
 
     /// Returns the nominal value of a driver's coordinate, if it is not zero. HP0213 if the law is absolute and the
     /// coordinate has no absolute zero.
-    pub(super) fn nominal_value(&mut self, d: &DriverDraft, driven: Driven, here: Here) -> Option<NominalValue> {
+    pub(super) fn nominal_value(
+        &mut self,
+        d: &DriverDraft,
+        driven: Driven,
+        here: Here,
+    ) -> Option<NominalValue> {
         let joint = &self.model.joints[driven.joint.0];
         let mut sources = Vec::new();
         let mut coordinates = |h: HardpointId| {

@@ -68,7 +68,8 @@ impl Checker<'_> {
             }
             ElementKind::Spring { from, to, stiffness, free_length, preload, .. } => {
                 if self.body_of(*from) == self.body_of(*to) {
-                    let message = format!("both ends of `{}` are on the same body, where it has no effect", e.name);
+                    let message =
+                        format!("both ends of `{}` are on the same body, where it has no effect", e.name);
                     self.fault("HP0251", here.key("to"), message)
                         .help("put its ends on two different bodies; `ground` is also a body");
                 } else if self.coincide(*from, *to) {
@@ -111,10 +112,8 @@ impl Checker<'_> {
                     _ => (Quantity::Angle, "joint_spring"),
                 };
                 if found.quantity != wanted {
-                    let message = format!(
-                        "`{}` cannot act on the {} of joint `{}`",
-                        e.name, found.name, joint.name
-                    );
+                    let message =
+                        format!("`{}` cannot act on the {} of joint `{}`", e.name, found.name, joint.name);
                     self.fault("HP0251", here.key("joint"), message)
                         .help(format!("write `type = \"{other}\"`, or name another coordinate"));
                 }
@@ -133,13 +132,18 @@ impl Checker<'_> {
                     };
                     self.report_friction_joint(&e.name, *joint, "hinge or ball joint", here, help);
                 } else if let (Some(_), "spherical") = (length, kind) {
-                    let message = format!("`{}` has a `length`, which does not apply to a spherical joint", e.name);
+                    let message =
+                        format!("`{}` has a `length`, which does not apply to a spherical joint", e.name);
                     self.fault("HP0251", here.key("length"), message).help("remove `length`");
                 }
                 let numbers = [(coefficient.0, "coefficient"), (radius.0, "radius")];
                 let length = length.map(|n| (n.0, "length"));
                 let transition_velocity = transition_velocity.map(|n| (n.0, "transition_velocity"));
-                self.check_positive(numbers.into_iter().chain(length).chain(transition_velocity), &e.name, here);
+                self.check_positive(
+                    numbers.into_iter().chain(length).chain(transition_velocity),
+                    &e.name,
+                    here,
+                );
                 self.check_not_negative(viscous.map(|n| n.0), "viscous", &e.name, here);
             }
             ElementKind::SlideFriction {
@@ -162,7 +166,8 @@ impl Checker<'_> {
                 } else if let Some(normal) = ignored_direction {
                     let z = self.model.joints[joint.0].frames[0].cols[2];
                     if normal.cross(z).norm() < ACROSS {
-                        let message = format!("`ignored_direction` of `{}` is parallel to its sliding axis", e.name);
+                        let message =
+                            format!("`ignored_direction` of `{}` is parallel to its sliding axis", e.name);
                         self.fault("HP0251", here.key("ignored_direction"), message)
                             .help("give a direction across the sliding axis, or remove `ignored_direction`");
                     }
@@ -263,11 +268,17 @@ impl Checker<'_> {
     }
 
     /// HP0252: friction parameters that are not positive.
-    fn check_positive(&mut self, numbers: impl Iterator<Item = (NumberId, &'static str)>, name: &str, here: Here) {
+    fn check_positive(
+        &mut self,
+        numbers: impl Iterator<Item = (NumberId, &'static str)>,
+        name: &str,
+        here: Here,
+    ) {
         for (number, key) in numbers {
             if !(self.value(number) > 0.0) {
                 let message = format!("the {key} of `{name}` is not positive");
-                self.fault("HP0252", here.key(key), message).help("give a positive number, or remove the friction");
+                self.fault("HP0252", here.key(key), message)
+                    .help("give a positive number, or remove the friction");
             }
         }
     }
@@ -289,7 +300,8 @@ impl Checker<'_> {
         key: &'static str,
     ) -> Option<SpringTable> {
         let is_compression = key == "compression";
-        let table = SpringTable::new(&if is_compression { SpringTable::turned(points) } else { points.to_vec() });
+        let table =
+            SpringTable::new(&if is_compression { SpringTable::turned(points) } else { points.to_vec() });
         if let Err(why) = &table {
             let message = format!("the table of `{name}` {why}");
             self.fault("HP0252", here.key(key), message)
@@ -309,7 +321,8 @@ impl Checker<'_> {
         }
         if scale.is_some() && compression.is_none() && extension.is_none() {
             let message = format!("`{name}` has a `scale`, but no table");
-            self.fault("HP0251", here.key("scale"), message).help("remove `scale`, or change its `stiffness`");
+            self.fault("HP0251", here.key("scale"), message)
+                .help("remove `scale`, or change its `stiffness`");
         }
     }
 
@@ -342,7 +355,8 @@ impl Checker<'_> {
         for (number, key) in above {
             if !(self.value(number) > 0.0) {
                 let message = format!("the {key} of `{name}` is not positive");
-                self.fault("HP0252", here.key(key), message).help("give a positive number, or remove the mass");
+                self.fault("HP0252", here.key(key), message)
+                    .help("give a positive number, or remove the mass");
             }
         }
     }

@@ -237,7 +237,10 @@ impl<'a> Checker<'a> {
             Source::Parameter(_) | Source::Coordinate(..) => self.unknown_sources.contains(&source),
             Source::Kept(j, _) => {
                 let coordinates = |h| (0..3).map(move |axis| Source::Coordinate(h, axis));
-                self.model.joints[j.0].hardpoints().flat_map(coordinates).any(|s| self.unknown_sources.contains(&s))
+                self.model.joints[j.0]
+                    .hardpoints()
+                    .flat_map(coordinates)
+                    .any(|s| self.unknown_sources.contains(&s))
             }
         }
     }
@@ -259,7 +262,13 @@ impl<'a> Checker<'a> {
     }
 
     /// Returns the nominal value of an expression, and adds its formula to the model.
-    fn add_formula(&mut self, of: Target, expression: &Expression, at: DraftLocation, name: String) -> Option<f64> {
+    fn add_formula(
+        &mut self,
+        of: Target,
+        expression: &Expression,
+        at: DraftLocation,
+        name: String,
+    ) -> Option<f64> {
         self.add_formula_in(None, of, expression, at, name)
     }
 

@@ -7,7 +7,7 @@ use crate::joint::{JointType, Need};
 use crate::model::{Curve, Direction, GROUND, Hardpoint, HardpointId, Joint, JointId};
 use crate::space::{Mat3, Pose, Vec3};
 
-use super::{Checker, Here, SAME_POINT, PERPENDICULAR_TOLERANCE, UNPLACED, degrees_between, frame_along};
+use super::{Checker, Here, PERPENDICULAR_TOLERANCE, SAME_POINT, UNPLACED, degrees_between, frame_along};
 
 /// Returns the default direction of the markers' x axis. For a mirror image across a global axis: the image of the
 /// original's default.
@@ -79,8 +79,9 @@ impl Checker<'_> {
             (Some((_, z)), Some((_, z_j))) if kind.axis2 == Need::OnBodyJ => {
                 let cosine = z.dot(z_j);
                 if kind.rows.contains(&Row::Cosine) && cosine.abs() > 1.0 - PERPENDICULAR_TOLERANCE {
-                    let message =
-                        format!("the axes of joint `{name}` are parallel, where the angle between them is singular");
+                    let message = format!(
+                        "the axes of joint `{name}` are parallel, where the angle between them is singular"
+                    );
                     self.fault("HP0209", here.key("axis2"), message).help("use a `parallel` joint");
                 }
                 if kind.rows.contains(&Row::ConstantVelocity) && cosine < PERPENDICULAR_TOLERANCE {
@@ -138,8 +139,12 @@ impl Checker<'_> {
         let draft = match (&j.curve, kind.follows_curve()) {
             (None, false) => return None,
             (Some(_), false) => {
-                self.fault("HP0226", here.key("curve"), format!("`curve` does not apply to a {} joint", kind.name))
-                    .help(format!("remove `curve` from `{name}`, or make it a `point_on_curve`"));
+                self.fault(
+                    "HP0226",
+                    here.key("curve"),
+                    format!("`curve` does not apply to a {} joint", kind.name),
+                )
+                .help(format!("remove `curve` from `{name}`, or make it a `point_on_curve`"));
                 return None;
             }
             (None, true) => {
@@ -209,8 +214,12 @@ impl Checker<'_> {
             None => j.length?,
         };
         if !kind.is_rod() && !kind.follows_curve() {
-            self.fault("HP0223", here.key("length"), format!("`length` does not apply to a {} joint", kind.name))
-                .help(format!("remove `length` from `{}`", j.name));
+            self.fault(
+                "HP0223",
+                here.key("length"),
+                format!("`length` does not apply to a {} joint", kind.name),
+            )
+            .help(format!("remove `length` from `{}`", j.name));
         } else if !(length > 0.0 && length.is_finite()) {
             self.fault("HP0223", here.key("length"), format!("the length of `{}` is not positive", j.name))
                 .help(
@@ -228,8 +237,12 @@ impl Checker<'_> {
         }
         match j.lead {
             Some(_) if !has_lead => {
-                self.fault("HP0223", here.key("lead"), format!("`lead` does not apply to a {} joint", kind.name))
-                    .help(format!("remove `lead` from `{}`, or make it a `screw`", j.name));
+                self.fault(
+                    "HP0223",
+                    here.key("lead"),
+                    format!("`lead` does not apply to a {} joint", kind.name),
+                )
+                .help(format!("remove `lead` from `{}`, or make it a `screw`", j.name));
             }
             Some(lead) if !(lead != 0.0 && lead.is_finite()) => {
                 let message = format!("the lead of screw `{}` is zero or not finite", j.name);
@@ -284,7 +297,9 @@ impl Checker<'_> {
             fault.help(match (kind.places, j.at.len()) {
                 (0, _) => "remove `at`: only directions matter for this type".to_string(),
                 (1, _) => "name the hardpoint at which the bodies are connected".into(),
-                _ => format!("name the point on `{}` first, then the point on `{}`", j.bodies[0], j.bodies[1]),
+                _ => {
+                    format!("name the point on `{}` first, then the point on `{}`", j.bodies[0], j.bodies[1])
+                }
             });
             return None;
         }

@@ -54,7 +54,8 @@ impl Checker<'_> {
         let draft = self.draft;
         let nothing = draft.masses.is_empty() && draft.forces.is_empty();
         if kind.is_load() && nothing && !self.is_table_unread("mass") && !self.is_table_unread("force") {
-            let message = format!("measure `{}` is a load, but the model has no masses and no forces", m.name);
+            let message =
+                format!("measure `{}` is a load, but the model has no masses and no forces", m.name);
             self.fault("HP0250", here.key("type"), message).help("add `[masses]`, `[gravity]` or `[forces]`");
         }
         let deflects = |e: &Element| {
@@ -81,9 +82,10 @@ impl Checker<'_> {
         {
             let (message, help) = match at {
                 Some(_) => ("has both `at` and `wheel`", "leave `at` or `wheel` out"),
-                None => {
-                    ("has no point of application", "give the point as `at`, or the `wheel` that the road acts on")
-                }
+                None => (
+                    "has no point of application",
+                    "give the point as `at`, or the `wheel` that the road acts on",
+                ),
             };
             self.fault("HP0251", here.key("at"), format!("`{}` {message}", m.name)).help(help);
         }
@@ -91,8 +93,10 @@ impl Checker<'_> {
             let joint = &self.model.joints[joint.0];
             if !joint.bodies.contains(on) {
                 let [i, j] = joint.bodies.map(|b| self.model.bodies[b.0].name.clone());
-                let message =
-                    format!("joint `{}` does not connect body `{}`", joint.name, self.model.bodies[on.0].name);
+                let message = format!(
+                    "joint `{}` does not connect body `{}`",
+                    joint.name, self.model.bodies[on.0].name
+                );
                 self.fault("HP0251", here.key("on"), message).help(format!("write `{i}` or `{j}`"));
             }
         }
@@ -229,8 +233,7 @@ impl Checker<'_> {
                 let ends = [points.0?, points.1?];
                 let [a, b] = ends.map(|p| self.model.points[p.0].at);
                 if self.separation(a, b) == Some(None) {
-                    let message =
-                        format!("the two points of `{key}` of measure `{owner}` coincide");
+                    let message = format!("the two points of `{key}` of measure `{owner}` coincide");
                     self.fault("HP0216", here.key(key), message).help("name two different points");
                     return None;
                 }

@@ -43,7 +43,8 @@ impl Checker<'_> {
         let fault = self.fault("HP0213", at, message);
         fault.note(format!("type of `{joint_name}`: {} ({})", kind.name, kind.summary));
         fault.help(if kind.coordinates.is_empty() {
-            "name a joint with coordinates: a revolute, translational or cylindrical joint, a rod or a leg".into()
+            "name a joint with coordinates: a revolute, translational or cylindrical joint, a rod or a leg"
+                .into()
         } else {
             format!("name one of its coordinates: {}", list(kind.coordinates))
         });
@@ -56,8 +57,9 @@ impl Checker<'_> {
             let here = Here { section: Section::Drivers, index };
             let driver = DriverId(self.model.drivers.len());
             let driven = self.driven(d, here);
-            let zero =
-                driven.filter(|_| d.counts_from_zero()).and_then(|driven| self.nominal_value(d, driven, here));
+            let zero = driven
+                .filter(|_| d.counts_from_zero())
+                .and_then(|driven| self.nominal_value(d, driven, here));
             self.zeros.extend(zero.map(|zero| (driver, zero)));
             let Some(law) = self.formula_law(&d.name, &d.law, &here.key("law")) else { continue };
             if draft.cases.is_empty() {

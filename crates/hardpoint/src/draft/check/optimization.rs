@@ -186,8 +186,10 @@ impl Checker<'_> {
         if m.take.target().is_some() && g.target.is_some() {
             let message =
                 format!("goal `{}` cannot have a target: its metric `{}` is an `rms`", g.name, g.metric);
-            let help =
-                format!("remove `target`, and give the curve to follow as `target` of `[metrics.{}]`", g.metric);
+            let help = format!(
+                "remove `target`, and give the curve to follow as `target` of `[metrics.{}]`",
+                g.metric
+            );
             self.fault("HP0237", here.key("target"), message)
                 .note("an `rms` is the distance of a curve from its own target, and is minimised")
                 .help(help);
@@ -266,8 +268,7 @@ impl Checker<'_> {
                 let joint = self.joint(name, here.key("length"))?;
                 let kind = self.model.joints[joint.0].kind;
                 if !kind.is_rod() {
-                    let message =
-                        format!("joint `{name}` has no length for limit `{}`", l.name);
+                    let message = format!("joint `{name}` has no length for limit `{}`", l.name);
                     self.fault("HP0225", here.key("length"), message)
                         .note(format!("it is a {} joint", kind.name))
                         .help("name a rod or a leg; for two hardpoints write `between = [\"A\", \"B\"]`");

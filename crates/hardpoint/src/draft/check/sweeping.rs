@@ -24,7 +24,8 @@ impl Checker<'_> {
             }
         };
         let curves = s.curves.iter().enumerate();
-        let curves = curves.filter_map(|(k, name)| self.measure_index(name, HERE.item("curves", k))).collect();
+        let curves =
+            curves.filter_map(|(k, name)| self.measure_index(name, HERE.item("curves", k))).collect();
         let mut sweeping = SweepSettings {
             metrics,
             curves,
@@ -111,7 +112,9 @@ impl Checker<'_> {
                 here.key("levels"),
                 format!("a factorial sweep needs at least 2 levels, not {levels}"),
             )
-            .help("give a whole number from 2: levels are evenly spaced from one end of the range to the other");
+            .help(
+                "give a whole number from 2: levels are evenly spaced from one end of the range to the other",
+            );
         }
     }
 

@@ -210,7 +210,8 @@ impl Checker<'_> {
             let between = [0, 1].map(|k| self.variable_index(&one.between[k], here.item("between", k)));
             let [Some(a), Some(b)] = between else { continue };
             if !(one.coefficient.abs() <= 1.0) {
-                let message = format!("invalid coefficient of correlation `{}`: {}", one.name, one.coefficient);
+                let message =
+                    format!("invalid coefficient of correlation `{}`: {}", one.name, one.coefficient);
                 self.fault("HP0242", here.key("coefficient"), message)
                     .help("give a number from -1 to 1: 1 if both deviations are always equal, 0 if they are independent");
                 continue;

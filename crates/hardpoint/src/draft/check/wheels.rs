@@ -327,8 +327,7 @@ impl Checker<'_> {
             }
             (&[a, b], &[p, q]) => (ArmPlane::Square([a, b]), (q - p).norm() > SAME_POINT * size),
             _ => {
-                let message =
-                    format!("the {which} plane of wheel `{name}` has {} points", found.len());
+                let message = format!("the {which} plane of wheel `{name}` has {} points", found.len());
                 self.fault("HP0231", here.item("arm_planes", arm), message).help(
                     "give three points of an arm, or two of a strut: its top mount and another point of its axis",
                 );
@@ -353,7 +352,8 @@ impl Checker<'_> {
         let [p, q] = ends.map(|p| self.position(self.model.points[p.0].at));
         if !((q? - p?).norm() > SAME_POINT * self.extent.size()) {
             let message = format!("the two ends of the spring of wheel `{}` coincide", w.name);
-            self.fault("HP0231", here.key("spring"), message).help("name the ends of the spring, one on each body");
+            self.fault("HP0231", here.key("spring"), message)
+                .help("name the ends of the spring, one on each body");
             return None;
         }
         Some(ends)
