@@ -45,8 +45,8 @@ impl Recording {
             graph.fuse();
         }
         let recorded: Vec<u32> = (0..graph.nodes.len() as u32).filter(|n| graph.is_instruction(*n)).collect();
-        let needed = graph.by_need();
-        let order = if graph.live_in(&needed) < graph.live_in(&recorded) { needed } else { recorded };
+        let needed = graph.order_by_need();
+        let order = if graph.max_live_in(&needed) < graph.max_live_in(&recorded) { needed } else { recorded };
         graph.counts.recorded += self.folded;
         graph.counts.folded += self.folded;
         graph.emit(&order, self)
@@ -447,7 +447,7 @@ impl Graph {
 
     /// Returns an order from the outputs: the operands of each node just before it, operands that need the most values
     /// first (Sethi-Ullman numbers, which are optimal for trees and a good heuristic here).
-    fn by_need(&self) -> Vec<u32> {
+    fn order_by_need(&self) -> Vec<u32> {
         let size = self.nodes.len();
         let mut need = vec![0u32; size];
         let ordered = |node: u32, need: &[u32]| {
@@ -494,7 +494,7 @@ impl Graph {
     }
 
     /// Returns the maximum number of live values in this order.
-    fn live_in(&self, order: &[u32]) -> usize {
+    fn max_live_in(&self, order: &[u32]) -> usize {
         let mut last = vec![0u32; self.nodes.len()];
         for (k, node) in order.iter().enumerate() {
             let (reads, many) = self.reads(*node);
@@ -528,7 +528,7 @@ impl Graph {
             writer.instruction(*node);
         }
         for k in 0..self.outputs.len() {
-            let output = writer.as_it_is(self.outputs[k]);
+            let output = writer.with_own_sign(self.outputs[k]);
             writer.program.outputs.push(output);
         }
         let Writer { program, negations, .. } = writer;
@@ -558,13 +558,13 @@ struct Writer<'a> {
     /// True if a node is an output, and if its negative is one.
     given: Vec<[bool; 2]>,
     /// True if a reader requires the node's negative and cannot change signs for free.
-    wanted: Vec<Wanted>,
+    wanted: Vec<RequiredSign>,
     negations: usize,
 }
 
 /// Sign that readers require if they cannot use either sign.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Wanted {
+enum RequiredSign {
     Either,
     Negative,
     Positive,
@@ -572,11 +572,15 @@ enum Wanted {
 
 /// Determines the required signs. If a node is required as its negative and that is not free, the requirement passes to
 /// an operand without other readers.
-fn wanted(graph: &Graph) -> Vec<Wanted> {
-    let mut wanted = vec![Wanted::Either; graph.nodes.len()];
-    let want = |wanted: &mut [Wanted], x: Signed| {
+fn required_signs(graph: &Graph) -> Vec<RequiredSign> {
+    let mut wanted = vec![RequiredSign::Either; graph.nodes.len()];
+    let want = |wanted: &mut [RequiredSign], x: Signed| {
         let w = &mut wanted[x.node() as usize];
-        *w = if x.negative() && *w != Wanted::Positive { Wanted::Negative } else { Wanted::Positive };
+        *w = if x.negative() && *w != RequiredSign::Positive {
+            RequiredSign::Negative
+        } else {
+            RequiredSign::Positive
+        };
     };
     for output in &graph.outputs {
         want(&mut wanted, *output);
@@ -584,20 +588,23 @@ fn wanted(graph: &Graph) -> Vec<Wanted> {
     for node in (0..graph.nodes.len() as u32).rev().filter(|n| graph.is_instruction(*n)) {
         let (operands, many) = graph.operands(node);
         let operands = &operands[..many];
-        let is_negative =
-            |wanted: &[Wanted], x: Signed| x.negative() != (wanted[x.node() as usize] == Wanted::Negative);
+        let is_negative = |wanted: &[RequiredSign], x: Signed| {
+            x.negative() != (wanted[x.node() as usize] == RequiredSign::Negative)
+        };
         match graph.nodes[node as usize].kind {
             Kind::Sqrt | Kind::Larger | Kind::Call(_) => operands.iter().for_each(|o| want(&mut wanted, *o)),
             Kind::Add | Kind::Mul | Kind::Div
-                if wanted[node as usize] == Wanted::Negative
+                if wanted[node as usize] == RequiredSign::Negative
                     && graph.fused[node as usize] == NONE
                     && operands.iter().all(|o| graph.known(*o).is_none() && !is_negative(&wanted, *o)) =>
             {
                 let alone = operands.iter().map(|o| o.node() as usize).find(|o| {
-                    graph.uses[*o] == 1 && wanted[*o] == Wanted::Either && graph.is_instruction(*o as u32)
+                    graph.uses[*o] == 1
+                        && wanted[*o] == RequiredSign::Either
+                        && graph.is_instruction(*o as u32)
                 });
                 if let Some(operand) = alone {
-                    wanted[operand] = Wanted::Negative;
+                    wanted[operand] = RequiredSign::Negative;
                 }
             }
             _ => {}
@@ -626,7 +633,7 @@ impl<'a> Writer<'a> {
             flipped: vec![false; size],
             opposite,
             given,
-            wanted: wanted(graph),
+            wanted: required_signs(graph),
             negations: 0,
         }
     }
@@ -663,7 +670,7 @@ impl<'a> Writer<'a> {
     }
 
     /// Returns the operand of a number with its own sign, negated if necessary.
-    fn as_it_is(&mut self, x: Signed) -> Operand {
+    fn with_own_sign(&mut self, x: Signed) -> Operand {
         let at = x.node() as usize;
         if let Some(value) = self.graph.known(x) {
             let slot = if x.negative() { &mut self.opposite[at] } else { &mut self.place[at] };
@@ -686,7 +693,7 @@ impl<'a> Writer<'a> {
         let at = node as usize;
         let Node { kind, .. } = self.graph.nodes[at];
         let ([a, b], _) = self.graph.operands(node);
-        let negative = self.wanted[at] == Wanted::Negative;
+        let negative = self.wanted[at] == RequiredSign::Negative;
         let (instruction, flipped) = match kind {
             Kind::Add => self.sum(node, negative),
             Kind::Mul => self.factors(Instruction::Mul, a, b, negative),
@@ -696,9 +703,11 @@ impl<'a> Writer<'a> {
                 let (a, negative) = self.either(a);
                 (Instruction::Round(a), negative)
             }
-            Kind::Sqrt => (Instruction::Sqrt(self.as_it_is(a)), false),
-            Kind::Larger => (Instruction::Larger(self.as_it_is(a), self.as_it_is(b)), false),
-            Kind::Call(call) => (Instruction::Call(call, self.as_it_is(a), self.as_it_is(b)), false),
+            Kind::Sqrt => (Instruction::Sqrt(self.with_own_sign(a)), false),
+            Kind::Larger => (Instruction::Larger(self.with_own_sign(a), self.with_own_sign(b)), false),
+            Kind::Call(call) => {
+                (Instruction::Call(call, self.with_own_sign(a), self.with_own_sign(b)), false)
+            }
             Kind::Constant | Kind::Input | Kind::Uniform => unreachable!("leaves are not computed"),
         };
         self.flipped[at] = flipped;
@@ -706,15 +715,15 @@ impl<'a> Writer<'a> {
         self.program.instructions.push(instruction);
         if self.given[at][usize::from(!flipped)] {
             // Negated immediately, so that the number is not live to the end.
-            self.as_it_is(Signed::new(node, !flipped));
+            self.with_own_sign(Signed::new(node, !flipped));
         }
     }
 
     /// Returns the negative of a number if it is available: for a constant, or if already computed.
-    fn opposite(&mut self, x: Signed) -> Option<Operand> {
+    fn available_negative(&mut self, x: Signed) -> Option<Operand> {
         let x = x.times(!self.minus(x));
         let at_hand = self.graph.known(x).is_some() || self.opposite[x.node() as usize] != NONE;
-        at_hand.then(|| self.as_it_is(x))
+        at_hand.then(|| self.with_own_sign(x))
     }
 
     /// Writes a product or quotient with its sign; the sign is free if the negative of a factor is available.
@@ -729,10 +738,10 @@ impl<'a> Writer<'a> {
         if flipped == negative {
             return (instruction(self.either(a).0, self.either(b).0), flipped);
         }
-        if let Some(x) = self.opposite(a) {
+        if let Some(x) = self.available_negative(a) {
             return (instruction(x, self.either(b).0), negative);
         }
-        if let Some(y) = self.opposite(b) {
+        if let Some(y) = self.available_negative(b) {
             return (instruction(self.either(a).0, y), negative);
         }
         (instruction(self.either(a).0, self.either(b).0), flipped)
@@ -749,7 +758,7 @@ impl<'a> Writer<'a> {
                 (false, false) => (Add(x, y), negative),
                 (false, true) => (Sub(x, y), negative),
                 (true, false) => (Sub(y, x), negative),
-                (true, true) => match (self.opposite(a), self.opposite(b)) {
+                (true, true) => match (self.available_negative(a), self.available_negative(b)) {
                     (Some(minus), _) => (Sub(minus, y), negative),
                     (None, Some(minus)) => (Sub(minus, x), negative),
                     (None, None) => (Add(x, y), !negative),

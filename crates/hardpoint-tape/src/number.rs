@@ -97,7 +97,7 @@ impl Session {
     #[inline(always)]
     fn place(&self, number: Number) -> u32 {
         if number.session != self.id {
-            stranger(self.id);
+            panic_on_foreign_number(self.id);
         }
         number.id
     }
@@ -163,7 +163,7 @@ impl Session {
 
 #[cold]
 #[inline(never)]
-fn stranger(session: u32) -> ! {
+fn panic_on_foreign_number(session: u32) -> ! {
     if session == 0 {
         panic!("a recorded number was used outside of a recording: call `record`");
     }

@@ -59,7 +59,7 @@ impl Program {
     /// Splits the program. `piece_of` returns the piece of an input or uniform; `ends` are the ends of the output
     /// areas. Consecutive outputs of a piece in the second and the third area are written there directly.
     pub fn in_pieces(&self, piece_of: impl Fn(Operand) -> usize, ends: [usize; AREAS - 1]) -> Pieces {
-        let cut = Cut::of(self, piece_of, ends);
+        let cut = Assignment::of(self, piece_of, ends);
         let mut whole = Pieces { shapes: Vec::new(), pieces: Vec::new(), kept: 0 };
         // Constants of every piece, by their index in its shape.
         let (mut shape_of, mut constants) = (HashMap::new(), Vec::new());
@@ -154,7 +154,7 @@ struct Line(Lanes);
 const _: () = assert!(size_of::<Line>() == LANES * size_of::<f64>());
 
 /// Assignment of instructions to pieces.
-struct Cut {
+struct Assignment {
     /// True if a later piece reads the value.
     is_read: Vec<bool>,
     pieces: Vec<Members>,
@@ -168,7 +168,7 @@ struct Members {
     outputs: [Vec<u32>; AREAS],
 }
 
-impl Cut {
+impl Assignment {
     fn of(program: &Program, piece_of: impl Fn(Operand) -> usize, ends: [usize; AREAS - 1]) -> Self {
         let mut piece_of_instruction = Vec::with_capacity(program.instructions.len());
         let mut is_read = vec![false; program.instructions.len()];
@@ -278,7 +278,7 @@ impl Members {
     fn canonical(
         &self,
         program: &Program,
-        cut: &Cut,
+        cut: &Assignment,
         kept: usize,
         kept_at: &mut [u32],
     ) -> (Piece, Form, Vec<f64>) {

@@ -11,7 +11,7 @@ use super::lower::{Action, LoweredProgram, NEVER, Name, Step};
 use crate::Counts;
 
 /// No register.
-const NOWHERE: u8 = u8::MAX;
+const NO_REGISTER: u8 = u8::MAX;
 
 /// Number of instructions by which the next read of a number with a location in memory counts as later: its eviction
 /// needs no store.
@@ -59,7 +59,7 @@ impl<'l> Allocator<'l> {
             counts: Counts::default(),
             holders: vec![Holder { name: 0, next: NEVER }; registers],
             free: (u64::MAX >> (64 - registers)) as u32,
-            register: vec![NOWHERE; lowered.names.len()],
+            register: vec![NO_REGISTER; lowered.names.len()],
             home,
             slots: 0,
             free_slots: Vec::new(),
@@ -100,7 +100,7 @@ impl<'l> Allocator<'l> {
 
     fn unary(&mut self, op: Opcode, step: &Step) -> u8 {
         let s = self.source(step.operands()[0]);
-        self.leave(step);
+        self.free_last_reads(step);
         let d = self.take(0);
         self.assembler.vector(op, d, 0, s);
         d
@@ -119,9 +119,9 @@ impl<'l> Allocator<'l> {
         if commutes && swap {
             (a, b, next) = (b, a, next_b);
         }
-        let r = self.loaded(a, next, self.bits(&[b]));
+        let r = self.ensure_register(a, next, self.bits(&[b]));
         let s = self.source(b);
-        self.leave(step);
+        self.free_last_reads(step);
         let d = self.take(0);
         self.assembler.vector(op, d, r, s);
         d
@@ -132,7 +132,7 @@ impl<'l> Allocator<'l> {
         let &[a, b, c] = step.operands() else { unreachable!("three operands") };
         let names = [a, b, c];
         let next: [u32; 3] = step.next().try_into().expect("three operands");
-        let (k, d) = self.overwritten(names, next);
+        let (k, d) = self.destination_operand(names, next);
 
         // Other operands: two factors, or a factor and the addend.
         let others = match k {
@@ -148,10 +148,10 @@ impl<'l> Allocator<'l> {
         if others.iter().all(|o| in_memory(place(self, *o))) {
             // The operand that is read again sooner is loaded into a register.
             let sooner = if next[others[1]] < next[others[0]] { others[1] } else { others[0] };
-            self.loaded(names[sooner], next[sooner], 1 << d);
+            self.ensure_register(names[sooner], next[sooner], 1 << d);
         }
         let [x, y] = others.map(|o| place(self, o));
-        self.leave(step);
+        self.free_last_reads(step);
         let (form, first, last) = match (x, y) {
             (Source::Register(x), y) => {
                 (if k == 2 { Opcode::fused_231(sign) } else { Opcode::fused_213(sign) }, x, y)
@@ -166,7 +166,7 @@ impl<'l> Allocator<'l> {
     }
 
     /// Returns the operand that the result replaces, in a register that no other number uses.
-    fn overwritten(&mut self, names: [Name; 3], next: [u32; 3]) -> (usize, u8) {
+    fn destination_operand(&mut self, names: [Name; 3], next: [u32; 3]) -> (usize, u8) {
         let found = |all: &Self, k: usize| all.register(names[k]);
         // An operand that is read for the last time, or that is also in memory.
         let dying = [2, 0, 1].into_iter().find(|&k| next[k] == NEVER && found(self, k).is_some());
@@ -176,7 +176,7 @@ impl<'l> Allocator<'l> {
         };
         if let Some(k) = dying.or_else(clean) {
             let r = self.register(names[k]).expect("it is in a register");
-            self.register[names[k] as usize] = NOWHERE;
+            self.register[names[k] as usize] = NO_REGISTER;
             return (k, r);
         }
         // Otherwise a copy of an operand in memory, or of the addend.
@@ -200,10 +200,10 @@ impl<'l> Allocator<'l> {
     /// once, and NaN ORed with any bits is NaN. Equal numbers differ only for zeros, and ORed they are -0.
     fn larger(&mut self, step: &Step) -> u8 {
         let &[a, b] = step.operands() else { unreachable!("two operands") };
-        let a = self.loaded(a, step.next()[0], self.bits(&[b]));
-        let b = self.loaded(b, step.next()[1], 1 << a);
+        let a = self.ensure_register(a, step.next()[0], self.bits(&[b]));
+        let b = self.ensure_register(b, step.next()[1], 1 << a);
         let other = self.take(1 << a | 1 << b);
-        self.leave(step);
+        self.free_last_reads(step);
         let d = self.take(1 << other);
         self.assembler.vector(Opcode::MAX, other, a, Source::Register(b));
         self.assembler.vector(Opcode::MAX, d, b, Source::Register(a));
@@ -227,7 +227,7 @@ impl<'l> Allocator<'l> {
                 Source::Memory(home) => Some((home, cell)),
             })
             .collect();
-        self.leave(step);
+        self.free_last_reads(step);
         for r in 0..self.holders.len() as u8 {
             if self.free & 1 << r == 0 {
                 self.evict(r);
@@ -255,21 +255,21 @@ impl<'l> Allocator<'l> {
             self.home[value as usize].get_or_insert(at);
         }
         if lowered.first[value as usize] == NEVER {
-            self.register[value as usize] = NOWHERE;
+            self.register[value as usize] = NO_REGISTER;
             self.free |= 1 << r;
         }
         self.free_slots.append(&mut self.last_read);
     }
 
     /// Frees the registers and slots of operands that are read for the last time.
-    fn leave(&mut self, step: &Step) {
+    fn free_last_reads(&mut self, step: &Step) {
         for (name, next) in step.operands().iter().zip(step.next()) {
             if *next != NEVER {
                 continue;
             }
             if let Some(r) = self.register(*name) {
                 self.free |= 1 << r;
-                self.register[*name as usize] = NOWHERE;
+                self.register[*name as usize] = NO_REGISTER;
             }
             let spilled = |m: &mut Memory| self.lowered.names.is_value(*name) && m.base == Gpr::Rcx;
             if let Some(slot) = self.home[*name as usize].take_if(spilled) {
@@ -279,7 +279,7 @@ impl<'l> Allocator<'l> {
     }
 
     fn register(&self, name: Name) -> Option<u8> {
-        Some(self.register[name as usize]).filter(|r| *r != NOWHERE)
+        Some(self.register[name as usize]).filter(|r| *r != NO_REGISTER)
     }
 
     fn source(&self, name: Name) -> Source {
@@ -295,7 +295,7 @@ impl<'l> Allocator<'l> {
     }
 
     /// Returns a register with the number, loaded if necessary, without changing those in `keep`.
-    fn loaded(&mut self, name: Name, next: u32, keep: u32) -> u8 {
+    fn ensure_register(&mut self, name: Name, next: u32, keep: u32) -> u8 {
         if let Some(r) = self.register(name) {
             return r;
         }
@@ -344,6 +344,6 @@ impl<'l> Allocator<'l> {
             self.counts.spills += 1;
             self.home[name as usize] = Some(slot);
         }
-        self.register[name as usize] = NOWHERE;
+        self.register[name as usize] = NO_REGISTER;
     }
 }

@@ -113,7 +113,7 @@ pub struct Forward(usize);
 
 /// Condition of a jump.
 #[derive(Clone, Copy, Debug)]
-pub enum When {
+pub enum Condition {
     Zero = 4,
     NotZero = 5,
 }
@@ -294,23 +294,23 @@ impl Assembler {
         Label(self.bytes.len())
     }
 
-    pub fn jump_back(&mut self, when: When, to: Label) {
+    pub fn jump_back(&mut self, when: Condition, to: Label) {
         let Forward(at) = self.jump(when);
-        self.aim(at, to.0);
+        self.patch_jump(at, to.0);
     }
 
-    pub fn jump(&mut self, when: When) -> Forward {
+    pub fn jump(&mut self, when: Condition) -> Forward {
         self.raw(&[0x0f, 0x80 | when as u8, 0, 0, 0, 0]);
         Forward(self.bytes.len())
     }
 
     /// Sets the target of a jump to the current position.
-    pub fn land(&mut self, Forward(at): Forward) {
-        self.aim(at, self.bytes.len());
+    pub fn bind(&mut self, Forward(at): Forward) {
+        self.patch_jump(at, self.bytes.len());
     }
 
     /// Writes the distance of a jump: from its end, `at`, to its target.
-    fn aim(&mut self, at: usize, aim: usize) {
+    fn patch_jump(&mut self, at: usize, aim: usize) {
         let by = i32::try_from(aim as i64 - at as i64).expect("code is below 2 GB");
         self.bytes[at - 4..at].copy_from_slice(&by.to_le_bytes());
     }

@@ -18,7 +18,7 @@
 
 use hardpoint_tape::Program;
 
-use super::encoder::{Assembler, Gpr, Memory, When};
+use super::encoder::{Assembler, Condition, Gpr, Memory};
 use super::lower::{LoweredProgram, NEVER, Name, Names};
 use crate::{PARTS, Width};
 
@@ -178,18 +178,18 @@ impl Frame {
             Width::Avx2 => {
                 // An even number of halves remains: this was the first half.
                 a.test_odd(Gpr::R9);
-                let first = a.jump(When::Zero);
+                let first = a.jump(Condition::Zero);
                 for (base, stride) in &strides {
                     a.add(*base, stride - 64);
                 }
-                a.land(first);
+                a.bind(first);
                 for (base, _) in strides {
                     a.add(base, 32);
                 }
             }
         }
         a.decrement(Gpr::R9);
-        a.jump_back(When::NotZero, again);
+        a.jump_back(Condition::NotZero, again);
         a.zero_upper();
         a.ret();
         (a, result)

@@ -17,7 +17,7 @@ fn two_inputs_one_uniform_two_outputs() -> Program {
 }
 
 /// Panic message of `run` for these numbers of inputs, uniforms and outputs; `None` if it runs.
-fn said(inputs: usize, uniforms: usize, outputs: usize) -> Option<String> {
+fn panic_message(inputs: usize, uniforms: usize, outputs: usize) -> Option<String> {
     let code = Code::new(&two_inputs_one_uniform_two_outputs()).expect("machine code is here");
     let run = || {
         let mut outputs = vec![[0.0; LANES]; outputs];
@@ -32,11 +32,11 @@ fn is_available() -> bool {
 }
 
 #[test]
-fn arrays_of_other_lengths_are_refused() {
+fn arrays_of_wrong_lengths_panic() {
     if !is_available() {
         return;
     }
-    assert_eq!([said(0, 1, 0), said(2, 1, 2), said(6, 1, 6)], [None, None, None]);
+    assert_eq!([panic_message(0, 1, 0), panic_message(2, 1, 2), panic_message(6, 1, 6)], [None, None, None]);
     const UNIFORMS: &str = "the number of uniforms differs from that of the program";
     const INPUTS: &str = "inputs and outputs have different numbers of groups";
     const OUTPUTS: &str = "the number of outputs is not a multiple of that of the program";
@@ -53,16 +53,20 @@ fn arrays_of_other_lengths_are_refused() {
         (2, 1, 3, OUTPUTS),
         (4, 1, 3, OUTPUTS),
     ] {
-        let said = said(inputs, uniforms, outputs);
+        let panic_message = panic_message(inputs, uniforms, outputs);
         assert!(
-            said.as_ref().is_some_and(|s| s.contains(about)),
-            "{inputs}, {uniforms}, {outputs}: {said:?}"
+            panic_message.as_ref().is_some_and(|s| s.contains(about)),
+            "{inputs}, {uniforms}, {outputs}: {panic_message:?}"
         );
     }
 }
 
 /// Panic message of `run_in_parts` for code with these ends of parts and arrays of these lengths; `None` if it runs.
-fn said_in_parts(ends: [usize; PARTS - 1], inputs: usize, lengths: [usize; PARTS]) -> Option<String> {
+fn panic_message_in_parts(
+    ends: [usize; PARTS - 1],
+    inputs: usize,
+    lengths: [usize; PARTS],
+) -> Option<String> {
     let program = two_inputs_one_uniform_two_outputs();
     let code = Code::in_parts(&program, ends).expect("machine code is here");
     let run = || {
@@ -79,7 +83,7 @@ fn said_in_parts(ends: [usize; PARTS - 1], inputs: usize, lengths: [usize; PARTS
 }
 
 #[test]
-fn parts_of_other_lengths_are_refused() {
+fn parts_of_wrong_lengths_panic() {
     if !is_available() {
         return;
     }
@@ -91,7 +95,7 @@ fn parts_of_other_lengths_are_refused() {
         ([0, 0], 4, [0, 0, 4]),
         ([2, 2], 4, [4, 0, 0]),
     ] {
-        assert_eq!(said_in_parts(ends, inputs, lengths), None, "{ends:?}, {inputs}, {lengths:?}");
+        assert_eq!(panic_message_in_parts(ends, inputs, lengths), None, "{ends:?}, {inputs}, {lengths:?}");
     }
     const EMPTY: &str = "outputs are given for a part without outputs";
     const WHOLE: &str = "the number of outputs is not a multiple of that of the program";
@@ -110,10 +114,10 @@ fn parts_of_other_lengths_are_refused() {
         ([1, 2], 2, [2, 2, 0], INPUTS),
         ([0, 1], 2, [0, 0, 0], INPUTS),
     ] {
-        let said = said_in_parts(ends, inputs, lengths);
+        let panic_message = panic_message_in_parts(ends, inputs, lengths);
         assert!(
-            said.as_ref().is_some_and(|s| s.contains(about)),
-            "{ends:?}, {inputs}, {lengths:?}: {said:?}"
+            panic_message.as_ref().is_some_and(|s| s.contains(about)),
+            "{ends:?}, {inputs}, {lengths:?}: {panic_message:?}"
         );
     }
 }
@@ -143,8 +147,11 @@ fn parts_that_end_nowhere_are_refused() {
     for [first, second] in [[2, 1], [1, 3], [3, 3], [0, usize::MAX], [usize::MAX, 2]] {
         let caught = std::panic::catch_unwind(|| Code::in_parts(&program, [first, second]))
             .expect_err("it is refused");
-        let said = caught.downcast_ref::<String>().expect("a message");
-        assert!(said.starts_with(&format!("parts of 2 outputs end at {first} and {second}: ")), "{said}");
+        let panic_message = caught.downcast_ref::<String>().expect("a message");
+        assert!(
+            panic_message.starts_with(&format!("parts of 2 outputs end at {first} and {second}: ")),
+            "{panic_message}"
+        );
     }
 }
 
@@ -167,8 +174,8 @@ fn operands_that_do_not_exist_are_refused() {
         let mut program = good.clone();
         program.instructions.push(wrong);
         let caught = std::panic::catch_unwind(|| Code::with(&program, width)).expect_err("it is refused");
-        let said = caught.downcast_ref::<String>().expect("a message");
-        assert!(said.starts_with("instruction 1 reads "), "{said}");
+        let panic_message = caught.downcast_ref::<String>().expect("a message");
+        assert!(panic_message.starts_with("instruction 1 reads "), "{panic_message}");
     }
     let mut program = good.clone();
     program.outputs.push(Operand::Value(1));
@@ -241,7 +248,7 @@ fn nothing_beside_the_outputs_is_written_wherever_they_begin() {
         let program = random::program(&mut random, shape);
         let groups = 1 + random.below(3);
         let uniforms: Vec<f64> = (0..program.uniforms).map(|_| random.tame()).collect();
-        // Groups of lanes need not begin where vectors would: eight places, by as many scalars.
+        // Groups of lanes need not be aligned to vectors: eight offsets, one scalar apart.
         let shift = turn % LANES;
         let inputs: Vec<f64> = (0..shift + LANES * groups * program.inputs).map(|_| random.tame()).collect();
         let inputs = inputs[shift..].as_chunks().0;

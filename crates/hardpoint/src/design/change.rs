@@ -57,7 +57,7 @@ impl Effect for change::Marker {
         if !self.end.covers(e) {
             return Pose { rot, r };
         }
-        // P = P_o + b V,  C = exp(b R U) C_o in the world                                              (paper 3.1, 3.4)
+        // P = P_o + b V,  C = exp(b R U) C_o in global axes                                            (paper 3.1, 3.4)
         if let Some(axis) = self.rotation.unit() {
             rot = Mat3::about(axis, b * T::constant(self.rotation.norm())) * rot;
         }
@@ -99,8 +99,8 @@ impl Effect for change::Field {
         if joint.bodies[e] != self.body {
             return marker;
         }
-        // P = P_o + A (b V); the axes turn by R = C(theta_o + b U) C(theta_o)^-1 in the body's frame, A R A^T in the
-        // world
+        // P = P_o + A (b V); the axes turn by R = C(theta_o + b U) C(theta_o)^-1 in the body's frame, A R A^T in
+        // global axes
         //                                                                                                  (paper 3.1, 2.2)
         let body = model.bodies[self.body.0].frame.rot.spread();
         let (theta, c) = model.euler_of(joint, e);

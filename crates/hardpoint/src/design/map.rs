@@ -299,18 +299,18 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         if let Some(f) = &design_map.formulas
             && f.is_used.iter().zip(&design.counts).any(|(is_used, counts)| *is_used && *counts)
         {
-            design.values.formulas = design.solved(f, &design.values.variables);
+            design.values.formulas = design.evaluate_formulas(f, &design.values.variables);
             design.for_lengths.formulas = match variables.iter().any(|v| v.fixed_length) {
-                true => design.solved(f, &design.for_lengths.variables),
+                true => design.evaluate_formulas(f, &design.for_lengths.variables),
                 false => design.values.formulas.clone(),
             };
-            design.take_kept();
+            design.evaluate_over_constants();
         }
         design
     }
 
     /// Sets the results of formulas over joint constants, which depend on all other results.
-    fn take_kept(&mut self) {
+    fn evaluate_over_constants(&mut self) {
         let model = self.design_map.model();
         for (k, formula) in model.formulas.iter().enumerate() {
             if formula.sources().any(|s| matches!(s, Source::Kept(..))) {
@@ -325,7 +325,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
     }
 
     /// Returns the results of all formulas, in order.
-    fn solved(&self, formulas: &Formulas, variables: &[T]) -> Vec<T> {
+    fn evaluate_formulas(&self, formulas: &Formulas, variables: &[T]) -> Vec<T> {
         let model = self.design_map.model();
         let mut results: Vec<T> = Vec::with_capacity(model.formulas.len());
         for formula in &model.formulas {
@@ -338,7 +338,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
                         formulas.of_hardpoint[h.0][axis],
                         self.rates(&self.design_map.moves[h.0], move |v| v[axis]),
                     ),
-                    // Set by `take_kept` once all others are known.
+                    // Set by `evaluate_over_constants` once all others are known.
                     Source::Kept(..) => (None, Vec::new()),
                 };
                 let given = given.map_or_else(|| T::constant(model.nominal(source)), |k| results[k]);
@@ -393,11 +393,11 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
     fn marker(&self, j: usize, e: usize) -> Pose<T> {
         let body = self.design_map.model().joints[j].bodies[e];
         // (s, C) = X_body^-1 X_marker; the body's frame is fixed (paper, section 2).
-        self.frame(body).inverse().compose(self.marker_in_world(j, e, &self.values))
+        self.frame(body).inverse().compose(self.global_marker(j, e, &self.values))
     }
 
     /// Returns marker e of joint j in the design configuration, global.
-    fn marker_in_world(&self, j: usize, e: usize, values: &Values<T>) -> Pose<T> {
+    fn global_marker(&self, j: usize, e: usize, values: &Values<T>) -> Pose<T> {
         let model = self.design_map.model();
         let joint = &model.joints[j];
         // From its hardpoint and axes, then the changes of this joint alone (paper 3.1, 3.4; `design/change.rs`).
@@ -438,7 +438,7 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
     /// Returns the constants of joint j.
     fn kept(&self, j: usize) -> JointConstants<T> {
         let (joint, zero) = (&self.design_map.model().joints[j], T::zero());
-        let [m_i, m_j] = [0, 1].map(|e| self.marker_in_world(j, e, &self.for_lengths));
+        let [m_i, m_j] = [0, 1].map(|e| self.global_marker(j, e, &self.for_lengths));
         // d = P_j - P_i of the design; the constants of a joint are functions of it: L = abs(d), z_i . d, z_i . z_j,
         // the distance from a curve.
         let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);

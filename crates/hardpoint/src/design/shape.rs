@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn what_turns_turns_by_half_the_curl() {
+    fn rotation_rate_is_half_the_curl() {
         let h = 1e-5;
         for field in all() {
             for s in [Vec3::new(0.31, 0.24, -0.4), Vec3::new(1.3, -0.2, 0.5), Vec3::new(-0.5, 0.3, 0.2)] {
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn an_interpolation_meets_its_points_and_repeats_a_rigid_motion() {
+    fn interpolation_passes_through_its_points_and_reproduces_rigid_motion() {
         let [x, y, z] = Vec3::AXES;
         let turn = Vec3::new(0.3, -0.5, 0.2);
         let rigid = |p: Vec3| Vec3::new(1.0, 2.0, 3.0) + turn.cross(p);

@@ -169,7 +169,7 @@ fn independent_groups(topology: &Topology, jacobian: &[SparseRow]) -> Option<Vec
 /// Returns the number of free motions of a perturbed mechanism without accidental alignment: every point is shifted by
 /// up to 3 % of the size, and directions of axes are constant.
 ///
-/// If there are fewer than in the design configuration, that is singular, and no driver is missing. Planar mechanisms
+/// Fewer free motions than in the design configuration mean that it is singular, not under-driven. Planar mechanisms
 /// remain redundant under such a shift.
 fn count_free_motions_nearby(model: &Model, topology: &Topology) -> usize {
     let unknowns: Vec<CoordinateId> = topology.unknown_coordinates().collect();

@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn as_many_are_matched_as_exhaustive_search_finds() {
+    fn matching_is_maximum_by_exhaustive_search() {
         // All bipartite graphs of three rows over three columns.
         for bits in 0..512_u32 {
             let rows: Vec<Vec<usize>> =

@@ -35,7 +35,7 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
         let mut lacking: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
         for (k, &r) in block.selected.iter().enumerate() {
             for (d, [sum, _, demand]) in row_rates(topology, &jacobian, &speeds, r) {
-                // J q. = f. - (what the row has of unknowns of earlier blocks and of driven coordinates), f. = 1 of driver d alone   (9)
+                // J q. = f. - (terms of earlier blocks and of driven coordinates), f. = 1 of driver d alone   (9)
                 lacking.entry(d).or_insert_with(|| vec![0.0; block.selected.len()])[k] = demand - sum;
             }
         }
