@@ -371,9 +371,9 @@ impl Graph {
     /// times, only by sums without another fused product. A product that is fused with all of its sums needs no
     /// instruction.
     ///
-    /// Of two products, a sum takes the one that depends on the later input, because values that depend on uniforms or
-    /// on the first inputs alone may be computed elsewhere ([`Program::hoisted`], [`Program::staged`]). A product of
-    /// uniforms alone is never fused with a sum that depends on inputs.
+    /// If a sum can take either of two products, it takes the one that depends on the later input, because values that
+    /// depend on uniforms or on the first inputs alone may be computed elsewhere ([`Program::hoisted`],
+    /// [`Program::staged`]). A product of uniforms alone is never fused with a sum that depends on inputs.
     fn fuse(&mut self) {
         let size = self.nodes.len();
         // 0: constants and uniforms; k + 1: inputs up to number k.
