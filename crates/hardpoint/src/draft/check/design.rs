@@ -224,7 +224,7 @@ impl Checker<'_> {
                     let message = format!("joint `{name}` has no `length` that can change");
                     let fault = self.fault("HP0225", at, message);
                     fault.note(format!(
-                        "it is a {kind} joint; without `length`, the length of a rod is the distance between its hardpoints"
+                        "its type is `{kind}`; without `length`, the length of a rod is the distance between its hardpoints"
                     ));
                     fault.help(format!("give rod `{name}` a `length`, or move one of its hardpoints"));
                     return None;

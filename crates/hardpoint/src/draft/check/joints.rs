@@ -67,7 +67,7 @@ impl Checker<'_> {
                         None
                     }
                     (Some(_), Need::Unused) => {
-                        let message = format!("`{key}` does not apply to a {} joint", kind.name);
+                        let message = format!("`{key}` does not apply to {} joints", kind.name);
                         self.fault("HP0208", here.key(key), message)
                             .help(format!("remove `{key}` from `{name}`"));
                         None
@@ -142,7 +142,7 @@ impl Checker<'_> {
                 self.fault(
                     "HP0226",
                     here.key("curve"),
-                    format!("`curve` does not apply to a {} joint", kind.name),
+                    format!("`curve` does not apply to {} joints", kind.name),
                 )
                 .help(format!("remove `curve` from `{name}`, or make it a `point_on_curve`"));
                 return None;
@@ -217,7 +217,7 @@ impl Checker<'_> {
             self.fault(
                 "HP0223",
                 here.key("length"),
-                format!("`length` does not apply to a {} joint", kind.name),
+                format!("`length` does not apply to {} joints", kind.name),
             )
             .help(format!("remove `length` from `{}`", j.name));
         } else if !(length > 0.0 && length.is_finite()) {
@@ -240,7 +240,7 @@ impl Checker<'_> {
                 self.fault(
                     "HP0223",
                     here.key("lead"),
-                    format!("`lead` does not apply to a {} joint", kind.name),
+                    format!("`lead` does not apply to {} joints", kind.name),
                 )
                 .help(format!("remove `lead` from `{}`, or make it a `screw`", j.name));
             }

@@ -32,12 +32,12 @@ impl Checker<'_> {
             |c: &[CoordinateType]| c.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
         let joint_name = self.model.joints[joint.0].name.clone();
         let (message, at) = match (name, kind.coordinates) {
-            (_, []) => (format!("a {} joint has no coordinates", kind.name), at_joint),
+            (_, []) => (format!("{} joints have no coordinates", kind.name), at_joint),
             (None, [_]) => return Some(0),
             (None, _) => (format!("joint `{joint_name}` has more than one coordinate"), at_joint),
             (Some(name), coordinates) => match coordinates.iter().position(|c| c.name == name) {
                 Some(k) => return Some(k),
-                None => (format!("a {} joint has no coordinate `{name}`", kind.name), at_coordinate),
+                None => (format!("{} joints have no coordinate `{name}`", kind.name), at_coordinate),
             },
         };
         let fault = self.fault("HP0213", at, message);

@@ -270,7 +270,7 @@ impl Checker<'_> {
                 if !kind.is_rod() {
                     let message = format!("joint `{name}` has no length for limit `{}`", l.name);
                     self.fault("HP0225", here.key("length"), message)
-                        .note(format!("it is a {} joint", kind.name))
+                        .note(format!("its type is `{}`", kind.name))
                         .help("name a rod or a leg; for two hardpoints write `between = [\"A\", \"B\"]`");
                     return None;
                 }
