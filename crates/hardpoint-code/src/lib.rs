@@ -1,9 +1,9 @@
-//! Straight-line programs as machine code.
+//! Machine code for straight-line programs.
 //!
-//! A [`Program`] becomes code for x86-64: eight lanes in one register of AVX-512, or twice four in registers of AVX2.
-//! It gives bit for bit what its instructions say in IEEE arithmetic: nothing is re-associated, nothing fused that was
-//! not. A NaN is a NaN: its bits are not reported. Of zeros of either sign,
-//! [`Instruction::Larger`](hardpoint_tape::Instruction::Larger) gives any.
+//! Compiles a [`Program`] to code for x86-64: eight lanes in one register of AVX-512, or twice four in registers of
+//! AVX2. Results are bit for bit those of its instructions in IEEE arithmetic: operations are neither re-associated nor
+//! fused. Exceptions: the bits of a NaN are unspecified, and
+//! [`Instruction::Larger`](hardpoint_tape::Instruction::Larger) of zeros of different signs returns either.
 //!
 //! ```
 //! use hardpoint_code::{Code, Scratch};
@@ -24,26 +24,27 @@
 //!         code.run(&mut Scratch::default(), &[[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]], &[], &mut outputs);
 //!         assert_eq!(outputs, [[-2.0, -1.0, 2.0, 7.0, 14.0, 23.0, 34.0, 47.0]]);
 //!     }
-//!     // The interpreter serves.
+//!     // Use the interpreter.
 //!     Err(reason) => println!("{reason}"),
 //! }
 //! ```
 //!
 //! Outputs may go to up to three areas of memory in one run: [`Code::in_parts`] and [`Code::run_in_parts`].
 //!
-//! This is the only crate of Hardpoint that holds `unsafe`; `docs/machine-code.md` says where, and why it is sound.
+//! This is the only crate of Hardpoint with `unsafe` code; `docs/machine-code.md` lists it and explains why it is
+//! sound.
 //!
-//! Not supported: other machines than x86-64, Windows, and systems that do not let memory become executable.
-//! [`UnsupportedProgram`] says which it is.
+//! Unsupported: machines other than x86-64, Windows, and systems that do not allow executable memory.
+//! [`UnsupportedProgram`] is the reason.
 
-#[cfg_attr(not(all(target_arch = "x86_64", unix)), path = "elsewhere.rs")]
+#[cfg_attr(not(all(target_arch = "x86_64", unix)), path = "unsupported.rs")]
 mod x86_64;
 
 use std::fmt;
 
 use hardpoint_tape::{Lanes, Program};
 
-/// The size of the registers.
+/// Width of the vector registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Width {
     /// Sixteen registers of four lanes, and fused multiplication and addition.
@@ -53,11 +54,11 @@ pub enum Width {
 }
 
 impl Width {
-    /// All there are, the narrowest first.
+    /// All widths, the narrowest first.
     pub const ALL: [Self; 2] = [Self::Avx2, Self::Avx512];
 
-    /// True if this CPU and this system have it, and code can be made for it.
-    pub fn is_here(self) -> bool {
+    /// True if this CPU and this system support it.
+    pub fn is_available(self) -> bool {
         x86_64::has(self)
     }
 }
@@ -71,33 +72,33 @@ impl fmt::Display for Width {
     }
 }
 
-/// In how many areas of memory the outputs of one run may be.
+/// Maximum number of memory areas (parts) of the outputs of one run.
 pub const PARTS: usize = 3;
 
-/// The most inputs, instructions and so on: 64 bytes of each are an eighth of what offsets of 32 bits reach, and code
-/// for as many instructions is below 2 GB.
+/// Maximum number of inputs, instructions and so on: 64 bytes of each are an eighth of the reach of 32-bit offsets, and
+/// code of this number of instructions is below 2 GB.
 const MOST: usize = 1 << 22;
 
 /// Reason why there is no machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UnsupportedProgram {
-    /// Another kind of machine or system.
-    #[error("machine code is made for x86-64 on Unix systems only")]
+    /// Other machine or system.
+    #[error("machine code requires x86-64 and a Unix system")]
     Target,
-    /// The CPU is too old, or the system hides what it has.
+    /// The CPU is too old, or the system disables its vector registers.
     #[error("the CPU has neither AVX2 with fused multiplication nor AVX-512")]
     Cpu,
-    /// The width that was requested is not there.
+    /// The requested width is not available.
     #[error("the CPU has no {0}")]
     Width(Width),
-    /// The system gives no memory, or does not let it be made executable.
-    #[error("the system does not let memory be made executable ({})", std::io::Error::from_raw_os_error(*error))]
+    /// The system has no memory, or does not allow executable memory.
+    #[error("the system does not allow executable memory ({})", std::io::Error::from_raw_os_error(*error))]
     Memory {
-        /// The system's number of the error.
+        /// Error number of the system.
         error: i32,
     },
-    /// Offsets would not fit into an instruction.
-    #[error("the program has {count} {what}, more than machine code is made for ({})", MOST)]
+    /// The program is too large: offsets do not fit into an instruction.
+    #[error("the program has {count} {what}, more than machine code supports ({})", MOST)]
     Size {
         /// Name of the quantity that is too large.
         what: &'static str,
@@ -111,30 +112,30 @@ pub enum UnsupportedProgram {
 pub struct Counts {
     /// Machine instructions.
     pub instructions: usize,
-    /// Their bytes.
+    /// Size of the code, bytes.
     pub bytes: usize,
-    /// Instructions that only bring a number from memory into a register.
+    /// Instructions that only load a number from memory into a register.
     pub loads: usize,
-    /// Instructions that only bring a number from one register into another.
+    /// Instructions that only copy a number from one register to another.
     pub copies: usize,
-    /// Instructions that put a number aside because registers ran out.
+    /// Instructions that spill a number because no register is free.
     pub spills: usize,
-    /// Number of numbers that are put aside at the same time, at the most.
+    /// Maximum number of numbers that are spilled at the same time.
     pub slots: usize,
 }
 
-/// Lines of memory as the machine has them.
+/// Cache line of memory.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 struct Line(#[allow(dead_code, reason = "where there is no machine code, nobody reads it")] [f64; 8]);
 
-/// Memory for numbers while code runs. It serves any code, and grows with the first run that needs more.
+/// Scratch memory of a run. It can be used with any code, and grows if a run needs more.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
     lines: Vec<Line>,
 }
 
-/// A program as machine code.
+/// Program as machine code.
 #[derive(Debug)]
 pub struct Code {
     machine: x86_64::Machine,
@@ -143,7 +144,7 @@ pub struct Code {
 }
 
 impl Code {
-    /// For the widest registers of this CPU.
+    /// Compiles for the widest registers of this CPU.
     ///
     /// # Panics
     ///
@@ -152,30 +153,30 @@ impl Code {
         Self::with(program, x86_64::widest()?)
     }
 
-    /// For registers of this width.
+    /// Compiles for registers of this width.
     ///
     /// # Panics
     ///
-    /// As [`new`](Self::new).
+    /// If [`new`](Self::new) would panic.
     pub fn with(program: &Program, width: Width) -> Result<Self, UnsupportedProgram> {
         Self::in_parts_with(program, [program.outputs.len(); PARTS - 1], width)
     }
 
-    /// For the widest registers of this CPU, and outputs in up to three areas of memory: part 0 is those before
-    /// `ends[0]`, part 1 those from there to `ends[1]`, part 2 the others. Parts may be empty.
+    /// Compiles for the widest registers of this CPU, with outputs in up to three areas of memory: part 0 has the
+    /// outputs before `ends[0]`, part 1 those from there to `ends[1]`, part 2 the others. Parts can be empty.
     ///
     /// # Panics
     ///
-    /// As [`new`](Self::new), and if the ends do not ascend or lie beyond the outputs.
+    /// If [`new`](Self::new) would panic, or if the ends are not ascending or are beyond the outputs.
     pub fn in_parts(program: &Program, ends: [usize; PARTS - 1]) -> Result<Self, UnsupportedProgram> {
         Self::in_parts_with(program, ends, x86_64::widest()?)
     }
 
-    /// For registers of this width, and outputs in parts.
+    /// Compiles for registers of this width, with outputs in parts.
     ///
     /// # Panics
     ///
-    /// As [`in_parts`](Self::in_parts).
+    /// If [`in_parts`](Self::in_parts) would panic.
     pub fn in_parts_with(
         program: &Program,
         ends: [usize; PARTS - 1],
@@ -193,18 +194,18 @@ impl Code {
     /// | `uniforms` | uniforms | |
     /// | `outputs` | groups x outputs | output `j` of group `g` at `g * outputs + j` |
     ///
-    /// Nothing is allocated, but for scratch when it has to grow. Arrays that begin at a multiple of 64 bytes are read
+    /// Allocates nothing, except scratch memory if it must grow. Arrays that begin at a multiple of 64 bytes are read
     /// and written faster.
     ///
     /// # Panics
     ///
-    /// If a length is another, or the code was made for outputs in other parts than the first. Inputs of a program
-    /// without outputs are not looked at.
+    /// If a length is wrong, or the code was compiled for outputs in other parts than the first. Inputs of a program
+    /// without outputs are not checked.
     pub fn run(&self, scratch: &mut Scratch, inputs: &[Lanes], uniforms: &[f64], outputs: &mut [Lanes]) {
         self.run_in_parts(scratch, inputs, uniforms, [outputs, &mut [], &mut []]);
     }
 
-    /// As [`run`](Self::run), with outputs in parts.
+    /// Runs the program like [`run`](Self::run), with outputs in parts.
     ///
     /// | array | length | where |
     /// |---|---|---|
@@ -212,7 +213,7 @@ impl Code {
     ///
     /// # Panics
     ///
-    /// As [`run`](Self::run), and if parts that are not empty say different numbers of groups.
+    /// If [`run`](Self::run) would panic, or if parts that are not empty have different numbers of groups.
     pub fn run_in_parts(
         &self,
         scratch: &mut Scratch,
@@ -223,7 +224,7 @@ impl Code {
         self.machine.run(&mut scratch.lines, inputs, uniforms, outputs);
     }
 
-    /// The registers that it uses.
+    /// Returns the width of its registers.
     pub fn width(&self) -> Width {
         self.width
     }

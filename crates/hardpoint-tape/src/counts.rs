@@ -2,29 +2,29 @@
 
 use crate::program::{Instruction, Program};
 
-/// Statistics of the recorded operations. A recorded `a b + c` is two: a product and a sum. Constants, inputs and
-/// uniforms are none.
+/// Statistics of the recorded operations. A recorded `a b + c` counts as two: a product and a sum. Constants, inputs
+/// and uniforms do not count.
 ///
-/// Every operation has one end: `recorded = folded + common + dead + fused + left - negations`.
+/// Every operation is counted in one category: `recorded = folded + common + dead + fused + left - negations`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// All that were recorded.
+    /// Recorded operations.
     pub recorded: usize,
-    /// Done with constants, or a change of sign: nothing is left to compute.
+    /// Folded operations: of constants, or changes of sign, which need no instruction.
     pub folded: usize,
-    /// The same as an earlier one.
+    /// Operations equal to an earlier one (common subexpressions).
     pub common: usize,
-    /// Computed for nothing: no output needs them.
+    /// Dead operations: no output depends on them.
     pub dead: usize,
-    /// Products that are computed within sums.
+    /// Products fused with sums.
     pub fused: usize,
-    /// Instructions that are needed where a sign is not free: before outputs and functions.
+    /// Additional negations for outputs and functions, where a sign is not free.
     pub negations: usize,
-    /// The instructions of the program.
+    /// Instructions of the program.
     pub left: usize,
 }
 
-/// The instructions of a program by kind.
+/// Numbers of instructions of a program, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Kinds {
     /// Sums and differences.
@@ -39,19 +39,19 @@ pub struct Kinds {
     pub roots: usize,
     /// Functions of the standard library.
     pub calls: usize,
-    /// Changes of sign, magnitudes, nearest integers, larger ones of two.
+    /// Negations, magnitudes, nearest integers, maxima.
     pub others: usize,
 }
 
 impl Kinds {
-    /// All of them.
+    /// Returns the total number of instructions.
     pub fn total(&self) -> usize {
         self.sums + self.products + self.fused + self.quotients + self.roots + self.calls + self.others
     }
 }
 
 impl Program {
-    /// Number of instructions it has of each kind.
+    /// Returns the number of instructions of each kind.
     pub fn kinds(&self) -> Kinds {
         use Instruction::*;
         let mut kinds = Kinds::default();

@@ -1,25 +1,24 @@
-//! From a recording to a program: what need not be computed goes.
+//! Conversion of a recording to a program, with simplification.
 //!
 //! A recording holds all operations of a kernel. Half of them have exact zeros and ones as operands, and many are
 //! repeated. The graph takes the steps one by one, finds the node of each, and makes a new one only if none exists:
 //!
 //! - constants are folded: with each other as `f64` does, and `x * 0`, `x * 1`, `x + 0`, `0 / x`, `x / 1`, `x - x`;
-//! - a number carries a sign, so that negations cost nothing: `a - b` is the sum of `a` and `-b`;
-//! - the same operation of the same operands is the same node, in either order where order does not matter.
+//! - numbers have a sign, so that negations are free: `a - b` is the sum of `a` and `-b`;
+//! - equal operations of equal operands are one node, in either order if the operation is commutative.
 //!
-//! Then what no output needs is left out, products are fused with the sums that take them, and the rest is written down
-//! in an order that keeps few values live. All steps are linear in the size of the recording.
+//! Then dead nodes are removed, products are fused with sums, and the remaining nodes are written in an order with few
+//! live values. All steps are linear in the size of the recording.
 
 use crate::counts::Counts;
 use crate::number::{Recording, Step, larger};
 use crate::program::{Call, Instruction, Operand, Program};
 
-/// Options of turning a recording into a program.
+/// Options of the conversion of a recording to a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// True if products are fused with the sums that take them, which rounds once instead of twice. Where they are not,
-    /// every operation rounds, also that of [`Number::times_plus`](crate::Number::times_plus): the program gives the
-    /// bits of plain `f64`.
+    /// True if products are fused with sums, which rounds once instead of twice. If false, every operation rounds,
+    /// including [`Number::times_plus`](crate::Number::times_plus), and results have the bits of plain `f64`.
     pub fuse: bool,
 }
 
@@ -30,15 +29,15 @@ impl Default for Options {
 }
 
 impl Recording {
-    /// The program that computes the outputs, and what became of the recorded operations.
+    /// Returns the program that computes the outputs, and the statistics of the recorded operations.
     ///
-    /// Without [`Options::fuse`] its results are those of the same operations in `f64`, to the bit, with these
-    /// exceptions, all of them due to exact zeros that are not computed with:
+    /// Without [`Options::fuse`] its results are bit for bit those of the same operations in `f64`, with these
+    /// exceptions, which are due to folded exact zeros:
     ///
-    /// - the sign of a zero may differ, and with it what is sensitive to that: the sign of an infinity that comes from dividing by
-    ///   a zero, and the half turn of `atan2(0, x)` for negative x;
-    /// - `x * 0`, `0 / x` and `x - x` are zero also where x is infinite or not a number, or where x is zero in `0 / x`;
-    /// - the sign and payload of what is not a number.
+    /// - the sign of a zero may differ, and with it the sign of an infinity from a division by zero, and the half turn
+    ///   of `atan2(0, x)` for negative x;
+    /// - `x * 0`, `0 / x` and `x - x` are zero even if x is infinite or NaN, or zero in `0 / x`;
+    /// - the sign and payload of NaN.
     pub fn program(&self, options: Options) -> (Program, Counts) {
         let mut graph = Graph::of(self);
         graph.mark_live();
@@ -46,8 +45,8 @@ impl Recording {
             graph.fuse();
         }
         let recorded: Vec<u32> = (0..graph.nodes.len() as u32).filter(|n| graph.is_instruction(*n)).collect();
-        let needed = graph.by_need();
-        let order = if graph.live_in(&needed) < graph.live_in(&recorded) { needed } else { recorded };
+        let needed = graph.order_by_need();
+        let order = if graph.max_live_in(&needed) < graph.max_live_in(&recorded) { needed } else { recorded };
         graph.counts.recorded += self.folded;
         graph.counts.folded += self.folded;
         graph.emit(&order, self)
@@ -57,7 +56,7 @@ impl Recording {
 /// Operation that computes a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
-    /// Not negative; its bits are in `a` and `b`.
+    /// Constant, not negative; its bits are in `a` and `b`.
     Constant,
     /// Number `a`.
     Input,
@@ -76,7 +75,7 @@ enum Kind {
     Call(Call),
 }
 
-/// A node, and operands as its kind says.
+/// Node, with the operands of its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Node {
     kind: Kind,
@@ -84,7 +83,7 @@ struct Node {
     b: u32,
 }
 
-/// A node or its negative.
+/// Node or its negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Signed(u32);
 
@@ -106,21 +105,21 @@ impl Signed {
     }
 }
 
-/// No node, no instruction, nothing.
+/// Null index of nodes and instructions.
 const NONE: u32 = u32::MAX;
 
-/// Nodes of a recording, operands before the nodes that use them.
+/// Nodes of a recording. Operands come before the nodes that use them.
 struct Graph {
     nodes: Vec<Node>,
-    /// Open addressing: where in `nodes` a node with this hash is; a power of two of places, at most half of them
-    /// taken.
+    /// Hash table with open addressing: indices into `nodes`. Its length is a power of two, and at most half of it is
+    /// used.
     table: Vec<u32>,
     outputs: Vec<Signed>,
     /// Number of reads of each node by live nodes and outputs; 0 is dead.
     uses: Vec<u32>,
-    /// For a sum: the product that is fused with it.
+    /// Product that is fused with a sum.
     fused: Vec<u32>,
-    /// For a product: true if it is fused with all its uses and is no instruction of its own.
+    /// True for a product that is fused with all its uses and needs no instruction.
     absorbed: Vec<bool>,
     counts: Counts,
 }
@@ -167,10 +166,10 @@ impl Graph {
         graph
     }
 
-    /// The place of a node in the table: where it is found, or else the first free one.
+    /// Returns the slot of a node in the table, or the first free slot.
     #[inline]
     fn find(&self, node: Node) -> usize {
-        // A product's upper bits depend on all bits of its factors, so the place is taken from there.
+        // The upper bits of a product depend on all bits of its factors, so they give the slot.
         const SPREAD: u64 = 0x9e37_79b9_7f4a_7c15;
         let kind = match node.kind {
             Kind::Constant => 0,
@@ -196,7 +195,7 @@ impl Graph {
         place
     }
 
-    /// The number of this node, and whether it is new.
+    /// Returns the index of this node, and true if it is new.
     #[inline]
     fn place(&mut self, node: Node) -> (u32, bool) {
         let place = self.find(node);
@@ -226,7 +225,7 @@ impl Graph {
         self.leaf(node).times(x.is_sign_negative())
     }
 
-    /// The constant that it is, if it is one.
+    /// Returns the value of a constant.
     #[inline]
     fn known(&self, x: Signed) -> Option<f64> {
         let node = self.nodes[x.node() as usize];
@@ -236,7 +235,7 @@ impl Graph {
         })
     }
 
-    // One recorded operation each: it is folded, or a common one, or a new node.
+    // Each function handles one recorded operation: it is folded, common, or a new node.
 
     fn folded(&mut self, x: Signed) -> Signed {
         self.counts.recorded += 1;
@@ -289,7 +288,7 @@ impl Graph {
             (Some(0.0), None) => return self.folded_to(0.0),
             (None, Some(1.0 | -1.0)) => return self.folded(a.magnitude().times(negative)),
             (None, Some(y)) if is_power_of_two(y) => {
-                // Exact, and a product is cheaper.
+                // The inverse is exact, and a product is cheaper.
                 let inverse = self.constant(1.0 / y);
                 return self.mul(a, inverse);
             }
@@ -324,7 +323,7 @@ impl Graph {
         self.operation(kind, a.0, b.0)
     }
 
-    /// The operands of a node as written: signed, and which of them there are.
+    /// Returns the operands of a node with their signs.
     #[inline]
     fn operands(&self, node: u32) -> ([Signed; 2], usize) {
         let Node { kind, a, b } = self.nodes[node as usize];
@@ -342,12 +341,12 @@ impl Graph {
         matches!(self.nodes[node as usize].kind, Kind::Constant | Kind::Input | Kind::Uniform)
     }
 
-    /// True if it is computed by an instruction of its own.
+    /// True if the node has its own instruction.
     fn is_instruction(&self, node: u32) -> bool {
         self.uses[node as usize] > 0 && !self.absorbed[node as usize] && !self.is_leaf(node)
     }
 
-    /// Counts who reads what, of all that the outputs need.
+    /// Counts the reads of all live nodes.
     fn mark_live(&mut self) {
         let size = self.nodes.len();
         self.uses = vec![0; size];
@@ -368,21 +367,21 @@ impl Graph {
         }
     }
 
-    /// Fuses products with sums: all that are read once, by a sum; then those that are read several times, by nothing
-    /// but sums that have not taken another, since a product that is computed within all of its sums need not be
-    /// computed for itself.
+    /// Fuses products with sums: first products that are read once, by a sum; then products that are read several
+    /// times, only by sums without another fused product. A product that is fused with all of its sums needs no
+    /// instruction.
     ///
-    /// Of two products that a sum may take it takes the one that depends on the later input, since what depends on
-    /// uniforms or on the first inputs alone may be computed elsewhere ([`Program::hoisted`], [`Program::staged`]). A
-    /// product of uniforms alone never goes into a sum that depends on inputs.
+    /// If a sum can take either of two products, it takes the one that depends on the later input, because values that
+    /// depend on uniforms or on the first inputs alone may be computed elsewhere ([`Program::hoisted`],
+    /// [`Program::staged`]). A product of uniforms alone is never fused with a sum that depends on inputs.
     fn fuse(&mut self) {
         let size = self.nodes.len();
         // 0: constants and uniforms; k + 1: inputs up to number k.
         let mut rank = vec![0u32; size];
-        // The sums that read a product, as a list: the last of them, and from each operand of a sum to the one before.
+        // Sums that read a product, as a linked list: the last one, and for each operand of a sum the previous one.
         let mut last = vec![NONE; size];
         let mut before = vec![NONE; 2 * size];
-        // How many of a product's readers are sums that may take it.
+        // Number of readers of a product that are sums without a fused product.
         let mut willing = vec![0u32; size];
         for node in 0..size as u32 {
             let at = node as usize;
@@ -394,7 +393,7 @@ impl Graph {
                 Kind::Input => self.nodes[at].a + 1,
                 _ => operands[..many].iter().map(|o| rank[o.node() as usize]).max().unwrap_or(0),
             };
-            // The sum of a number and itself cannot be one product and one addend.
+            // The sum of a number and itself is not a product plus an addend.
             if self.nodes[at].kind != Kind::Add || operands[0].node() == operands[1].node() {
                 continue;
             }
@@ -434,7 +433,7 @@ impl Graph {
         self.counts.fused = self.absorbed.iter().filter(|a| **a).count();
     }
 
-    /// The nodes that the instruction of a node reads, those of a fused product in its place.
+    /// Returns the nodes that the instruction of a node reads; a fused product is replaced by its factors.
     fn reads(&self, node: u32) -> ([u32; 3], usize) {
         let (operands, many) = self.operands(node);
         let product = self.fused[node as usize];
@@ -446,14 +445,14 @@ impl Graph {
         ([a, b, other.node()], 3)
     }
 
-    /// An order from the outputs: what each needs just before it, what needs the most values first (Sethi and Ullman's
-    /// numbers, which are exact for trees and a good guess here).
-    fn by_need(&self) -> Vec<u32> {
+    /// Returns an order from the outputs: the operands of each node just before it, operands that need the most values
+    /// first (Sethi-Ullman numbers, which are optimal for trees and a good heuristic here).
+    fn order_by_need(&self) -> Vec<u32> {
         let size = self.nodes.len();
         let mut need = vec![0u32; size];
         let ordered = |node: u32, need: &[u32]| {
             let (mut reads, many) = self.reads(node);
-            // Stable, by hand: two or three.
+            // Stable insertion sort of two or three.
             for i in 1..many {
                 for j in (1..=i).rev() {
                     if need[reads[j] as usize] > need[reads[j - 1] as usize] {
@@ -494,8 +493,8 @@ impl Graph {
         order
     }
 
-    /// Maximum number of values that are live in this order.
-    fn live_in(&self, order: &[u32]) -> usize {
+    /// Returns the maximum number of live values in this order.
+    fn max_live_in(&self, order: &[u32]) -> usize {
         let mut last = vec![0u32; self.nodes.len()];
         for (k, node) in order.iter().enumerate() {
             let (reads, many) = self.reads(*node);
@@ -503,7 +502,7 @@ impl Graph {
                 last[*read as usize] = k as u32 + 1;
             }
         }
-        // By the time: the number of values that become live, minus the number that end.
+        // Number of values that become live minus the number that end, by position.
         let mut change = vec![0i32; order.len() + 1];
         for (k, node) in order.iter().enumerate() {
             if last[*node as usize] > 0 {
@@ -522,14 +521,14 @@ impl Graph {
             .unwrap_or(0) as usize
     }
 
-    /// Writes the program down in this order.
+    /// Writes the program in this order.
     fn emit(mut self, order: &[u32], recording: &Recording) -> (Program, Counts) {
         let mut writer = Writer::new(&self, recording);
         for node in order {
             writer.instruction(*node);
         }
         for k in 0..self.outputs.len() {
-            let output = writer.as_it_is(self.outputs[k]);
+            let output = writer.with_own_sign(self.outputs[k]);
             writer.program.outputs.push(output);
         }
         let Writer { program, negations, .. } = writer;
@@ -539,45 +538,49 @@ impl Graph {
     }
 }
 
-/// True if division by it is multiplication by its inverse, exactly.
+/// True if division by it is exactly multiplication by its inverse.
 fn is_power_of_two(y: f64) -> bool {
     y.is_normal() && (1.0 / y).is_normal() && y.to_bits() << 12 == 0
 }
 
-/// A program in writing.
+/// Program that is being written.
 ///
-/// A node may be computed with the other sign where that is cheaper: `-(a - b)` is `b - a`.
+/// A node can be computed with the opposite sign if that is cheaper: `-(a - b)` is `b - a`.
 struct Writer<'a> {
     graph: &'a Graph,
     program: Program,
-    /// The instruction that computes a node; of a constant its place in the program, [`NONE`] before it is used.
+    /// Instruction that computes a node, or index of a constant in the program; [`NONE`] before its first use.
     place: Vec<u32>,
-    /// True if that is the node's negative.
+    /// True if that instruction computes the node's negative.
     flipped: Vec<bool>,
-    /// The instruction, or the constant, that is the negative of what `place` is.
+    /// Instruction or constant that is the negative of `place`.
     opposite: Vec<u32>,
-    /// True if a node is an output as it is, and as its negative.
+    /// True if a node is an output, and if its negative is one.
     given: Vec<[bool; 2]>,
-    /// True if a node is wanted as its negative, by a reader to whom the sign is not free.
-    wanted: Vec<Wanted>,
+    /// True if a reader requires the node's negative and cannot change signs for free.
+    wanted: Vec<RequiredSign>,
     negations: usize,
 }
 
-/// With which sign those want a number who cannot take either.
+/// Sign that readers require if they cannot use either sign.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Wanted {
+enum RequiredSign {
     Either,
     Negative,
     Positive,
 }
 
-/// Who wants what with which sign. A node that is wanted as its negative, and cannot be had so for nothing, passes the
-/// wish on to an operand that nobody else reads.
-fn wanted(graph: &Graph) -> Vec<Wanted> {
-    let mut wanted = vec![Wanted::Either; graph.nodes.len()];
-    let want = |wanted: &mut [Wanted], x: Signed| {
+/// Determines the required signs. If a node is required as its negative and that is not free, the requirement passes to
+/// an operand without other readers.
+fn required_signs(graph: &Graph) -> Vec<RequiredSign> {
+    let mut wanted = vec![RequiredSign::Either; graph.nodes.len()];
+    let want = |wanted: &mut [RequiredSign], x: Signed| {
         let w = &mut wanted[x.node() as usize];
-        *w = if x.negative() && *w != Wanted::Positive { Wanted::Negative } else { Wanted::Positive };
+        *w = if x.negative() && *w != RequiredSign::Positive {
+            RequiredSign::Negative
+        } else {
+            RequiredSign::Positive
+        };
     };
     for output in &graph.outputs {
         want(&mut wanted, *output);
@@ -585,20 +588,23 @@ fn wanted(graph: &Graph) -> Vec<Wanted> {
     for node in (0..graph.nodes.len() as u32).rev().filter(|n| graph.is_instruction(*n)) {
         let (operands, many) = graph.operands(node);
         let operands = &operands[..many];
-        let is_negative =
-            |wanted: &[Wanted], x: Signed| x.negative() != (wanted[x.node() as usize] == Wanted::Negative);
+        let is_negative = |wanted: &[RequiredSign], x: Signed| {
+            x.negative() != (wanted[x.node() as usize] == RequiredSign::Negative)
+        };
         match graph.nodes[node as usize].kind {
             Kind::Sqrt | Kind::Larger | Kind::Call(_) => operands.iter().for_each(|o| want(&mut wanted, *o)),
             Kind::Add | Kind::Mul | Kind::Div
-                if wanted[node as usize] == Wanted::Negative
+                if wanted[node as usize] == RequiredSign::Negative
                     && graph.fused[node as usize] == NONE
                     && operands.iter().all(|o| graph.known(*o).is_none() && !is_negative(&wanted, *o)) =>
             {
                 let alone = operands.iter().map(|o| o.node() as usize).find(|o| {
-                    graph.uses[*o] == 1 && wanted[*o] == Wanted::Either && graph.is_instruction(*o as u32)
+                    graph.uses[*o] == 1
+                        && wanted[*o] == RequiredSign::Either
+                        && graph.is_instruction(*o as u32)
                 });
                 if let Some(operand) = alone {
-                    wanted[operand] = Wanted::Negative;
+                    wanted[operand] = RequiredSign::Negative;
                 }
             }
             _ => {}
@@ -627,12 +633,13 @@ impl<'a> Writer<'a> {
             flipped: vec![false; size],
             opposite,
             given,
-            wanted: wanted(graph),
+            wanted: required_signs(graph),
             negations: 0,
         }
     }
 
-    /// The constant `x`, the magnitude of a node or its negative, which the node has in `slot` once it is used.
+    /// Returns the operand of constant `x`, the magnitude of a node or its negative; `slot` stores its index once it is
+    /// used.
     fn constant(program: &mut Program, slot: &mut u32, x: f64) -> Operand {
         if *slot == NONE {
             *slot = program.constants.len() as u32;
@@ -641,7 +648,7 @@ impl<'a> Writer<'a> {
         Operand::Constant(*slot)
     }
 
-    /// A number with either sign: the operand, and whether it is the number's negative.
+    /// Returns the operand of a number with either sign, and true if it is the number's negative.
     fn either(&mut self, x: Signed) -> (Operand, bool) {
         let at = x.node() as usize;
         let node = self.graph.nodes[at];
@@ -657,13 +664,13 @@ impl<'a> Writer<'a> {
         (operand, self.minus(x))
     }
 
-    /// True if what is computed for a number is its negative.
+    /// True if the instruction of a number computes its negative.
     fn minus(&self, x: Signed) -> bool {
         x.negative() != self.flipped[x.node() as usize]
     }
 
-    /// A number with its own sign, negated if need be.
-    fn as_it_is(&mut self, x: Signed) -> Operand {
+    /// Returns the operand of a number with its own sign, negated if necessary.
+    fn with_own_sign(&mut self, x: Signed) -> Operand {
         let at = x.node() as usize;
         if let Some(value) = self.graph.known(x) {
             let slot = if x.negative() { &mut self.opposite[at] } else { &mut self.place[at] };
@@ -686,7 +693,7 @@ impl<'a> Writer<'a> {
         let at = node as usize;
         let Node { kind, .. } = self.graph.nodes[at];
         let ([a, b], _) = self.graph.operands(node);
-        let negative = self.wanted[at] == Wanted::Negative;
+        let negative = self.wanted[at] == RequiredSign::Negative;
         let (instruction, flipped) = match kind {
             Kind::Add => self.sum(node, negative),
             Kind::Mul => self.factors(Instruction::Mul, a, b, negative),
@@ -696,28 +703,30 @@ impl<'a> Writer<'a> {
                 let (a, negative) = self.either(a);
                 (Instruction::Round(a), negative)
             }
-            Kind::Sqrt => (Instruction::Sqrt(self.as_it_is(a)), false),
-            Kind::Larger => (Instruction::Larger(self.as_it_is(a), self.as_it_is(b)), false),
-            Kind::Call(call) => (Instruction::Call(call, self.as_it_is(a), self.as_it_is(b)), false),
+            Kind::Sqrt => (Instruction::Sqrt(self.with_own_sign(a)), false),
+            Kind::Larger => (Instruction::Larger(self.with_own_sign(a), self.with_own_sign(b)), false),
+            Kind::Call(call) => {
+                (Instruction::Call(call, self.with_own_sign(a), self.with_own_sign(b)), false)
+            }
             Kind::Constant | Kind::Input | Kind::Uniform => unreachable!("leaves are not computed"),
         };
         self.flipped[at] = flipped;
         self.place[at] = self.program.instructions.len() as u32;
         self.program.instructions.push(instruction);
         if self.given[at][usize::from(!flipped)] {
-            // At once: else the number would be kept to the end for this.
-            self.as_it_is(Signed::new(node, !flipped));
+            // Negated immediately, so that the number is not live to the end.
+            self.with_own_sign(Signed::new(node, !flipped));
         }
     }
 
-    /// A number's negative where that is at hand: a constant's, or one that had to be computed.
-    fn opposite(&mut self, x: Signed) -> Option<Operand> {
+    /// Returns the negative of a number if it is available: for a constant, or if already computed.
+    fn available_negative(&mut self, x: Signed) -> Option<Operand> {
         let x = x.times(!self.minus(x));
         let at_hand = self.graph.known(x).is_some() || self.opposite[x.node() as usize] != NONE;
-        at_hand.then(|| self.as_it_is(x))
+        at_hand.then(|| self.with_own_sign(x))
     }
 
-    /// A product or quotient with its sign, free where a factor's negative is at hand.
+    /// Writes a product or quotient with its sign; the sign is free if the negative of a factor is available.
     fn factors(
         &mut self,
         instruction: fn(Operand, Operand) -> Instruction,
@@ -729,16 +738,16 @@ impl<'a> Writer<'a> {
         if flipped == negative {
             return (instruction(self.either(a).0, self.either(b).0), flipped);
         }
-        if let Some(x) = self.opposite(a) {
+        if let Some(x) = self.available_negative(a) {
             return (instruction(x, self.either(b).0), negative);
         }
-        if let Some(y) = self.opposite(b) {
+        if let Some(y) = self.available_negative(b) {
             return (instruction(self.either(a).0, y), negative);
         }
         (instruction(self.either(a).0, self.either(b).0), flipped)
     }
 
-    /// A sum of two numbers, or of a number and the product that is fused with it.
+    /// Writes a sum of two numbers, or of a number and its fused product.
     fn sum(&mut self, node: u32, negative: bool) -> (Instruction, bool) {
         use Instruction::*;
         let ([a, b], _) = self.graph.operands(node);
@@ -749,7 +758,7 @@ impl<'a> Writer<'a> {
                 (false, false) => (Add(x, y), negative),
                 (false, true) => (Sub(x, y), negative),
                 (true, false) => (Sub(y, x), negative),
-                (true, true) => match (self.opposite(a), self.opposite(b)) {
+                (true, true) => match (self.available_negative(a), self.available_negative(b)) {
                     (Some(minus), _) => (Sub(minus, y), negative),
                     (None, Some(minus)) => (Sub(minus, x), negative),
                     (None, None) => (Add(x, y), !negative),

@@ -1,23 +1,22 @@
-//! Runs a program without making machine code of it: portable, safe, and as fast as decoding allows.
+//! Interpreter of programs: portable and safe, without machine code.
 //!
-//! Four groups of lanes go through each instruction at a time, so that one decoding serves 32 numbers. Values live in
-//! slots that are used again after their last use: the working memory of a kernel of thousands of instructions stays in
-//! the first cache.
+//! Each instruction is decoded once for four groups of lanes, that is, 32 numbers. Slots of values are reused after
+//! their last read, so that the working memory of a kernel with thousands of instructions stays in the L1 cache.
 
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, dispatch, f64x8};
 
 use crate::program::{Call, Instruction, LANES, Lanes, Operand, Program};
 
-/// Number of numbers that go through an instruction at a time.
-pub const WIDE: usize = ABREAST * LANES;
+/// Number of scalars that an instruction processes at a time.
+pub const WIDE: usize = GROUPS * LANES;
 
-/// Number of groups of lanes that go side by side.
-const ABREAST: usize = 4;
+/// Number of groups of lanes in a batch.
+const GROUPS: usize = 4;
 
-/// A program made ready to be run, with its working memory.
+/// Decoded program with its working memory.
 ///
-/// Arithmetic is that of `f64`, lane by lane. `MulAdd` and the like are rounded once on CPUs that have such an
-/// instruction, twice on others ([`fuses`](crate::fuses)).
+/// Arithmetic is that of `f64`, lane by lane. `MulAdd` and its variants round once on CPUs with such an instruction,
+/// twice on others ([`fuses`](crate::fuses)).
 #[derive(Clone, Debug)]
 pub struct Interpreter {
     code: Vec<Code>,
@@ -32,20 +31,20 @@ pub struct Interpreter {
     slots: Vec<Row>,
 }
 
-/// The lanes of one group, within one line of the cache: what straddles two takes twice the time.
+/// Lanes of one group, aligned to a cache line: access across two lines takes twice the time.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Row(Lanes);
 
-/// One decoded instruction.
+/// Decoded instruction.
 #[derive(Clone, Copy, Debug)]
 struct Code {
     op: Op,
-    /// To how many outputs the result goes.
+    /// Number of outputs to which the result is written.
     stores: u32,
-    /// The slot that it goes to.
+    /// Slot of the result.
     to: u32,
-    /// Slots or scalars, as the operation says.
+    /// Slots or scalars, depending on the operation.
     a: u32,
     b: u32,
     c: u32,
@@ -54,9 +53,9 @@ struct Code {
 /// Operation on slots and scalars: the letters are the operands, `s` slot and `c` scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Op {
-    /// Brings input `a` into its slot.
+    /// Loads input `a` into its slot.
     Load,
-    /// Brings scalar `a` into a slot.
+    /// Loads scalar `a` into a slot.
     Splat,
     AddSs,
     AddSc,
@@ -93,12 +92,12 @@ enum Op {
 }
 
 impl Interpreter {
-    /// Makes a program ready.
+    /// Decodes a program.
     ///
     /// # Panics
     ///
-    /// If an instruction reads what there is not: a value that is not computed before, or an input, uniform or constant
-    /// beyond the last.
+    /// If an instruction reads a value that is not computed before, or an input, uniform or constant that does not
+    /// exist.
     pub fn new(program: &Program) -> Self {
         let (code, stores, slots) = Assembler::new(program).assemble();
         let mut scalars = program.constants.clone();
@@ -111,16 +110,16 @@ impl Interpreter {
             inputs: program.inputs,
             uniforms: program.uniforms,
             outputs: program.outputs.len(),
-            slots: vec![Row([0.0; LANES]); slots * ABREAST],
+            slots: vec![Row([0.0; LANES]); slots * GROUPS],
         }
     }
 
-    /// Number of slots its values share.
+    /// Returns the number of slots of its values.
     pub fn slots(&self) -> usize {
-        self.slots.len() / ABREAST
+        self.slots.len() / GROUPS
     }
 
-    /// Runs the program for any number of groups of lanes, and allocates nothing.
+    /// Runs the program for any number of groups of lanes, without allocation.
     ///
     /// | what | where |
     /// |---|---|
@@ -130,19 +129,24 @@ impl Interpreter {
     ///
     /// # Panics
     ///
-    /// If the lengths do not fit the program, or say different numbers of groups.
+    /// If the lengths do not match the program, or result in different numbers of groups.
     pub fn run(&mut self, inputs: &[Lanes], uniforms: &[f64], outputs: &mut [Lanes]) {
         self.run_at(Level::new(), inputs, uniforms, outputs);
     }
 
-    /// Runs with the instructions of this level, which need not be all that the CPU has.
+    /// Runs with the instructions of this level, which can be below that of the CPU.
     fn run_at(&mut self, level: Level, inputs: &[Lanes], uniforms: &[f64], outputs: &mut [Lanes]) {
         assert_eq!(uniforms.len(), self.uniforms, "the program has {} uniforms", self.uniforms);
         let groups = outputs.len().checked_div(self.outputs).unwrap_or(0);
-        assert_eq!(outputs.len(), groups * self.outputs, "the program has {} outputs a group", self.outputs);
+        assert_eq!(
+            outputs.len(),
+            groups * self.outputs,
+            "the program has {} outputs per group",
+            self.outputs
+        );
         assert!(
             self.outputs == 0 || inputs.len() == groups * self.inputs,
-            "{groups} groups of {} inputs were expected, {} inputs are given",
+            "expected {groups} groups of {} inputs, found {} inputs",
             self.inputs,
             inputs.len()
         );
@@ -152,12 +156,12 @@ impl Interpreter {
 
     #[inline(always)]
     fn run_in<S: Simd>(&mut self, simd: S, groups: usize, inputs: &[Lanes], outputs: &mut [Lanes]) {
-        let whole = groups - groups % ABREAST;
-        for group in (0..whole).step_by(ABREAST) {
+        let whole = groups - groups % GROUPS;
+        for group in (0..whole).step_by(GROUPS) {
             let (given, asked) = (&inputs[group * self.inputs..], &mut outputs[group * self.outputs..]);
             simd.vectorize(
                 #[inline(always)]
-                || self.block::<S, ABREAST>(simd, given, asked),
+                || self.block::<S, GROUPS>(simd, given, asked),
             );
         }
         for group in whole..groups {
@@ -173,12 +177,12 @@ impl Interpreter {
     #[inline(always)]
     fn block<S: Simd, const N: usize>(&mut self, simd: S, inputs: &[Lanes], outputs: &mut [Lanes]) {
         use Op::*;
-        // The slots of one group stand side by side when one group runs.
+        // The slots of a single group are contiguous.
         let slots = self.slots.as_chunks_mut::<N>().0;
         let scalars = &self.scalars[..];
         let mut stores = self.stores.iter();
         for code in &self.code {
-            // Lanes `g` of an operand: `s` in a slot, `c` a scalar.
+            // Lanes of group `g` of an operand: `s` for a slot, `c` for a scalar.
             macro_rules! at {
                 ($k:ident s $g:ident) => {
                     f64x8::load_array_ref(simd, &slots[code.$k as usize][$g].0)
@@ -265,7 +269,7 @@ impl Interpreter {
     }
 }
 
-/// A function of the standard library, lane by lane.
+/// Evaluates a function of the standard library, lane by lane.
 #[inline(never)]
 fn call(function: Call, a: &[Row], b: &[Row], result: &mut [Row]) {
     for ((r, a), b) in result.iter_mut().zip(a).zip(b) {
@@ -275,25 +279,25 @@ fn call(function: Call, a: &[Row], b: &[Row], result: &mut [Row]) {
     }
 }
 
-/// Decodes a program and gives its values places.
+/// Decoder of a program, which assigns slots to values.
 struct Assembler<'a> {
     program: &'a Program,
     code: Vec<Code>,
     stores: Vec<u32>,
-    /// The last instruction that reads a value, or an input; outputs count as read where they are computed.
+    /// Last instruction that reads a value or an input; outputs count as read where they are computed.
     last_of_value: Vec<u32>,
     last_of_input: Vec<u32>,
     slot_of_value: Vec<u32>,
     slot_of_input: Vec<u32>,
-    /// Slots that are free, the one that was used last on top: it is the likeliest to be in the cache.
+    /// Free slots; the last used one is on top, because it is most likely in the cache.
     free: Vec<u32>,
     slots: u32,
 }
 
-/// Not there: no slot, no reader.
+/// Null index: no slot, no reader.
 const NONE: u32 = u32::MAX;
 
-/// A decoded operand.
+/// Decoded operand.
 #[derive(Clone, Copy)]
 enum Place {
     Slot(u32),
@@ -334,7 +338,7 @@ impl<'a> Assembler<'a> {
     }
 
     fn assemble(mut self) -> (Vec<Code>, Vec<u32>, usize) {
-        // The outputs by where they come from: values first, in their order.
+        // Outputs by source: values first, in their order.
         let mut given: Vec<(Operand, u32)> = self.program.outputs.iter().copied().zip(0..).collect();
         given.sort_unstable();
         let mut given = given.chunk_by(|a, b| a.0 == b.0).peekable();
@@ -364,13 +368,13 @@ impl<'a> Assembler<'a> {
         (self.code, self.stores, self.slots as usize)
     }
 
-    /// Has the result of the last instruction written to outputs.
+    /// Writes the result of the last instruction to outputs.
     fn store(&mut self, asked: &[(Operand, u32)]) {
         self.code.last_mut().expect("an instruction comes before").stores = asked.len() as u32;
         self.stores.extend(asked.iter().map(|(_, output)| *output));
     }
 
-    /// A free slot.
+    /// Returns a free slot.
     fn slot(&mut self) -> u32 {
         self.free.pop().unwrap_or_else(|| {
             self.slots += 1;
@@ -384,12 +388,12 @@ impl<'a> Assembler<'a> {
         to
     }
 
-    /// Brings an input or a scalar into a slot.
+    /// Loads an input or a scalar into a slot.
     fn bring(&mut self, op: Op, from: u32) -> u32 {
         self.push(op, [from, 0, 0])
     }
 
-    /// Location of an operand; inputs are loaded when they are first read.
+    /// Returns the location of an operand; inputs are loaded at their first read.
     fn place(&mut self, operand: Operand) -> Place {
         match operand {
             Operand::Value(k) => Place::Slot(self.slot_of_value[k as usize]),
@@ -400,11 +404,11 @@ impl<'a> Assembler<'a> {
                 Place::Slot(self.slot_of_input[k as usize])
             }
             Operand::Uniform(k) => {
-                assert!((k as usize) < self.program.uniforms, "there is no uniform {k}");
+                assert!((k as usize) < self.program.uniforms, "uniform {k} does not exist");
                 Place::Scalar(self.program.constants.len() as u32 + k)
             }
             Operand::Constant(k) => {
-                assert!((k as usize) < self.program.constants.len(), "there is no constant {k}");
+                assert!((k as usize) < self.program.constants.len(), "constant {k} does not exist");
                 Place::Scalar(k)
             }
         }
@@ -413,7 +417,7 @@ impl<'a> Assembler<'a> {
     /// Decodes instruction `k`.
     fn instruction(&mut self, k: usize, instruction: Instruction) {
         use Place::{Scalar, Slot};
-        // Slots that scalars are brought into for this instruction alone.
+        // Temporary slots of scalars for this instruction.
         let mut lent = [NONE; 2];
         let mut operands = [Slot(0); 3];
         for (place, operand) in operands.iter_mut().zip(instruction.operands()) {
@@ -463,7 +467,7 @@ impl<'a> Assembler<'a> {
                 (Op::Call(function), [a, b, 0])
             }
         };
-        // The result may take the place of an operand that is read for the last time: all lanes are read before any is
+        // The result may reuse the slot of an operand that is read for the last time: all lanes are read before any is
         // written.
         self.free.extend(lent.iter().filter(|slot| **slot != NONE));
         for operand in instruction.operands() {
@@ -473,7 +477,7 @@ impl<'a> Assembler<'a> {
                 _ => continue,
             };
             if *last == k as u32 {
-                // Once, also where it is read twice; no instruction has this number.
+                // Freed once, even if it is read twice; no instruction has this number.
                 *last = NONE - 1;
                 self.free.push(slot);
             }
@@ -531,7 +535,7 @@ mod tests {
     use super::*;
     use crate::program::Call::{Atan2, Exp};
 
-    /// Every instruction of operands of all kinds, each result an output.
+    /// Every instruction with operands of all kinds; each result is an output.
     fn all_instructions() -> Program {
         use Instruction::*;
         let operands = [
@@ -567,8 +571,8 @@ mod tests {
     fn check(level: Level, fused: bool) {
         let program = all_instructions();
         let mut interpreter = Interpreter::new(&program);
-        // Four groups side by side, and one alone.
-        let groups = ABREAST + 1;
+        // A batch of four groups, and a single one.
+        let groups = GROUPS + 1;
         let lane = |k: usize, lane: usize| (k * LANES + lane) as f64 * 0.37 - 6.1;
         let inputs: Vec<Lanes> = (0..2 * groups).map(|k| std::array::from_fn(|l| lane(k, l))).collect();
         let uniforms = [0.9, -2.3];

@@ -1,14 +1,14 @@
-//! Records arithmetic and runs it again as a straight-line program, for many numbers side by side.
+//! Records arithmetic and replays it as a straight-line program, for many numbers in a batch.
 //!
-//! A kernel that walks a mechanism, link by link and row by row, spends most of its time on walking, and most of its
-//! arithmetic on exact zeros and ones. What it computes is the same for every output time and every design. So it is
-//! run once with [`Number`]s, which record what is done with them; what is left of that, once constants are folded and
-//! nothing is computed twice or for nothing, is a [`Program`], which the [`Interpreter`] runs for 32 numbers at a time.
+//! A kernel that traverses a mechanism, link by link and row by row, spends most of its time on the traversal, and most
+//! of its arithmetic on exact zeros and ones. Its operations are the same for every output time and every design. It is
+//! therefore run once with [`Number`]s, which record all operations. After constant folding and removal of common and
+//! dead operations, a [`Program`] remains, which the [`Interpreter`] runs for 32 numbers at a time.
 //!
 //! ```
 //! use hardpoint_tape::{Interpreter, Number, Options, record};
 //!
-//! // The height of a point of a crank, with a general formula for a plane mechanism: z is nothing.
+//! // Distance of a point of a crank from the axis, by a spatial formula in a planar mechanism: z is zero.
 //! let recording = record(|| {
 //!     let [x, y] = [Number::input(0.3), Number::input(0.4)];
 //!     let z = Number::constant(0.0);
@@ -23,21 +23,21 @@
 //! assert_eq!((outputs[0][7], outputs[1][7]), (5.0, 8.0));
 //! ```
 //!
-//! # The way of a program
+//! # From kernel to results
 //!
 //! | step | by |
 //! |---|---|
 //! | run the kernel with numbers that record | [`record`], [`Number`] |
-//! | fold, find what is common, leave out what nobody reads, fuse, put in order | [`Recording::program`] |
-//! | split off what depends on uniforms alone, or on the first inputs alone | [`Program::hoisted`], [`Program::staged`] |
-//! | take a long one apart into pieces that share their code | [`Program::in_pieces`] |
+//! | fold constants, merge common operations, remove dead ones, fuse, order | [`Recording::program`] |
+//! | split off operations that depend on uniforms alone, or on the first inputs alone | [`Program::hoisted`], [`Program::staged`] |
+//! | split a long program into pieces that share their code | [`Program::in_pieces`] |
 //! | run, in lanes or as scalars | [`Interpreter`], [`Program::evaluate`] |
 //!
-//! # What it does not do
+//! # Limitations
 //!
-//! It does not record decisions: a program has no branches. What was decided while recording must be requested again
-//! after every run, by outputs that are compared with what they may be. It does not re-arrange sums, or replace a
-//! division by a multiplication, unless that gives the same bits.
+//! Decisions are not recorded: a program has no branches. If the kernel decides by a number, make the number an output,
+//! and check after every run that the decision would be the same. Sums are not rearranged, and divisions not replaced
+//! by multiplications, unless the result has the same bits.
 
 mod counts;
 mod graph;

@@ -1,4 +1,4 @@
-//! The recording scalar: a number that remembers how it came about.
+//! Recording scalar.
 
 use std::cell::RefCell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -6,20 +6,20 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::program::Call;
 
-/// Computation, step by step, and the requested results.
+/// Recorded computation: steps and outputs.
 ///
-/// Made by [`record`]; [`Recording::program`](Recording::program) turns it into a program.
+/// Created by [`record`]; [`Recording::program`](Recording::program) converts it to a program.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     pub(crate) steps: Vec<Step>,
     pub(crate) inputs: u32,
     pub(crate) uniforms: u32,
     pub(crate) outputs: Vec<u32>,
-    /// Operations that were folded at once.
+    /// Number of operations that were folded while recording.
     pub(crate) folded: usize,
 }
 
-/// One step of a recording; operands are the numbers of earlier steps.
+/// Step of a recording; operands are indices of earlier steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Step {
     Constant(f64),
@@ -38,7 +38,7 @@ pub(crate) enum Step {
     Call(Call, u32, u32),
 }
 
-/// Recording of the thread at this moment; session 0 is none.
+/// Active recording of the thread; session 0 means none.
 struct Session {
     id: u32,
     recording: Recording,
@@ -53,18 +53,17 @@ thread_local! {
     };
 }
 
-/// The next session's number: one count for all threads, so that a number that was sent to another thread is known for
-/// a stranger.
+/// Number of the next session: one counter for all threads, so that numbers sent to another thread are detected.
 static NEXT: AtomicU32 = AtomicU32::new(1);
 
-/// Records what `f` does with [`Number`]s, on this thread; what it returns are the outputs, in this order.
+/// Records the operations of `f` on [`Number`]s, on this thread. The returned numbers are the outputs, in order.
 ///
 /// # Panics
 ///
-/// If a recording is under way on this thread, or if an output is not a number of this recording. A panic of `f` passes
-/// through and ends the recording.
+/// If a recording is active on this thread, or if an output is not a number of this recording. A panic of `f`
+/// propagates and ends the recording.
 pub fn record<O: IntoIterator<Item = Number>>(f: impl FnOnce() -> O) -> Recording {
-    /// Ends the session, also where `f` panics.
+    /// Ends the session, even if `f` panics.
     struct Running;
     impl Drop for Running {
         fn drop(&mut self) {
@@ -72,8 +71,8 @@ pub fn record<O: IntoIterator<Item = Number>>(f: impl FnOnce() -> O) -> Recordin
         }
     }
     SESSION.with_borrow_mut(|s| {
-        assert!(s.id == 0, "a recording is under way on this thread: recordings do not nest");
-        // Zero is never given out, also after four thousand million recordings.
+        assert!(s.id == 0, "a recording is active on this thread: recordings do not nest");
+        // Session 0 is never used, not even after overflow of the counter.
         s.id =
             std::iter::repeat_with(|| NEXT.fetch_add(1, Ordering::Relaxed)).find(|id| *id != 0).unwrap_or(1);
     });
@@ -94,11 +93,11 @@ pub fn record<O: IntoIterator<Item = Number>>(f: impl FnOnce() -> O) -> Recordin
 }
 
 impl Session {
-    /// Index of `number` in this session.
+    /// Returns the index of `number` in this session.
     #[inline(always)]
     fn place(&self, number: Number) -> u32 {
         if number.session != self.id {
-            stranger(self.id);
+            panic_on_foreign_number(self.id);
         }
         number.id
     }
@@ -118,10 +117,10 @@ impl Session {
         }
     }
 
-    /// The same, where it is no constant and no other number: what is known in every run is known while recording.
+    /// Returns the index of a step. Constants are folded while recording.
     #[inline(always)]
     fn push_folded(&mut self, step: Step, value: f64) -> Number {
-        /// Result of a step.
+        /// Returns the result of a step.
         enum Fold {
             Same(u32),
             Constant(f64),
@@ -164,29 +163,29 @@ impl Session {
 
 #[cold]
 #[inline(never)]
-fn stranger(session: u32) -> ! {
+fn panic_on_foreign_number(session: u32) -> ! {
     if session == 0 {
-        panic!("a recorded number was used outside of a recording: nothing records it");
+        panic!("a recorded number was used outside of a recording: call `record`");
     }
-    panic!("a number of another recording was used: make it anew, as an input or a constant");
+    panic!("a number of another recording was used: pass it as an input or a constant");
 }
 
 #[inline(always)]
 fn leaf(step: impl FnOnce(&mut Recording) -> Step, value: f64) -> Number {
     SESSION.with_borrow_mut(|s| {
-        assert!(s.id != 0, "a number was made outside of a recording: nothing records it");
+        assert!(s.id != 0, "a number was created outside of a recording: call `record`");
         let step = step(&mut s.recording);
         s.push(step, value)
     })
 }
 
-/// A scalar that records what is done with it.
+/// Scalar that records all operations on it.
 ///
-/// It has a value, that of the run that is recorded, by which whoever records can decide what to compute: which pivot,
-/// which of two formulas. Such a decision is not recorded, and there are no comparisons that would hide one: who
-/// decides asks for [`value`](Number::value), and makes what it was decided by an output, to be tested after every run.
+/// It has a value, that of the recorded run, which the recorded code can use for decisions: which pivot, which of two
+/// formulas. Decisions are not recorded, and there are no comparison operators that would hide one: use
+/// [`value`](Number::value), and make the tested number an output, to be checked after every run.
 ///
-/// Numbers belong to the [`record`] that they were made in. Elsewhere every operation with them panics.
+/// Numbers belong to the call of [`record`] in which they were created. Elsewhere every operation on them panics.
 #[derive(Clone, Copy, Debug)]
 pub struct Number {
     value: f64,
@@ -195,17 +194,17 @@ pub struct Number {
 }
 
 impl Number {
-    /// A number that is the same in every run.
+    /// Returns a number that is the same in every run.
     ///
     /// # Panics
     ///
-    /// Outside of a recording, as all that makes numbers.
+    /// Outside of a recording, like all functions that create numbers.
     #[inline(never)]
     pub fn constant(x: f64) -> Self {
         leaf(|_| Step::Constant(x), x)
     }
 
-    /// The next input: a number that is given lane by lane, and is `x` in the recorded run.
+    /// Returns the next input: a number that is given lane by lane, and is `x` in the recorded run.
     #[inline(never)]
     pub fn input(x: f64) -> Self {
         leaf(
@@ -217,7 +216,7 @@ impl Number {
         )
     }
 
-    /// The next uniform: a number that is the same in all lanes of a run, and is `x` in the recorded one.
+    /// Returns the next uniform: a number that is the same in all lanes of a run, and is `x` in the recorded run.
     #[inline(never)]
     pub fn uniform(x: f64) -> Self {
         leaf(
@@ -229,13 +228,13 @@ impl Number {
         )
     }
 
-    /// The value in the run that is recorded, computed as `f64` does: every operation rounds.
+    /// Returns the value in the recorded run, computed in `f64`: every operation rounds.
     #[inline(always)]
     pub fn value(self) -> f64 {
         self.value
     }
 
-    /// Value in every run, for a [`constant`](Number::constant) and for results of constants alone.
+    /// Returns the value in every run, for a [`constant`](Number::constant) and for results of constants alone.
     pub fn known(self) -> Option<f64> {
         SESSION.with_borrow(|s| match s.recording.steps[s.place(self) as usize] {
             Step::Constant(x) => Some(x),
@@ -243,7 +242,7 @@ impl Number {
         })
     }
 
-    /// `self * factor + addend`, which may be rounded once.
+    /// Returns `self * factor + addend`, which may be rounded once.
     #[inline(never)]
     pub fn times_plus(self, factor: Self, addend: Self) -> Self {
         SESSION.with_borrow_mut(|s| {
@@ -252,46 +251,46 @@ impl Number {
         })
     }
 
-    /// Square root.
+    /// Returns the square root.
     #[inline(never)]
     pub fn sqrt(self) -> Self {
         self.unary(Step::Sqrt, self.value.sqrt())
     }
 
-    /// Magnitude.
+    /// Returns the magnitude.
     #[inline(never)]
     pub fn abs(self) -> Self {
         self.unary(Step::Abs, self.value.abs())
     }
 
-    /// Nearest integer, ties to even.
+    /// Returns the nearest integer, ties to even.
     #[inline(never)]
     pub fn round(self) -> Self {
         self.unary(Step::Round, self.value.round_ties_even())
     }
 
-    /// The larger of two; NaN where either is NaN.
+    /// Returns the larger of two numbers; NaN if either is NaN.
     #[inline(never)]
     pub fn larger(self, o: Self) -> Self {
         self.binary(o, Step::Larger, larger(self.value, o.value))
     }
 
-    /// The function of this number.
+    /// Returns a function of this number.
     ///
     /// # Panics
     ///
-    /// If it is a function of two.
+    /// If it is a function of two numbers.
     pub fn call(self, function: Call) -> Self {
         assert!(!function.is_of_two(), "{function:?} is a function of two numbers");
         self.unary(|a| Step::Call(function, a, a), function.of(self.value, self.value))
     }
 
-    /// Angle of the point (x, self) from the x axis, rad in [-pi, pi].
+    /// Returns the angle of the point (x, self) from the x axis, rad in [-pi, pi].
     pub fn atan2(self, x: Self) -> Self {
         self.binary(x, |a, b| Step::Call(Call::Atan2, a, b), self.value.atan2(x.value))
     }
 
-    /// This number to a power.
+    /// Returns this number to a power.
     pub fn powf(self, exponent: Self) -> Self {
         self.binary(exponent, |a, b| Step::Call(Call::Pow, a, b), self.value.powf(exponent.value))
     }
@@ -313,7 +312,7 @@ impl Number {
     }
 }
 
-/// The larger of two; NaN where either is NaN.
+/// Returns the larger of two numbers; NaN if either is NaN.
 #[inline(always)]
 pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if b <= a || a.is_nan() { a } else { b }

@@ -1,10 +1,10 @@
-//! A long program in pieces that share their code.
+//! Long programs, split into pieces that share their code.
 //!
-//! A chain of a thousand loops is recorded as a thousand times the same arithmetic with other numbers. As one program
-//! it would be megabytes of code that pass through the processor for every run. So a program is taken apart by what its
-//! inputs belong to: an instruction belongs to the last piece that any of its operands does. Pieces that do the same
-//! with other operands are one program, with what they read as its inputs and the constants that differ as its
-//! uniforms.
+//! A chain of a thousand loops is recorded as a thousand times the same arithmetic with different numbers. As one
+//! program it would be megabytes of code for every run. A program is therefore split by the pieces to which its inputs
+//! belong: an instruction belongs to the last piece of any of its operands. Pieces with the same operations on
+//! different operands share one program; its inputs are the numbers they read, and its uniforms are the constants that
+//! differ.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -13,56 +13,55 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::program::{Instruction, LANES, Lanes, Operand, Program};
 
-/// In how many areas of memory outputs may be.
+/// Number of memory areas of outputs.
 pub const AREAS: usize = 3;
 
-/// A program in pieces.
+/// Program that is split into pieces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pieces {
-    /// The programs of the pieces.
+    /// Programs of the pieces.
     pub shapes: Vec<Shape>,
-    /// The pieces, in the order in which they are run.
+    /// Pieces, in the order of execution.
     pub pieces: Vec<Piece>,
-    /// Number of numbers that are kept while they run.
+    /// Number of values that are stored during a run.
     pub kept: usize,
 }
 
-/// The program of several pieces.
+/// Shared program of several pieces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
-    /// Outputs are those that are kept, and then those in the second and in the third area.
+    /// Program; its outputs are the stored values, then the outputs in the second and in the third area.
     pub program: Program,
     /// End of the stored outputs, and of those in the second area.
     pub ends: [usize; AREAS - 1],
 }
 
-/// A piece of a program.
+/// Piece of a program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
     /// Index of its shape.
     pub shape: usize,
-    /// Inputs: inputs of the whole program, or values, by their number among the stored ones.
+    /// Inputs: inputs of the whole program, or stored values, by index.
     pub inputs: Vec<Operand>,
-    /// Uniforms of the whole program that are its first ones.
+    /// First uniforms: uniforms of the whole program.
     pub given: Vec<u32>,
-    /// Other uniforms.
+    /// Further uniforms.
     pub uniforms: Vec<f64>,
-    /// Range of the stored numbers that are its own.
+    /// Range of its stored values.
     pub kept: Range<usize>,
-    /// The last of these are outputs: of which area, and which there.
+    /// Outputs among the last of these: area, and index in it.
     pub outputs: Vec<(usize, u32)>,
-    /// Outputs of the second and the third area that its program writes.
+    /// Outputs of the second and the third area that its program writes directly.
     pub areas: [Range<usize>; AREAS - 1],
 }
 
 impl Program {
-    /// Takes the program apart, `piece_of` saying which piece an input or uniform belongs to; outputs are in areas that
-    /// end where `ends` says. Where the outputs of a piece follow each other in the second and the third area, they are
-    /// written there at once.
+    /// Splits the program. `piece_of` returns the piece of an input or uniform; `ends` are the ends of the output
+    /// areas. Consecutive outputs of a piece in the second and the third area are written there directly.
     pub fn in_pieces(&self, piece_of: impl Fn(Operand) -> usize, ends: [usize; AREAS - 1]) -> Pieces {
-        let cut = Cut::of(self, piece_of, ends);
+        let cut = Assignment::of(self, piece_of, ends);
         let mut whole = Pieces { shapes: Vec::new(), pieces: Vec::new(), kept: 0 };
-        // Constants of every piece, by the number that they have in its shape.
+        // Constants of every piece, by their index in its shape.
         let (mut shape_of, mut constants) = (HashMap::new(), Vec::new());
         let mut kept_at = vec![u32::MAX; self.instructions.len()];
         for members in cut.pieces.iter().filter(|members| !members.is_empty()) {
@@ -84,17 +83,17 @@ impl Program {
 }
 
 impl Pieces {
-    /// Number of instructions its shapes have.
+    /// Returns the number of instructions of all shapes.
     pub fn instructions(&self) -> usize {
         self.shapes.iter().map(|shape| shape.program.instructions.len()).sum()
     }
 
-    /// Runs one piece after the other for one group of lanes: `run` is given the number of a shape, the inputs and
-    /// uniforms of its program, and where its outputs go; the outputs of the whole go to their areas.
+    /// Runs one piece after the other for one group of lanes. `run` gets the index of a shape, the inputs and uniforms
+    /// of its program, and its outputs. The outputs of the whole program are written to their areas.
     ///
     /// # Panics
     ///
-    /// If there are fewer inputs, uniforms or outputs than the whole has.
+    /// If there are fewer inputs, uniforms or outputs than in the whole program.
     #[inline(always)]
     pub fn run(
         &self,
@@ -147,7 +146,7 @@ pub struct PiecesRoom {
     uniforms: Vec<f64>,
 }
 
-/// The lanes of one number, within one line of memory.
+/// Lanes of one number, aligned to a cache line.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C, align(64))]
 struct Line(Lanes);
@@ -155,21 +154,21 @@ struct Line(Lanes);
 const _: () = assert!(size_of::<Line>() == LANES * size_of::<f64>());
 
 /// Assignment of instructions to pieces.
-struct Cut {
-    /// True if a later piece reads it.
+struct Assignment {
+    /// True if a later piece reads the value.
     is_read: Vec<bool>,
     pieces: Vec<Members>,
     ends: [usize; AREAS - 1],
 }
 
-/// The instructions of a piece, and its outputs in every area.
+/// Instructions of a piece, and its outputs in every area.
 #[derive(Clone, Default)]
 struct Members {
     instructions: Vec<u32>,
     outputs: [Vec<u32>; AREAS],
 }
 
-impl Cut {
+impl Assignment {
     fn of(program: &Program, piece_of: impl Fn(Operand) -> usize, ends: [usize; AREAS - 1]) -> Self {
         let mut piece_of_instruction = Vec::with_capacity(program.instructions.len());
         let mut is_read = vec![false; program.instructions.len()];
@@ -192,7 +191,7 @@ impl Cut {
                 }
             }
         }
-        // What no piece computes comes with its neighbours.
+        // Outputs that no piece computes are assigned to the piece of their neighbours.
         let area_of = |k: usize| ends.iter().filter(|end| k >= **end).count();
         let computed = |k: usize| match program.outputs[k] {
             Operand::Value(v) => Some(piece_of_instruction[v as usize]),
@@ -223,11 +222,11 @@ struct Form {
     ends: [usize; AREAS - 1],
 }
 
-/// Numbers operands as they come up.
+/// Numbering of operands in the order of their first use.
 struct Names<'a> {
     program: &'a Program,
     kept_at: &'a [u32],
-    /// The instructions of the piece that are numbered so far.
+    /// Instructions of the piece that are numbered so far.
     own: HashMap<u32, u32>,
     leaves: HashMap<Operand, u32>,
     inputs: Vec<Operand>,
@@ -275,11 +274,11 @@ impl Members {
         self.instructions.is_empty() && self.outputs.iter().all(Vec::is_empty)
     }
 
-    /// The piece, what it has in common with others, and its constants; numbers are kept from `kept` on.
+    /// Returns the piece, its common form, and its constants; its values are stored from index `kept` on.
     fn canonical(
         &self,
         program: &Program,
-        cut: &Cut,
+        cut: &Assignment,
         kept: usize,
         kept_at: &mut [u32],
     ) -> (Piece, Form, Vec<f64>) {
@@ -298,7 +297,7 @@ impl Members {
             names.own.insert(*k, number as u32);
         }
         let read: Vec<u32> = self.instructions.iter().copied().filter(|k| cut.is_read[*k as usize]).collect();
-        // Outputs that go to their place at once come last; of the first area none does.
+        // Outputs that are written directly come last; those of the first area never are.
         let begins = [0, cut.ends[0], cut.ends[1]];
         let mut areas = [0..0, 0..0];
         let (mut copied, mut written) = (Vec::new(), Vec::new());
@@ -346,7 +345,7 @@ impl Members {
 }
 
 impl Form {
-    /// The program of these pieces; constants in which they differ become their uniforms.
+    /// Returns the program of pieces of one shape; constants that differ become uniforms.
     fn shape(self, same: &[usize], constants: &[Vec<f64>], pieces: &mut [Piece]) -> Shape {
         let of = |k: usize, n: usize| constants[k][n].to_bits();
         let mut program = Program { inputs: self.inputs, uniforms: self.given, ..Program::default() };

@@ -1,49 +1,49 @@
-//! A straight-line program: what is left of a recording, in the order in which it is computed.
+//! Straight-line programs.
 //!
-//! Every number is a vector of [`LANES`] scalars side by side; constants and uniforms are the same in all lanes.
+//! Every number is a vector of [`LANES`] scalars; constants and uniforms are the same in all lanes.
 
 use fearless_simd::{Level, SimdBase, SimdFloat, dispatch, f64x8};
 
 use crate::number::larger;
 
-/// Number of scalars sit side by side.
+/// Number of scalars in a vector.
 pub const LANES: usize = 8;
 
-/// The scalars of one number, lane by lane.
+/// Scalars of one number, lane by lane.
 pub type Lanes = [f64; LANES];
 
 /// Source of an operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Operand {
-    /// The result of an earlier instruction.
+    /// Result of an earlier instruction.
     Value(u32),
-    /// An input, lane by lane.
+    /// Input, lane by lane.
     Input(u32),
-    /// A number that is the same in all lanes, given with every run.
+    /// Uniform: a number that is the same in all lanes, given with every run.
     Uniform(u32),
-    /// A number of the program itself, by its place in [`Program::constants`].
+    /// Constant of the program, by its index in [`Program::constants`].
     Constant(u32),
 }
 
-/// Declares the functions that are not arithmetic: of how many numbers, by what name, and what they are.
+/// Declares the functions that are not arithmetic: number of arguments, name, and definition.
 macro_rules! calls {
     ($($(#[$doc:meta])* $Call:ident $name:literal of $operands:literal |$a:pat_param, $b:pat_param| $value:expr;)*) => {
-        /// A function that is not arithmetic: the standard library evaluates it lane by lane.
+        /// Function that is not arithmetic: the standard library evaluates it lane by lane.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Call {
             $($(#[$doc])* $Call,)*
         }
 
         impl Call {
-            /// All of them.
+            /// All functions.
             pub const ALL: &[Self] = &[$(Self::$Call),*];
 
-            /// Name in mathematics.
+            /// Returns the mathematical name.
             pub fn name(self) -> &'static str {
                 match self { $(Self::$Call => $name),* }
             }
 
-            /// The function of one scalar, or of two; `b` is ignored by functions of one.
+            /// Returns the function of one scalar, or of two; functions of one ignore `b`.
             pub fn of(self, a: f64, b: f64) -> f64 {
                 match self { $(Self::$Call => { let ($a, $b) = (a, b); $value })* }
             }
@@ -81,7 +81,7 @@ calls! {
     Pow "pow" of 2 |a, b| a.powf(b);
 }
 
-/// One instruction; its result is the value of its own number.
+/// Instruction; its result is the value with its own index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Instruction {
     /// `a + b`.
@@ -102,28 +102,28 @@ pub enum Instruction {
     NegMulSub(Operand, Operand, Operand),
     /// `-a`.
     Neg(Operand),
-    /// The magnitude of `a`.
+    /// Magnitude of `a`.
     Abs(Operand),
-    /// The square root of `a`.
+    /// Square root of `a`.
     Sqrt(Operand),
-    /// The nearest integer, ties to even.
+    /// Nearest integer, ties to even.
     Round(Operand),
-    /// The larger of two; NaN where either is NaN.
+    /// Larger of two numbers; NaN if either is NaN.
     Larger(Operand, Operand),
-    /// The second operand is ignored by functions of one number.
+    /// Function; functions of one number ignore the second operand.
     Call(Call, Operand, Operand),
 }
 
-/// A straight-line program.
+/// Straight-line program.
 ///
 /// Instruction `k` computes [`Operand::Value`]`(k)` and reads values below `k` only.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Program {
-    /// Number of inputs a run is given for each group of [`LANES`].
+    /// Number of inputs of a run for each group of [`LANES`].
     pub inputs: usize,
-    /// Number of uniforms a run is given.
+    /// Number of uniforms of a run.
     pub uniforms: usize,
-    /// The numbers of the program itself.
+    /// Constants of the program.
     pub constants: Vec<f64>,
     /// Instructions, in order.
     pub instructions: Vec<Instruction>,
@@ -132,7 +132,7 @@ pub struct Program {
 }
 
 impl Instruction {
-    /// The operands that it reads, in their order.
+    /// Returns the operands that it reads, in order.
     pub fn operands(self) -> impl Iterator<Item = Operand> {
         use Instruction::*;
         let read = match self {
@@ -146,7 +146,7 @@ impl Instruction {
         read.into_iter().flatten()
     }
 
-    /// The same instruction of other operands.
+    /// Returns the same instruction with other operands.
     pub fn map(self, mut f: impl FnMut(Operand) -> Operand) -> Self {
         use Instruction::*;
         match self {
@@ -171,7 +171,7 @@ impl Instruction {
         }
     }
 
-    /// Result for scalar operands; `fused` says whether products are fused with sums ([`fuses`]).
+    /// Returns the result for scalar operands; if `fused`, products are fused with sums ([`fuses`]).
     pub fn of(self, mut x: impl FnMut(Operand) -> f64, fused: bool) -> f64 {
         use Instruction::*;
         let product_plus = |a: f64, b: f64, c: f64| if fused { a.mul_add(b, c) } else { a * b + c };
@@ -199,14 +199,14 @@ impl Instruction {
 }
 
 impl Program {
-    /// Runs it once for scalars, instruction by instruction; `values` is working memory, kept by the caller.
+    /// Runs the program once for scalars, instruction by instruction; `values` is working memory of the caller.
     ///
-    /// What is computed once for many runs ([`Program::hoisted`]) is computed by this. It agrees with the lanes of the
-    /// [`Interpreter`](crate::Interpreter) to the bit.
+    /// Use it for values that are computed once for many runs ([`Program::hoisted`]). It agrees with the lanes of the
+    /// [`Interpreter`](crate::Interpreter) bit for bit.
     ///
     /// # Panics
     ///
-    /// If `inputs`, `uniforms` or `outputs` are fewer than the program has.
+    /// If there are fewer `inputs`, `uniforms` or `outputs` than in the program.
     pub fn evaluate(&self, inputs: &[f64], uniforms: &[f64], values: &mut Vec<f64>, outputs: &mut [f64]) {
         let fused = fuses();
         values.clear();
@@ -226,8 +226,8 @@ impl Program {
         }
     }
 
-    /// Maximum number of values that are live at a time: computed, and still to be read. What is only given back is
-    /// written at once, and is not counted.
+    /// Returns the maximum number of live values: computed, and still to be read. Values that are only outputs are
+    /// written immediately and do not count.
     pub fn live(&self) -> usize {
         let mut last = vec![0; self.instructions.len()];
         for (k, instruction) in self.instructions.iter().enumerate() {
@@ -243,7 +243,7 @@ impl Program {
                 if let Operand::Value(v) = operand
                     && last[v as usize] == k
                 {
-                    // Once, also where an instruction reads the same value twice.
+                    // Counted once, even if an instruction reads the same value twice.
                     last[v as usize] = usize::MAX;
                     now -= 1;
                 }
@@ -257,9 +257,9 @@ impl Program {
     }
 }
 
-/// True if lanes of this CPU fuse a product with a sum, rounding once. Where they cannot, both are rounded.
+/// Returns true if lanes of this CPU fuse a product with a sum and round once. Otherwise both operations round.
 pub fn fuses() -> bool {
-    // (1 + h)^2 - (1 + 2 h) is h^2, or 0 where the square is rounded first.
+    // (1 + h)^2 - (1 + 2 h) is h^2, or 0 if the square is rounded first.
     const H: f64 = 1.0 / (1u64 << 30) as f64;
     dispatch!(Level::new(), simd => {
         let lanes = |x: f64| f64x8::splat(simd, x);

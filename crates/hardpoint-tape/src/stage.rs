@@ -1,12 +1,12 @@
-//! One program in two: what depends on little is computed first, and once.
+//! Splitting of a program in two: values that depend on few leaves are computed first, and once.
 
 use crate::program::{Operand, Program};
 
 impl Program {
-    /// Splits off what depends on constants and uniforms alone.
+    /// Splits off the operations that depend on constants and uniforms alone.
     ///
-    /// The first program reads uniforms and has one output for each number that the second asks of it; the second has
-    /// these as further uniforms behind its own. Both keep the numbers of inputs and uniforms. Run the first once
+    /// The first program reads uniforms and has one output for each number that the second needs; the second has these
+    /// as further uniforms after its own. Both keep the numbers of inputs and uniforms. Run the first once
     /// ([`Program::evaluate`]), the second for all lanes.
     pub fn hoisted(self) -> (Self, Self) {
         let uniforms = self.uniforms as u32;
@@ -16,11 +16,11 @@ impl Program {
         (first, rest)
     }
 
-    /// Splits off what depends on constants and those inputs and uniforms alone that `first` says: what stays the same
-    /// over many runs, as the geometry of a design does over its motion.
+    /// Splits off the operations that depend only on constants and on those inputs and uniforms for which `first`
+    /// returns true: values that are constant over many runs, like the geometry of a design over its motion.
     ///
-    /// The first program has one output for each number that the second asks of it; the second has these as further
-    /// inputs behind its own. Both keep the numbers of inputs and uniforms, the first as far as the last that it reads.
+    /// The first program has one output for each number that the second needs; the second has these as further inputs
+    /// after its own. Both keep the numbers of inputs and uniforms, the first only up to the last that it reads.
     pub fn staged(self, first: impl Fn(Operand) -> bool) -> (Self, Self) {
         let inputs = self.inputs as u32;
         let (first, mut rest) = self.split(first, |k| Operand::Input(inputs + k));
@@ -28,13 +28,13 @@ impl Program {
         (first, rest)
     }
 
-    /// Splits the program: what reads only leaves that are `early`, and the rest, which finds the k-th output of the
-    /// first part at `joint(k)`.
+    /// Splits the program into operations of `early` leaves, and the rest, which reads the k-th output of the first
+    /// part as `joint(k)`.
     fn split(self, early: impl Fn(Operand) -> bool, joint: impl Fn(u32) -> Operand) -> (Self, Self) {
-        /// Location in the rest of a value of the whole program.
+        /// Operand in the second part for each value of the whole program.
         #[derive(Clone, Copy)]
         enum Place {
-            /// Value of the first part, by its number there; not requested so far.
+            /// Value of the first part, by its index there; not an output so far.
             First(u32),
             Rest(Operand),
         }
@@ -54,7 +54,7 @@ impl Program {
                 },
                 leaf => rest.leaf(leaf),
             };
-        // A value that the rest has requested is still one of the first part.
+        // A value that the rest reads is still a value of the first part.
         let mut value_in_first = vec![None; self.instructions.len()];
         for (k, instruction) in self.instructions.iter().enumerate() {
             let is_early = instruction.operands().all(|operand| match operand {
@@ -95,7 +95,7 @@ impl Program {
     }
 }
 
-/// One of the two parts in the making, with the constants of the whole that it has met.
+/// Part that is being built, with the constants of the whole program that it uses.
 struct Part<'a> {
     whole: &'a Program,
     program: Program,
@@ -108,7 +108,7 @@ impl<'a> Part<'a> {
         Self { whole, program, constants: vec![None; whole.constants.len()] }
     }
 
-    /// The operand for a leaf of the whole.
+    /// Returns the operand for a leaf of the whole program.
     fn leaf(&mut self, leaf: Operand) -> Operand {
         let Operand::Constant(k) = leaf else { return leaf };
         let place = *self.constants[k as usize].get_or_insert_with(|| {

@@ -1,8 +1,8 @@
-//! Register allocation, and the instructions that follow from it.
+//! Register allocation and instruction selection.
 //!
-//! Linear scan in the order of the program. When registers run out, the number that is read furthest ahead makes room.
-//! What has a home in memory (inputs, uniforms, constants, outputs that are known, what was spilled before) is read
-//! there and never stored again; other values are spilled to a slot of the scratch when they make room.
+//! Linear scan in the order of the program. If no register is free, the number whose next read is furthest ahead is
+//! evicted. Numbers with a location in memory (inputs, uniforms, constants, stored outputs, spilled values) are read
+//! there and never stored again; other values are spilled to a slot of the scratch memory when they are evicted.
 
 use super::calls;
 use super::encoder::{Assembler, Gpr, Memory, Opcode, Sign, Source};
@@ -11,20 +11,21 @@ use super::lower::{Action, LoweredProgram, NEVER, Name, Step};
 use crate::Counts;
 
 /// No register.
-const NOWHERE: u8 = u8::MAX;
+const NO_REGISTER: u8 = u8::MAX;
 
-/// A number with a home in memory makes room as if it were read that many instructions later: it need not be stored.
+/// Number of instructions by which the next read of a number with a location in memory counts as later: its eviction
+/// needs no store.
 const CLEAN: u32 = 50;
 
 /// Contents of a register.
 #[derive(Clone, Copy, Debug)]
 struct Holder {
     name: Name,
-    /// The next instruction that reads it.
+    /// Next instruction that reads it.
     next: u32,
 }
 
-/// Registers and memory, as they are after the instructions so far.
+/// State of registers and memory after the instructions so far.
 #[derive(Debug)]
 pub struct Allocator<'l> {
     lowered: &'l LoweredProgram,
@@ -32,18 +33,18 @@ pub struct Allocator<'l> {
     assembler: Assembler,
     counts: Counts,
     holders: Vec<Holder>,
-    /// Registers that hold nothing that is needed, as bits.
+    /// Free registers, as bits.
     free: u32,
     /// Register of each name.
     register: Vec<u8>,
     /// Location in memory of each name.
     home: Vec<Option<Memory>>,
     slots: usize,
-    /// Slots that hold nothing that is needed.
+    /// Free slots.
     free_slots: Vec<Memory>,
-    /// Slots that this instruction reads for the last time: free for the next.
+    /// Slots that this instruction reads for the last time; they are free for the next one.
     last_read: Vec<Memory>,
-    /// Number of outputs of values that are stored.
+    /// Number of value outputs stored so far.
     stored: usize,
 }
 
@@ -58,7 +59,7 @@ impl<'l> Allocator<'l> {
             counts: Counts::default(),
             holders: vec![Holder { name: 0, next: NEVER }; registers],
             free: (u64::MAX >> (64 - registers)) as u32,
-            register: vec![NOWHERE; lowered.names.len()],
+            register: vec![NO_REGISTER; lowered.names.len()],
             home,
             slots: 0,
             free_slots: Vec::new(),
@@ -67,7 +68,7 @@ impl<'l> Allocator<'l> {
         }
     }
 
-    /// All instructions, and all outputs stored.
+    /// Emits all instructions and the stores of all outputs.
     pub fn run(mut self) -> (Assembler, Counts) {
         let lowered = self.lowered;
         for (i, step) in lowered.steps.iter().enumerate().filter(|(_, s)| s.needed) {
@@ -99,7 +100,7 @@ impl<'l> Allocator<'l> {
 
     fn unary(&mut self, op: Opcode, step: &Step) -> u8 {
         let s = self.source(step.operands()[0]);
-        self.leave(step);
+        self.free_last_reads(step);
         let d = self.take(0);
         self.assembler.vector(op, d, 0, s);
         d
@@ -111,29 +112,29 @@ impl<'l> Allocator<'l> {
         let mut next = next_a;
         let swap = match (self.register(a), self.register(b)) {
             (None, Some(_)) => true,
-            // The one that is loaded stays for a while.
+            // The loaded number remains in its register for a while.
             (None, None) => next_b < next_a,
             _ => false,
         };
         if commutes && swap {
             (a, b, next) = (b, a, next_b);
         }
-        let r = self.loaded(a, next, self.bits(&[b]));
+        let r = self.ensure_register(a, next, self.bits(&[b]));
         let s = self.source(b);
-        self.leave(step);
+        self.free_last_reads(step);
         let d = self.take(0);
         self.assembler.vector(op, d, r, s);
         d
     }
 
-    /// The result takes the place of one operand; of the others one may be in memory.
+    /// Emits a fused instruction. The result replaces one operand; one of the others can be in memory.
     fn fused(&mut self, sign: Sign, step: &Step) -> u8 {
         let &[a, b, c] = step.operands() else { unreachable!("three operands") };
         let names = [a, b, c];
         let next: [u32; 3] = step.next().try_into().expect("three operands");
-        let (k, d) = self.overwritten(names, next);
+        let (k, d) = self.destination_operand(names, next);
 
-        // The others: two factors, or a factor and the addend.
+        // Other operands: two factors, or a factor and the addend.
         let others = match k {
             0 => [1, 2],
             1 => [0, 2],
@@ -145,12 +146,12 @@ impl<'l> Allocator<'l> {
         };
         let in_memory = |s: Source| matches!(s, Source::Memory(_));
         if others.iter().all(|o| in_memory(place(self, *o))) {
-            // The one that is read again sooner is loaded and stays.
+            // The operand that is read again sooner is loaded into a register.
             let sooner = if next[others[1]] < next[others[0]] { others[1] } else { others[0] };
-            self.loaded(names[sooner], next[sooner], 1 << d);
+            self.ensure_register(names[sooner], next[sooner], 1 << d);
         }
         let [x, y] = others.map(|o| place(self, o));
-        self.leave(step);
+        self.free_last_reads(step);
         let (form, first, last) = match (x, y) {
             (Source::Register(x), y) => {
                 (if k == 2 { Opcode::fused_231(sign) } else { Opcode::fused_213(sign) }, x, y)
@@ -164,10 +165,10 @@ impl<'l> Allocator<'l> {
         d
     }
 
-    /// The operand that the result is to take the place of, and a register that holds it and is nobody else's.
-    fn overwritten(&mut self, names: [Name; 3], next: [u32; 3]) -> (usize, u8) {
+    /// Returns the operand that the result replaces, in a register that no other number uses.
+    fn destination_operand(&mut self, names: [Name; 3], next: [u32; 3]) -> (usize, u8) {
         let found = |all: &Self, k: usize| all.register(names[k]);
-        // One that is read for the last time; or one that will be found in memory.
+        // An operand that is read for the last time, or that is also in memory.
         let dying = [2, 0, 1].into_iter().find(|&k| next[k] == NEVER && found(self, k).is_some());
         let clean = || {
             let clean = |k: &usize| found(self, *k).is_some() && self.home[names[*k] as usize].is_some();
@@ -175,10 +176,10 @@ impl<'l> Allocator<'l> {
         };
         if let Some(k) = dying.or_else(clean) {
             let r = self.register(names[k]).expect("it is in a register");
-            self.register[names[k] as usize] = NOWHERE;
+            self.register[names[k] as usize] = NO_REGISTER;
             return (k, r);
         }
-        // Else a copy of one in memory, or of the addend.
+        // Otherwise a copy of an operand in memory, or of the addend.
         let k = [2, 0, 1].into_iter().filter(|&k| found(self, k).is_none()).max_by_key(|&k| next[k]);
         let d = self.take(self.bits(&names));
         match k {
@@ -195,14 +196,14 @@ impl<'l> Allocator<'l> {
         (k.unwrap_or(2), d)
     }
 
-    /// The machine's maximum is its second operand where either is NaN. Taken both ways it is NaN at least once,
-    /// and a NaN joined with any bits is a NaN; of equal numbers only zeros differ, and joined they are -0.
+    /// The machine's maximum returns its second operand if either is NaN. In both orders the result is NaN at least
+    /// once, and NaN ORed with any bits is NaN. Equal numbers differ only for zeros, and ORed they are -0.
     fn larger(&mut self, step: &Step) -> u8 {
         let &[a, b] = step.operands() else { unreachable!("two operands") };
-        let a = self.loaded(a, step.next()[0], self.bits(&[b]));
-        let b = self.loaded(b, step.next()[1], 1 << a);
+        let a = self.ensure_register(a, step.next()[0], self.bits(&[b]));
+        let b = self.ensure_register(b, step.next()[1], 1 << a);
         let other = self.take(1 << a | 1 << b);
-        self.leave(step);
+        self.free_last_reads(step);
         let d = self.take(1 << other);
         self.assembler.vector(Opcode::MAX, other, a, Source::Register(b));
         self.assembler.vector(Opcode::MAX, d, b, Source::Register(a));
@@ -211,10 +212,10 @@ impl<'l> Allocator<'l> {
         d
     }
 
-    /// A call leaves no register as it was: all that is needed later goes to memory before.
+    /// Emits a call. A call changes all registers: numbers that are read later are stored before.
     fn call(&mut self, call: hardpoint_tape::Call, step: &Step) -> u8 {
         let cells = [self.frame.scratch(0), self.frame.scratch(self.frame.vector_bytes())];
-        // Those in registers first, since loading the others takes one.
+        // Operands in registers first, because loading the others takes a register.
         for (name, cell) in step.operands().iter().zip(cells) {
             if let Some(r) = self.register(*name) {
                 self.assembler.store(cell, r);
@@ -226,7 +227,7 @@ impl<'l> Allocator<'l> {
                 Source::Memory(home) => Some((home, cell)),
             })
             .collect();
-        self.leave(step);
+        self.free_last_reads(step);
         for r in 0..self.holders.len() as u8 {
             if self.free & 1 << r == 0 {
                 self.evict(r);
@@ -243,7 +244,7 @@ impl<'l> Allocator<'l> {
         d
     }
 
-    /// The result of an instruction is in this register.
+    /// Records that the result of an instruction is in this register, and stores its outputs.
     fn finish(&mut self, value: Name, r: u8) {
         let lowered = self.lowered;
         self.register[value as usize] = r;
@@ -254,21 +255,21 @@ impl<'l> Allocator<'l> {
             self.home[value as usize].get_or_insert(at);
         }
         if lowered.first[value as usize] == NEVER {
-            self.register[value as usize] = NOWHERE;
+            self.register[value as usize] = NO_REGISTER;
             self.free |= 1 << r;
         }
         self.free_slots.append(&mut self.last_read);
     }
 
-    /// Operands that are read for the last time leave their registers and slots.
-    fn leave(&mut self, step: &Step) {
+    /// Frees the registers and slots of operands that are read for the last time.
+    fn free_last_reads(&mut self, step: &Step) {
         for (name, next) in step.operands().iter().zip(step.next()) {
             if *next != NEVER {
                 continue;
             }
             if let Some(r) = self.register(*name) {
                 self.free |= 1 << r;
-                self.register[*name as usize] = NOWHERE;
+                self.register[*name as usize] = NO_REGISTER;
             }
             let spilled = |m: &mut Memory| self.lowered.names.is_value(*name) && m.base == Gpr::Rcx;
             if let Some(slot) = self.home[*name as usize].take_if(spilled) {
@@ -278,7 +279,7 @@ impl<'l> Allocator<'l> {
     }
 
     fn register(&self, name: Name) -> Option<u8> {
-        Some(self.register[name as usize]).filter(|r| *r != NOWHERE)
+        Some(self.register[name as usize]).filter(|r| *r != NO_REGISTER)
     }
 
     fn source(&self, name: Name) -> Source {
@@ -288,13 +289,13 @@ impl<'l> Allocator<'l> {
         }
     }
 
-    /// The registers of these numbers, as bits.
+    /// Returns the registers of these numbers, as bits.
     fn bits(&self, names: &[Name]) -> u32 {
         names.iter().filter_map(|n| self.register(*n)).fold(0, |bits, r| bits | 1 << r)
     }
 
-    /// A register that holds the number, which is loaded if need be; those in `keep` stay as they are.
-    fn loaded(&mut self, name: Name, next: u32, keep: u32) -> u8 {
+    /// Returns a register with the number, loaded if necessary, without changing those in `keep`.
+    fn ensure_register(&mut self, name: Name, next: u32, keep: u32) -> u8 {
         if let Some(r) = self.register(name) {
             return r;
         }
@@ -311,7 +312,7 @@ impl<'l> Allocator<'l> {
         self.counts.loads += 1;
     }
 
-    /// A register whose contents nobody needs; it is none of `keep`.
+    /// Returns a free register that is not in `keep`, after eviction if necessary.
     fn take(&mut self, keep: u32) -> u8 {
         let free = self.free & !keep;
         let r = if free != 0 {
@@ -331,7 +332,7 @@ impl<'l> Allocator<'l> {
         r
     }
 
-    /// Moves the contents of a register to memory.
+    /// Evicts a number from a register, with a store if it has no location in memory.
     fn evict(&mut self, r: u8) {
         let name = self.holders[usize::from(r)].name;
         if self.home[name as usize].is_none() {
@@ -343,6 +344,6 @@ impl<'l> Allocator<'l> {
             self.counts.spills += 1;
             self.home[name as usize] = Some(slot);
         }
-        self.register[name as usize] = NOWHERE;
+        self.register[name as usize] = NO_REGISTER;
     }
 }

@@ -4,7 +4,7 @@ use hardpoint_tape::Call;
 
 use crate::Width;
 
-/// The arguments of a call, and in place of the first its result: the first thing in the scratch.
+/// Arguments of a call, at the start of the scratch memory; the result replaces the first one.
 type Cell<const N: usize> = [[f64; N]; 2];
 
 /// Evaluates the function for every lane.
@@ -15,7 +15,7 @@ extern "sysv64" fn lane_by_lane<const N: usize>(cell: &mut Cell<N>, call: &Call)
     }
 }
 
-/// Address to call with the cell's address and `which(call)`.
+/// Returns the address of the function that is called with the address of the cell and `which(call)`.
 pub fn address(width: Width) -> u64 {
     let function = match width {
         Width::Avx2 => lane_by_lane::<4> as extern "sysv64" fn(&mut Cell<4>, &Call) as usize,
@@ -24,7 +24,7 @@ pub fn address(width: Width) -> u64 {
     function as u64
 }
 
-/// Address of the constant that identifies the function to the called code.
+/// Returns the address of the constant that identifies the function to the called code.
 pub fn which(call: Call) -> u64 {
     let forever: &'static Call = Call::ALL.iter().find(|c| **c == call).expect("the list has all of them");
     std::ptr::from_ref(forever).expose_provenance() as u64

@@ -1,10 +1,10 @@
-//! Conditions on a program under which its code reads and writes only the memory it is given.
+//! Conditions on a program under which its code reads and writes only the given memory.
 
 use hardpoint_tape::{Operand, Program};
 
 use crate::{MOST, PARTS, UnsupportedProgram};
 
-/// Every offset fits into an instruction.
+/// Checks that every offset fits into an instruction.
 pub fn size(program: &Program) -> Result<(), UnsupportedProgram> {
     let all = [
         ("inputs", program.inputs),
@@ -19,7 +19,7 @@ pub fn size(program: &Program) -> Result<(), UnsupportedProgram> {
     }
 }
 
-/// Every operand exists, and values are computed before they are read.
+/// Checks that every operand exists, and that values are computed before they are read.
 pub fn operands(program: &Program) {
     let check = |operand, values: usize, what: &dyn Fn() -> String| {
         let (k, count) = match operand {
@@ -28,7 +28,7 @@ pub fn operands(program: &Program) {
             Operand::Uniform(k) => (k, program.uniforms),
             Operand::Constant(k) => (k, program.constants.len()),
         };
-        assert!((k as usize) < count, "{} reads {operand:?}, but there are {count} of these by then", what());
+        assert!((k as usize) < count, "{} reads {operand:?}, but only {count} of these exist", what());
     };
     for (i, instruction) in program.instructions.iter().enumerate() {
         for operand in instruction.operands() {
@@ -40,13 +40,13 @@ pub fn operands(program: &Program) {
     }
 }
 
-/// Number of outputs each part has.
+/// Returns the number of outputs of each part.
 pub fn parts(program: &Program, ends: [usize; PARTS - 1]) -> [usize; PARTS] {
     let count = program.outputs.len();
     let [first, second] = ends;
     assert!(
         first <= second && second <= count,
-        "parts of {count} outputs end at {first} and {second}: these do not ascend, or lie beyond the outputs"
+        "parts of {count} outputs end at {first} and {second}: the ends must ascend and not exceed the number of outputs"
     );
     [first, second - first, count - second]
 }

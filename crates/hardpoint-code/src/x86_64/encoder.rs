@@ -1,10 +1,10 @@
-//! Machine instructions as bytes: the few that straight-line programs need, as VEX (AVX2) and EVEX (AVX-512).
+//! Encoder of machine instructions: the subset for straight-line programs, as VEX (AVX2) and EVEX (AVX-512).
 //!
 //! Encodings are those of Intel's manual, volume 2; the tests read them back with a decoder.
 
 use crate::Width;
 
-/// A general register.
+/// General-purpose register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gpr {
     Rax = 0,
@@ -19,34 +19,34 @@ pub enum Gpr {
     R11 = 11,
 }
 
-/// A number in memory.
+/// Number in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Memory {
     pub base: Gpr,
-    /// In bytes.
+    /// Offset, bytes.
     pub offset: i32,
-    /// One scalar that represents all lanes: AVX-512 only.
+    /// True for one scalar that is broadcast to all lanes: AVX-512 only.
     pub broadcast: bool,
 }
 
-/// The last operand of a vector instruction.
+/// Last operand of a vector instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     Register(u8),
     Memory(Memory),
 }
 
-/// A vector instruction on doubles.
+/// Vector instruction on doubles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Opcode {
-    /// The opcode map: 1 is 0F, 2 is 0F38, 3 is 0F3A.
+    /// Opcode map: 1 is 0F, 2 is 0F38, 3 is 0F3A.
     map: u8,
     code: u8,
     /// VEX.W; EVEX.W is always one.
     wide: bool,
-    /// The byte that follows.
+    /// Immediate byte.
     immediate: Option<u8>,
-    /// Operand in memory is one scalar.
+    /// True if the operand in memory is one scalar.
     scalar: bool,
 }
 
@@ -63,11 +63,11 @@ impl Opcode {
     pub const MUL: Self = Self::of(1, 0x59);
     pub const SUB: Self = Self::of(1, 0x5c);
     pub const DIV: Self = Self::of(1, 0x5e);
-    /// The larger, or the second operand where either is NaN or both are zero.
+    /// Maximum; the second operand if either is NaN or both are zero.
     pub const MAX: Self = Self::of(1, 0x5f);
-    /// To the nearest integer, ties to even, whatever the rounding mode; inexact is no exception.
+    /// Rounding to the nearest integer, ties to even, independent of the rounding mode, without the inexact exception.
     pub const ROUND: Self = Self { immediate: Some(8), ..Self::of(3, 0x09) };
-    /// From memory, wherever it is.
+    /// Load from unaligned memory.
     const LOAD: Self = Self::of(1, 0x10);
     const STORE: Self = Self::of(1, 0x11);
     const MOVE: Self = Self::of(1, 0x28);
@@ -89,7 +89,7 @@ impl Opcode {
     }
 }
 
-/// The signs of a fused multiplication and addition.
+/// Signs of a fused multiplication and addition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sign {
     /// `a b + c`.
@@ -106,19 +106,19 @@ pub enum Sign {
 #[derive(Clone, Copy, Debug)]
 pub struct Label(usize);
 
-/// A jump whose aim is not known yet.
+/// Jump whose target is not known yet.
 #[derive(Debug)]
 #[must_use]
 pub struct Forward(usize);
 
-/// When a jump is taken.
+/// Condition of a jump.
 #[derive(Clone, Copy, Debug)]
-pub enum When {
+pub enum Condition {
     Zero = 4,
     NotZero = 5,
 }
 
-/// Code as it grows.
+/// Assembler: code under construction.
 #[derive(Debug)]
 pub struct Assembler {
     width: Width,
@@ -132,7 +132,7 @@ impl Assembler {
         Self { width, bytes: Vec::new(), count: 0 }
     }
 
-    /// `d = a op s`. Instructions of one operand have `a` = 0.
+    /// Emits `d = a op s`. Instructions of one operand have `a` = 0.
     pub fn vector(&mut self, op: Opcode, d: u8, a: u8, s: Source) {
         match self.width {
             Width::Avx512 => self.evex(op, d, a, s),
@@ -142,7 +142,7 @@ impl Assembler {
         self.count += 1;
     }
 
-    /// From memory into a register; `broadcast` fills all lanes.
+    /// Emits a load from memory into a register; `broadcast` fills all lanes.
     pub fn load(&mut self, d: u8, m: Memory) {
         let op = if m.broadcast { Opcode::BROADCAST } else { Opcode::LOAD };
         self.vector(op, d, 0, Source::Memory(Memory { broadcast: false, ..m }));
@@ -152,7 +152,7 @@ impl Assembler {
         self.vector(Opcode::STORE, s, 0, Source::Memory(m));
     }
 
-    /// From register to register.
+    /// Emits a copy from register to register.
     pub fn copy(&mut self, d: u8, s: u8) {
         self.vector(Opcode::MOVE, d, 0, Source::Register(s));
     }
@@ -200,7 +200,7 @@ impl Assembler {
         self.operand(d & 7, s, 1);
     }
 
-    /// The register or the place in memory; offsets are short where they are small multiples of `unit`.
+    /// Emits the register or memory operand; offsets are short if they are small multiples of `unit`.
     fn operand(&mut self, reg: u8, s: Source, unit: i32) {
         match s {
             Source::Register(r) => self.bytes.push(0b11 << 6 | reg << 3 | r & 7),
@@ -221,29 +221,29 @@ impl Assembler {
         }
     }
 
-    /// The upper halves of registers are zero: code without AVX goes on at full speed.
+    /// Zeroes the upper halves of registers, so that code without AVX continues at full speed.
     pub fn zero_upper(&mut self) {
         self.raw(&[0xc5, 0xf8, 0x77]);
     }
 
-    /// `r += by`, with flags.
+    /// Emits `r += by`, with flags.
     pub fn add(&mut self, r: Gpr, by: i32) {
         let [a, b, c, d] = by.to_le_bytes();
         self.raw(&[0x48 | r as u8 >> 3, 0x81, 0b11 << 6 | r as u8 & 7, a, b, c, d]);
     }
 
-    /// `r += r`.
+    /// Emits `r += r`.
     pub fn double(&mut self, r: Gpr) {
         let (high, low) = (r as u8 >> 3, r as u8 & 7);
         self.raw(&[0x48 | high << 2 | high, 0x01, 0b11 << 6 | low << 3 | low]);
     }
 
-    /// `r -= 1`, with flags.
+    /// Emits `r -= 1`, with flags.
     pub fn decrement(&mut self, r: Gpr) {
         self.raw(&[0x48 | r as u8 >> 3, 0xff, 0b11 << 6 | 1 << 3 | r as u8 & 7]);
     }
 
-    /// Flags of the last bit of `r`.
+    /// Emits a test of the last bit of `r`, with flags.
     pub fn test_odd(&mut self, r: Gpr) {
         self.raw(&[0x40 | r as u8 >> 3, 0xf6, 0b11 << 6 | r as u8 & 7, 1]);
     }
@@ -256,17 +256,17 @@ impl Assembler {
         self.raw(&[0x40 | r as u8 >> 3, 0x58 | r as u8 & 7]);
     }
 
-    /// `d` = the address `base + offset`.
+    /// Emits `d` = the address `base + offset`.
     pub fn address(&mut self, d: Gpr, base: Gpr, offset: i32) {
         self.general(0x8d, d, base, offset);
     }
 
-    /// `d` = what is at `base + offset`.
+    /// Emits `d` = the word at `base + offset`.
     pub fn read(&mut self, d: Gpr, base: Gpr, offset: i32) {
         self.general(0x8b, d, base, offset);
     }
 
-    /// An instruction on `d` and the place `base + offset`.
+    /// Emits an instruction on `d` and memory at `base + offset`.
     fn general(&mut self, code: u8, d: Gpr, base: Gpr, offset: i32) {
         let (d, base) = (d as u8, base as u8);
         assert!(base & 7 != 4, "rsp is no base of operands");
@@ -280,7 +280,7 @@ impl Assembler {
         self.raw(&bytes);
     }
 
-    /// Calls what `r` points to.
+    /// Emits a call of the function at address `r`.
     pub fn call(&mut self, r: Gpr) {
         self.raw(&[0x40 | r as u8 >> 3, 0xff, 0b11 << 6 | 2 << 3 | r as u8 & 7]);
     }
@@ -289,28 +289,28 @@ impl Assembler {
         self.raw(&[0xc3]);
     }
 
-    /// This place.
+    /// Returns the current position.
     pub fn here(&self) -> Label {
         Label(self.bytes.len())
     }
 
-    pub fn jump_back(&mut self, when: When, to: Label) {
+    pub fn jump_back(&mut self, when: Condition, to: Label) {
         let Forward(at) = self.jump(when);
-        self.aim(at, to.0);
+        self.patch_jump(at, to.0);
     }
 
-    pub fn jump(&mut self, when: When) -> Forward {
+    pub fn jump(&mut self, when: Condition) -> Forward {
         self.raw(&[0x0f, 0x80 | when as u8, 0, 0, 0, 0]);
         Forward(self.bytes.len())
     }
 
-    /// The jump comes here.
-    pub fn land(&mut self, Forward(at): Forward) {
-        self.aim(at, self.bytes.len());
+    /// Sets the target of a jump to the current position.
+    pub fn bind(&mut self, Forward(at): Forward) {
+        self.patch_jump(at, self.bytes.len());
     }
 
-    /// Jumps are reported how far the aim is from their end, `at`.
-    fn aim(&mut self, at: usize, aim: usize) {
+    /// Writes the distance of a jump: from its end, `at`, to its target.
+    fn patch_jump(&mut self, at: usize, aim: usize) {
         let by = i32::try_from(aim as i64 - at as i64).expect("code is below 2 GB");
         self.bytes[at - 4..at].copy_from_slice(&by.to_le_bytes());
     }

@@ -6,19 +6,19 @@
 //! fn(inputs: rdi, uniforms: rsi, parts: rdx, scratch: rcx, constants: r8, groups: r9)
 //! ```
 //!
-//! The parts are three addresses in memory. The entry brings those of parts that are not empty to rdx, r10 and r11;
-//! nobody reads the others.
+//! The parts are three addresses in memory. The entry loads the addresses of parts that are not empty into rdx, r10 and
+//! r11; the others are not read.
 //!
-//! All vector registers are its own; of the general ones it changes these, rax and flags. Those with addresses point a
-//! little into what they stand for, so that short offsets reach both ways.
+//! The code changes all vector registers, these general registers, rax and the flags. Address registers point some
+//! bytes into their memory, so that short offsets reach in both directions.
 //!
-//! AVX-512 goes through the program once for each group, AVX2 twice: for the first four lanes and for the others.
-//! AVX2 has no operands of one scalar for all lanes, so that constants come four times, and uniforms are spread over
-//! the scratch before the first group.
+//! AVX-512 runs the program once for each group, AVX2 twice: for the first four lanes and for the others. AVX2 has no
+//! broadcast operands, so constants are stored four times, and uniforms are spread in the scratch memory before the
+//! first group.
 
 use hardpoint_tape::Program;
 
-use super::encoder::{Assembler, Gpr, Memory, When};
+use super::encoder::{Assembler, Condition, Gpr, Memory};
 use super::lower::{LoweredProgram, NEVER, Name, Names};
 use crate::{PARTS, Width};
 
@@ -53,7 +53,7 @@ impl Frame {
         self.width
     }
 
-    /// Number of vector registers.
+    /// Returns the number of vector registers.
     pub fn registers(&self) -> usize {
         match self.width {
             Width::Avx2 => 16,
@@ -61,7 +61,7 @@ impl Frame {
         }
     }
 
-    /// The size of a vector.
+    /// Returns the size of a vector, bytes.
     pub fn vector_bytes(&self) -> i32 {
         match self.width {
             Width::Avx2 => 32,
@@ -69,7 +69,7 @@ impl Frame {
         }
     }
 
-    /// Initial location of a number; `None` for a value.
+    /// Returns the initial location of a number; `None` for a value.
     pub fn home(&self, name: Name) -> Option<Memory> {
         let n = self.names;
         let scalar = self.width == Width::Avx512;
@@ -82,7 +82,7 @@ impl Frame {
         })
     }
 
-    /// Size of a constant.
+    /// Returns the size of a constant, bytes.
     pub fn constant_bytes(&self) -> i32 {
         match self.width {
             Width::Avx2 => 32,
@@ -101,13 +101,13 @@ impl Frame {
         unreachable!("the parts are all the outputs")
     }
 
-    /// The parts that are not empty: which, its register, and how many outputs it has.
+    /// Returns the parts that are not empty: index, register, and number of outputs.
     fn parts(&self) -> impl DoubleEndedIterator<Item = (i32, Gpr, i32)> {
         let all: [_; PARTS] = std::array::from_fn(|p| (p as i32, OUTPUTS[p], self.outputs[p]));
         all.into_iter().filter(|(_, _, outputs)| *outputs > 0)
     }
 
-    /// The scratch begins with the two cells of calls; then come spread uniforms, then slots.
+    /// Returns the scratch memory at an offset: two cells for calls, then spread uniforms, then slots.
     pub fn scratch(&self, offset: i32) -> Memory {
         self.at(Gpr::Rcx, offset, false)
     }
@@ -127,7 +127,7 @@ impl Frame {
         }
     }
 
-    /// Scratch memory of a run, in bytes.
+    /// Returns the size of the scratch memory of a run, bytes.
     pub fn scratch_bytes(&self, slots: usize) -> usize {
         self.slots_at() as usize + self.vector_bytes() as usize * slots
     }
@@ -136,7 +136,7 @@ impl Frame {
         Memory { base, offset: offset - self.ahead(base), broadcast }
     }
 
-    /// Offset of a register into the memory that it represents: 128 short offsets.
+    /// Returns the offset of a register into its memory: 128 short offsets.
     fn ahead(&self, base: Gpr) -> i32 {
         match (self.width, base) {
             (Width::Avx512, Gpr::Rsi | Gpr::R8) => 128 * 8,
@@ -145,14 +145,14 @@ impl Frame {
         }
     }
 
-    /// All the code: `body` adds what is done for one vector of each number.
+    /// Emits all code; `body` adds the instructions for one vector of each number.
     pub fn around<T>(
         &self,
         lowered: &LoweredProgram,
         body: impl FnOnce(Assembler) -> (Assembler, T),
     ) -> (Assembler, T) {
         let mut a = Assembler::new(self.width);
-        // The first part's last: it takes the place of where the others are found.
+        // The first part comes last: its register holds the addresses of the others before.
         for (p, base, _) in self.parts().rev() {
             a.read(base, Gpr::Rdx, 8 * p);
         }
@@ -176,20 +176,20 @@ impl Frame {
                 }
             }
             Width::Avx2 => {
-                // An even number of halves to go: this was the first.
+                // An even number of halves remains: this was the first half.
                 a.test_odd(Gpr::R9);
-                let first = a.jump(When::Zero);
+                let first = a.jump(Condition::Zero);
                 for (base, stride) in &strides {
                     a.add(*base, stride - 64);
                 }
-                a.land(first);
+                a.bind(first);
                 for (base, _) in strides {
                     a.add(base, 32);
                 }
             }
         }
         a.decrement(Gpr::R9);
-        a.jump_back(When::NotZero, again);
+        a.jump_back(Condition::NotZero, again);
         a.zero_upper();
         a.ret();
         (a, result)
@@ -206,13 +206,13 @@ impl Frame {
     }
 }
 
-/// Calls `function(cell, argument)`, which may change all vector registers.
+/// Emits a call of `function(cell, argument)`, which can change all vector registers.
 pub fn call(a: &mut Assembler, cell: Memory, argument: u64, function: u64) {
     a.zero_upper();
     for r in SAVED {
         a.push(r);
     }
-    // With the return address these are nine: one more, and the stack is aligned to 16 bytes.
+    // With the return address these are nine words; one more aligns the stack to 16 bytes.
     a.add(Gpr::Rsp, -8);
     a.address(Gpr::Rdi, cell.base, cell.offset);
     a.set(Gpr::Rsi, argument);

@@ -1,13 +1,13 @@
-//! A program in the terms of the machine: what is needed of it, and where each number is read next.
+//! Lowered programs: live instructions, with the next reader of each number.
 
 use hardpoint_tape::{Call, Instruction, Operand, Program};
 
 use super::encoder::{Opcode, Sign};
 
-/// The next reader of a number that nobody reads any more.
+/// Next reader of a number without further readers.
 pub const NEVER: u32 = u32::MAX;
 
-/// A number by one index: values by their instruction, then inputs, uniforms, constants, and the two masks for signs.
+/// Index of a number: values by their instruction, then inputs, uniforms, constants, and the two sign masks.
 pub type Name = u32;
 
 /// Operation of an instruction.
@@ -25,19 +25,19 @@ pub enum Action {
     Call(Call),
 }
 
-/// One instruction.
+/// Lowered instruction.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
     pub action: Action,
     operands: [Name; 3],
     next: [u32; 3],
     count: u8,
-    /// True if an output follows from it.
+    /// True if an output depends on it.
     pub needed: bool,
 }
 
 impl Step {
-    /// Operands that it reads.
+    /// Operands.
     pub fn operands(&self) -> &[Name] {
         &self.operands[..usize::from(self.count)]
     }
@@ -54,9 +54,9 @@ pub struct Names {
     pub inputs: Name,
     pub uniforms: Name,
     pub constants: Name,
-    /// Has the sign's bit only.
+    /// Mask of the sign bit.
     pub sign: Name,
-    /// Has all bits but the sign's.
+    /// Mask of all other bits.
     pub magnitude: Name,
 }
 
@@ -88,7 +88,7 @@ impl Names {
     }
 }
 
-/// A program that can be turned into code from front to back.
+/// Program that is ready for code generation from front to back.
 #[derive(Debug)]
 pub struct LoweredProgram {
     pub names: Names,
@@ -102,7 +102,7 @@ pub struct LoweredProgram {
 }
 
 impl LoweredProgram {
-    /// Expects a program whose operands exist.
+    /// Lowers a program. All of its operands must exist.
     pub fn new(program: &Program) -> Self {
         let names = Names::new(program);
         let mut steps: Vec<Step> = program.instructions.iter().map(|&i| step(&names, i)).collect();
@@ -129,7 +129,7 @@ impl LoweredProgram {
         Self { names, steps, first, outputs, by_value }
     }
 
-    /// The outputs of values from `from` on that are this value; values are requested in their order.
+    /// Returns the outputs from index `from` on that are this value; call it with values in their order.
     pub fn outputs_of(&self, value: Name, from: &mut usize) -> &[(Name, u32)] {
         let rest = &self.by_value[*from..];
         let count = rest.iter().take_while(|(n, _)| *n == value).count();

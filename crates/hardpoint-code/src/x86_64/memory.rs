@@ -1,4 +1,4 @@
-//! Memory that can be executed: first written, then made executable, never both at once.
+//! Executable memory: first written, then made executable, never both at once.
 
 use std::ffi::c_void;
 use std::ptr::NonNull;
@@ -6,7 +6,7 @@ use std::ptr::NonNull;
 use rustix::io::Errno;
 use rustix::mm::{MapFlags, MprotectFlags, ProtFlags, mmap_anonymous, mprotect, munmap};
 
-/// Pages of their own that hold code, until they are dropped.
+/// Private pages with code, unmapped on drop.
 #[derive(Debug)]
 pub struct Executable {
     start: NonNull<c_void>,
@@ -40,7 +40,7 @@ impl Executable {
         Ok(new)
     }
 
-    /// The first byte of the code.
+    /// Returns the address of the first byte of the code.
     pub fn start(&self) -> *const c_void {
         self.start.as_ptr()
     }

@@ -18,7 +18,8 @@ use frame::Frame;
 use lower::LoweredProgram;
 use memory::Executable;
 
-/// Machine code as a function: inputs, uniforms, where the parts of the outputs are, scratch, constants, groups.
+/// Machine code as a function of inputs, uniforms, addresses of the output parts, scratch, constants, and number of
+/// groups.
 ///
 /// Reads `groups` times the program's inputs, its uniforms and constants, and the addresses of parts that are not
 /// empty; writes and reads `groups` times the outputs of each such part there, and the scratch.
@@ -31,11 +32,11 @@ type Entry = unsafe extern "sysv64" fn(
     usize,
 );
 
-/// Code that can be run.
+/// Executable code.
 #[derive(Debug)]
 pub struct Machine {
     executable: Executable,
-    /// As wide as the code wants them, with the masks for signs.
+    /// Constants, replicated to the width of the code, followed by the sign masks.
     constants: Vec<Line>,
     /// Scratch memory of a run.
     scratch: usize,
@@ -45,16 +46,16 @@ pub struct Machine {
     outputs: [usize; PARTS],
 }
 
-/// The widest that is here.
+/// Returns the widest available width.
 pub fn widest() -> Result<Width, UnsupportedProgram> {
     Width::ALL.into_iter().rev().find(|w| has(*w)).ok_or(UnsupportedProgram::Cpu)
 }
 
-/// True if CPU and system have it.
+/// Returns true if the CPU and the system support a width.
 pub fn has(width: Width) -> bool {
     match width {
         Width::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
-        // The bits of doubles are combined by DQ.
+        // DQ has the bitwise operations on doubles.
         Width::Avx512 => is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq"),
     }
 }
@@ -92,12 +93,12 @@ impl Machine {
         uniforms: &[f64],
         outputs: [&mut [Lanes]; PARTS],
     ) {
-        assert_eq!(uniforms.len(), self.uniforms, "as many uniforms as the program has");
+        assert_eq!(uniforms.len(), self.uniforms, "the number of uniforms differs from that of the program");
         let Some(groups) = self.groups(outputs.each_ref().map(|part| part.len())) else { return };
         assert_eq!(
             Some(inputs.len()),
             groups.checked_mul(self.inputs),
-            "as many groups of inputs as of outputs"
+            "inputs and outputs have different numbers of groups"
         );
         if groups == 0 {
             return;
@@ -125,22 +126,30 @@ impl Machine {
         }
     }
 
-    /// Number of groups parts of these lengths are; nothing if the program has no outputs.
+    /// Returns the number of groups in parts of these lengths; `None` if the program has no outputs.
     fn groups(&self, lengths: [usize; PARTS]) -> Option<usize> {
         let mut groups = None;
         for (length, outputs) in lengths.into_iter().zip(self.outputs) {
             let Some(whole) = length.checked_div(outputs) else {
-                assert_eq!(length, 0, "nothing where a part has no outputs");
+                assert_eq!(length, 0, "outputs are given for a part without outputs");
                 continue;
             };
-            assert_eq!(length, whole * outputs, "whole groups of outputs");
-            assert_eq!(whole, *groups.get_or_insert(whole), "as many groups in every part of the outputs");
+            assert_eq!(
+                length,
+                whole * outputs,
+                "the number of outputs is not a multiple of that of the program"
+            );
+            assert_eq!(
+                whole,
+                *groups.get_or_insert(whole),
+                "parts of the outputs have different numbers of groups"
+            );
         }
         groups
     }
 }
 
-/// The constants, that many times each, and after them the masks for signs, as `lower::Names` counts them.
+/// Returns the constants, `times` times each, followed by the sign masks, in the order of `lower::Names`.
 fn spread(constants: &[f64], times: usize) -> Vec<Line> {
     let masks = [f64::from_bits(1 << 63), f64::from_bits(!(1 << 63))];
     let all: Vec<f64> = constants.iter().chain(&masks).flat_map(|c| std::iter::repeat_n(*c, times)).collect();
@@ -151,7 +160,7 @@ fn spread(constants: &[f64], times: usize) -> Vec<Line> {
     lines
 }
 
-/// The bytes of the code, for that many outputs in each part.
+/// Returns the bytes of the code for these numbers of outputs in each part.
 fn emit(program: &Program, outputs: [usize; PARTS], width: Width) -> (Vec<u8>, Frame, Counts) {
     let lowered = LoweredProgram::new(program);
     let frame = Frame::new(program, outputs, lowered.names, width);

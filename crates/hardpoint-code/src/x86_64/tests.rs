@@ -10,15 +10,15 @@ use iced_x86::{Decoder, DecoderOptions, InstructionInfoFactory, Mnemonic, OpAcce
 use super::*;
 use random::{Random, Shape};
 
-/// Bytes that an instruction may touch, from the register's place on.
+/// Bytes that an instruction may access, relative to the register.
 struct Region {
     base: Register,
     bytes: i64,
     written: bool,
 }
 
-/// Every operand in memory lies in what `run` has checked the length of, and only outputs and scratch are written.
-/// Slots of the scratch are written before they are read, and so are outputs. Where empty parts are nobody asks.
+/// Every operand in memory is in an array whose length `run` has checked, and only outputs and scratch memory are
+/// written. Slots and outputs are written before they are read. Addresses of empty parts are not read.
 fn holds(program: &Program, ends: [usize; PARTS - 1], width: Width) {
     let outputs = check::parts(program, ends);
     let (bytes, frame, counts) = emit(program, outputs, width);

@@ -17,7 +17,7 @@ fn two_inputs_one_uniform_two_outputs() -> Program {
 }
 
 /// Panic message of `run` for these numbers of inputs, uniforms and outputs; `None` if it runs.
-fn said(inputs: usize, uniforms: usize, outputs: usize) -> Option<String> {
+fn panic_message(inputs: usize, uniforms: usize, outputs: usize) -> Option<String> {
     let code = Code::new(&two_inputs_one_uniform_two_outputs()).expect("machine code is here");
     let run = || {
         let mut outputs = vec![[0.0; LANES]; outputs];
@@ -27,19 +27,19 @@ fn said(inputs: usize, uniforms: usize, outputs: usize) -> Option<String> {
     Some(caught.downcast_ref::<String>().expect("a message").lines().next().unwrap().to_string())
 }
 
-fn is_here() -> bool {
-    Width::ALL.into_iter().any(Width::is_here)
+fn is_available() -> bool {
+    Width::ALL.into_iter().any(Width::is_available)
 }
 
 #[test]
-fn arrays_of_other_lengths_are_refused() {
-    if !is_here() {
+fn arrays_of_wrong_lengths_panic() {
+    if !is_available() {
         return;
     }
-    assert_eq!([said(0, 1, 0), said(2, 1, 2), said(6, 1, 6)], [None, None, None]);
-    const UNIFORMS: &str = "as many uniforms as the program has";
-    const INPUTS: &str = "as many groups of inputs as of outputs";
-    const OUTPUTS: &str = "whole groups of outputs";
+    assert_eq!([panic_message(0, 1, 0), panic_message(2, 1, 2), panic_message(6, 1, 6)], [None, None, None]);
+    const UNIFORMS: &str = "the number of uniforms differs from that of the program";
+    const INPUTS: &str = "inputs and outputs have different numbers of groups";
+    const OUTPUTS: &str = "the number of outputs is not a multiple of that of the program";
     for (inputs, uniforms, outputs, about) in [
         (2, 0, 2, UNIFORMS),
         (2, 2, 2, UNIFORMS),
@@ -53,16 +53,20 @@ fn arrays_of_other_lengths_are_refused() {
         (2, 1, 3, OUTPUTS),
         (4, 1, 3, OUTPUTS),
     ] {
-        let said = said(inputs, uniforms, outputs);
+        let panic_message = panic_message(inputs, uniforms, outputs);
         assert!(
-            said.as_ref().is_some_and(|s| s.contains(about)),
-            "{inputs}, {uniforms}, {outputs}: {said:?}"
+            panic_message.as_ref().is_some_and(|s| s.contains(about)),
+            "{inputs}, {uniforms}, {outputs}: {panic_message:?}"
         );
     }
 }
 
 /// Panic message of `run_in_parts` for code with these ends of parts and arrays of these lengths; `None` if it runs.
-fn said_in_parts(ends: [usize; PARTS - 1], inputs: usize, lengths: [usize; PARTS]) -> Option<String> {
+fn panic_message_in_parts(
+    ends: [usize; PARTS - 1],
+    inputs: usize,
+    lengths: [usize; PARTS],
+) -> Option<String> {
     let program = two_inputs_one_uniform_two_outputs();
     let code = Code::in_parts(&program, ends).expect("machine code is here");
     let run = || {
@@ -79,8 +83,8 @@ fn said_in_parts(ends: [usize; PARTS - 1], inputs: usize, lengths: [usize; PARTS
 }
 
 #[test]
-fn parts_of_other_lengths_are_refused() {
-    if !is_here() {
+fn parts_of_wrong_lengths_panic() {
+    if !is_available() {
         return;
     }
     for (ends, inputs, lengths) in [
@@ -91,36 +95,36 @@ fn parts_of_other_lengths_are_refused() {
         ([0, 0], 4, [0, 0, 4]),
         ([2, 2], 4, [4, 0, 0]),
     ] {
-        assert_eq!(said_in_parts(ends, inputs, lengths), None, "{ends:?}, {inputs}, {lengths:?}");
+        assert_eq!(panic_message_in_parts(ends, inputs, lengths), None, "{ends:?}, {inputs}, {lengths:?}");
     }
-    const EMPTY: &str = "nothing where a part has no outputs";
-    const WHOLE: &str = "whole groups of outputs";
-    const AS_MANY: &str = "as many groups in every part of the outputs";
-    const INPUTS: &str = "as many groups of inputs as of outputs";
+    const EMPTY: &str = "outputs are given for a part without outputs";
+    const WHOLE: &str = "the number of outputs is not a multiple of that of the program";
+    const DIFFERENT: &str = "parts of the outputs have different numbers of groups";
+    const INPUTS: &str = "inputs and outputs have different numbers of groups";
     for (ends, inputs, lengths, about) in [
         ([1, 2], 2, [1, 1, 1], EMPTY),
         ([0, 1], 2, [1, 1, 1], EMPTY),
         ([2, 2], 0, [0, 0, 2], EMPTY),
         ([0, 2], 2, [0, 3, 0], WHOLE),
         ([0, 0], 0, [0, 0, 1], WHOLE),
-        ([1, 2], 2, [1, 2, 0], AS_MANY),
-        ([1, 2], 4, [2, 1, 0], AS_MANY),
-        ([1, 2], 2, [1, 0, 0], AS_MANY),
-        ([1, 1], 2, [0, 0, 1], AS_MANY),
+        ([1, 2], 2, [1, 2, 0], DIFFERENT),
+        ([1, 2], 4, [2, 1, 0], DIFFERENT),
+        ([1, 2], 2, [1, 0, 0], DIFFERENT),
+        ([1, 1], 2, [0, 0, 1], DIFFERENT),
         ([1, 2], 2, [2, 2, 0], INPUTS),
         ([0, 1], 2, [0, 0, 0], INPUTS),
     ] {
-        let said = said_in_parts(ends, inputs, lengths);
+        let panic_message = panic_message_in_parts(ends, inputs, lengths);
         assert!(
-            said.as_ref().is_some_and(|s| s.contains(about)),
-            "{ends:?}, {inputs}, {lengths:?}: {said:?}"
+            panic_message.as_ref().is_some_and(|s| s.contains(about)),
+            "{ends:?}, {inputs}, {lengths:?}: {panic_message:?}"
         );
     }
 }
 
 #[test]
 fn code_for_several_parts_does_not_run_in_one() {
-    if !is_here() {
+    if !is_available() {
         return;
     }
     let program = two_inputs_one_uniform_two_outputs();
@@ -136,21 +140,24 @@ fn code_for_several_parts_does_not_run_in_one() {
 
 #[test]
 fn parts_that_end_nowhere_are_refused() {
-    if !is_here() {
+    if !is_available() {
         return;
     }
     let program = two_inputs_one_uniform_two_outputs();
     for [first, second] in [[2, 1], [1, 3], [3, 3], [0, usize::MAX], [usize::MAX, 2]] {
         let caught = std::panic::catch_unwind(|| Code::in_parts(&program, [first, second]))
             .expect_err("it is refused");
-        let said = caught.downcast_ref::<String>().expect("a message");
-        assert!(said.starts_with(&format!("parts of 2 outputs end at {first} and {second}: ")), "{said}");
+        let panic_message = caught.downcast_ref::<String>().expect("a message");
+        assert!(
+            panic_message.starts_with(&format!("parts of 2 outputs end at {first} and {second}: ")),
+            "{panic_message}"
+        );
     }
 }
 
 #[test]
 fn operands_that_do_not_exist_are_refused() {
-    let Some(width) = Width::ALL.into_iter().find(|w| w.is_here()) else { return };
+    let Some(width) = Width::ALL.into_iter().find(|w| w.is_available()) else { return };
     let one = |o| Instruction::Neg(o);
     let good = two_inputs_one_uniform_two_outputs();
     for wrong in [
@@ -167,15 +174,15 @@ fn operands_that_do_not_exist_are_refused() {
         let mut program = good.clone();
         program.instructions.push(wrong);
         let caught = std::panic::catch_unwind(|| Code::with(&program, width)).expect_err("it is refused");
-        let said = caught.downcast_ref::<String>().expect("a message");
-        assert!(said.starts_with("instruction 1 reads "), "{said}");
+        let panic_message = caught.downcast_ref::<String>().expect("a message");
+        assert!(panic_message.starts_with("instruction 1 reads "), "{panic_message}");
     }
     let mut program = good.clone();
     program.outputs.push(Operand::Value(1));
     let caught = std::panic::catch_unwind(|| Code::with(&program, width)).expect_err("it is refused");
     assert!(caught.downcast_ref::<String>().expect("a message").starts_with("output 2 reads "));
 
-    // What is ignored need not exist.
+    // Ignored operands need not exist.
     let mut program = good;
     program.instructions.push(Instruction::Call(Call::Tan, Operand::Value(0), Operand::Value(9)));
     assert!(Code::with(&program, width).is_ok());
@@ -183,42 +190,42 @@ fn operands_that_do_not_exist_are_refused() {
 
 #[test]
 fn programs_too_large_for_offsets_are_refused_in_words() {
-    let Some(width) = Width::ALL.into_iter().find(|w| w.is_here()) else { return };
+    let Some(width) = Width::ALL.into_iter().find(|w| w.is_available()) else { return };
     let program = Program { inputs: usize::MAX, ..Program::default() };
     let refused = Code::with(&program, width).expect_err("it is refused");
     assert_eq!(refused, UnsupportedProgram::Size { what: "inputs", count: usize::MAX });
     assert_eq!(
         refused.to_string(),
-        "the program has 18446744073709551615 inputs, more than machine code is made for (4194304)"
+        "the program has 18446744073709551615 inputs, more than machine code supports (4194304)"
     );
 }
 
 #[test]
 fn every_reason_is_a_sentence() {
     for (reason, text) in [
-        (UnsupportedProgram::Target, "machine code is made for x86-64 on Unix systems only"),
+        (UnsupportedProgram::Target, "machine code requires x86-64 and a Unix system"),
         (UnsupportedProgram::Cpu, "the CPU has neither AVX2 with fused multiplication nor AVX-512"),
         (UnsupportedProgram::Width(Width::Avx512), "the CPU has no AVX-512"),
     ] {
         assert_eq!(reason.to_string(), text);
     }
     let text = UnsupportedProgram::Memory { error: 13 }.to_string();
-    assert!(text.starts_with("the system does not let memory be made executable ("), "{text}");
+    assert!(text.starts_with("the system does not allow executable memory ("), "{text}");
 }
 
-/// If there is no code, there is a reason, and it is the right one.
+/// A missing width has the right reason.
 #[test]
 fn code_is_made_where_it_can_be() {
     let program = two_inputs_one_uniform_two_outputs();
     let made = Code::new(&program).map(|c| c.width());
     let target = cfg!(all(target_arch = "x86_64", unix));
-    match Width::ALL.into_iter().rev().find(|w| w.is_here()) {
+    match Width::ALL.into_iter().rev().find(|w| w.is_available()) {
         Some(widest) => assert_eq!(made, Ok(widest)),
         None => {
             assert_eq!(made, Err(if target { UnsupportedProgram::Cpu } else { UnsupportedProgram::Target }))
         }
     }
-    for width in Width::ALL.into_iter().filter(|w| !w.is_here()) {
+    for width in Width::ALL.into_iter().filter(|w| !w.is_available()) {
         let reason = if target { UnsupportedProgram::Width(width) } else { UnsupportedProgram::Target };
         assert_eq!(Code::with(&program, width).err(), Some(reason));
     }
@@ -241,12 +248,12 @@ fn nothing_beside_the_outputs_is_written_wherever_they_begin() {
         let program = random::program(&mut random, shape);
         let groups = 1 + random.below(3);
         let uniforms: Vec<f64> = (0..program.uniforms).map(|_| random.tame()).collect();
-        // Groups of lanes need not begin where vectors would: eight places, by as many scalars.
+        // Groups of lanes need not be aligned to vectors: eight offsets, one scalar apart.
         let shift = turn % LANES;
         let inputs: Vec<f64> = (0..shift + LANES * groups * program.inputs).map(|_| random.tame()).collect();
         let inputs = inputs[shift..].as_chunks().0;
         let expected = plain::evaluate(&program, groups, inputs, &uniforms);
-        for width in Width::ALL.into_iter().filter(|w| w.is_here()) {
+        for width in Width::ALL.into_iter().filter(|w| w.is_available()) {
             const MARK: f64 = 987.654;
             const MARGIN: usize = 100;
             let mut all = vec![MARK; 2 * MARGIN + shift + LANES * expected.len()];
@@ -258,7 +265,7 @@ fn nothing_beside_the_outputs_is_written_wherever_they_begin() {
             assert!(all[inside.clone()].iter().zip(expected.as_flattened()).all(same), "{width}");
             assert!(all[..inside.start].iter().chain(&all[inside.end..]).all(|x| *x == MARK), "{width}");
 
-            // The same in parts, with margins between them, the last one first.
+            // Outputs in parts, with margins between them, the last one first.
             let ends = random::ends(&mut random, program.outputs.len());
             let expected = plain::parts(&program, ends, &expected);
             let code = Code::in_parts_with(&program, ends, width).expect("the width is here");
@@ -290,7 +297,7 @@ fn nothing_beside_the_outputs_is_written_wherever_they_begin() {
     }
 }
 
-/// Number of bytes can be executed that are of no file, which Linux says.
+/// Number of executable bytes of anonymous mappings, from Linux.
 #[cfg(target_os = "linux")]
 fn executable_bytes() -> usize {
     let maps = std::fs::read_to_string("/proc/self/maps").expect("Linux has it");
@@ -305,7 +312,7 @@ fn executable_bytes() -> usize {
 #[test]
 #[cfg(target_os = "linux")]
 fn dropped_code_gives_its_pages_back() {
-    let Some(width) = Width::ALL.into_iter().find(|w| w.is_here()) else { return };
+    let Some(width) = Width::ALL.into_iter().find(|w| w.is_available()) else { return };
     let program = two_inputs_one_uniform_two_outputs();
     let before = executable_bytes();
     for _ in 0..5000 {
@@ -323,7 +330,7 @@ fn dropped_code_gives_its_pages_back() {
 #[test]
 #[cfg(target_os = "linux")]
 fn no_page_is_writable_and_executable() {
-    let Some(width) = Width::ALL.into_iter().find(|w| w.is_here()) else { return };
+    let Some(width) = Width::ALL.into_iter().find(|w| w.is_available()) else { return };
     let code = Code::with(&two_inputs_one_uniform_two_outputs(), width).expect("the width is here");
     let maps = std::fs::read_to_string("/proc/self/maps").expect("Linux has it");
     assert!(executable_bytes() >= code.counts().bytes, "the code is among them:\n{maps}");

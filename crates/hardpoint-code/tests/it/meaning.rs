@@ -1,4 +1,4 @@
-//! Bit for bit against a plain evaluation, one scalar at a time.
+//! Comparison bit for bit with a plain evaluation, one scalar at a time.
 
 use hardpoint_code::{Code, Counts, Scratch, Width};
 use hardpoint_tape::{Instruction, Interpreter, LANES, Lanes, Operand, Program};
@@ -6,14 +6,14 @@ use hardpoint_tape::{Instruction, Interpreter, LANES, Lanes, Operand, Program};
 use crate::plain;
 use crate::random::{self, CALLS, Random, Shape};
 
-/// Inputs and uniforms for that many groups.
+/// Inputs and uniforms for a number of groups.
 fn data(random: &mut Random, program: &Program, groups: usize, wild: bool) -> (Vec<Lanes>, Vec<f64>) {
     let mut number = || if wild { random.wild() } else { random.tame() };
     let inputs = (0..groups * program.inputs).map(|_| [(); LANES].map(|()| number())).collect();
     (inputs, (0..program.uniforms).map(|_| number()).collect())
 }
 
-/// The bits, but one NaN for all.
+/// Bits of a number, with all NaNs equal.
 fn bits(x: f64) -> u64 {
     if x.is_nan() { f64::NAN.to_bits() } else { x.to_bits() }
 }
@@ -27,7 +27,7 @@ fn holds(program: &Program, groups: usize, inputs: &[Lanes], uniforms: &[f64]) -
     let expected_in_parts = plain::parts(program, ends, &expected);
     let mut counts = Counts::default();
     let mut scratch = Scratch::default();
-    for width in Width::ALL.into_iter().filter(|w| w.is_here()) {
+    for width in Width::ALL.into_iter().filter(|w| w.is_available()) {
         let code = Code::with(program, width).expect("the width is here");
         let mut outputs = vec![[1234.5; LANES]; expected.len()];
         code.run(&mut scratch, inputs, uniforms, &mut outputs);
@@ -58,8 +58,8 @@ fn holds(program: &Program, groups: usize, inputs: &[Lanes], uniforms: &[f64]) -
 }
 
 /// True if there is anything to test.
-fn is_here() -> bool {
-    Width::ALL.into_iter().any(Width::is_here)
+fn is_available() -> bool {
+    Width::ALL.into_iter().any(Width::is_available)
 }
 
 #[test]
@@ -125,7 +125,7 @@ fn every_instruction_takes_every_kind_of_operand_in_every_place() {
                 };
                 let (inputs, uniforms) = data(&mut random, &program, 1, false);
                 holds(&program, 1, &inputs, &uniforms);
-                // Alone, so that both operands die.
+                // Alone, so that both operands are read for the last time.
                 for instruction in random::plain(*a, *b, *c) {
                     let mut alone = program.clone();
                     alone.instructions.truncate(2);
@@ -150,8 +150,8 @@ fn special_numbers_meet_in_every_instruction() {
     holds(&program, 3000, &inputs, &[]);
 }
 
-/// Of zeros of either sign the larger may be any, and one divided by it is one infinity or the other: programs with
-/// `Larger` are compared by that result alone.
+/// The larger of zeros of different signs may be either, and its inverse either infinity: programs with `Larger` are
+/// compared by that result alone.
 #[test]
 fn code_and_interpreter_agree() {
     let mut random = Random(9);
@@ -179,7 +179,7 @@ fn code_and_interpreter_agree() {
         let (inputs, uniforms) = data(&mut random, &program, groups, turn % 3 == 0);
         let mut expected = vec![[0.0; LANES]; groups * program.outputs.len()];
         Interpreter::new(&program).run(&inputs, &uniforms, &mut expected);
-        for width in Width::ALL.into_iter().filter(|w| w.is_here()) {
+        for width in Width::ALL.into_iter().filter(|w| w.is_available()) {
             let mut outputs = vec![[0.0; LANES]; expected.len()];
             Code::with(&program, width).expect("the width is here").run(
                 &mut Scratch::default(),
@@ -278,7 +278,7 @@ fn outputs_may_be_anything_and_again() {
         instructions: vec![
             Instruction::Neg(Operand::Input(0)),
             Instruction::Mul(Operand::Value(0), Operand::Value(0)),
-            // Nobody needs it.
+            // No output depends on it.
             Instruction::Call(CALLS[0], Operand::Value(1), Operand::Value(1)),
         ],
         outputs,
@@ -369,7 +369,7 @@ fn calls_leave_all_other_numbers_as_they_were() {
 
 #[test]
 fn code_is_shared_by_threads_and_scratch_by_codes() {
-    if !is_here() {
+    if !is_available() {
         return;
     }
     let mut random = Random(8);

@@ -5,7 +5,7 @@ use hardpoint_tape::{LANES, Lanes, Program};
 
 use crate::random::{at, compute};
 
-/// The outputs for groups of lanes, laid out as for code.
+/// Outputs for groups of lanes, in the layout of code.
 pub fn evaluate(program: &Program, groups: usize, inputs: &[Lanes], uniforms: &[f64]) -> Vec<Lanes> {
     let mut outputs = vec![[0.0; LANES]; groups * program.outputs.len()];
     let mut values = Vec::with_capacity(program.instructions.len());
@@ -26,7 +26,7 @@ pub fn evaluate(program: &Program, groups: usize, inputs: &[Lanes], uniforms: &[
     outputs
 }
 
-/// The same outputs, laid out as for code with outputs in parts.
+/// Outputs in the layout of code with outputs in parts.
 pub fn parts(program: &Program, ends: [usize; PARTS - 1], outputs: &[Lanes]) -> [Vec<Lanes>; PARTS] {
     let count = program.outputs.len();
     let [first, second] = ends;

@@ -1,8 +1,8 @@
-//! Random programs and numbers, and what the programs say, one scalar at a time.
+//! Random programs and numbers, with a plain evaluation, one scalar at a time.
 
 use hardpoint_tape::{Call, Instruction, Operand, Program};
 
-/// Numbers that look random and are the same every time (splitmix64).
+/// Reproducible pseudo-random numbers (splitmix64).
 pub struct Random(pub u64);
 
 impl Random {
@@ -26,7 +26,7 @@ impl Random {
         (self.bits() >> 11) as f64 * 2f64.powi(-51) - 2.0
     }
 
-    /// Anything that a double can be, every kind often.
+    /// Any kind of double, each with a similar frequency.
     pub fn wild(&mut self) -> f64 {
         const KINDS: [f64; 16] = [
             0.0,
@@ -78,7 +78,7 @@ pub struct Shape {
     pub outputs: usize,
     /// Distance back of most values that an instruction reads.
     pub near: usize,
-    /// One in that many instructions is a call; none if zero.
+    /// Mean number of instructions per call; no calls if zero.
     pub calls: usize,
     /// True if constants may be anything.
     pub wild: bool,
@@ -194,7 +194,7 @@ pub fn at(operand: Operand, values: &[f64], inputs: &[f64], uniforms: &[f64], co
     }
 }
 
-/// One instruction. Of zeros of both signs the larger is taken to be -0, as the code has it.
+/// One instruction. The larger of zeros of different signs is -0, as in the code.
 pub fn compute(instruction: Instruction, x: impl Fn(Operand) -> f64) -> f64 {
     use Instruction as I;
     match instruction {

@@ -391,7 +391,7 @@ fn why_cut(joint: &Joint, reason: CutReason) -> &'static str {
         CutReason::AlwaysCut if joint.kind.places == 2 => "a rod or leg carries no body",
         CutReason::AlwaysCut => "a joint of this type carries no body",
         CutReason::ClosesLoop => "other joints place its bodies with fewer unknowns",
-        CutReason::Asked => "the model asks for it",
+        CutReason::Requested => "the model asks for it",
         CutReason::Absolute => "absolute coordinates cut every joint",
     }
 }

@@ -131,14 +131,14 @@ fn signs_cost_nothing_but_before_outputs_and_functions() {
         (&program.instructions[..], &program.constants[..]),
         (&[Mul(x, Constant(0))][..], &[-3.0][..])
     );
-    // Nothing does, once for all who ask.
+    // No sign is free: one negation for all readers.
     let program = of(|[x, y, _]| vec![-(x * y), (-(x * y)).sqrt(), (x * y).larger(-x)], false).0;
     assert_eq!(
         program.instructions,
         [Mul(x, y), Neg(Value(0)), Sqrt(Value(1)), Neg(x), Larger(Value(3), Value(0))]
     );
     assert_eq!(program.outputs, [Value(1), Value(2), Value(4)]);
-    // A difference that is wanted with either sign is computed once.
+    // A difference that is read with both signs is computed once.
     let program = of(|[x, y, _]| vec![y - x, (x - y) * x], false).0;
     assert_eq!(program.instructions, [Sub(y, x), Mul(x, Value(0)), Neg(Value(1))]);
 }

@@ -1,4 +1,4 @@
-//! A program in pieces computes what it does in one, and what is alike is one program.
+//! A program in pieces has the same results, and equal pieces share a program.
 
 use hardpoint_tape::{
     AREAS, Interpreter, Lanes, Number, Operand, Options, Pieces, PiecesRoom, Program, Recording, record,

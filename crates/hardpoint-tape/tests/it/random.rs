@@ -1,4 +1,4 @@
-//! Random formulas: what is left of them computes what they did.
+//! Random formulas: the optimised program has the same results.
 
 use hardpoint_tape::{
     Call, Instruction, Interpreter, Lanes, Number, Operand, Options, Program, Recording, record,
@@ -105,8 +105,7 @@ impl Formula {
         x
     }
 
-    /// True if these numbers are none of those for which results may differ: all finite, and no angle hangs on the sign
-    /// of a zero.
+    /// True if results must agree for these numbers: all finite, and no angle depends on the sign of a zero.
     fn is_plain(&self, numbers: &[f64]) -> bool {
         let first = numbers.len() - self.steps.len();
         numbers.iter().all(|x| x.is_finite())
@@ -134,7 +133,7 @@ fn lanes(random: &mut Random, groups: usize) -> Vec<Lanes> {
     (0..groups).map(|_| std::array::from_fn(|_| random.number())).collect()
 }
 
-/// The same but for the sign of zeros.
+/// True if equal except for the sign of zeros.
 pub fn same(a: f64, b: f64) -> bool {
     a.to_bits() == b.to_bits() || a == b
 }
@@ -269,7 +268,7 @@ fn shared_slots_give_what_one_place_for_each_value_gives() {
         let mut interpreter = Interpreter::new(&program);
         shared += (program.instructions.len() + program.inputs).saturating_sub(interpreter.slots());
         let mut outputs = vec![[f64::NAN; 8]; groups * program.outputs.len()];
-        // Twice: nothing may be left of the first time.
+        // Twice: the first run must not affect the second.
         let others = lanes(&mut random, inputs.len());
         if !program.outputs.is_empty() {
             interpreter.run(&others, &uniforms, &mut outputs);

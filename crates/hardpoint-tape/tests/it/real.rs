@@ -1,5 +1,4 @@
-//! Formulas written once: for `f64`, for numbers that record, and for numbers that know how far round-off may have
-//! moved them.
+//! Formulas written once: for `f64`, for recording numbers, and for numbers with a round-off bound.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -81,7 +80,7 @@ impl Real for Number {
     }
 }
 
-/// A number, and how far any order of rounding may have moved it: infinite where there is no bound.
+/// Number with a bound of its round-off error for any order of rounding; infinite if there is no bound.
 #[derive(Clone, Copy, Debug)]
 pub struct BoundedNumber {
     pub x: f64,

@@ -50,7 +50,7 @@ fn numbers_belong_to_their_recording() {
         .contains("do not nest")
     );
     assert!(message(|| _ = record(|| [Number::input(1.0).call(Call::Pow)])).contains("of two numbers"));
-    // Another thread's number is a stranger also where this thread has recorded as often.
+    // A number of another thread is detected even if this thread has recorded the same number of times.
     let theirs = std::thread::spawn(|| {
         let mut theirs = None;
         record(|| {

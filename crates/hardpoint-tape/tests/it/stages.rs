@@ -1,4 +1,4 @@
-//! A program in two parts computes what it does in one.
+//! A program in two parts has the same results.
 
 use hardpoint_tape::{Number, Operand, Options, Program, record};
 
@@ -84,7 +84,7 @@ fn staged_programs_give_the_bits_of_the_whole() {
         early += first.instructions.len();
         let [inputs, uniforms]: [Vec<f64>; 2] =
             [formula.inputs, formula.uniforms].map(|n| (0..n).map(|_| random.number()).collect());
-        // What is not the first part's business must not matter to it.
+        // Other inputs must not affect the first part.
         let given: Vec<f64> =
             (0..first.inputs).map(|k| if is_first(k as u32) { inputs[k] } else { f64::NAN }).collect();
         let further = evaluate(&first, &given, &uniforms);

@@ -5,37 +5,37 @@ use crate::model::{DriverId, HardpointId, JointId, Model, ParameterId};
 use crate::number::Real;
 use crate::space::{Mat3, Pose, Vec3, rotation_from_euler_313};
 
-/// Effect of a kind of change on the design, for a value b of its variable. The default methods change nothing.
+/// Effect of a kind of change on the design, for a value b of its variable. The default methods have no effect.
 pub(crate) trait Effect {
-    /// The hardpoint that moves, and its global velocity V, m per unit.
+    /// Returns the hardpoint that moves, and its global velocity V, m per unit.
     fn hardpoint(&self) -> Option<(HardpointId, Vec3)> {
         None
     }
 
-    /// The joint whose markers or length change by themselves.
+    /// Returns the joint whose markers or length change by themselves.
     fn joint(&self) -> Option<JointId> {
         None
     }
 
-    /// Marker e of that joint in the design configuration, global; `marker` is where it is without this change.
+    /// Returns marker e of that joint in the design configuration, global; `marker` is its pose without this change.
     #[inline(always)]
     fn marker<T: Real>(&self, _model: &Model, marker: Pose<T>, _e: usize, _b: T) -> Pose<T> {
         marker
     }
 
-    /// The length that is given to that joint, m; `length` is what it is without this change.
+    /// Returns the given length of that joint, m; `length` is its value without this change.
     #[inline(always)]
     fn length<T: Real>(&self, length: T, _b: T) -> T {
         length
     }
 
-    /// The parameter of the model that grows, and its rate, in its own unit per unit.
+    /// Returns the parameter of the model that changes, and its rate, in its own unit per unit.
     fn parameter(&self) -> Option<(ParameterId, f64)> {
         None
     }
 
-    /// The parameter of a driver's law that grows, by its place in [`Law::parameters`](crate::law::Law::parameters),
-    /// and its rate, in its own unit per unit.
+    /// Returns the parameter of a driver's law that changes, by its index in
+    /// [`Law::parameters`](crate::law::Law::parameters), and its rate, in its own unit per unit.
     fn law(&self) -> Option<(DriverId, usize, f64)> {
         None
     }
@@ -57,7 +57,7 @@ impl Effect for change::Marker {
         if !self.end.covers(e) {
             return Pose { rot, r };
         }
-        // P = P_o + b V,  C = exp(b R U) C_o in the world                                              (paper 3.1, 3.4)
+        // P = P_o + b V,  C = exp(b R U) C_o in global axes                                            (paper 3.1, 3.4)
         if let Some(axis) = self.rotation.unit() {
             rot = Mat3::about(axis, b * T::constant(self.rotation.norm())) * rot;
         }
@@ -99,8 +99,8 @@ impl Effect for change::Field {
         if joint.bodies[e] != self.body {
             return marker;
         }
-        // P = P_o + A (b V); the axes turn by R = C(theta_o + b U) C(theta_o)^-1 in the body's frame, A R A^T in the
-        // world
+        // P = P_o + A (b V); the axes turn by R = C(theta_o + b U) C(theta_o)^-1 in the body's frame, A R A^T in
+        // global axes
         //                                                                                                  (paper 3.1, 2.2)
         let body = model.bodies[self.body.0].frame.rot.spread();
         let (theta, c) = model.euler_of(joint, e);
@@ -110,7 +110,7 @@ impl Effect for change::Field {
     }
 }
 
-/// A change does what its kind does.
+/// Delegates to the kind of the change.
 macro_rules! in_designs {
     ($($(#[doc = $doc:literal])* $kind:ident { $($fields:tt)* } |$known:pat_param| $quantity:expr, |$words:pat_param| $says:expr;)*) => {
         impl Effect for Change {

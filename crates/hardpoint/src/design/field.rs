@@ -1,29 +1,29 @@
-//! Design velocity fields of markers, kept values, points and laws: what one variable, or one driver, changes to first
-//! order.
+//! Design velocities of markers, joint constants, points and laws: the first-order change by one variable or one
+//! driver.
 
 use crate::design::JointConstants;
 use crate::model::{DriverId, JointId, PointId};
 use crate::space::{Real, Twist, Vec3};
 
-/// The first-order change of a design per unit of one variable: the paper's design
-/// velocity, with V and R(theta) U of a marker combined into a body-fixed twist (`docs/theory.md` (8)).
+/// First-order change of a design per unit of one variable: the paper's design velocity, with V and R(theta) U of a
+/// marker combined into a body-fixed twist (`docs/theory.md` (8)).
 ///
 /// Every list is in the order of its ids.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignVelocity<T = f64> {
-    /// The markers that move or turn.
+    /// Markers that translate or rotate.
     pub markers: Vec<MarkerVelocity<T>>,
-    /// The joints whose kept values change, and their rates.
+    /// Joints whose constants change, and their rates.
     pub kept: Vec<(JointId, JointConstants<T>)>,
-    /// The points that move, and their velocity in the body's frame.
+    /// Points that move, and their velocities in the frames of their bodies, m per unit.
     pub points: Vec<(PointId, Vec3<T>)>,
-    /// The drivers whose laws change: the parameter, and its rate.
+    /// Drivers whose laws change: index of the parameter, and its rate.
     pub laws: Vec<(DriverId, usize, T)>,
-    /// The drivers whose values shift at all times, and how fast, m or rad.
+    /// Drivers whose values shift by the same amount at all times, and their rates, m or rad per unit.
     pub shifts: Vec<(DriverId, T)>,
 }
 
-/// The design velocity of one marker.
+/// Design velocity of one marker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarkerVelocity<T = f64> {
     /// Joint of the marker.
@@ -37,7 +37,7 @@ pub struct MarkerVelocity<T = f64> {
     pub twist: Twist<T>,
 }
 
-/// Nothing changes.
+/// Zero design velocity.
 impl<T> Default for DesignVelocity<T> {
     fn default() -> Self {
         let (markers, kept, points) = (Vec::new(), Vec::new(), Vec::new());
@@ -46,14 +46,14 @@ impl<T> Default for DesignVelocity<T> {
 }
 
 impl<T: Copy> DesignVelocity<T> {
-    /// The twist of a joint's marker, if it moves.
+    /// Returns the twist of a joint's marker; `None` if it does not move.
     pub fn twist_of(&self, joint: JointId, end: usize) -> Option<Twist<T>> {
         // e of (8); null if it is not listed
         let found = self.markers.binary_search_by_key(&(joint, end), |m| (m.joint, m.end));
         found.ok().map(|k| self.markers[k].twist)
     }
 
-    /// Rates of what a joint keeps, if any of it changes.
+    /// Returns the rates of a joint's constants, if any of them changes.
     pub fn kept_rate(&self, joint: JointId) -> Option<JointConstants<T>> {
         let found = self.kept.binary_search_by_key(&joint, |k| k.0);
         found.ok().map(|k| self.kept[k].1)
@@ -61,7 +61,7 @@ impl<T: Copy> DesignVelocity<T> {
 }
 
 impl<T: Real> DesignVelocity<T> {
-    /// That of a driver which moves by itself: its value shifts by one unit per unit.
+    /// Returns the velocity of a single driver whose value shifts by one unit per unit.
     pub(crate) fn of_driver(driver: DriverId) -> Self {
         // L_u = 1 in the driver's row, or S_u = 1 of its coordinate; z = 0 (theory, "One driver alone")
         Self { shifts: vec![(driver, T::one())], ..Self::default() }
@@ -69,7 +69,7 @@ impl<T: Real> DesignVelocity<T> {
 }
 
 impl DesignVelocity {
-    /// The same with every parameter of a law once, in the order of drivers and parameters.
+    /// Merges equal parameters of laws, and sorts them by driver and parameter.
     pub(crate) fn with_laws_in_order(mut self) -> Self {
         self.laws.sort_by_key(|(driver, parameter, _)| (*driver, *parameter));
         self.laws.dedup_by(|next, known| {

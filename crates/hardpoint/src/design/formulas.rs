@@ -7,22 +7,22 @@ use super::change::Effect;
 /// Dependencies of formulas on variables and on each other.
 #[derive(Clone, Debug)]
 pub(super) struct Formulas {
-    /// Per parameter: the variables that change it, and its rate by each.
+    /// Per parameter: variables that change it, and its rate by each.
     ///
     /// `p = p_o + sum_k rate_k b_k`.
     pub rates: Vec<Vec<(usize, f64)>>,
-    /// Formula that defines a parameter, the coordinates of a hardpoint, the length of a joint.
+    /// Index of the formula that defines each parameter, each coordinate of a hardpoint, and each length of a joint.
     pub of_parameter: Vec<Option<usize>>,
     pub of_hardpoint: Vec<[Option<usize>; 3]>,
     pub of_length: Vec<Option<usize>>,
-    /// The same of the numbers of masses and forces.
+    /// Index of the formula that defines each number of masses and forces.
     pub of_number: Vec<Option<usize>>,
-    /// The formulas that use a parameter, or a coordinate of a hardpoint.
+    /// Formulas that use each parameter, and each hardpoint.
     using_parameter: Vec<Vec<usize>>,
     using_hardpoint: Vec<Vec<usize>>,
-    /// ... and what a joint keeps, by itself; [`Self::using_hardpoint`] has those by its hardpoints.
+    /// Formulas that use the constants of each joint; they are also in [`Self::using_hardpoint`] of its hardpoints.
     using_joint: Vec<Vec<usize>>,
-    /// Per variable, whether any formula follows it.
+    /// Per variable: true if a formula depends on it.
     pub is_used: Vec<bool>,
 }
 
@@ -43,8 +43,8 @@ impl Formulas {
             using_joint: vec![Vec::new(); model.joints.len()],
             is_used: Vec::new(),
         };
-        // Both ways of the graph: which formula gives a number, and which formulas use it. The model has them in an order in which
-        // each comes after those that it uses.
+        // Both directions of the graph: the formula that defines a number, and the formulas that use it. The formulas
+        // of a model are ordered so that each comes after those that it uses.
         for (k, formula) in model.formulas.iter().enumerate() {
             match formula.of {
                 Target::Parameter(p) => f.of_parameter[p.0] = Some(k),
@@ -70,14 +70,14 @@ impl Formulas {
                     f.rates[parameter.0].push((k, rate));
                 }
             }
-            // If no formula uses what it changes, results stay nominal and need not be worked out.
+            // If no formula depends on the variable, all results remain nominal and are not evaluated.
             let is_used = variable.changes.iter().any(|change| f.using(change).next().is_some());
             f.is_used.push(is_used);
         }
         Some(f)
     }
 
-    /// The formulas that use what a change moves.
+    /// Returns the formulas that use the quantities of a change.
     fn using(&self, change: &Change) -> impl Iterator<Item = usize> {
         let parameter = change.parameter().map(|(p, _)| &self.using_parameter[p.0]);
         let hardpoint = change.hardpoint().map(|(h, _)| &self.using_hardpoint[h.0]);
@@ -85,13 +85,12 @@ impl Formulas {
         parameter.into_iter().chain(hardpoint).chain(joint).flatten().copied()
     }
 
-    /// The formulas that follow a variable, directly or through others, in order.
+    /// Returns the formulas that depend on a variable, directly or through others, in order.
     pub fn following(&self, model: &Model, variable: VariableId) -> Vec<usize> {
         let mut seen = vec![false; model.formulas.len()];
         let changes = &model.variables[variable.0].changes;
         let mut waiting: Vec<usize> = changes.iter().flat_map(|c| self.using(c)).collect();
-        // All that can be reached along "is used by", from the parameters and coordinates that the variable itself
-        // changes.
+        // Everything reachable along "is used by" from the parameters and coordinates that the variable itself changes.
         while let Some(k) = waiting.pop() {
             if !std::mem::replace(&mut seen[k], true) {
                 match model.formulas[k].of {

@@ -1,48 +1,48 @@
-//! The geometry of a design: all that is fixed in its bodies.
+//! Geometry of a design: all body-fixed data.
 //!
 //! | here | theory | paper | |
 //! |---|---|---|---|
 //! | `markers[j][e]`: `r`, `rot` | M_i, M_j = (s, C) | s (3.1), C (2.2) | position, m, and axes of a joint's marker in its body's frame |
-//! | `kept[j]` | L, d0, c0, r0 | C of (4.10), squared there | what its rows compare with |
+//! | `kept[j]` | L, d0, c0, r0 | C of (4.10), squared there | constants of its rows |
 //! | `points[k]` | | `s_o` of any point of the body | m, in its body's frame |
-//! | `spin_axes[w]` | e' | | of a wheel, in its body's frame |
+//! | `spin_axes[w]` | e' | | unit vector, in the frame of the wheel's body |
 
 use crate::constraint::Row;
 use crate::number::Real;
 use crate::space::{Mat3, Pose, Vec3};
 
-/// The body-fixed data of one design: all that the analysis needs of it besides the drivers' laws.
+/// Body-fixed data of one design: all that the analysis uses besides the drivers' laws.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Geometry<T = f64> {
-    /// Per joint, marker i in body i and marker j in body j.
+    /// Per joint: marker i in body i and marker j in body j.
     pub markers: Vec<[Pose<T>; 2]>,
-    /// Per joint, what its constraints may keep of the design configuration.
+    /// Per joint: constants of its constraints in the design configuration.
     pub kept: Vec<JointConstants<T>>,
-    /// Per point of the model, its position in its body's frame, m.
+    /// Per point of the model: position in its body's frame, m.
     pub points: Vec<Vec3<T>>,
-    /// Per wheel of the model, its spin axis in its body's frame, a unit vector.
+    /// Per wheel of the model: spin axis in its body's frame, a unit vector.
     pub spin_axes: Vec<Vec3<T>>,
-    /// Per number of the model's masses and forces, its value, SI.
+    /// Per number of the model's masses and forces: value, SI.
     pub numbers: Vec<T>,
-    /// [`Model::size`](crate::model::Model::size), m, which is compared with at every step.
+    /// [`Model::size`](crate::model::Model::size), m: reference length at every step, computed once.
     pub size: f64,
 }
 
 /// Body-fixed data that measures use.
 #[derive(Clone, Debug)]
 pub(crate) struct BodyFixed<T> {
-    /// Per point of the model, its position in its body's frame, m.
+    /// Per point of the model: position in its body's frame, m.
     pub points: Vec<Vec3<T>>,
-    /// Per measure, the directions that it depends on: unit vectors in their bodies' frames.
+    /// Per measure: directions that it depends on, unit vectors in their bodies' frames.
     pub directions: Vec<[Option<Vec3<T>>; 2]>,
-    /// Per measure of a joint's coordinate, marker i in body i and marker j in body j.
+    /// Per measure of a joint's coordinate: marker i in body i and marker j in body j.
     pub markers: Vec<Option<[Pose<T>; 2]>>,
-    /// As in [`Geometry`].
+    /// Size of the mechanism, m, as in [`Geometry`].
     pub size: f64,
 }
 
 impl<T: Copy> BodyFixed<T> {
-    /// The same, number by number.
+    /// Applies a function to every number.
     pub fn map<U>(&self, f: impl Fn(T) -> U + Copy) -> BodyFixed<U> {
         let pose = |p: Pose<T>| Pose { rot: Mat3 { cols: p.rot.cols.map(|c| c.map(f)) }, r: p.r.map(f) };
         BodyFixed {
@@ -54,10 +54,10 @@ impl<T: Copy> BodyFixed<T> {
     }
 }
 
-/// Constants that a joint keeps from the design configuration, or their rates of change by a design variable.
+/// Constants of a joint, defined by the design configuration, or their rates of change by a design variable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointConstants<T = f64> {
-    /// Distance between its markers, m: the length of a rod.
+    /// Distance between the markers, m: the length of a rod.
     pub distance: T,
     /// Displacement of marker j along z_i, m.
     pub offset: T,
@@ -70,7 +70,7 @@ pub struct JointConstants<T = f64> {
 }
 
 impl<T: Real> JointConstants<T> {
-    /// Constant of this row; 0 for rows without one.
+    /// Returns the constant of a row; 0 for rows without one.
     pub fn by(&self, row: Row) -> T {
         match row {
             Row::Distance => self.distance,
@@ -96,12 +96,12 @@ impl<T: Real> JointConstants<T> {
         self.numbers().into_iter().all(T::vanishes)
     }
 
-    /// All of them.
+    /// Returns all constants.
     pub(crate) fn numbers(&self) -> [T; 5] {
         [self.distance, self.offset, self.cosine, self.contact, self.course]
     }
 
-    /// The largest of them.
+    /// Returns the largest magnitude of the constants.
     pub(crate) fn size(&self) -> T {
         self.numbers().into_iter().map(T::abs).fold(T::zero(), T::larger)
     }

@@ -1,10 +1,9 @@
-//! Effects of design variables: the geometry of any design, and its derivative by each variable.
+//! Map from design variables to geometry, and its derivative by each variable.
 //!
-//! The geometry is written once, over any [`Real`]; its derivatives are the same lines run on [`Dual`]s, at whatever
-//! design.
+//! The geometry is written once, over any [`Real`]; its derivatives at any design are the same lines evaluated with
+//! [`Dual`] numbers.
 //!
-//! The paper's section 3 line by line, with tau the value of one variable and `s_o`, `theta_o` those of the nominal
-//! design:
+//! Implements section 3 of the paper, with tau the value of one variable, and `s_o`, `theta_o` of the nominal design:
 //!
 //! | here | paper | what |
 //! |---|---|---|
@@ -28,18 +27,18 @@ use crate::space::{Mat3, Pose, Twist, Vec3};
 use super::change::Effect;
 use super::formulas::Formulas;
 
-/// Entries of a model that its variables change, grouped by kind; found once for many designs.
+/// Entries of a model that its variables change, grouped by kind; collected once for many designs.
 #[derive(Clone, Debug)]
 pub(crate) struct DesignMap<'m> {
     held: SharedModel<'m>,
-    /// Per hardpoint: the variables that move it, and its velocity by each.
+    /// Per hardpoint: variables that move it, and its velocity by each, m per unit.
     moves: Vec<Vec<(usize, Vec3)>>,
-    /// Per joint: the variables that change the joint itself, and by which of their changes.
+    /// Per joint: variables that change the joint itself, with the index of the change.
     changes: Vec<Vec<(usize, usize)>>,
-    /// Per hardpoint: the joints and points that follow it.
+    /// Per hardpoint: joints and points that depend on it.
     joints: Vec<Vec<usize>>,
     points: Vec<Vec<usize>>,
-    /// Formulas of the model; `None` without any.
+    /// Formulas of the model; `None` if there are none.
     formulas: Option<Formulas>,
 }
 
@@ -72,7 +71,7 @@ impl<'m> DesignMap<'m> {
         Self { formulas: Formulas::of(model), moves, changes, joints, points, held }
     }
 
-    /// The model.
+    /// Returns the model.
     pub fn model(&self) -> &Model {
         &self.held
     }
@@ -83,7 +82,7 @@ impl<'m> DesignMap<'m> {
             || self.model().formulas.iter().any(|f| matches!(f.of, Target::Law(..)))
     }
 
-    /// The geometry of the designs whose values these are, variable by variable.
+    /// Returns the geometry of designs, given by the values of all variables.
     pub fn geometry<T: Real>(&self, values: &[T]) -> Geometry<T> {
         let model = self.model();
         let design = PlacedDesign::new(self, values.to_vec());
@@ -97,13 +96,13 @@ impl<'m> DesignMap<'m> {
         }
     }
 
-    /// Positions of the hardpoints for these values of the variables, global.
+    /// Returns the global positions of the hardpoints for these values of the variables, m.
     pub fn places<T: Real>(&self, values: &[T]) -> Vec<Vec3<T>> {
         let design = PlacedDesign::new(self, values.to_vec());
         (0..self.model().hardpoints.len()).map(|h| design.place(HardpointId(h), &design.values)).collect()
     }
 
-    /// Body-fixed data of the measures for these values of the variables.
+    /// Returns the body-fixed data of the measures for these values of the variables.
     pub fn fixed<T: Real>(&self, values: &[T]) -> BodyFixed<T> {
         let (model, design) = (self.model(), PlacedDesign::new(self, values.to_vec()));
         let markers = |m: &Measure| match m.kind {
@@ -118,18 +117,18 @@ impl<'m> DesignMap<'m> {
         }
     }
 
-    /// Design velocity of one variable at these values.
+    /// Returns the design velocity of one variable at these values.
     pub fn field<T: Real>(&self, variable: VariableId, values: &[T]) -> DesignVelocity<T> {
         self.field_along(&[(variable, 1.0)], values)
     }
 
-    /// Design velocity along a direction in the space of several variables, at these values.
+    /// Returns the design velocity along a direction in the space of several variables, at these values.
     ///
     /// Paper Eqs. 3.1 to 3.10 and 5.5; `docs/theory.md` (8).
     pub fn field_along<T: Real>(&self, along: &[(VariableId, f64)], values: &[T]) -> DesignVelocity<T> {
         let mut duals: Vec<Dual<T>> = values.iter().map(|v| Dual::constant(*v)).collect();
         for &(variable, rate) in along {
-            // b_k + eps rate_k: what is at eps of any result is its derivative along the direction
+            // b_k + eps rate_k: the coefficient of eps of any result is its derivative along the direction
             duals[variable.0].d = T::constant(rate);
         }
         let design = PlacedDesign::new(self, duals);
@@ -155,7 +154,8 @@ impl<'m> DesignMap<'m> {
         field
     }
 
-    /// Marker i of a joint moves by a twist along the joint's own axes, in the designs whose values these are.
+    /// Returns the design velocity of a twist of marker i of a joint, given along the joint's own axes, for these
+    /// values.
     pub fn opening<T: Real>(&self, joint: JointId, twist: Twist, values: &[T]) -> DesignVelocity<T> {
         let design = PlacedDesign::new(self, values.to_vec());
         // e = Ad(M) of it
@@ -163,19 +163,19 @@ impl<'m> DesignMap<'m> {
         DesignVelocity { markers: vec![MarkerVelocity { joint, end: 0, twist }], ..DesignVelocity::default() }
     }
 
-    /// Entries that may change along a direction in the space of several variables.
+    /// Returns the entries that may change along a direction in the space of several variables.
     pub(super) fn affected(&self, along: &[(VariableId, f64)]) -> Affected {
         let mut affected = Affected::default();
         for (variable, by) in along {
             for change in &self.model().variables[variable.0].changes {
                 affected.hardpoints.extend(change.hardpoint().map(|(h, _)| h.0));
                 affected.joints.extend(change.joint().map(|j| j.0));
-                // dp/db, times how fast b goes
+                // dp/db times the rate of b
                 affected
                     .laws
                     .extend(change.law().map(|(driver, parameter, rate)| (driver, parameter, by * rate)));
             }
-            // ... and by formulas, directly or through others
+            // entries that change through formulas, directly or through others
             let following = self.formulas.as_ref().map(|f| f.following(self.model(), *variable));
             for k in following.unwrap_or_default() {
                 match self.model().formulas[k].of {
@@ -198,7 +198,7 @@ impl<'m> DesignMap<'m> {
         affected
     }
 
-    /// The parameters of laws that change, and their rates.
+    /// Returns the parameters of laws that change, and their rates.
     fn law_rates<T: Real>(
         &self,
         affected: &Affected,
@@ -208,7 +208,7 @@ impl<'m> DesignMap<'m> {
             affected.laws.iter().map(|(d, p, rate)| (*d, *p, T::constant(*rate))).collect();
         for &k in &affected.law_formulas {
             if let Target::Law(driver, parameter) = self.model().formulas[k].of {
-                // dp/db of a parameter of a law that a formula gives
+                // dp/db of a parameter of a law that a formula defines
                 let rate = design.values.formulas[k].d;
                 match rates.iter_mut().find(|r| (r.0, r.1) == (driver, parameter)) {
                     Some(known) => known.2 += rate,
@@ -219,13 +219,13 @@ impl<'m> DesignMap<'m> {
         rates
     }
 
-    /// The drivers' laws in the design with these values.
+    /// Returns the drivers' laws in the design with these values.
     pub fn laws(&self, values: &[f64]) -> Vec<Law> {
         let model = self.model();
         let mut laws: Vec<Law> = model.drivers.iter().map(|d| d.law.clone()).collect();
         if model.formulas.iter().any(|f| matches!(f.of, Target::Law(..))) {
             let results = PlacedDesign::new(self, values.to_vec()).values.formulas;
-            // Without results, no formula follows what is not at 0.
+            // Without results, no formula depends on a variable that is not 0.
             for (formula, result) in model.formulas.iter().zip(results) {
                 if let Target::Law(driver, parameter) = formula.of {
                     laws[driver.0] = laws[driver.0].with_parameter(parameter, result);
@@ -245,7 +245,7 @@ impl<'m> DesignMap<'m> {
         laws
     }
 
-    /// Design velocities of all variables at these values.
+    /// Returns the design velocities of all variables at these values.
     pub fn fields<T: Real>(&self, values: &[T]) -> Vec<DesignVelocity<T>> {
         (0..values.len()).map(|k| self.field(VariableId(k), values)).collect()
     }
@@ -255,8 +255,8 @@ fn is_null<T: Real>(v: Vec3<T>) -> bool {
     v.x.vanishes() && v.y.vanishes() && v.z.vanishes()
 }
 
-/// Entries that may change along a direction: hardpoints, joints, points, parameters of laws at a rate, formulas of
-/// these, numbers of masses and forces.
+/// Entries that may change along a direction: hardpoints, joints, points, parameters of laws with their rates, their
+/// formulas, numbers of masses and forces.
 #[derive(Default)]
 pub(super) struct Affected {
     pub hardpoints: Vec<usize>,
@@ -267,17 +267,17 @@ pub(super) struct Affected {
     pub numbers: Vec<NumberId>,
 }
 
-/// Positions and directions of all entries at these values of the variables.
+/// Positions and directions of all entries for values of the variables.
 struct PlacedDesign<'e, T> {
     design_map: &'e DesignMap<'e>,
     values: Values<T>,
-    /// The same, 0 for variables that keep the lengths of rods: what the lengths are measured with.
+    /// Values with 0 for variables that do not change the lengths of rods; lengths are computed with these.
     for_lengths: Values<T>,
-    /// Per variable, whether it makes any difference.
+    /// Per variable: true if it has an effect.
     counts: Vec<bool>,
 }
 
-/// Values of the variables, and what formulas make of them; none where no formula follows a variable that counts.
+/// Values of the variables, and the results of formulas; no results if no formula depends on an active variable.
 #[derive(Clone)]
 struct Values<T> {
     variables: Vec<T>,
@@ -285,11 +285,11 @@ struct Values<T> {
 }
 
 impl<'e, T: Real> PlacedDesign<'e, T> {
-    /// Variables at 0 are left out, unless it is differentiated by them.
+    /// Omits variables at 0, unless they are differentiated.
     fn new(design_map: &'e DesignMap<'_>, values: Vec<T>) -> Self {
         let variables = &design_map.model().variables;
         let counts = values.iter().map(|v| !v.vanishes()).collect();
-        // With b = 0 for the variables that keep lengths L = abs(d) does not follow them: L' = 0, and the mechanism
+        // With b = 0 for the variables of fixed length, L = abs(d) does not depend on them: L' = 0, and the mechanism
         // re-assembles.
         let follows = |(value, v): (&T, &DesignVariable)| if v.fixed_length { T::zero() } else { *value };
         let for_lengths = values.iter().zip(variables).map(follows).collect();
@@ -299,18 +299,18 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         if let Some(f) = &design_map.formulas
             && f.is_used.iter().zip(&design.counts).any(|(is_used, counts)| *is_used && *counts)
         {
-            design.values.formulas = design.solved(f, &design.values.variables);
+            design.values.formulas = design.evaluate_formulas(f, &design.values.variables);
             design.for_lengths.formulas = match variables.iter().any(|v| v.fixed_length) {
-                true => design.solved(f, &design.for_lengths.variables),
+                true => design.evaluate_formulas(f, &design.for_lengths.variables),
                 false => design.values.formulas.clone(),
             };
-            design.take_kept();
+            design.evaluate_over_constants();
         }
         design
     }
 
-    /// Sets the results of formulas over what joints keep, which follow from all others.
-    fn take_kept(&mut self) {
+    /// Sets the results of formulas over joint constants, which depend on all other results.
+    fn evaluate_over_constants(&mut self) {
         let model = self.design_map.model();
         for (k, formula) in model.formulas.iter().enumerate() {
             if formula.sources().any(|s| matches!(s, Source::Kept(..))) {
@@ -324,8 +324,8 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         }
     }
 
-    /// Results of all formulas, in order.
-    fn solved(&self, formulas: &Formulas, variables: &[T]) -> Vec<T> {
+    /// Returns the results of all formulas, in order.
+    fn evaluate_formulas(&self, formulas: &Formulas, variables: &[T]) -> Vec<T> {
         let model = self.design_map.model();
         let mut results: Vec<T> = Vec::with_capacity(model.formulas.len());
         for formula in &model.formulas {
@@ -338,13 +338,13 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
                         formulas.of_hardpoint[h.0][axis],
                         self.rates(&self.design_map.moves[h.0], move |v| v[axis]),
                     ),
-                    // Once all others are known: `take_kept`.
+                    // Set by `evaluate_over_constants` once all others are known.
                     Source::Kept(..) => (None, Vec::new()),
                 };
                 let given = given.map_or_else(|| T::constant(model.nominal(source)), |k| results[k]);
                 rates
                     .into_iter()
-                    // what the formula uses = what is given + sum_k rate_k b_k
+                    // input of the formula = given value + sum_k rate_k b_k
                     .fold(given, |sum, (k, rate)| T::constant(rate).times_plus(variables[k], sum))
             });
             results.push(result);
@@ -352,27 +352,27 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         results
     }
 
-    /// The variables of a list that make a difference, with their rates.
+    /// Returns the variables of a list that have an effect, with their rates.
     fn rates<R>(&self, list: &[(usize, R)], rate: impl Fn(&R) -> f64) -> Vec<(usize, f64)> {
         list.iter().filter(|(k, _)| self.counts[*k]).map(|(k, r)| (*k, rate(r))).collect()
     }
 
-    /// Global position of a hardpoint.
+    /// Returns the global position of a hardpoint, m.
     fn place(&self, h: HardpointId, values: &Values<T>) -> Vec3<T> {
         let mut place = self.design_map.model().position(h).spread();
         if let (Some(f), false) = (&self.design_map.formulas, values.formulas.is_empty()) {
-            // P_o, or component by component what its formula gives
+            // P_o, or per component the result of its formula
             let given = |axis: usize| f.of_hardpoint[h.0][axis].map_or(place[axis], |k| values.formulas[k]);
             place = Vec3::new(given(0), given(1), given(2));
         }
         for &(k, velocity) in self.design_map.moves[h.0].iter().filter(|(k, _)| self.counts[*k]) {
-            // P = P_o + sum_k v_k b_k, with P_o by formulas where these give it
+            // P = P_o + sum_k v_k b_k, with P_o from formulas if defined by them
             place = velocity.spread().times_plus(values.variables[k], place);
         }
         place
     }
 
-    /// The unit vector of a direction.
+    /// Returns the global unit vector of a direction.
     fn direction(&self, d: Direction, values: &Values<T>) -> Vec3<T> {
         match d {
             Direction::Along(u) => u.spread(),
@@ -384,43 +384,42 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         }
     }
 
-    /// A body's frame, which the design leaves where it is.
+    /// Returns the frame of a body, which does not depend on the design.
     fn frame(&self, body: BodyId) -> Pose<T> {
         self.design_map.model().bodies[body.0].frame.spread()
     }
 
-    /// Marker e of joint j in its body's frame.
+    /// Returns marker e of joint j in its body's frame.
     fn marker(&self, j: usize, e: usize) -> Pose<T> {
         let body = self.design_map.model().joints[j].bodies[e];
-        // (s, C) = X_body^-1 X_marker; the body's frame stays where it is (paper, section 2).
-        self.frame(body).inverse().compose(self.marker_in_world(j, e, &self.values))
+        // (s, C) = X_body^-1 X_marker; the body's frame is fixed (paper, section 2).
+        self.frame(body).inverse().compose(self.global_marker(j, e, &self.values))
     }
 
-    /// Marker e of joint j in the design configuration.
-    fn marker_in_world(&self, j: usize, e: usize, values: &Values<T>) -> Pose<T> {
+    /// Returns marker e of joint j in the design configuration, global.
+    fn global_marker(&self, j: usize, e: usize, values: &Values<T>) -> Pose<T> {
         let model = self.design_map.model();
         let joint = &model.joints[j];
-        // The hardpoint and the axes that it follows, then what changes this joint alone (paper 3.1, 3.4;
-        // `design/change.rs`).
+        // From its hardpoint and axes, then the changes of this joint alone (paper 3.1, 3.4; `design/change.rs`).
         let drawn = Pose { rot: self.followed_frame(joint, e, values), r: self.place(joint.at[e], values) };
         self.changes_of(j)
             .fold(drawn, |marker, (k, change)| change.marker(model, marker, e, values.variables[k]))
     }
 
-    /// The changes of joint j itself by the variables that count, with these.
+    /// Returns the changes of joint j itself by active variables, with their values.
     fn changes_of(&self, j: usize) -> impl Iterator<Item = (usize, &'e Change)> {
         let of = move |&(k, c): &(usize, usize)| (k, &self.design_map.model().variables[k].changes[c]);
         self.design_map.changes[j].iter().filter(|(k, _)| self.counts[*k]).map(of)
     }
 
-    /// The frame of marker e of a joint whose axes follow the hardpoints they pass through.
+    /// Returns the frame of marker e of a joint whose axes pass through hardpoints.
     ///
-    /// z turns by the smallest rotation to its new direction; x then turns about z with `axis2`.
+    /// The smallest rotation takes z to its new direction; then x rotates about z with `axis2`.
     fn followed_frame(&self, joint: &Joint, e: usize, values: &Values<T>) -> Mat3<T> {
         let mut rot = joint.frames[e].spread();
         let [axis, axis2] = joint.axes_of_marker(e);
         if let Some(axis @ Direction::Through(..)) = axis {
-            // z turns into h by the rotation about z x h; in the first order by h x h'.
+            // The rotation about z x h takes z to h; to first order it is h x h'.
             rot = Mat3::between(rot.cols[2], self.direction(axis, values)) * rot;
         }
         if let Some(axis2 @ Direction::Through(..)) = axis2 {
@@ -436,12 +435,12 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         rot
     }
 
-    /// Constants of joint j.
+    /// Returns the constants of joint j.
     fn kept(&self, j: usize) -> JointConstants<T> {
         let (joint, zero) = (&self.design_map.model().joints[j], T::zero());
-        let [m_i, m_j] = [0, 1].map(|e| self.marker_in_world(j, e, &self.for_lengths));
-        // d = P_j - P_i of the design; what a joint keeps is measured on it: L = abs(d), z_i . d, z_i . z_j, the
-        // distance from a curve.
+        let [m_i, m_j] = [0, 1].map(|e| self.global_marker(j, e, &self.for_lengths));
+        // d = P_j - P_i of the design; the constants of a joint are functions of it: L = abs(d), z_i . d, z_i . z_j,
+        // the distance from a curve.
         let (d, z_i, z_j) = (m_j.r - m_i.r, m_i.rot.cols[2], m_j.rot.cols[2]);
         let given = joint.length.map(|length| {
             let formula = self.design_map.formulas.as_ref().and_then(|f| f.of_length[j]);
@@ -450,48 +449,48 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
             self.changes_of(j)
                 .fold(given, |length, (k, change)| change.length(length, self.values.variables[k]))
         });
-        // Markers at one place keep no distance, and it would have no derivative.
+        // Coincident markers have no constant distance; it would have no derivative.
         let keeps = joint.kind.is_rod() && d.dot(d).decisive() > 0.0;
         let distance = given.unwrap_or_else(|| if keeps { d.norm() } else { zero });
         let contact = joint.curve.as_ref().map_or(zero, |curve| {
-            // Which side of the curve the point is on is kept; a given distance has no sign.
+            // The side of the curve on which the point is remains the same; a given distance has no sign.
             let drawn = curve.distance(m_i.rot.transpose_mul(d));
             let sign = || T::constant(f64::signum(drawn.value()));
             given.map_or(drawn, |length| length.abs() * sign())
         });
-        // Axes that point the same way have no course, and it would have no derivative.
+        // Parallel axes have no angle about z_i; it would have no derivative.
         let has_course = joint.kind.coordinates.iter().any(|c| c.row == Row::Course);
         let [x_i, y_i] = [0, 1].map(|k| m_i.rot.cols[k]);
         let course = if has_course { y_i.dot(z_j).atan2(x_i.dot(z_j)) } else { zero };
         JointConstants { distance, offset: z_i.dot(d), cosine: z_i.dot(z_j), course, contact }
     }
 
-    /// A number of a mass or force.
+    /// Returns a number of a mass or force, SI.
     fn number(&self, k: usize) -> T {
         let formula = self.design_map.formulas.as_ref().and_then(|f| f.of_number[k]);
         let given = formula.and_then(|formula| self.values.formulas.get(formula)).copied();
         given.unwrap_or_else(|| T::constant(self.design_map.model().numbers[k].value))
     }
 
-    /// A point in its body's frame.
+    /// Returns a point in its body's frame, m.
     fn point(&self, k: usize) -> Vec3<T> {
         let point = &self.design_map.model().points[k];
         self.frame(point.body).inverse().point(self.place(point.at, &self.values))
     }
 
-    /// The directions that a measure depends on, in their bodies' frames.
+    /// Returns the directions that a measure depends on, in their bodies' frames.
     fn directions(&self, measure: &Measure) -> [Option<Vec3<T>>; 2] {
         let in_body = |(body, axis)| self.in_body(body, axis);
         self.design_map.model().directions(measure).map(|d| d.map(in_body))
     }
 
-    /// A direction in a body's frame: `A^T h`.
+    /// Returns a direction in a body's frame: `A^T h`.
     fn in_body(&self, body: BodyId, axis: Direction) -> Vec3<T> {
         self.frame(body).rot.transpose_mul(self.direction(axis, &self.values))
     }
 }
 
-/// A second axis nearer to the first than this, rad, says nothing about x.
+/// Minimum angle of the second axis to the first, rad, for it to define the x axis.
 const ALONG: f64 = 1e-12;
 
 #[cfg(test)]

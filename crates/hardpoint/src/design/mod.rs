@@ -1,9 +1,9 @@
-//! The design: the geometry of any values of the design variables, and how fast it changes with each (the paper's
-//! section 3).
+//! Designs: the geometry for any values of the design variables, and its rate of change by each (section 3 of the
+//! paper).
 //!
-//! A model never changes. A design is a list of values, one per variable; [`Geometry`] is what they make of the
-//! markers, points and lengths, and a [`DesignVelocity`] the rate at which one variable, or a direction in the space of
-//! them all, changes that: the paper's design velocity field.
+//! A model never changes. A design is a list of values, one per variable. [`Geometry`] has the resulting markers,
+//! points and lengths. A [`DesignVelocity`] is the rate of change of the geometry by one variable, or along a direction
+//! in the space of all variables: the paper's design velocity field.
 
 use crate::law::Law;
 use crate::model::{Joint, Model, VariableId};
@@ -24,32 +24,32 @@ pub(crate) use map::DesignMap;
 pub(crate) use shape::{Interpolation, ShapeField};
 
 impl Model {
-    /// The geometry of the design with variable k at `design[k]` (missing entries are 0).
+    /// Returns the geometry of the design with variable k at `design[k]` (missing entries are 0).
     ///
-    /// Body frames stay where they are in the design configuration; markers move on their bodies.
+    /// Body frames are fixed in the design configuration; markers move on their bodies.
     pub fn geometry(&self, design: &[f64]) -> Geometry {
         DesignMap::of(self).geometry(&self.whole(design))
     }
 
-    /// Positions of the hardpoints of such a design in the design configuration, m, global.
+    /// Returns the global positions of the hardpoints of such a design, m.
     pub fn hardpoint_places(&self, design: &[f64]) -> Vec<Vec3> {
         DesignMap::of(self).places(&self.whole(design))
     }
 
-    /// The first-order change of the nominal design per unit of one variable.
+    /// Returns the first-order change of the nominal design per unit of one variable.
     pub fn field(&self, variable: VariableId) -> DesignVelocity {
         DesignMap::of(self).field(variable, &self.whole(&[]))
     }
 
-    /// The first-order changes of a design per unit of each variable.
+    /// Returns the first-order changes of a design per unit of each variable.
     pub fn fields(&self, design: &[f64]) -> Vec<DesignVelocity> {
         DesignMap::of(self).fields(&self.whole(design))
     }
 
-    /// The natural step of a variable: the change that moves the farthest marker by the mechanism's size, or turns it
-    /// by 1 rad. Where the variable moves no marker, the size itself.
+    /// Returns the natural step of a variable: the change that moves the farthest marker by the size of the mechanism,
+    /// or rotates it by 1 rad. If the variable moves no marker, the size itself.
     ///
-    /// Steps and tolerances are given as parts of it, so that they mean the same for every variable and model.
+    /// Steps and tolerances are relative to it, so that they are comparable for all variables and models.
     pub fn natural_step(&self, variable: VariableId) -> f64 {
         let size = self.size();
         let geometry = self.geometry(&[]);
@@ -62,7 +62,7 @@ impl Model {
         if fastest > 0.0 { 1.0 / fastest } else { size }
     }
 
-    /// The variables whose change changes nothing that the motion or its results depend on.
+    /// Returns the variables without an effect on the motion or its results.
     pub fn without_effect(&self) -> Vec<VariableId> {
         let design_map = DesignMap::of(self);
         let directions = self.measures.iter().flat_map(|m| self.directions(m)).flatten();
@@ -79,25 +79,25 @@ impl Model {
         (0..self.variables.len()).map(VariableId).filter(is_idle).collect()
     }
 
-    /// A value for every variable: 0 but for this one.
+    /// Returns a value for every variable: 0 except for one.
     pub(crate) fn alone(&self, variable: VariableId, value: f64) -> Vec<f64> {
         let mut design = self.whole(&[]);
         design[variable.0] = value;
         design
     }
 
-    /// A value for every variable: those given, then 0.
+    /// Returns a value for every variable: the given ones, then 0.
     pub(crate) fn whole(&self, design: &[f64]) -> Vec<f64> {
         let given = design.iter().copied().chain(std::iter::repeat(0.0));
         given.take(self.variables.len()).collect()
     }
 
-    /// The drivers' laws in the design with variable k at `design[k]` (missing entries are 0).
+    /// Returns the drivers' laws in the design with variable k at `design[k]` (missing entries are 0).
     pub fn laws(&self, design: &[f64]) -> Vec<Law> {
         DesignMap::of(self).laws(&self.whole(design))
     }
 
-    /// 3-1-3 Euler angles of a marker in its body's frame, and their rotation C(theta).
+    /// Returns the 3-1-3 Euler angles of a marker in its body's frame, rad, and their rotation C(theta).
     fn euler_of(&self, joint: &Joint, e: usize) -> ([f64; 3], Mat3) {
         // C = A^T (A C), theta of C = Rz(theta1) Rx(theta2) Rz(theta3)                                      (paper 2.2)
         let in_body = self.bodies[joint.bodies[e].0].frame.rot.transpose() * joint.frames[e];

@@ -1,5 +1,5 @@
-//! Design velocity fields over the whole of a body: V(s), and the rotation that goes with it, at every point s (paper,
-//! section 3: one parameter tau, many points).
+//! Design velocity fields over a whole body: V(s), and the local rotation rate, at every point s (paper, section 3: one
+//! parameter tau, many points).
 
 use crate::linalg::least_squares;
 use crate::space::Vec3;
@@ -7,24 +7,26 @@ use crate::space::Vec3;
 /// Velocity field of a body's points per unit of a design variable.
 #[derive(Clone, Debug)]
 pub(crate) enum ShapeField {
-    /// All points the same way: m per m.
+    /// Translation of all points: m per m.
     Translate(Vec3),
-    /// About a line through a point: per rad.
+    /// Rotation about a line through a point: per rad.
     Rotate { axis: Vec3, through: Vec3 },
-    /// Away from a point, or from the plane through it perpendicular to a direction: per unit, 1 being twice the size.
+    /// Scaling away from a point, or from the plane through it perpendicular to a direction: per unit; 1 doubles the
+    /// size.
     Scale { from: Vec3, along: Option<Vec3> },
-    /// A beam from one point to another that is held at the first and pushed sideways at the second: m per m there.
+    /// Deflection of a cantilever beam, clamped at the first point and loaded sideways at the second: m per m at the
+    /// second.
     Bend { from: Vec3, to: Vec3, towards: Vec3 },
-    /// As given points move, and smoothly between them.
+    /// Interpolation of given velocities of points.
     Through(Interpolation),
 }
 
 impl ShapeField {
-    /// Velocity of the point that is at s, m per unit, and the rate at which what is fixed there turns, rad per unit:
-    /// half the curl of the velocity.
+    /// Returns the velocity of the point at s, m per unit, and the local rotation rate, rad per unit: half the curl of
+    /// the velocity.
     pub fn at(&self, s: Vec3) -> [Vec3; 2] {
         match self {
-            // V(s), and w(s) = rot V / 2; of a beam that is so on its axis
+            // V(s), and w(s) = rot V / 2; for a beam this holds on its axis
             Self::Translate(v) => [*v, Vec3::ZERO],
             // V = h x (s - c),  w = h
             Self::Rotate { axis, through } => [axis.cross(s - *through), *axis],
@@ -37,7 +39,7 @@ impl ShapeField {
                 let along = e.dot(s - *from);
                 // With x = e . (s - from) / L:  V = n y(x) + w x (s - from - e x L),  w = e x n y'(x) / L
                 let (deflection, slope) = cantilever(along / length);
-                // Sections stay plane and perpendicular to the bent axis.
+                // Sections remain plane and perpendicular to the bent axis.
                 let turn = e.cross(*towards) * (slope / length);
                 [*towards * deflection + turn.cross(s - *from - e * along), turn]
             }
@@ -46,8 +48,8 @@ impl ShapeField {
     }
 }
 
-/// Deflection and slope at x of a beam of unit length that is held at 0 and deflected by 1 at 1; straight on beyond its
-/// ends.
+/// Returns the deflection and slope at x of a beam of unit length that is clamped at 0 and deflected by 1 at 1. It is
+/// straight beyond its ends.
 fn cantilever(x: f64) -> (f64, f64) {
     match x {
         x if x <= 0.0 => (0.0, 0.0),
@@ -58,24 +60,24 @@ fn cantilever(x: f64) -> (f64, f64) {
     }
 }
 
-/// Radial basis functions `r^3` at given points and a linear function: the smoothest field through their velocities.
-/// Points that move as a rigid or an evenly stretched body move everything so.
+/// Interpolation by radial basis functions `r^3` at given points plus a linear function: the smoothest field through
+/// their velocities. Rigid motions and uniform stretching are reproduced exactly.
 #[derive(Clone, Debug)]
 pub(crate) struct Interpolation {
     centre: Vec3,
     scale: f64,
     points: Vec<Vec3>,
-    /// Per point, in its unit of length.
+    /// Coefficient of each point, in the scaled unit of length.
     weights: Vec<Vec3>,
-    /// The linear function: its value at the centre, then its derivatives by x, y and z.
+    /// Linear function: value at the centre, then derivatives by x, y and z.
     linear: [Vec3; 4],
 }
 
 /// Tolerance of given velocities, relative to the largest.
-const MET: f64 = 1e-9;
+const INTERPOLATION_TOLERANCE: f64 = 1e-9;
 
 impl Interpolation {
-    /// Through these velocities at these points; `None` where two points are at one place.
+    /// Returns the interpolation of velocities at points; `None` if points that coincide have different velocities.
     pub fn new(points: &[Vec3], velocities: &[Vec3]) -> Option<Self> {
         let n = points.len();
         let centre = points.iter().fold(Vec3::ZERO, |sum, p| sum + *p) * (1.0 / n as f64);
@@ -85,14 +87,14 @@ impl Interpolation {
         let linear = |p: Vec3, k: usize| [1.0, p.x, p.y, p.z][k];
         let entry = |i: usize, j: usize| match (i < n, j < n) {
             // (K   P) (w)   (v)       K_ij = abs(s_i - s_j)^3,  P_i = (1, x_i, y_i, z_i)
-            // (P^T 0) (c) = (0)       P^T w = 0: no part of the r^3 goes like a linear function
+            // (P^T 0) (c) = (0)       P^T w = 0: the r^3 part has no linear component
             (true, true) => (scaled[i] - scaled[j]).norm().powi(3),
             (true, false) => linear(scaled[i], j - n),
             (false, true) => linear(scaled[j], i - n),
             (false, false) => 0.0,
         };
         let along = |axis: usize| velocities.iter().map(|v| v[axis]).chain([0.0; 4]).collect();
-        // Of few points, or points in a plane, many linear functions go through: the least of them is taken.
+        // Few points, or points in a plane, do not determine the linear function: the minimum-norm solution is used.
         let found = least_squares([n + 4; 2], entry, &[along(0), along(1), along(2)]);
         let row = |i: usize| Vec3::new(found[0][i], found[1][i], found[2][i]);
         let this = Self {
@@ -103,8 +105,9 @@ impl Interpolation {
             linear: std::array::from_fn(|k| row(n + k)),
         };
         let largest = velocities.iter().map(|v| v.norm()).fold(0.0, f64::max);
-        let meets = |(p, v): (&Vec3, &Vec3)| (this.at(*p)[0] - *v).norm() <= MET * largest;
-        points.iter().zip(velocities).all(meets).then_some(this)
+        let interpolates =
+            |(p, v): (&Vec3, &Vec3)| (this.at(*p)[0] - *v).norm() <= INTERPOLATION_TOLERANCE * largest;
+        points.iter().zip(velocities).all(interpolates).then_some(this)
     }
 
     fn at(&self, s: Vec3) -> [Vec3; 2] {
@@ -117,12 +120,12 @@ impl Interpolation {
         let [x, y, z] = Vec3::AXES;
         let mut curl = x.cross(dx) + y.cross(dy) + z.cross(dz);
         for (p, w) in self.points.iter().zip(&self.weights) {
-            let apart = s - *p;
-            let r = apart.norm();
+            let offset = s - *p;
+            let r = offset.norm();
             v += *w * (r * r * r);
-            curl += (apart * (3.0 * r)).cross(*w);
+            curl += (offset * (3.0 * r)).cross(*w);
         }
-        // s was in units of `scale`; the angle is per true length.
+        // s is in units of `scale`; the angle is per true length.
         [v, curl * (0.5 / self.scale)]
     }
 }
@@ -146,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn what_turns_turns_by_half_the_curl() {
+    fn rotation_rate_is_half_the_curl() {
         let h = 1e-5;
         for field in all() {
             for s in [Vec3::new(0.31, 0.24, -0.4), Vec3::new(1.3, -0.2, 0.5), Vec3::new(-0.5, 0.3, 0.2)] {
@@ -157,7 +160,7 @@ mod tests {
                 let [dx, dy, dz] = [d(0), d(1), d(2)];
                 let half = Vec3::new(dy.z - dz.y, dz.x - dx.z, dx.y - dy.x) * 0.5;
                 let found = field.at(s)[1];
-                // Off its axis a bent beam's sections also shear as its curvature changes.
+                // Off the axis, sections of a bent beam also shear as the curvature changes.
                 let off = if matches!(field, ShapeField::Bend { .. }) { 1.0 } else { 1e-8 };
                 assert!((half - found).norm() < off, "{field:?} at {s:?}: {found:?} {half:?}");
             }
@@ -169,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn an_interpolation_meets_its_points_and_repeats_a_rigid_motion() {
+    fn interpolation_passes_through_its_points_and_reproduces_rigid_motion() {
         let [x, y, z] = Vec3::AXES;
         let turn = Vec3::new(0.3, -0.5, 0.2);
         let rigid = |p: Vec3| Vec3::new(1.0, 2.0, 3.0) + turn.cross(p);
@@ -179,7 +182,7 @@ mod tests {
             let [v, w] = field.at(p);
             assert!((v - rigid(p)).norm() < 1e-12 && (w - turn).norm() < 1e-12, "{v:?} {w:?}");
         }
-        // Two points, and three on a line, leave much open; they are met all the same.
+        // Two points, or three on a line, do not determine the field, but it still interpolates them.
         let field = Interpolation::new(&[Vec3::ZERO, x, x * 2.0], &[Vec3::ZERO, z, Vec3::ZERO]).unwrap();
         assert!((field.at(x)[0] - z).norm() < 1e-9 && field.at(x * 2.0)[0].norm() < 1e-9);
         assert!(Interpolation::new(&[x, x], &[z, y]).is_none());

@@ -1,4 +1,4 @@
-//! Drafts written in code: constructors, and a chain of builder methods for the most common entries.
+//! Construction of drafts in code: constructors, and builder methods for the most common entries.
 //!
 //! All other entries are fields: `draft.wheels.push(...)`.
 
@@ -13,7 +13,7 @@ use crate::space::Vec3;
 /// Builder methods, one per kind of entry. Names may be used before they are declared;
 /// [`Model::from_draft`](crate::model::Model::from_draft) checks all of them.
 impl Draft {
-    /// An empty draft of that name.
+    /// Returns an empty draft with this name.
     pub fn new(name: impl Into<String>) -> Self {
         Self { name: name.into(), ..Self::default() }
     }
@@ -36,13 +36,13 @@ impl Draft {
         self
     }
 
-    /// Adds a joint of any type, as [`JointDraft::new`] begins it.
+    /// Adds a joint of any type; see [`JointDraft::new`].
     pub fn joint(mut self, joint: JointDraft) -> Self {
         self.joints.push(joint);
         self
     }
 
-    /// Adds a hinge: body j turns on body i about an axis through a place.
+    /// Adds a revolute joint: body j rotates on body i about an axis through a location.
     pub fn revolute(
         self,
         name: impl Into<String>,
@@ -53,7 +53,7 @@ impl Draft {
         self.joint(JointDraft::new(name, "revolute", bodies).at(at).axis(axis))
     }
 
-    /// Adds a slide: body j moves on body i along an axis.
+    /// Adds a translational joint: body j slides on body i along an axis.
     pub fn translational(
         self,
         name: impl Into<String>,
@@ -64,7 +64,7 @@ impl Draft {
         self.joint(JointDraft::new(name, "translational", bodies).at(at).axis(axis))
     }
 
-    /// Adds a ball: body j turns on body i about a place.
+    /// Adds a spherical joint: body j rotates on body i about a location.
     pub fn spherical(
         self,
         name: impl Into<String>,
@@ -74,7 +74,7 @@ impl Draft {
         self.joint(JointDraft::new(name, "spherical", bodies).at(at))
     }
 
-    /// Adds a rod between a place on body i and one on body j, which keeps its length and is no body itself.
+    /// Adds a rod between a location on body i and one on body j: a constraint of constant distance, not a body.
     pub fn distance(
         self,
         name: impl Into<String>,
@@ -92,13 +92,13 @@ impl Draft {
         self
     }
 
-    /// Adds a design variable, as [`VariableDraft::new`] makes it.
+    /// Adds a design variable; see [`VariableDraft::new`].
     pub fn variable(mut self, variable: VariableDraft) -> Self {
         self.design.push(variable);
         self
     }
 
-    /// Adds a design variable, in m, that moves a hardpoint: by this global velocity, m per m.
+    /// Adds a design variable, m, that moves a hardpoint with this global velocity, m per m.
     pub fn variable_moving(
         self,
         name: impl Into<String>,
@@ -108,7 +108,7 @@ impl Draft {
         self.variable(VariableDraft::moving(name, hardpoint, velocity))
     }
 
-    /// Adds a point to follow, on a body.
+    /// Adds a point of a body.
     pub fn point(
         mut self,
         name: impl Into<String>,
@@ -125,7 +125,7 @@ impl Draft {
         self
     }
 
-    /// Adds a point mass, kg, at a place of a body.
+    /// Adds a point mass, kg, at a location on a body.
     pub fn point_mass(
         mut self,
         name: impl Into<String>,
@@ -154,8 +154,8 @@ impl Draft {
         self
     }
 
-    /// Adds a linear spring between places on two bodies, with its stiffness in N/m; it has no force in the design
-    /// configuration.
+    /// Adds a linear spring between locations on two bodies, with its stiffness in N/m. The spring has no force in the
+    /// design configuration.
     pub fn spring(
         mut self,
         name: impl Into<String>,
@@ -180,7 +180,7 @@ impl Draft {
         self
     }
 
-    /// Adds a constant force at a place of a body: N, along a global direction of any length.
+    /// Adds a constant force at a location on a body: N, along a global direction of any length.
     pub fn force(
         mut self,
         name: impl Into<String>,
@@ -207,113 +207,114 @@ impl Draft {
     }
 }
 
-/// A joint, word by word.
+/// Builder methods of a joint.
 ///
 /// ```
 /// # use hardpoint::draft::*;
-/// // A screw that advances by 20 mm per turn, on the line between two hardpoints, cut rather than carrying the tree.
+/// // A screw that advances by 20 mm per turn, on the line between two hardpoints, as a cut joint.
 /// let screw = JointDraft::new("screw", "screw", ["shaft", "nut"]).at("A").axis(["A", "B"]).lead(0.02).cut();
 /// assert_eq!(screw.axis, Some(DirectionDraft::Through("A".into(), "B".into())));
 /// ```
 impl JointDraft {
-    /// A joint of one of the types of [`ALL`](crate::joint::ALL), by name, between bodies i and j (`ground` is one).
+    /// Returns a joint between bodies i and j (`ground` is one); `kind` is the name of a type of
+    /// [`ALL`](crate::joint::ALL).
     pub fn new(name: impl Into<String>, kind: &str, bodies: [impl Into<String>; 2]) -> Self {
         Self { name: name.into(), kind: kind.into(), bodies: bodies.map(Into::into), ..Self::default() }
     }
 
-    /// Place, or the next one of two.
+    /// Adds a location: the only one, or the next of two.
     pub fn at(mut self, place: impl Into<LocationDraft>) -> Self {
         self.at.push(place.into());
         self
     }
 
-    /// Direction of the markers' z axis.
+    /// Sets the direction of the markers' z axis.
     pub fn axis(self, axis: impl Into<DirectionDraft>) -> Self {
         Self { axis: Some(axis.into()), ..self }
     }
 
-    /// Direction of the markers' x axis.
+    /// Sets the direction of the markers' x axis.
     pub fn axis2(self, axis: impl Into<DirectionDraft>) -> Self {
         Self { axis2: Some(axis.into()), ..self }
     }
 
-    /// Length of a rod, or a follower's distance from its curve, m.
+    /// Sets the length of a rod, or the distance of a follower from its curve, m.
     pub fn length(self, length: f64) -> Self {
         Self { length: Some(length), ..self }
     }
 
-    /// Advance of a screw, m per turn.
+    /// Sets the advance of a screw, m per turn.
     pub fn lead(self, lead: f64) -> Self {
         Self { lead: Some(lead), ..self }
     }
 
-    /// The curve on body i that a point of body j follows.
+    /// Sets the curve on body i that a point of body j follows.
     pub fn curve(self, points: impl IntoIterator<Item = impl Into<LocationDraft>>, closed: bool) -> Self {
         let points = points.into_iter().map(Into::into).collect();
         Self { curve: Some(CurveDraft { points, closed }), ..self }
     }
 
-    /// Cut, rather than carrying the tree.
+    /// Makes the joint a cut joint instead of a tree joint.
     pub fn cut(self) -> Self {
         Self { cut: true, ..self }
     }
 }
 
 impl HardpointDraft {
-    /// A named point at a global position, m.
+    /// Returns a named point at a global position, m.
     pub fn new(name: impl Into<String>, position: impl Into<Vec3>) -> Self {
         Self { name: name.into(), position: position.into() }
     }
 }
 
 impl BodyDraft {
-    /// A body with the default frame.
+    /// Returns a body with the default frame.
     pub fn new(name: impl Into<String>) -> Self {
         Self { name: name.into(), frame: FrameDraft::Default }
     }
 }
 
 impl DriverDraft {
-    /// A driver. A joint's name represents its only coordinate, `["joint", "coordinate"]` for one of several.
+    /// Returns a driver. A joint's name represents its only coordinate, `["joint", "coordinate"]` for one of several.
     pub fn new(name: impl Into<String>, drives: impl Into<DrivenDraft>, law: Law) -> Self {
         Self { name: name.into(), drives: drives.into(), from_zero: false, law }
     }
 }
 
 impl PointDraft {
-    /// A point to follow, on a body.
+    /// Returns a point of a body.
     pub fn new(name: impl Into<String>, body: impl Into<String>, at: impl Into<LocationDraft>) -> Self {
         Self { name: name.into(), body: body.into(), at: at.into() }
     }
 }
 
 impl MeasureDraft {
-    /// A measure. A joint's name represents its only coordinate, `["joint", "coordinate"]` for one of several.
+    /// Returns a measure. A joint's name represents its only coordinate, `["joint", "coordinate"]` for one of several.
     pub fn new(name: impl Into<String>, kind: impl Into<MeasureKindDraft>) -> Self {
         Self { name: name.into(), kind: kind.into() }
     }
 }
 
 impl VariableDraft {
-    /// A design variable with all that changes with it.
+    /// Returns a design variable with its changes.
     pub fn new(name: impl Into<String>, changes: impl Into<Vec<ChangeDraft>>) -> Self {
         Self { name: name.into(), changes: changes.into(), ..Self::default() }
     }
 
-    /// One, in m, that moves a hardpoint: by this global velocity, m per m.
+    /// Returns a design variable, m, that moves a hardpoint with this global velocity, m per m.
     pub fn moving(name: impl Into<String>, hardpoint: impl Into<String>, velocity: impl Into<Vec3>) -> Self {
         Self::new(name, [ChangeDraft::Move { hardpoint: hardpoint.into(), velocity: velocity.into() }])
     }
 }
 
-/// With the default frame.
+/// Body with the default frame.
 impl From<&str> for BodyDraft {
     fn from(name: &str) -> Self {
         Self::new(name)
     }
 }
 
-/// A hardpoint, by name.
+/// Hardpoint, by name.
 impl From<&str> for LocationDraft {
     fn from(hardpoint: &str) -> Self {
         Self::Hardpoint(hardpoint.into())
@@ -334,49 +335,49 @@ impl From<Vec3> for LocationDraft {
     }
 }
 
-/// Along a global vector of any length.
+/// Direction along a global vector of any length.
 impl From<[f64; 3]> for DirectionDraft {
     fn from(direction: [f64; 3]) -> Self {
         Self::Along(direction.into())
     }
 }
 
-/// Along a global vector of any length.
+/// Direction along a global vector of any length.
 impl From<Vec3> for DirectionDraft {
     fn from(direction: Vec3) -> Self {
         Self::Along(direction)
     }
 }
 
-/// From one named hardpoint to another.
+/// Direction from one named hardpoint to another.
 impl From<[&str; 2]> for DirectionDraft {
     fn from([from, to]: [&str; 2]) -> Self {
         Self::Through(from.into(), to.into())
     }
 }
 
-/// A joint's only coordinate.
+/// Only coordinate of a joint.
 impl From<&str> for DrivenDraft {
     fn from(joint: &str) -> Self {
         Self::Coordinate { joint: joint.into(), coordinate: None }
     }
 }
 
-/// A joint and one of its coordinates.
+/// Joint and one of its coordinates.
 impl From<[&str; 2]> for DrivenDraft {
     fn from([joint, coordinate]: [&str; 2]) -> Self {
         Self::Coordinate { joint: joint.into(), coordinate: Some(coordinate.into()) }
     }
 }
 
-/// A joint's only coordinate.
+/// Only coordinate of a joint.
 impl From<&str> for MeasureKindDraft {
     fn from(joint: &str) -> Self {
         Self::Coordinate { joint: joint.into(), coordinate: None }
     }
 }
 
-/// A joint and one of its coordinates.
+/// Joint and one of its coordinates.
 impl From<[&str; 2]> for MeasureKindDraft {
     fn from([joint, coordinate]: [&str; 2]) -> Self {
         Self::Coordinate { joint: joint.into(), coordinate: Some(coordinate.into()) }

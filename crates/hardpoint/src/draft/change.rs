@@ -1,4 +1,4 @@
-//! Changes as written, and what a variable measures that makes them.
+//! Changes as written, and the quantity of the variable that makes them.
 
 use crate::draft::DirectionDraft;
 use crate::joint::Quantity;
@@ -14,18 +14,18 @@ macro_rules! in_drafts {
             $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
         } |$known:pat_param| $quantity:expr, |$words:pat_param| $says:expr;
     )*) => {
-        /// A part of a design variable; see [`Change`](crate::model::Change). References are names.
+        /// Part of a design variable; see [`Change`](crate::model::Change). References are names.
         #[derive(Clone, Debug)]
         pub enum ChangeDraft {
             $($(#[doc = $doc])* $kind { $($(#[doc = $field_doc])* $field: $draft,)* },)*
-            /// Both markers of a joint turn about a line through their places.
+            /// Rotation of both markers of a joint about a line through their origins.
             Tilt {
                 /// The joint's name.
                 joint: String,
-                /// The line to turn about, by one radian per radian of the variable.
+                /// Rotation axis; one radian per radian of the variable.
                 about: DirectionDraft,
             },
-            /// Whole bodies change their shape, and everything on them follows: joints with the markers of both bodies,
+            /// Change of shape of whole bodies. Everything on them follows: joints with the markers of both bodies,
             /// axes, points.
             Shape {
                 /// The names of the bodies.
@@ -36,7 +36,7 @@ macro_rules! in_drafts {
         }
 
         impl ChangeDraft {
-            /// Quantity of a variable that makes this change.
+            /// Returns the quantity of a variable that makes this change.
             fn quantity(&self, known: &Known<'_, '_>) -> Quantity {
                 match self {
                     $(#[allow(unused_variables, reason = "what it measures follows from some of its fields")]
@@ -52,8 +52,8 @@ macro_rules! in_drafts {
 changes!(in_drafts);
 
 impl ChangeDraft {
-    /// Quantity of a variable that makes these changes, given the quantities of parameters and drivers; a plain number
-    /// if the changes differ.
+    /// Returns the quantity of a variable that makes these changes, given the quantities of parameters and drivers; a
+    /// plain number if the changes differ.
     pub fn quantity_of<'l>(
         changes: &[Self],
         parameter: impl Fn(&str) -> Option<Quantity>,
@@ -87,36 +87,36 @@ impl Known<'_, '_> {
     }
 }
 
-/// A velocity field over a body: how each of its points moves in the design configuration. Points are names of
-/// hardpoints.
+/// Velocity field over a body: the velocity of each of its points in the design configuration, per unit of the
+/// variable. Points are given by names of hardpoints.
 #[derive(Clone, Debug)]
 pub enum ShapeDraft {
-    /// All the same way, along a direction of any length.
+    /// Translation along a direction of any length.
     Translate(Vec3),
-    /// About a line through a hardpoint.
+    /// Rotation about a line through a hardpoint.
     Rotate {
-        /// The line's direction.
+        /// Direction of the line.
         about: DirectionDraft,
-        /// The hardpoint.
+        /// Hardpoint.
         at: String,
     },
-    /// Away from a hardpoint, in all directions or along one.
+    /// Scaling away from a hardpoint, in all directions or along one.
     Scale {
-        /// The hardpoint.
+        /// Hardpoint.
         from: String,
-        /// The direction.
+        /// Direction of the scaling; all directions if `None`.
         along: Option<DirectionDraft>,
     },
-    /// Like a beam that is held at one hardpoint and pushed at another.
+    /// Deflection of a cantilever beam, clamped at one hardpoint and loaded at another.
     Bend {
-        /// Held here.
+        /// Clamped end.
         from: String,
-        /// Pushed here.
+        /// Free, loaded end.
         to: String,
-        /// In this direction, of any length; only what is perpendicular to the beam counts.
+        /// Direction of the deflection, of any length; only the component perpendicular to the beam is used.
         towards: Vec3,
     },
-    /// As these hardpoints move, per unit, and smoothly between them.
+    /// Interpolation of given velocities of hardpoints, per unit, smooth between them.
     Through(Vec<(String, Vec3)>),
 }
 

@@ -1,4 +1,4 @@
-//! From a draft to a model: every reference resolved, every fault found.
+//! Check of a draft: resolves all references, reports all errors, and builds the model.
 
 mod cases;
 mod design;
@@ -30,25 +30,25 @@ use crate::model::{
 };
 use crate::space::{Mat3, Pose, Vec3};
 
-/// Tolerance of the right angle between `axis2` and `axis`, as a cosine: typed unit vectors satisfy it.
-const SQUARE_TOLERANCE: f64 = 1e-6;
-/// Points closer than this part of the mechanism's size are the same point.
+/// Tolerance of the right angle between `axis2` and `axis`, as a cosine. Typed unit vectors satisfy it.
+const PERPENDICULAR_TOLERANCE: f64 = 1e-6;
+/// Distance, relative to the size of the mechanism, below which two points coincide.
 const SAME_POINT: f64 = 1e-9;
-/// A fault lists at most this many valid names.
+/// Maximum number of valid names in an error.
 const LISTED_NAMES: usize = 24;
-/// The first that many faults guess which name was meant ...
+/// Number of errors up to which the check suggests a name ...
 const GUESSES: usize = 50;
-/// ... as long as that takes no more than that many comparisons of names in all.
+/// ... and the maximum number of name comparisons for suggestions.
 const COMPARISONS: usize = 250_000;
 
 impl Model {
     /// Checks a draft and resolves its names.
     ///
     /// # Errors
-    /// Every [`DraftError`] of the draft, in its order: unknown or duplicate names, axes that are null or missing or
-    /// not square, places that do not fit the joint type, drivers on coordinates that a joint does not have, laws that
-    /// are not finite at an output time, times that do not increase. No fault, but no model either, where something is
-    /// [`UnreadEntries`](crate::draft::UnreadEntries) and all else is right.
+    /// Every [`DraftError`] of the draft, in its order: unknown or duplicate names, missing, null or non-perpendicular
+    /// axes, locations that do not fit the joint type, drivers of coordinates that a joint does not have, laws that are
+    /// not finite at an output time, times that do not increase. If the draft has
+    /// [`UnreadEntries`](crate::draft::UnreadEntries) and no errors, the list is empty.
     ///
     /// ```
     /// use hardpoint::{draft::Draft, model::Model};
@@ -57,39 +57,39 @@ impl Model {
     /// ```
     pub fn from_draft(draft: &Draft) -> Result<Self, Vec<DraftError>> {
         let mut c = Checker::new(draft);
-        c.names();
-        c.formulas();
-        c.bodies();
-        c.joints();
-        c.default_frames();
-        c.places_of_directions();
-        c.couplers();
-        c.points();
-        c.drivers();
-        c.cases();
-        c.grids();
-        c.vehicle();
-        c.wheels();
-        c.axles();
-        c.elements();
-        c.measures();
-        c.metrics();
-        c.variables();
-        c.formulas_that_vary();
-        c.times();
-        c.optimization();
-        c.tolerancing();
-        c.sweeping();
+        c.check_names();
+        c.add_formulas();
+        c.add_bodies();
+        c.add_joints();
+        c.set_default_frames();
+        c.place_unplaced_joints();
+        c.add_couplers();
+        c.add_points();
+        c.add_drivers();
+        c.add_cases();
+        c.add_grids();
+        c.check_vehicle();
+        c.add_wheels();
+        c.add_axles();
+        c.add_elements();
+        c.add_measures();
+        c.add_metrics();
+        c.add_variables();
+        c.add_varying_formulas();
+        c.check_times();
+        c.add_optimization();
+        c.add_tolerancing();
+        c.add_sweeping();
         c.faults.retain(|f| !draft.unread.has(f.at.section, f.at.index, f.at.key));
         if !c.faults.is_empty() || !draft.unread.is_empty() {
             return Err(c.faults);
         }
-        c.model.hold_idle_spins();
+        c.model.fix_idle_rotations();
         Ok(c.model)
     }
 }
 
-/// A place in the draft that is being looked at.
+/// Entry of the draft that is being checked.
 #[derive(Clone, Copy)]
 struct Here {
     section: Section,
@@ -110,37 +110,37 @@ struct Checker<'a> {
     draft: &'a Draft,
     model: Model,
     faults: Vec<DraftError>,
-    /// Model joint of every joint of the draft; `None` for faulty ones.
+    /// Model joint of each joint of the draft; `None` for faulty ones.
     joint_ids: Vec<Option<JointId>>,
-    /// The same for wheels, and for axles.
+    /// Model wheel of each wheel of the draft, and model axle of each axle.
     wheel_ids: Vec<Option<WheelId>>,
     axle_ids: Vec<Option<AxleId>>,
-    /// Model metric of every metric of the draft.
+    /// Model metric of each metric of the draft; `None` for faulty ones.
     metric_ids: Vec<Option<usize>>,
-    /// The hardpoints that curves pass through.
+    /// Hardpoints that curves pass through.
     curve_points: Vec<HardpointId>,
-    /// The formulas that are read so far, each after those whose results it uses.
-    written: Vec<formulas::Written>,
-    /// Parameters and hardpoints without a known value: unread, or given by a faulty formula.
-    spoilt: BTreeSet<Source>,
-    /// The expressions for the length of joints, and for the parameters of drivers' laws, by name.
+    /// Formulas resolved so far, each after those whose results it uses.
+    written: Vec<formulas::LocatedFormula>,
+    /// Parameters and coordinates of hardpoints without a known value: unread, or defined by a faulty formula.
+    unknown_sources: BTreeSet<Source>,
+    /// Expressions for lengths of joints, and for parameters of drivers' laws, by name.
     length_formulas: HashMap<&'a str, &'a Expression>,
     law_formulas: HashMap<&'a str, Vec<(&'a str, &'a Expression)>>,
-    /// The same of the laws of cases, by the names of case and driver.
+    /// Expressions for parameters of the laws of cases, by the names of case and driver.
     case_formulas: HashMap<(&'a str, &'a str), Vec<(&'a str, &'a Expression)>>,
-    /// By kind of entry: which number a name has. Only looked up, never walked.
+    /// Index of each name, by kind of entry. Only used for lookups, never iterated.
     numbers: HashMap<&'static str, HashMap<&'a str, usize>>,
     /// Driver of a joint coordinate. Only used for lookups, never iterated.
     driver_of: HashMap<(JointId, usize), DriverId>,
-    /// Values in the design configuration of the drivers whose laws count from zero.
-    zeros: HashMap<DriverId, driven::AsDrawn>,
-    /// Comparisons of names that guesses may still take.
+    /// Nominal values of the drivers whose laws give absolute values.
+    zeros: HashMap<DriverId, driven::NominalValue>,
+    /// Remaining number of name comparisons for suggestions.
     comparisons: usize,
-    /// The box around the joints' hardpoints, as far as they are known; what no joint uses has no say in what is small.
+    /// Bounding box of the known hardpoints of joints. Hardpoints without joints do not affect the tolerances.
     extent: Extent,
 }
 
-/// The tables that names of a kind stand in.
+/// Table of each kind of entry.
 const TABLES: [(&str, &str); 15] = [
     ("parameter", "parameters"),
     ("hardpoint", "hardpoints"),
@@ -159,9 +159,9 @@ const TABLES: [(&str, &str); 15] = [
     ("vehicle", "vehicle"),
 ];
 
-/// The box around the known hardpoints that joints name; around all of these if they name none.
-fn extent_of_joints(draft: &Draft, hardpoints: &[Hardpoint], spoilt: &BTreeSet<Source>) -> Extent {
-    let known = |(k, _): &(usize, &Hardpoint)| is_known(HardpointId(*k), spoilt);
+/// Bounding box of the known hardpoints that joints use, or of all known hardpoints if joints use none.
+fn extent_of_joints(draft: &Draft, hardpoints: &[Hardpoint], unknown_sources: &BTreeSet<Source>) -> Extent {
+    let known = |(k, _): &(usize, &Hardpoint)| is_known(HardpointId(*k), unknown_sources);
     let known: Vec<&Hardpoint> = hardpoints.iter().enumerate().filter(known).map(|h| h.1).collect();
     let places = draft.joints.iter().flat_map(|j| &j.at);
     let named: BTreeSet<&str> = places
@@ -175,9 +175,9 @@ fn extent_of_joints(draft: &Draft, hardpoints: &[Hardpoint], spoilt: &BTreeSet<S
     if extent.size_or_zero() > 0.0 { extent } else { Extent::of(known.iter().map(|h| h.position)) }
 }
 
-/// True if the place of a hardpoint is known, given what faulty formulas should give.
-fn is_known(h: HardpointId, spoilt: &BTreeSet<Source>) -> bool {
-    spoilt.is_empty() || (0..3).all(|axis| !spoilt.contains(&Source::Coordinate(h, axis)))
+/// True if all coordinates of a hardpoint are known.
+fn is_known(h: HardpointId, unknown_sources: &BTreeSet<Source>) -> bool {
+    unknown_sources.is_empty() || (0..3).all(|axis| !unknown_sources.contains(&Source::Coordinate(h, axis)))
 }
 
 impl<'a> Checker<'a> {
@@ -258,7 +258,7 @@ impl<'a> Checker<'a> {
             metric_ids: Vec::new(),
             curve_points: Vec::new(),
             written: Vec::new(),
-            spoilt: BTreeSet::new(),
+            unknown_sources: BTreeSet::new(),
             length_formulas,
             law_formulas,
             case_formulas,
@@ -281,7 +281,7 @@ impl<'a> Checker<'a> {
     }
 
     /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
-    fn names(&mut self) {
+    fn check_names(&mut self) {
         let d = self.draft;
         let lists: [(Section, &str, Vec<&str>); 21] = [
             (Section::Parameters, "parameter", d.parameters.iter().map(|x| x.name.as_str()).collect()),
@@ -340,8 +340,8 @@ impl<'a> Checker<'a> {
                         index + 1
                     ));
                 } else if section == Section::Bodies && *name == "ground" {
-                    self.fault("HP0201", at, "`ground` is the name of the body that does not move")
-                        .help("give this body another name; `ground` is predefined");
+                    self.fault("HP0201", at, "the name `ground` is reserved for the fixed body")
+                        .help("give this body another name");
                 }
             }
         }
@@ -355,7 +355,7 @@ impl<'a> Checker<'a> {
                 );
             }
         }
-        if d.bodies.is_empty() && !self.lost("body") {
+        if d.bodies.is_empty() && !self.is_table_unread("body") {
             let at = Here { section: Section::Bodies, index: 0 }.key("");
             self.fault("HP0203", at, "the model has no bodies")
                 .help("declare at least one body besides `ground`");
@@ -367,13 +367,14 @@ impl<'a> Checker<'a> {
         self.draft.unread.has(here.section, here.index, field)
     }
 
-    /// True if the table of all these could not be read.
-    fn lost(&self, what: &str) -> bool {
+    /// True if the table of this kind of entry could not be read.
+    fn is_table_unread(&self, what: &str) -> bool {
         let table = TABLES.iter().find(|t| t.0 == what);
         table.is_some_and(|(_, table)| self.draft.unread.has(Section::Model, 0, table))
     }
 
-    /// Looks a name up among candidates, or says what is there instead; says nothing where these could not be read.
+    /// Returns the index of a name among candidates. Reports HP0204 with the valid names if it is unknown, unless their
+    /// table could not be read.
     fn find<'n>(
         &mut self,
         what: &str,
@@ -386,11 +387,11 @@ impl<'a> Checker<'a> {
             Some(numbers) => numbers.get(name).copied(),
             None => candidates.clone().position(|c| c == name),
         };
-        if found.is_some() || self.lost(what) {
+        if found.is_some() || self.is_table_unread(what) {
             return found;
         }
         let count = numbers.map_or_else(|| candidates.clone().count(), HashMap::len);
-        // A guess compares with every name; past the faults that anybody reads it would only cost time.
+        // A suggestion takes a comparison with every name. Beyond the errors that a user reads, it only costs time.
         let guess = self.faults.len() < GUESSES && count <= self.comparisons;
         let close = if guess { did_you_mean(name, candidates.clone()) } else { None };
         self.comparisons -= if guess { count } else { 0 };
@@ -404,18 +405,20 @@ impl<'a> Checker<'a> {
         }
         match on_a_body.or_else(|| close.map(|close| format!("did you mean `{close}`?"))) {
             Some(help) => drop(fault.help(help)),
-            None if valid.is_empty() => drop(fault.help(format!("the model declares no {what}"))),
+            None if valid.is_empty() => {
+                fault.help(format!("declare `{name}` first: the model has no {what}"));
+            }
             None => {}
         }
         None
     }
 
-    /// Suggests text for a point if a hardpoint was named in its place.
+    /// Returns a suggestion if a hardpoint is named instead of a point.
     fn point_at(&self, hardpoint: &str) -> Option<String> {
         self.draft.hardpoints.iter().find(|h| h.name == hardpoint)?;
         let is_there =
             |place: &LocationDraft| matches!(place, LocationDraft::Hardpoint(name) if name == hardpoint);
-        // A joint with one place has it on both of its bodies.
+        // A joint with one location has it on both bodies.
         let bodies = self.draft.joints.iter().filter_map(|joint| {
             let k = joint.at.iter().position(is_there)?;
             Some(joint.bodies[if joint.at.len() == 1 { 1 } else { k.min(1) }].as_str())
@@ -437,14 +440,14 @@ impl<'a> Checker<'a> {
         self.find("hardpoint", name, at, draft.hardpoints.iter().map(|h| h.name.as_str())).map(HardpointId)
     }
 
-    /// The joint of that name; `None`, without a second fault, where the joint itself is faulty.
+    /// Returns the joint with this name; `None`, without a second error, if the joint itself is faulty.
     fn joint(&mut self, name: &str, at: DraftLocation) -> Option<JointId> {
         let draft = self.draft;
         let k = self.find("joint", name, at, draft.joints.iter().map(|j| j.name.as_str()))?;
         self.joint_ids[k]
     }
 
-    /// A hardpoint for a place; coordinates become an unnamed one.
+    /// Returns the hardpoint of a location; coordinates become an unnamed hardpoint.
     fn place(&mut self, place: &LocationDraft, owner: &str, at: DraftLocation) -> Option<HardpointId> {
         match place {
             LocationDraft::Hardpoint(name) => self.hardpoint(name, at),
@@ -463,16 +466,16 @@ impl<'a> Checker<'a> {
 
     /// Position of a hardpoint, if it is known.
     fn position(&self, h: HardpointId) -> Option<Vec3> {
-        is_known(h, &self.spoilt).then(|| self.model.hardpoints[h.0].position)
+        is_known(h, &self.unknown_sources).then(|| self.model.hardpoints[h.0].position)
     }
 
     /// Vector from one hardpoint to another, if it is known; `Some(None)` if they coincide.
-    fn apart(&self, a: HardpointId, b: HardpointId) -> Option<Option<Vec3>> {
+    fn separation(&self, a: HardpointId, b: HardpointId) -> Option<Option<Vec3>> {
         let d = self.position(b)? - self.position(a)?;
         Some((d.norm() > SAME_POINT * self.extent.size()).then_some(d))
     }
 
-    /// A direction, and its unit vector at the design configuration.
+    /// Returns a direction, and its unit vector in the design configuration. HP0205 if it is null.
     fn line(
         &mut self,
         line: &DirectionDraft,
@@ -483,7 +486,7 @@ impl<'a> Checker<'a> {
         self.line_at(line, owner, here.key(key))
     }
 
-    /// The same, written at a place.
+    /// [`Checker::line`], with errors reported at a location.
     fn line_at(
         &mut self,
         line: &DirectionDraft,
@@ -496,7 +499,7 @@ impl<'a> Checker<'a> {
                 Some(u) => Some((Direction::Along(u), u)),
                 None => {
                     self.fault("HP0205", at, format!("the {key} of `{owner}` has no direction"))
-                        .note(format!("it is written as [{}, {}, {}]", v.x, v.y, v.z))
+                        .note(format!("its value is [{}, {}, {}]", v.x, v.y, v.z))
                         .help("give a non-zero vector, like [0, 0, 1]");
                     None
                 }
@@ -505,15 +508,15 @@ impl<'a> Checker<'a> {
                 let a_id = self.hardpoint(a, DraftLocation { item: Some(0), ..at.clone() });
                 let b_id = self.hardpoint(b, DraftLocation { item: Some(1), ..at.clone() });
                 let (a_id, b_id) = (a_id?, b_id?);
-                match self.apart(a_id, b_id)?.and_then(Vec3::unit) {
+                match self.separation(a_id, b_id)?.and_then(Vec3::unit) {
                     Some(u) => Some((Direction::Through(a_id, b_id), u)),
                     None => {
-                        let message = format!("the {key} of `{owner}` passes through one point only");
+                        let message = format!("the two points of the {key} of `{owner}` coincide");
                         self.fault("HP0205", at, message)
                             .note(if a == b {
                                 format!("both of its hardpoints are `{a}`")
                             } else {
-                                format!("hardpoints `{a}` and `{b}` are at the same place")
+                                format!("hardpoints `{a}` and `{b}` coincide")
                             })
                             .help("name two different hardpoints");
                         None
@@ -523,7 +526,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn bodies(&mut self) {
+    fn add_bodies(&mut self) {
         let draft = self.draft;
         for (index, b) in draft.bodies.iter().enumerate() {
             let here = Here { section: Section::Bodies, index };
@@ -543,7 +546,7 @@ impl<'a> Checker<'a> {
                 FrameDraft::Points(origin, x, xy) => {
                     let mut at = |k: usize, p: &LocationDraft| match p {
                         LocationDraft::Formula(_) => {
-                            let message = format!("the frame of body `{}` is given by an expression", b.name);
+                            let message = format!("the frame of body `{}` contains an expression", b.name);
                             self.fault("HP0230", here.item("frame", k), message)
                                 .help("give numbers: body frames do not change with the design");
                             None
@@ -568,8 +571,7 @@ impl<'a> Checker<'a> {
                                 frame = Pose { rot: Mat3 { cols: [f, h.cross(f), h] }, r: o };
                             }
                             _ => {
-                                let message =
-                                    format!("the frame points of body `{}` lie on one line", b.name);
+                                let message = format!("the frame points of body `{}` are collinear", b.name);
                                 self.fault("HP0206", here.key("frame"), message).help(
                                     "give an origin, a point on the x axis, and a third point off that axis",
                                 );
@@ -582,8 +584,8 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// HP0212 for bodies that nothing holds; default frames for the others that gave none.
-    fn default_frames(&mut self) {
+    /// HP0212: bodies without joints. Sets the default frames.
+    fn set_default_frames(&mut self) {
         let mut ends = vec![(Vec3::ZERO, 0.0); self.model.bodies.len()];
         for j in self.model.joints.iter().filter(|j| j.at[0] != UNPLACED) {
             for (body, at) in j.bodies.iter().zip(j.at) {
@@ -594,12 +596,13 @@ impl<'a> Checker<'a> {
         }
         let named: BTreeSet<&str> =
             self.draft.joints.iter().flat_map(|j| &j.bodies).map(String::as_str).collect();
-        // A joint that could not be read may hold any body.
-        let all_known = !self.lost("joint") && !self.draft.unread.anywhere(Section::Joints, "bodies");
+        // An unread joint may connect any body.
+        let all_known =
+            !self.is_table_unread("joint") && !self.draft.unread.anywhere(Section::Joints, "bodies");
         for (index, b) in self.draft.bodies.iter().enumerate() {
             if !named.contains(b.name.as_str()) && all_known {
                 let at = Here { section: Section::Bodies, index }.key("name");
-                self.fault("HP0212", at, format!("no joint holds body `{}`", b.name))
+                self.fault("HP0212", at, format!("body `{}` is not connected to any joint", b.name))
                     .help("connect it with a joint, or remove it");
             }
             let (sum, count) = ends[index + 1];
@@ -609,19 +612,19 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn points(&mut self) {
+    fn add_points(&mut self) {
         let draft = self.draft;
         for (index, p) in draft.points.iter().enumerate() {
             let here = Here { section: Section::Points, index };
             let body = self.body(&p.body, here.key("body"));
             let at = if self.unread(here, "at") { None } else { self.place(&p.at, &p.name, here.key("at")) };
-            // A faulty point keeps its place in the list, so that later names still resolve.
+            // A faulty point stays in the list, so that the indices of later points are correct.
             let (body, at) = body.zip(at).unwrap_or((GROUND, UNPLACED));
             self.model.points.push(BodyPoint { name: p.name.clone(), body, at, unnamed: false });
         }
     }
 
-    /// A point; `None`, without a second fault, where a named point itself is faulty.
+    /// Returns a point; `None`, without a second error, if a named point itself is faulty.
     fn point(&mut self, p: &PointRef, owner: &str, at: DraftLocation) -> Option<PointId> {
         match p {
             PointRef::Named(name) => {
@@ -639,25 +642,25 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn times(&mut self) {
+    fn check_times(&mut self) {
         let cases = &self.draft.cases;
         if self.draft.times.is_empty() && !cases.is_empty() && cases.iter().all(|c| c.times.is_some()) {
-            // Those of the file would only be a default.
+            // The times of the model are only a default for cases.
             self.model.times = cases[0].times.clone().unwrap_or_default();
             return;
         }
-        self.times_of(&self.draft.times, Here { section: Section::Time, index: 0 }.key(""));
+        self.check_output_times(&self.draft.times, Here { section: Section::Time, index: 0 }.key(""));
     }
 
-    /// HP0219: output times that do not go on.
-    fn times_of(&mut self, times: &[f64], at: DraftLocation) {
+    /// HP0219: missing output times, or times that are not finite and increasing.
+    fn check_output_times(&mut self, times: &[f64], at: DraftLocation) {
         if times.is_empty() {
-            self.fault("HP0219", at, "there are no output times")
+            self.fault("HP0219", at, "the model has no output times")
                 .help("give a `[time]` table with `end` and `steps`");
         } else if let Some(k) =
             (0..times.len()).find(|&k| !times[k].is_finite() || (k > 0 && times[k] <= times[k - 1]))
         {
-            self.fault("HP0219", at, "output times must be finite and increase").note(format!(
+            self.fault("HP0219", at, "the output times are not finite and increasing").note(format!(
                 "time number {} is {} s",
                 k + 1,
                 times[k]
@@ -666,14 +669,14 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// The place of a joint that needs none, until it gets one, and of a faulty point.
+/// Placeholder for the hardpoint of a joint without a location, until it gets one, and of a faulty point.
 const UNPLACED: HardpointId = HardpointId(usize::MAX);
 
 fn degrees_between(a: Vec3, b: Vec3) -> f64 {
     a.dot(b).clamp(-1.0, 1.0).acos().to_degrees()
 }
 
-/// Index of each name; of equal names, the first.
+/// Returns the index of each name; the first one of equal names.
 fn numbered<'a>(names: impl Iterator<Item = &'a str>) -> HashMap<&'a str, usize> {
     let mut numbers = HashMap::new();
     for (k, name) in names.enumerate() {
@@ -682,7 +685,7 @@ fn numbered<'a>(names: impl Iterator<Item = &'a str>) -> HashMap<&'a str, usize>
     numbers
 }
 
-/// The frame with z along `z` and x along `x`, two unit vectors perpendicular to each other.
+/// Returns the frame with axes z and x along two perpendicular unit vectors.
 fn frame_along(z: Vec3, x: Vec3) -> Mat3 {
     Mat3 { cols: [x, z.cross(x), z] }
 }

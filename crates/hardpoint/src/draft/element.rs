@@ -1,4 +1,4 @@
-//! Masses and forces as written, and what their fields mean in a model.
+//! Masses and forces as written, and their resolution to a model.
 
 use crate::draft::{FieldDraft, MeasureField, PointRef};
 use crate::expression::Expression;
@@ -13,10 +13,10 @@ use crate::space::Vec3;
 use super::check::MeasureCheck;
 use super::measure::Field;
 
-/// A number as written: by itself, or by an expression over parameters, which it then follows.
+/// Number as written: a value, or an expression over parameters.
 #[derive(Clone, Debug)]
 pub struct NumberDraft {
-    /// Value, SI; of no account where an expression gives it.
+    /// Value, SI; ignored if an expression defines it.
     pub value: f64,
     /// Expression that defines the number.
     pub expression: Option<Expression>,
@@ -40,7 +40,7 @@ pub struct ElementDraft {
 }
 
 impl ElementDraft {
-    /// A mass or force of that name.
+    /// Returns a mass or force with this name.
     pub fn new(name: impl Into<String>, kind: ElementKindDraft) -> Self {
         Self { name: name.into(), kind }
     }
@@ -69,13 +69,13 @@ macro_rules! in_drafts {
         /// Kind of an element as written; see [`ElementKind`].
         #[derive(Clone, Debug)]
         pub enum ElementKindDraft {
-            /// It could not be read.
+            /// Entry that could not be read.
             Unread,
             $($(#[doc = $doc])* $variant { $($(#[doc = $field_doc])* $field: $draft,)* },)*
         }
 
         impl ElementType {
-            /// All of them.
+            /// All types.
             pub const ALL: &[Self] = &[$(Self {
                 name: $name,
                 summary: concat!($($doc),*).trim_ascii(),
@@ -88,7 +88,7 @@ macro_rules! in_drafts {
                 }),*],
             }),*];
 
-            /// An element of this type from its fields; `None` where one of them is missing, or not of its kind.
+            /// Returns an element of this type from its fields; `None` if a field is missing or of the wrong kind.
             pub fn draft(&self, mut field: impl FnMut(&MeasureField) -> Option<FieldDraft>) -> Option<ElementKindDraft> {
                 let mut fields = self.fields.iter().map(|f| field(f)).collect::<Vec<_>>().into_iter();
                 match self.name {

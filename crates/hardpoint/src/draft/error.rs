@@ -1,8 +1,8 @@
-//! Diagnostics about a draft: what is wrong, where, and what to do.
+//! Errors of a draft, with their location and remedy.
 
 use std::fmt;
 
-/// One thing that is wrong with a draft. All faults of a draft are found at once.
+/// Error of a draft. The check reports all errors of a draft at once.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{message}")]
 pub struct DraftError {
@@ -10,7 +10,7 @@ pub struct DraftError {
     pub code: &'static str,
     /// Location in the draft.
     pub at: DraftLocation,
-    /// The headline, enough alone.
+    /// Headline that is complete by itself: the fault, subject first.
     pub message: String,
     /// Facts, with units.
     pub notes: Vec<String>,
@@ -30,7 +30,7 @@ impl DraftError {
     }
 }
 
-/// A list of the draft, and the table of the model file that it comes from.
+/// List of the draft, with the table of the model file that it comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Section {
     /// The draft as a whole.
@@ -91,7 +91,7 @@ pub enum Section {
     SweepRanges,
 }
 
-/// A place in a draft.
+/// Location in a draft.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct DraftLocation {
     /// List that contains the entry.
@@ -136,7 +136,7 @@ impl fmt::Display for Section {
     }
 }
 
-/// The items with separators between; of a long list that many, and how many more there are.
+/// Joins items with a separator. A longer list is cut after `most` items, with the number of the others.
 pub fn some_of(items: &[impl AsRef<str>], separator: &str, most: usize) -> String {
     let shown: Vec<&str> = items.iter().take(most).map(AsRef::as_ref).collect();
     match items.len().saturating_sub(most) {
@@ -145,7 +145,7 @@ pub fn some_of(items: &[impl AsRef<str>], separator: &str, most: usize) -> Strin
     }
 }
 
-/// The candidate that the user most likely meant, if any is close: at most a third of its letters differ.
+/// Returns the candidate closest to a misspelt name, if at most a third of the letters differ.
 pub fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = name.to_lowercase();
     let length = name.chars().count();
@@ -154,7 +154,7 @@ pub fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str
         .filter_map(|c| {
             let other = c.chars().count();
             let allowed = (usize::min(length, other) + 1) / 3;
-            // The distance is at least the difference in length; most candidates need no more than that.
+            // The edit distance is at least the difference in length, which excludes most candidates.
             let distance = (length.abs_diff(other) <= allowed)
                 .then(|| strsim::damerau_levenshtein(&lower, &c.to_lowercase()))?;
             (distance <= allowed).then_some((distance, c))

@@ -1,18 +1,19 @@
-//! Idle freedoms: a rod that can spin between its balls without moving anything else.
+//! Idle rotations: the free spin of a rod between two spherical joints, which moves nothing else.
 
 use crate::constraint::Row;
 use crate::linalg::FullPivot;
 use crate::model::{BodyId, GROUND, IdleRotation, JointId, Model};
 use crate::space::{Mat3, Twist, Vec3};
 
-/// A constraint that is weaker than this part of the strongest does not hold.
+/// Pivot, relative to the largest, below which a constraint is ignored.
 const RANK_TOLERANCE: f64 = 1e-8;
-/// A point this far from an axis, in sizes, is on it; typed coordinates agree to about this.
+/// Distance of a point from an axis, in sizes of the mechanism, up to which it is on the axis; typed coordinates agree
+/// to about this.
 const ON_AXIS: f64 = 1e-6;
 
 impl Model {
-    /// Finds idle spins and holds them.
-    pub(super) fn hold_idle_spins(&mut self) {
+    /// Finds idle rotations and fixes each by making one spherical joint a universal joint.
+    pub(super) fn fix_idle_rotations(&mut self) {
         let size = self.size();
         let mut joints_of = vec![Vec::new(); self.bodies.len()];
         for (k, j) in self.joints.iter().enumerate() {
@@ -31,7 +32,7 @@ impl Model {
             prescribed[t.joint.0].push(self.coupled(t).row);
         }
         for bodies in groups {
-            // Where nothing is a ball there is nothing to hold, and most bodies of a linkage are dealt with here.
+            // Without a spherical joint there is nothing to fix. This excludes most bodies of a linkage early.
             let mut joints: Vec<JointId> =
                 bodies.iter().flat_map(|b| joints_of[b.0].iter().copied()).collect();
             joints.sort_unstable();
@@ -42,15 +43,16 @@ impl Model {
             let Some(axis) = self.spin(&bodies, &joints, ball, &prescribed, size) else { continue };
             let z = axis.any_perpendicular();
             let frame = Mat3 { cols: [axis.cross(z), z.cross(axis.cross(z)), z] };
-            let held = &mut self.joints[ball.0];
-            (held.kind, held.frames) = (&crate::joint::UNIVERSAL, [frame; 2]);
+            let fixed = &mut self.joints[ball.0];
+            (fixed.kind, fixed.frames) = (&crate::joint::UNIVERSAL, [frame; 2]);
             self.idle.push(IdleRotation { bodies, joint: ball, axis });
         }
     }
 
-    /// The axis through the ball about which these bodies can spin while all others stay, if that is all they can do.
+    /// Returns the axis through the spherical joint about which these bodies can rotate while all others are fixed, if
+    /// that is their only freedom.
     ///
-    /// `prescribed` has per joint the rows that drivers and couplers add to its own.
+    /// `prescribed` lists, for each joint, the rows that drivers and couplers add.
     fn spin(
         &self,
         bodies: &[BodyId],
@@ -67,14 +69,14 @@ impl Model {
             let joint = &self.joints[j.0];
             let mut ends = self.ends(j);
             if joint.kind.places == 1 {
-                // A joint that is drawn open closes where it is on these bodies.
+                // A joint that is open in the design configuration closes at its location on these bodies.
                 (ends.i.r, ends.j.r) = (place(j), place(j));
             }
             let side = if end(j) == 1 { 1.0 } else { -1.0 };
             for &row in joint.kind.rows.iter().chain(&prescribed[j.0]) {
                 let wrench = row.wrench(&ends);
                 let scale = if row.is_length() { side / size } else { side };
-                // Turns about the ball, then slides in sizes.
+                // Rotations about the spherical joint, then translations in units of the size.
                 let turns = Vec3::AXES.map(|e| scale * wrench.on(Twist::turn(e, centre)));
                 let slides = Vec3::AXES.map(|e| scale * size * wrench.on(Twist::slide(e)));
                 rows.push(turns.into_iter().chain(slides).collect());
@@ -88,13 +90,13 @@ impl Model {
         }
         let slide = Vec3::new(free[3], free[4], free[5]);
         let axis = Vec3::new(free[0], free[1], free[2]).unit()?;
-        // A spin that the position happens to allow is no idle one: every other joint must be on the axis, for good.
+        // A rotation that is possible only in this position is not idle: every other joint must stay on the axis.
         let on_axis = |p: Vec3| (p - centre).cross(axis).norm() <= ON_AXIS * size;
-        let for_good = joints.iter().all(|&j| {
+        let permanent = joints.iter().all(|&j| {
             let joint = &self.joints[j.0];
             let along = joint.axis.is_none() || joint.frames[end(j)].cols[2].cross(axis).norm() <= ON_AXIS;
             on_axis(place(j)) && along
         });
-        (slide.norm() <= ON_AXIS && for_good).then_some(axis)
+        (slide.norm() <= ON_AXIS && permanent).then_some(axis)
     }
 }

@@ -1,4 +1,4 @@
-//! Measures as written, and what their fields mean in a model.
+//! Measures as written, and their resolution to a model.
 
 use crate::draft::{DirectionDraft, NumberDraft, PointRef, RayDraft};
 use crate::expression::Expression;
@@ -12,8 +12,7 @@ use crate::space::Vec3;
 
 use super::check::MeasureCheck;
 
-/// A type of measure as model files name it, but for those of wheels and axles, which are [`WheelMeasure`] and
-/// [`AxleMeasure`].
+/// Type of measure, by its name in model files. Measures of wheels and axles are [`WheelMeasure`] and [`AxleMeasure`].
 #[derive(Debug)]
 pub struct MeasureType {
     /// Name.
@@ -31,7 +30,7 @@ pub struct MeasureField {
     pub key: &'static str,
     /// Kind of the field.
     pub kind: FieldKind,
-    /// True if it must be given.
+    /// True if the field is required.
     pub required: bool,
     /// Meaning of the field.
     pub summary: &'static str,
@@ -68,7 +67,7 @@ pub enum FieldKind {
     Force,
     /// The name of a wheel.
     Wheel,
-    /// A force over a way, as points of a table.
+    /// Force over deflection, as points of a table.
     Table,
     /// A closed surface.
     Mesh,
@@ -93,11 +92,11 @@ pub enum FieldDraft {
     Line(DirectionDraft),
     /// A direction to measure an angle from or to.
     Ray(RayDraft),
-    /// One of the angles that say how a body is turned.
+    /// Orientation angle of a body.
     Angle(OrientationAngle),
     /// Component of a joint's reaction.
     Part(ReactionPart),
-    /// Along which axes something is given.
+    /// Axes in which a vector is given.
     Axes(Axes),
     /// A number.
     Number(NumberDraft),
@@ -111,12 +110,13 @@ pub enum FieldDraft {
     Expression(Expression),
 }
 
-/// A value that is written as a `Draft` and resolved to this type in a model. The fields of measures have such types.
+/// Value that is written as a `Draft` and resolved to this type in a model. Fields of measures and elements have such
+/// types.
 pub(super) trait Field: Sized {
     type Draft;
     const KIND: FieldKind;
     const REQUIRED: bool = true;
-    /// As written, if it is; `None` where it is something else, or missing.
+    /// Returns the value as written; `None` if it is missing or of another kind.
     fn draft(written: Option<FieldDraft>) -> Option<Self::Draft>;
     /// Resolves the value; `None`, with an error, if it is not known.
     fn resolve(draft: &Self::Draft, key: &'static str, check: &mut MeasureCheck<'_, '_>) -> Option<Self>;
@@ -132,7 +132,7 @@ macro_rules! in_drafts {
         /// Kind of a measure as written; see [`MeasureKind`].
         #[derive(Clone, Debug)]
         pub enum MeasureKindDraft {
-            /// It could not be read.
+            /// Entry that could not be read.
             Unread,
             $($(#[doc = $doc])* $variant { $($(#[doc = $field_doc])* $field: $draft,)* },)*
             /// A measure of a wheel.
@@ -152,7 +152,7 @@ macro_rules! in_drafts {
         }
 
         impl MeasureType {
-            /// All of them.
+            /// All types.
             pub const ALL: &[Self] = &[$(Self {
                 name: $name,
                 summary: concat!($($doc),*).trim_ascii(),
@@ -164,7 +164,7 @@ macro_rules! in_drafts {
                 }),*],
             }),*];
 
-            /// A measure of this type from its fields; `None` where one of them is missing, or not of its kind.
+            /// Returns a measure of this type from its fields; `None` if a field is missing or of the wrong kind.
             pub fn draft(&self, mut field: impl FnMut(&MeasureField) -> Option<FieldDraft>) -> Option<MeasureKindDraft> {
                 let mut fields = self.fields.iter().map(|f| field(f)).collect::<Vec<_>>().into_iter();
                 match self.name {

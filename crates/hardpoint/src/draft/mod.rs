@@ -1,7 +1,7 @@
-//! A mechanism as somebody wrote it, with names as references, and the check that makes a model of it.
+//! Drafts: mechanisms as written, with names as references, and the check that turns a draft into a model.
 //!
-//! [`Model::from_draft`](crate::model::Model::from_draft) checks all of a [`Draft`] at once and gives either a
-//! [`Model`](crate::model::Model) or every [`DraftError`] that it found.
+//! [`Model::from_draft`](crate::model::Model::from_draft) checks a whole [`Draft`] at once and returns either a
+//! [`Model`](crate::model::Model) or every [`DraftError`] in it.
 
 mod build;
 mod change;
@@ -28,19 +28,19 @@ use crate::model::{
 };
 use crate::space::{Pose, Vec3};
 
-/// A mechanism as written. Fill it in code, word by word or field by field, or from a file;
-/// [`Model::from_draft`](crate::model::Model::from_draft) checks it.
+/// Mechanism as written, with names as references. Fill it in code, with builder methods or field by field, or from a
+/// file; [`Model::from_draft`](crate::model::Model::from_draft) checks it.
 #[derive(Clone, Debug, Default)]
 pub struct Draft {
-    /// The mechanism's name.
+    /// Name of the mechanism.
     pub name: String,
     /// Named numbers for formulas.
     pub parameters: Vec<ParameterDraft>,
-    /// Numbers that are written as expressions over parameters and coordinates of hardpoints.
+    /// Numbers defined by expressions over parameters and coordinates of hardpoints.
     pub formulas: Vec<FormulaDraft>,
     /// Named points of the design configuration.
     pub hardpoints: Vec<HardpointDraft>,
-    /// Bodies other than `ground`, which is always there.
+    /// Bodies other than `ground`, which is predefined.
     pub bodies: Vec<BodyDraft>,
     /// Joints.
     pub joints: Vec<JointDraft>,
@@ -54,7 +54,7 @@ pub struct Draft {
     pub points: Vec<PointDraft>,
     /// Road wheels.
     pub wheels: Vec<WheelDraft>,
-    /// The vehicle that the wheels belong to, as far as it is known.
+    /// Data of the vehicle that the wheels belong to, as far as given.
     pub vehicle: Vehicle,
     /// Pairs of wheels.
     pub axles: Vec<AxleDraft>,
@@ -74,7 +74,7 @@ pub struct Draft {
     pub times: Vec<f64>,
     /// Behaviour at change points.
     pub at_change_points: ChangePointPolicy,
-    /// Several motions, in place of the one that the drivers' own laws and these times make.
+    /// Cases (motions), instead of the single motion of the drivers' own laws over these times.
     pub cases: Vec<CaseDraft>,
     /// Cases that sweep two drivers over a grid.
     pub grids: Vec<GridDraft>,
@@ -82,7 +82,7 @@ pub struct Draft {
     pub optimization: Option<OptimizationSettingsDraft>,
     /// Settings of the tolerance study.
     pub tolerancing: Option<ToleranceSettingsDraft>,
-    /// Settings of the sweep, if the file has them.
+    /// Settings of the sweep.
     pub sweeping: Option<SweepSettingsDraft>,
     /// Entries that could not be read.
     pub unread: UnreadEntries,
@@ -94,8 +94,8 @@ pub struct Draft {
 pub struct UnreadEntries(BTreeMap<(Section, usize), Vec<&'static str>>);
 
 impl UnreadEntries {
-    /// Notes that a field of an entry could not be read: by its name in model files, an empty one for the entry as a
-    /// whole. Of [`Section::Model`] the fields are the tables of the file.
+    /// Marks a field of an entry as unread: by its name in model files, or an empty name for the whole entry. The
+    /// fields of [`Section::Model`] are the tables of the file.
     pub fn note(&mut self, section: Section, index: usize, field: &'static str) {
         self.0.entry((section, index)).or_default().push(field);
     }
@@ -115,12 +115,12 @@ impl UnreadEntries {
         self.0.range((section, 0)..=(section, usize::MAX)).next().is_some()
     }
 
-    /// True if that field could not be read of any entry of a list.
+    /// True if this field of any entry of a list could not be read.
     pub(crate) fn anywhere(&self, section: Section, field: &str) -> bool {
         self.0.iter().any(|((s, _), fields)| *s == section && fields.contains(&field))
     }
 
-    /// True if there is nothing.
+    /// True if all entries were read.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -131,13 +131,13 @@ impl UnreadEntries {
 pub struct ParameterDraft {
     /// Name.
     pub name: String,
-    /// Value, m, rad or a plain number; of no account where a formula gives it.
+    /// Value: m, rad or a plain number. Ignored if a formula defines it.
     pub value: f64,
     /// Quantity of the value.
     pub quantity: Quantity,
 }
 
-/// A number of the model that an expression gives.
+/// Number of the model that is defined by an expression.
 #[derive(Clone, Debug)]
 pub struct FormulaDraft {
     /// Number that the formula defines.
@@ -146,7 +146,7 @@ pub struct FormulaDraft {
     pub expression: Expression,
 }
 
-/// A number that a formula may give, in place of what the draft says itself.
+/// Number that a formula can define; it overrides the number in the draft.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FormulaOf {
     /// The value of a parameter.
@@ -155,9 +155,10 @@ pub enum FormulaOf {
     Coordinate(String, usize),
     /// The length of a rod.
     Length(String),
-    /// A parameter of a driver's law, by the names of both: a plain number, as the law's text means it.
+    /// Parameter of a driver's law, by the names of driver and parameter: a plain number in the units of the law's
+    /// text.
     Law(String, String),
-    /// The same of the law that a case gives a driver, by the names of case, driver and parameter.
+    /// Parameter of the law that a case gives a driver, by the names of case, driver and parameter.
     CaseLaw(String, String, String),
 }
 
@@ -177,7 +178,7 @@ pub enum LocationDraft {
     Hardpoint(String),
     /// Global coordinates in the design configuration, m.
     At(Vec3),
-    /// Global coordinates that expressions give.
+    /// Global coordinates defined by expressions.
     Formula(Box<[Expression; 3]>),
 }
 
@@ -220,33 +221,34 @@ pub struct JointDraft {
     pub kind: String,
     /// Names of bodies i and j.
     pub bodies: [String; 2],
-    /// Place, or its two places for a rod or leg. May be empty where the axis passes through
-    /// hardpoints: then it is the first of them. A joint with one place may be given two that lie apart, on body i and
-    /// on body j, for the mechanism to be assembled there.
+    /// Location of the joint, or its two ends for a rod or leg. If it is empty and the axis passes through hardpoints,
+    /// the first of them is used. A joint with one location may have two that do not coincide, on body i and on body j:
+    /// the assembly closes the gap.
     pub at: Vec<LocationDraft>,
     /// Direction of the markers' z axis.
     pub axis: Option<DirectionDraft>,
     /// Direction of the markers' x axis.
     pub axis2: Option<DirectionDraft>,
-    /// The global axis (0, 1 or 2) across which it is the mirror image of another joint: where `axis2` is not given,
-    /// its default is the image of that joint's default.
+    /// Global axis (0, 1 or 2) across which the joint is the mirror image of another one. Without `axis2`, the default
+    /// x axis is the image of the other joint's default.
     pub mirror: Option<usize>,
-    /// Length of a rod, or a follower's distance from its curve, m; else it is measured between its places.
+    /// Length of a rod, or distance of a follower from its curve, m. If `None`, the value of the design configuration
+    /// is used.
     pub length: Option<f64>,
     /// Advance of a screw, m per turn.
     pub lead: Option<f64>,
-    /// The curve on body i that a point of body j follows.
+    /// Curve on body i that a point of body j follows.
     pub curve: Option<CurveDraft>,
-    /// True if it should be cut rather than carry the tree.
+    /// True if the joint must be a cut joint instead of a tree joint.
     pub cut: bool,
 }
 
 /// A smooth curve through points in the design configuration, in the plane perpendicular to its joint's axis.
 #[derive(Clone, Debug, Default)]
 pub struct CurveDraft {
-    /// The points, in order; the curve of a cam is closed and does not repeat the first one.
+    /// Points in order. The curve of a cam is closed and does not repeat its first point.
     pub points: Vec<LocationDraft>,
-    /// True if it returns to its first point.
+    /// True if the curve is closed.
     pub closed: bool,
 }
 
@@ -257,11 +259,12 @@ pub struct CouplerDraft {
     pub name: String,
     /// Relation of the coupler.
     pub kind: CouplerKindDraft,
-    /// Value of the sum of its terms; zero for gears, racks and belts.
+    /// Constant value of the sum of the terms; zero for gears, racks and belts.
     pub constant: f64,
 }
 
-/// Relation of a coupler. Angles and displacements count along the axes of their joints, body j relative to body i.
+/// Relation of a coupler. Angles and displacements are those of body j relative to body i, positive along the axes of
+/// their joints.
 #[derive(Clone, Debug)]
 pub enum CouplerKindDraft {
     /// `sum of coefficient x coordinate = constant`.
@@ -275,14 +278,14 @@ pub enum CouplerKindDraft {
     },
 }
 
-/// A joint coordinate times a number.
+/// Joint coordinate times a coefficient.
 #[derive(Clone, Debug)]
 pub struct TermDraft {
     /// The joint's name.
     pub joint: String,
-    /// The coordinate's name; may be left out where the joint has only one.
+    /// Name of the coordinate; optional if the joint has only one.
     pub coordinate: Option<String>,
-    /// The factor, per m or per rad of the coordinate.
+    /// Coefficient, per m or per rad of the coordinate.
     pub coefficient: f64,
 }
 
@@ -293,7 +296,7 @@ pub struct DriverDraft {
     pub name: String,
     /// Quantity that the driver prescribes.
     pub drives: DrivenDraft,
-    /// True if its laws count from zero, as those of measures do; else they count from the design configuration.
+    /// True if the laws give the absolute value, as for measures; false if they count from the design configuration.
     pub from_zero: bool,
     /// Law of the prescribed quantity, m or rad.
     pub law: Law,
@@ -302,43 +305,43 @@ pub struct DriverDraft {
 /// Quantity that a driver prescribes.
 #[derive(Clone, Debug)]
 pub enum DrivenDraft {
-    /// It could not be read.
+    /// Entry that could not be read.
     Unread,
-    /// A joint's coordinate.
+    /// Coordinate of a joint.
     Coordinate {
         /// The joint's name.
         joint: String,
-        /// The coordinate's name; may be left out where the joint has only one.
+        /// Name of the coordinate; optional if the joint has only one.
         coordinate: Option<String>,
     },
-    /// The way of a point along a global direction.
+    /// Displacement of a point along a global direction, m.
     Position {
         /// The point.
         point: PointRef,
         /// The direction, of any length.
         along: DirectionDraft,
     },
-    /// The change of the distance between two points.
+    /// Change of the distance between two points, m.
     Distance {
-        /// From this point.
+        /// First point.
         from: PointRef,
-        /// To this one.
+        /// Second point.
         to: PointRef,
     },
-    /// The angle by which a body has turned, seen along a direction fixed in another.
+    /// Rotation angle of a body about a direction fixed in another body, rad.
     Orientation {
         /// The body's name.
         body: String,
-        /// The body that carries the direction; ground if left out.
+        /// Name of the body in which the direction is fixed; ground if `None`.
         relative_to: Option<String>,
         /// The direction.
         about: DirectionDraft,
     },
-    /// The value of a measure, like wheel travel or a steer angle.
+    /// Value of a measure, such as wheel travel or a steer angle.
     Measure(String),
 }
 
-/// Quantity of a measure of a wheel, if a driver may have it.
+/// Quantity of a wheel measure, if a driver can prescribe it.
 fn quantity_at_wheel(what: WheelMeasure) -> Option<Quantity> {
     match what.dimension() {
         Dimension::LENGTH => Some(Quantity::Length),
@@ -361,8 +364,8 @@ impl DrivenDraft {
             Self::Distance { .. } => joint::LEG.quantity_of(None),
             Self::Orientation { .. } => joint::HEADING.quantity_of(None),
             Self::Measure(name) => match measures.iter().find(|m| m.name == *name).map(|m| &m.kind) {
-                // The measures that a wheel lists, `WHEEL.toe`, may be added after the drivers: their names say what
-                // they are.
+                // Measures listed by a wheel, such as `WHEEL.toe`, may be added after the drivers. Their names imply
+                // the quantity.
                 None => quantity_at_wheel(WheelMeasure::named(name.rsplit_once('.')?.1)?),
                 Some(MeasureKindDraft::Coordinate { joint, coordinate }) => {
                     type_of(joint)?.quantity_of(coordinate.as_deref())
@@ -385,37 +388,37 @@ pub struct VariableDraft {
     pub name: String,
     /// Changes of the design per unit of the variable.
     pub changes: Vec<ChangeDraft>,
-    /// True if rods keep their lengths.
+    /// True if the lengths of rods stay constant.
     pub fixed_length: bool,
-    /// Between which values it may lie, m, rad or a plain number; it is 0 in the model in the design configuration.
+    /// Lower and upper bound, m, rad or a plain number; the variable is 0 in the nominal design.
     pub bounds: Option<[f64; 2]>,
-    /// Typical size of a change, used to compare variables.
+    /// Typical size of a change, used to compare variables, in the unit of the variable.
     pub typical: Option<f64>,
-    /// By how much it may be off when it is made, either way.
+    /// Tolerance: half width of the deviations, in the unit of the variable.
     pub tolerance: Option<f64>,
 }
 
-/// A point to follow.
+/// Point of a body whose motion is computed.
 #[derive(Clone, Debug)]
 pub struct PointDraft {
     /// Name.
     pub name: String,
-    /// The name of the body that carries it.
+    /// Name of its body.
     pub body: String,
     /// Location in the design configuration.
     pub at: LocationDraft,
 }
 
-/// A point as a measure names it.
+/// Reference to a point in a measure.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PointRef {
     /// A point of the model, by name.
     Named(String),
-    /// A place on a body.
+    /// Location on a body.
     On {
         /// The body's name.
         body: String,
-        /// The place.
+        /// Location.
         at: LocationDraft,
     },
 }
@@ -425,33 +428,33 @@ pub enum PointRef {
 pub struct WheelDraft {
     /// Name.
     pub name: String,
-    /// The name of the body that it turns on.
+    /// Name of the body that carries the wheel.
     pub body: String,
     /// Centre in the design configuration.
     pub centre: LocationDraft,
     /// Orientation in the design configuration.
     pub spin: WheelSpinDraft,
-    /// From the centre to the ground in the wheel's plane, m.
+    /// Distance from the centre to the ground in the wheel plane, m.
     pub radius: f64,
-    /// On which side of the vehicle it is; where it is left out, the side of its centre.
+    /// Side of the vehicle; if `None`, the side of the centre.
     pub side: Option<Side>,
-    /// A lower and an upper point of the axis that it steers about.
+    /// Lower and upper point of the kingpin axis.
     pub kingpin: Option<[PointRef; 2]>,
-    /// The name of the driver that moves it up and down; may be left out where there is only one.
+    /// Name of the driver that moves the wheel up and down; optional if there is only one driver.
     pub bump: Option<String>,
-    /// The name of the driver that steers it.
+    /// Name of the driver that steers the wheel.
     pub steer: Option<String>,
-    /// The planes of the lower and the upper arm: each by two pivots and a ball joint, or by a strut's top mount and
-    /// another point of its axis.
+    /// Planes of the lower and the upper arm: each through two pivots and a ball joint, or through a strut's top mount
+    /// and perpendicular to its axis.
     pub planes: Option<[Vec<PointRef>; 2]>,
-    /// The ends of its spring.
+    /// Ends of its spring.
     pub spring: Option<[PointRef; 2]>,
-    /// At which end of the vehicle it is.
+    /// End of the vehicle.
     pub end: Option<VehicleEnd>,
-    /// Place where its drive torque is reacted; where it is left out, outboard on a body that carries wheels of both
-    /// sides (a live axle), else inboard.
+    /// Reaction of the drive torque. If `None`: outboard on a body that carries wheels of both sides (a live axle),
+    /// otherwise inboard.
     pub drive: Option<TorqueReaction>,
-    /// Place where its brake torque is reacted; where it is left out, outboard.
+    /// Reaction of the brake torque; outboard if `None`.
     pub brakes: Option<TorqueReaction>,
 }
 
@@ -469,13 +472,13 @@ pub struct AxleDraft {
 /// Orientation of a wheel in the design configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WheelSpinDraft {
-    /// With this spin axis, pointing outboard.
+    /// Spin axis, pointing outboard.
     Axis(DirectionDraft),
-    /// At these angles, rad.
+    /// Alignment angles, rad.
     Angles {
         /// Positive for toe-in.
         toe: f64,
-        /// Positive where its top leans outboard.
+        /// Positive if the top leans outboard.
         camber: f64,
     },
 }
@@ -489,21 +492,21 @@ pub struct MeasureDraft {
     pub kind: MeasureKindDraft,
 }
 
-/// A metric; see [`Metric`](crate::model::Metric). Its numbers are in units of which that many make a metre or a
-/// radian, since what they measure follows from the measures.
+/// A metric; see [`Metric`](crate::model::Metric). Its numbers are in user units, because their dimension follows from
+/// the measures.
 #[derive(Clone, Debug)]
 pub struct MetricDraft {
     /// Name.
     pub name: String,
-    /// The name of the measure, or of a point's component.
+    /// Name of a measure, or of a component of a point.
     pub of: String,
-    /// The same of the abscissa; time where it is left out.
+    /// Name of the abscissa, likewise; time if `None`.
     pub over: Option<String>,
     /// Reduction of the curve.
     pub take: Reduction,
-    /// The part of the curve that counts.
+    /// Range of the abscissa that is evaluated.
     pub window: Option<[f64; 2]>,
-    /// The name of the case whose motion it sums up; each where it is left out.
+    /// Name of the case that is evaluated; all cases if `None`.
     pub case: Option<String>,
     /// Number of user units of length per metre.
     pub per_metre: f64,
@@ -530,13 +533,13 @@ pub enum RayDraft {
 pub struct CaseDraft {
     /// Name.
     pub name: String,
-    /// The names of drivers, and the laws that they follow in it, in m or rad.
+    /// Names of drivers, and their laws in this case, m or rad.
     pub laws: Vec<(String, Law)>,
     /// Motion of all other drivers.
     pub rest: OtherDrivers,
-    /// Output times, s; those of the draft where they are left out.
+    /// Output times, s; those of the draft if `None`.
     pub times: Option<Vec<f64>>,
-    /// Loads with or without inertia; those of the draft where there is none.
+    /// Loads with or without inertia; the mode of the draft if `None`.
     pub load_mode: Option<LoadMode>,
 }
 
@@ -545,24 +548,24 @@ pub struct CaseDraft {
 pub struct GridDraft {
     /// Name.
     pub name: String,
-    /// The names of two drivers, and where each of them is, counted from the drawing, in m or rad.
+    /// Names of two drivers, and the positions of each, from the design configuration, m or rad.
     pub sweeps: Vec<(String, Vec<f64>)>,
 }
 
 /// Motion of the drivers that a case does not name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OtherDrivers {
-    /// They are fixed in the design configuration.
+    /// Fixed in the design configuration.
     #[default]
     Held,
-    /// They follow their own laws.
+    /// Own laws, as in the model.
     AsAbove,
 }
 
 /// Settings of an optimisation; see [`OptimizationSettings`](crate::model::OptimizationSettings).
 #[derive(Clone, Debug)]
 pub struct OptimizationSettingsDraft {
-    /// The names of the design variables that may change; all that have bounds where they are left out.
+    /// Names of the optimised design variables; all that have bounds if `None`.
     pub variables: Option<Vec<String>>,
     /// Goals; their sum is minimised.
     pub goals: Vec<GoalDraft>,
@@ -570,9 +573,9 @@ pub struct OptimizationSettingsDraft {
     pub limits: Vec<LimitDraft>,
     /// Minimum margin of every motion from singular positions, between 0 and 1.
     pub margin: Option<f64>,
-    /// From how many designs the search starts.
+    /// Number of starting designs.
     pub starts: usize,
-    /// After that many iterations a search ends.
+    /// Maximum number of iterations per start.
     pub iterations: usize,
 }
 
@@ -583,8 +586,8 @@ impl Default for OptimizationSettingsDraft {
     }
 }
 
-/// A goal; see [`Goal`](crate::model::Goal). Its numbers are in units of which that many make a metre or a radian,
-/// since what they measure follows from the metric.
+/// A goal; see [`Goal`](crate::model::Goal). Its numbers are in user units, because their dimension follows from the
+/// metric.
 #[derive(Clone, Debug)]
 pub struct GoalDraft {
     /// Name.
@@ -601,16 +604,16 @@ pub struct GoalDraft {
     pub per_radian: f64,
 }
 
-/// A limit; see [`Limit`](crate::model::Limit). Its numbers are in units of which that many make a metre or a radian.
+/// A limit; see [`Limit`](crate::model::Limit). Its numbers are in user units.
 #[derive(Clone, Debug)]
 pub struct LimitDraft {
     /// Name.
     pub name: String,
     /// Limited quantity.
     pub of: LimitTargetDraft,
-    /// It must not be less than this; equal to `most` where it must have one value.
+    /// Lower bound; equal to `most` for an equality.
     pub least: Option<f64>,
-    /// It must not be more than this.
+    /// Upper bound.
     pub most: Option<f64>,
     /// Number of user units of length per metre.
     pub per_metre: f64,
@@ -621,7 +624,7 @@ pub struct LimitDraft {
 /// Quantity that a limit applies to; see [`LimitTarget`](crate::model::LimitTarget). References are names.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LimitTargetDraft {
-    /// It could not be read.
+    /// Entry that could not be read.
     Unread,
     /// A metric.
     Metric(String),
@@ -629,7 +632,7 @@ pub enum LimitTargetDraft {
     Coordinate(String, usize),
     /// The distance of two hardpoints.
     Distance([String; 2]),
-    /// The length of a rod or leg, between its places in the design configuration or as it is given.
+    /// Length of a rod or leg: the given length, or the distance between its ends in the design configuration.
     Length(String),
 }
 
@@ -643,17 +646,17 @@ pub struct ToleranceSettingsDraft {
     pub correlations: Vec<CorrelationDraft>,
     /// Limits of metrics.
     pub limits: Vec<LimitDraft>,
-    /// The names of the metrics; all of them where they are left out.
+    /// Names of the metrics; all if `None`.
     pub metrics: Option<Vec<String>>,
-    /// The names of the measures; all of them where they are left out.
+    /// Names of the measures; all if `None`.
     pub curves: Option<Vec<String>>,
     /// Default distribution of deviations.
     pub scatter: ScatterDraft,
     /// Number of Monte Carlo designs.
     pub samples: usize,
-    /// From this number.
+    /// Seed of the random numbers.
     pub seed: u64,
-    /// Rule of the allocation of the loosest tolerances, if requested.
+    /// Rule of the tolerance allocation, if requested.
     pub allocation: Option<AllocationRule>,
 }
 
@@ -673,22 +676,21 @@ impl Default for ToleranceSettingsDraft {
     }
 }
 
-/// Distribution of deviations, as far as it is given; see [`Scatter`](crate::model::Scatter).
+/// Distribution of deviations, as far as given; see [`Scatter`](crate::model::Scatter).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ScatterDraft {
-    /// Place in [`Scatter::NAMES`](crate::model::Scatter::NAMES).
+    /// Index in [`Scatter::NAMES`](crate::model::Scatter::NAMES).
     pub kind: Option<usize>,
     /// Number of standard deviations in the tolerance.
     pub sigmas: Option<f64>,
 }
 
-/// A tolerance; see [`Tolerance`](crate::model::Tolerance). Its reach is in units of which that many make a metre or a
-/// radian.
+/// A tolerance; see [`Tolerance`](crate::model::Tolerance). Its reach is in user units.
 #[derive(Clone, Debug)]
 pub struct ToleranceDraft {
-    /// The name of a design variable, or the part before `_x`, `_y`, `_z` of several.
+    /// Name of a design variable, or the common part of several before `_x`, `_y`, `_z`.
     pub name: String,
-    /// By how much it may be off; the variable's own tolerance where it is left out.
+    /// Half width of the deviations; the variable's own tolerance if `None`.
     pub reach: Option<f64>,
     /// Distribution of the deviations.
     pub scatter: ScatterDraft,
@@ -716,19 +718,19 @@ pub struct CorrelationDraft {
 pub struct SweepSettingsDraft {
     /// Method that chooses the designs, if given.
     pub method: Option<SweepMethod>,
-    /// Ranges of the variables; if left out, all variables that have bounds, within these.
+    /// Ranges of the variables; if `None`, the bounds of all variables that have bounds.
     pub ranges: Option<Vec<SweepRangeDraft>>,
-    /// The designs of a list, in place of all that.
+    /// List of designs, which replaces the method and the ranges.
     pub designs: Option<DesignListDraft>,
-    /// In a factorial, that many values of a variable that says nothing else.
+    /// Number of levels of a factorial for variables without their own.
     pub levels: usize,
     /// Number of designs.
     pub samples: usize,
-    /// From this number.
+    /// Seed of the random numbers.
     pub seed: u64,
-    /// The names of the metrics; all of them where they are left out.
+    /// Names of the metrics; all if `None`.
     pub metrics: Option<Vec<String>>,
-    /// The names of the measures whose curves are kept.
+    /// Names of the measures whose curves are stored.
     pub curves: Vec<String>,
 }
 
@@ -747,8 +749,8 @@ impl Default for SweepSettingsDraft {
     }
 }
 
-/// A range of a variable; see [`SweepRange`](crate::model::SweepRange). Its ends are in units of which that many make a
-/// metre or a radian; those of a parameter are its values.
+/// A range of a variable; see [`SweepRange`](crate::model::SweepRange). Its ends are in user units; those of a
+/// parameter are values of the parameter.
 #[derive(Clone, Debug)]
 pub struct SweepRangeDraft {
     /// The variable's name.
@@ -757,7 +759,7 @@ pub struct SweepRangeDraft {
     pub low: Option<f64>,
     /// Upper end; the variable's upper bound if left out.
     pub high: Option<f64>,
-    /// In a factorial, that many values.
+    /// Number of levels in a factorial.
     pub levels: Option<usize>,
     /// Number of user units of length per metre.
     pub per_metre: f64,
@@ -765,14 +767,14 @@ pub struct SweepRangeDraft {
     pub per_radian: f64,
 }
 
-/// Designs that are listed in a file, each as it would stand in a range.
+/// Designs listed in a file, with values as in a range.
 #[derive(Clone, Debug)]
 pub struct DesignListDraft {
-    /// The file.
+    /// Name of the file.
     pub file: String,
-    /// Per column, the variable's name.
+    /// Name of the variable of each column.
     pub names: Vec<String>,
-    /// Per design, its values.
+    /// Values of each design.
     pub rows: Vec<Vec<f64>>,
     /// Number of user units of length per metre.
     pub per_metre: f64,

@@ -397,7 +397,7 @@ fn joint_wrench<T: Real, N>(
         }
     }
     for &c in &at.closures {
-        for r in topology[c].row_ids().filter(|&r| topology[r].drives()) {
+        for r in topology[c].row_ids().filter(|&r| topology[r].has_wrench()) {
             // mu_r l_r is what row r puts on body j; its derivative mu' l + mu l'
             sum = of.l[r.0].times_plus(rows[0][r.0], sum);
             if is_changed {

@@ -161,7 +161,7 @@ impl<T: Real> VirtualMotion<T> {
                 if let Some(k) = closure.contact {
                     rates = state.walk(c, k, &rates);
                 }
-                let driving = closure.numbered_rows().filter(|(r, _)| topology[*r].drives());
+                let driving = closure.numbered_rows().filter(|(r, _)| topology[*r].has_wrench());
                 let works = |(r, row): (RowId, Row)| {
                     let [l, _] = row.wrench_rates(&state.ends[c.0], &rates);
                     -(rows[r.0] * l.on(apart))

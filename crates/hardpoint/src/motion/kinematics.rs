@@ -668,7 +668,7 @@ impl<T: Real> State<T> {
 
     /// Wrenches of the rows that the motion is not solved with.
     pub fn finish_wrenches(&mut self, topology: &Topology) {
-        for (r, _) in RowId::each(&topology.rows).filter(|(_, p)| !p.drives()) {
+        for (r, _) in RowId::each(&topology.rows).filter(|(_, p)| !p.has_wrench()) {
             self.l[0][r.0] = self.wrench_of(topology, r);
         }
     }
@@ -677,7 +677,7 @@ impl<T: Real> State<T> {
     #[inline(always)]
     fn finish_closure(&mut self, topology: &Topology, c: ClosureId) {
         for (r, row) in topology[c].numbered_rows() {
-            if topology[r].drives() && !topology[r].selected {
+            if topology[r].has_wrench() && !topology[r].selected {
                 self.l[0][r.0] = row.wrench(&self.ends[c.0]);
             }
         }
@@ -761,7 +761,7 @@ impl<T: Real> State<T> {
     #[inline(always)]
     fn rates_of_twists<const N: usize>(&mut self, topology: &Topology, links: impl Iterator<Item = LinkId>) {
         let Flow { speeds, twists, .. } = &self.motion;
-        for link in links.map(|k| &topology[k]).filter(|link| !link.keeps_its_twist()) {
+        for link in links.map(|k| &topology[k]).filter(|link| !link.has_constant_twist()) {
             // x(n) = sum_{m<n} C(n-1,m) ad(V(m)) x(n-1-m), V of the parent first
             let v: [Twist<T>; N] = std::array::from_fn(|n| twists[n][link.parent.0]);
             turn_twists(link, v, &mut self.x, speeds);
@@ -782,7 +782,7 @@ impl<T: Real> State<T> {
             // their points
             if order > 1 {
                 [self.l[1][r.0], self.l[2][r.0]] = row.wrench_rates(&self.ends[c.0], &rates);
-            } else if topology[r].drives() {
+            } else if topology[r].has_wrench() {
                 [self.l[1][r.0], _] = row.wrench_rates(&self.ends[c.0], &rates);
             }
         }

@@ -103,7 +103,7 @@ impl<T: Real> Flow<T> {
         l: &[Wrench<T>],
     ) {
         let z = if end == 1 { -z } else { z };
-        for r in topology[c].row_ids().filter(|&r| topology[r].drives()) {
+        for r in topology[c].row_ids().filter(|&r| topology[r].has_wrench()) {
             self.demand[r.0] += l[r.0].on(z);
         }
     }
@@ -123,7 +123,7 @@ impl<T: Real> Flow<T> {
             let link = &topology[k];
             // bias = z_p(n) - z_c(n) ...
             let mut bias = if self.moves[N].is_empty() { Twist::zero() } else { self.moves[N][k.0] };
-            if !(self.ground_stands && link.keeps_its_twist()) {
+            if !(self.ground_stands && link.has_constant_twist()) {
                 for step in link.steps.iter().filter(|s| self.drives || !s.is_driven) {
                     for c in step.coordinates() {
                         // ... + C(n,m) x_a(m) u_a(n-m): what (24), first line, has of lower orders of u
@@ -144,7 +144,7 @@ impl<T: Real> Flow<T> {
     fn turn_wrenches<const N: usize>(&mut self, topology: &Topology, b: BlockId, l: &[Vec<Wrench<T>>; 3]) {
         for &c in topology[b].closures.iter().filter(|_| N > 0) {
             for r in topology[c].row_ids() {
-                if topology[r].drives() {
+                if topology[r].has_wrench() {
                     for m in 1..=N {
                         // demand = f(n) - l . (z_j(n) - z_i(n)) - C(n,m) l(m) . (D_j(n-m) - D_i(n-m)): (24), second
                         // line, likewise

@@ -200,7 +200,7 @@ fn relative_row<T: Real>(topology: &Topology, state: &State<T>, r: RowId, row: &
 /// The wrench of a row, whether or not the motion needs it.
 #[inline(always)]
 fn wrench<T: Real>(topology: &Topology, state: &State<T>, r: RowId) -> Wrench<T> {
-    if topology[r].drives() { state.l[0][r.0] } else { state.wrench_of(topology, r) }
+    if topology[r].has_wrench() { state.l[0][r.0] } else { state.wrench_of(topology, r) }
 }
 
 /// The most that constraint row r could resist in any coordinate of its loop, scaled like its row of the Jacobian.

@@ -103,7 +103,7 @@ impl<T: Real> Transmission<T> {
                 let mut known = none;
                 for r in closure.row_ids() {
                     rows[n][r.0] = zero;
-                    for m in (0..n).filter(|_| topology[r].drives()) {
+                    for m in (0..n).filter(|_| topology[r].has_wrench()) {
                         // - C(n,m) mu_r(m) l_r(n-m) for m < n, of (25), second line
                         known = l[n - m][r.0].times_plus(rows[m][r.0] * -BINOMIAL[n][m], known);
                     }
@@ -143,7 +143,7 @@ impl<T: Real> Transmission<T> {
                 let closure = &topology[c];
                 let mut taken = none;
                 for r in closure.row_ids() {
-                    if topology[r].drives() {
+                    if topology[r].has_wrench() {
                         // T_c(n) = known - sum mu_r(n) l_r
                         taken = l[0][r.0].times_plus(-rows[n][r.0], taken);
                     }

@@ -1,4 +1,4 @@
-//! Blocks: which unknowns are solved together, in what order, with which independent rows.
+//! Blocks: groups of unknowns that are solved together, their order, and their independent rows.
 
 use std::collections::BTreeMap;
 
@@ -15,18 +15,18 @@ use super::{
     SetBy, Topology, error,
 };
 
-/// A pivot below this part of the largest is zero when constraints are counted.
+/// Relative size of a pivot below which it is zero in rank decisions.
 ///
-/// Rounded input breaks a planar mechanism's redundancy at the size of its last typed digit, at best
-/// 1e-16 and often 1e-9 of its size; a real constraint that is this weak could not be solved with anyway.
+/// Rounded input perturbs the redundancy of a planar mechanism by its last typed digit: at best 1e-16, often 1e-9 of
+/// its size. A real constraint that is this weak could not be solved anyway.
 pub(super) const RANK_TOLERANCE: f64 = 1e-8;
 
-/// A sparse row of the Jacobian at the design configuration: (coordinate, entry), lengths in sizes of
+/// Sparse row of the Jacobian in the design configuration: (coordinate, entry). Lengths are relative to the sizes of
 /// their loops.
 pub(super) type SparseRow = Vec<(CoordinateId, f64)>;
 
-/// The Jacobian of all rows of all closures at the design configuration; empty for the further terms of a coupler,
-/// which are summed in its row.
+/// Returns the Jacobian of all rows of all closures in the design configuration. Rows of further terms of a coupler are
+/// empty; the first row of the coupler has their sum.
 pub(super) fn design_jacobian(model: &Model, topology: &Topology) -> Vec<SparseRow> {
     let parts = jacobian_of_parts(model, topology);
     let sum = |r: RowId| -> SparseRow {
@@ -48,10 +48,10 @@ pub(super) fn design_jacobian(model: &Model, topology: &Topology) -> Vec<SparseR
     RowId::all(0..topology.rows.len()).map(sum).collect()
 }
 
-/// The Jacobian of all rows, each by itself.
+/// Returns the Jacobian of all rows, without sums of coupler terms.
 ///
-/// Scaled so that a row of a length is per size of its loop. A coupler between lengths and angles keeps its own
-/// proportions: its row as a whole is scaled like its first term.
+/// Rows of lengths are scaled by the size of their loop. The row of a coupler is scaled as a whole, like its first
+/// term, so that the ratio of its lengths and angles is unchanged.
 fn jacobian_of_parts(model: &Model, topology: &Topology) -> Vec<SparseRow> {
     let mut rows = Vec::with_capacity(topology.rows.len());
     for closure in &topology.closures {
@@ -67,8 +67,7 @@ fn jacobian_of_parts(model: &Model, topology: &Topology) -> Vec<SparseRow> {
                 for step in &link.steps {
                     for (k, c) in step.coordinates().enumerate() {
                         let unit = topology[c].unit;
-                        // J_ra = +- l_r . x_a, per unit of the row and times that of the coordinate: a number without
-                        // dimension (6)
+                        // J_ra = +- l_r . x_a, per unit of the row and times that of the coordinate: dimensionless (6)
                         let entry = side * scale * unit * wrench.on(step.twist(k, &frame.rot, frame.r));
                         entries.push((c, entry));
                     }
@@ -86,9 +85,9 @@ pub(super) fn split(model: &Model, topology: &mut Topology) -> Result<(), Topolo
     let groups = match groups_of(topology, &jacobian) {
         Ok(groups) => groups,
         Err(free) => {
-            let nearby = freedoms_nearby(model, topology);
-            // A drawing that is open and singular by chance, like bars in line, is assembled elsewhere: what holds
-            // nearby holds there.
+            let nearby = count_free_motions_nearby(model, topology);
+            // A design configuration that is open and happens to be singular, like aligned bars, is assembled in
+            // another position. The plan of a nearby position is valid there.
             let elsewhere = (model.is_drawn_open() && nearby < free.len())
                 .then(|| design_jacobian(&shifted(model), topology))
                 .and_then(|jacobian| groups_of(topology, &jacobian).ok());
@@ -99,7 +98,7 @@ pub(super) fn split(model: &Model, topology: &mut Topology) -> Result<(), Topolo
     Ok(())
 }
 
-/// Splits the unknowns into groups, makes blocks of these, and selects their rows. The error is that of [`assign`].
+/// Splits the unknowns into groups, makes blocks of these, and selects their rows. Fails like [`assign`].
 fn groups_of(
     topology: &mut Topology,
     jacobian: &[SparseRow],
@@ -109,21 +108,22 @@ fn groups_of(
     {
         return Ok(groups);
     }
-    // Loops that depend on each other in a way that no single loop shows: solve all together.
+    // The dependence between loops is not visible in single loops: solve all unknowns together.
     let all: Vec<CoordinateId> = topology.unknown_coordinates().collect();
     let groups = if all.is_empty() { Vec::new() } else { vec![all] };
     assign(topology, jacobian, &groups)?;
     Ok(groups)
 }
 
-/// Strongly connected groups of unknowns, in order of solution; `None` where loops alone do not decide.
+/// Returns the strongly connected groups of unknowns, in order of solution; `None` if the rows of single loops do not
+/// determine all unknowns.
 fn independent_groups(topology: &Topology, jacobian: &[SparseRow]) -> Option<Vec<Vec<CoordinateId>>> {
     // Rows that are independent within their own closure, with the closure's unknowns as pattern.
     let coordinates: Vec<CoordinateId> = topology.unknown_coordinates().collect();
     let column_of = columns(topology, &coordinates);
     let column_of = |c: CoordinateId| column_of[c.0];
     let mut patterns: Vec<Vec<usize>> = Vec::new();
-    // ... and the links that place the bodies on which their loops stand.
+    // Links that place the base bodies of the loops of these rows.
     let placed_by = last_unknown_links(topology);
     let mut bases: Vec<Vec<LinkId>> = Vec::new();
     for closure in topology.closures.iter().filter(|c| !topology[c.first_row].is_term) {
@@ -139,8 +139,8 @@ fn independent_groups(topology: &Topology, jacobian: &[SparseRow]) -> Option<Vec
             bases.push(closures.filter_map(|c| placed_by[c.base.0]).collect());
         }
     }
-    // An unknown depends on every other unknown of the row that it is matched with. A loop could be solved before the body
-    // on which it is has its place, but places are what is computed, so it waits for those unknowns too.
+    // An unknown depends on every other unknown of the row that it is matched with. A loop could be solved before its
+    // base body is placed. Poses of all bodies are computed, however, so it also depends on the unknowns of its base.
     let mut depends: DiGraph<(), ()> = DiGraph::default();
     for _ in &coordinates {
         depends.add_node(());
@@ -156,7 +156,7 @@ fn independent_groups(topology: &Topology, jacobian: &[SparseRow]) -> Option<Vec
             }
         }
     }
-    // Kosaraju's algorithm does not recurse: a chain of loops may be any number deep.
+    // Kosaraju's algorithm is not recursive, so that a chain of loops can have any length.
     let groups = kosaraju_scc(&depends).into_iter();
     let mut groups: Vec<Vec<CoordinateId>> =
         groups.map(|g| g.into_iter().map(|n| coordinates[n.index()]).collect()).collect();
@@ -166,12 +166,12 @@ fn independent_groups(topology: &Topology, jacobian: &[SparseRow]) -> Option<Vec
     Some(groups)
 }
 
-/// Number of free motions in a slightly perturbed mechanism without accidental alignment: every point is shifted by up
-/// to 3 % of the size, every axis keeps its direction.
+/// Returns the number of free motions of a perturbed mechanism without accidental alignment: every point is shifted by
+/// up to 3 % of the size, and directions of axes are constant.
 ///
-/// Fewer than in the drawing mean that the drawing is a singular position, not that a driver is missing. Planar
-/// mechanisms keep their redundancy under such a shift.
-fn freedoms_nearby(model: &Model, topology: &Topology) -> usize {
+/// Fewer free motions than in the design configuration mean that it is singular, not under-driven. Planar mechanisms
+/// remain redundant under such a shift.
+fn count_free_motions_nearby(model: &Model, topology: &Topology) -> usize {
     let unknowns: Vec<CoordinateId> = topology.unknown_coordinates().collect();
     let column_of = columns(topology, &unknowns);
     let rows = design_jacobian(&shifted(model), topology).into_iter();
@@ -179,12 +179,12 @@ fn freedoms_nearby(model: &Model, topology: &Topology) -> usize {
     FullPivot::of_sparse(rows.collect(), unknowns.len(), RANK_TOLERANCE).free.len()
 }
 
-/// The model with every hardpoint shifted by up to 3 % of its size.
+/// Returns the model with every hardpoint shifted by up to 3 % of its size.
 fn shifted(model: &Model) -> Model {
     const SHIFT: f64 = 0.03;
     let mut shifted = model.clone();
     let size = model.size();
-    // The golden ratio's multiples are spread evenly and never repeat.
+    // Multiples of the golden ratio are evenly distributed and never repeat.
     let mut parts = (1..).map(|k| 2.0 * (f64::from(k) * 0.618_033_988_749_895).fract() - 1.0);
     for hardpoint in &mut shifted.hardpoints {
         let mut next = || SHIFT * size * parts.next().expect("there is always another");
@@ -193,7 +193,7 @@ fn shifted(model: &Model) -> Model {
     shifted
 }
 
-/// Per coordinate: its column, if these have one each.
+/// Returns the column of each coordinate, or `None` for coordinates that are not in the list.
 fn columns(topology: &Topology, coordinates: &[CoordinateId]) -> Vec<Option<usize>> {
     let mut column_of = vec![None; topology.coordinates.len()];
     for (column, c) in coordinates.iter().enumerate() {
@@ -202,7 +202,7 @@ fn columns(topology: &Topology, coordinates: &[CoordinateId]) -> Vec<Option<usiz
     column_of
 }
 
-/// Per body: the nearest link on its way to ground that has unknowns.
+/// Returns, for each body, the nearest link with unknowns on its path to ground.
 fn last_unknown_links(topology: &Topology) -> Vec<Option<LinkId>> {
     let bodies = topology.links.iter().map(|l| l.child.0).max().unwrap_or(0) + 1;
     let mut placed_by = vec![None; bodies];
@@ -213,8 +213,8 @@ fn last_unknown_links(topology: &Topology) -> Vec<Option<LinkId>> {
     placed_by
 }
 
-/// Makes blocks of the groups and selects their rows. The error is a basis of motions left free, each the
-/// coordinates that move in it, with their speeds.
+/// Makes blocks of the groups and selects their rows. Fails with a basis of the free motions, each given by its
+/// coordinates and their speeds.
 fn assign(
     topology: &mut Topology,
     jacobian: &[SparseRow],
@@ -229,7 +229,7 @@ fn assign(
         step.is_driven = !topology.coordinates[step.first.0].is_unknown();
     }
     for row in &mut topology.rows {
-        row.selected = false; // also the rows that no block has
+        row.selected = false; // also rows without a block
     }
     let mut blocks: Vec<Block> = groups
         .iter()
@@ -246,8 +246,8 @@ fn assign(
         SetBy::Block { block, column } => Some((block, column)),
         SetBy::Driver(_) => None,
     };
-    // A closure belongs to the last block that moves it; the terms of a coupler to the last that moves any of them.
-    // J is block lower triangular: a row may have entries in blocks before its own, none in later ones.
+    // A closure belongs to the last block that moves it, and the terms of a coupler to the last block that moves any of
+    // them. J is block lower triangular: a row has entries in its own and earlier blocks only.
     let block_of: Vec<Option<BlockId>> =
         jacobian.iter().map(|row| row.iter().filter_map(|(c, _)| place(*c)).map(|(b, _)| b).max()).collect();
     let mut block_of_row = block_of.clone();
@@ -298,8 +298,7 @@ fn assign(
         let rows = topology.rows_of_block(b);
         let width = topology[b].unknowns.len();
         let in_block = rows.iter().map(|r| columns_in_block(topology, &jacobian[r.0], b).collect()).collect();
-        // Rank = unknowns: as many independent rows as the block has columns. Less, and the null vectors are motions
-        // left free.
+        // A block needs rank = number of its unknowns. Otherwise the null vectors are free motions.
         let pivots = FullPivot::of_sparse(in_block, width, RANK_TOLERANCE);
         let mut selected: Vec<RowId> = pivots.rows.iter().map(|&k| rows[k]).collect();
         selected.sort_unstable();
@@ -311,7 +310,7 @@ fn assign(
     if free.is_empty() { Ok(()) } else { Err(free) }
 }
 
-/// The entries of a row of the Jacobian in one block, by column of the block.
+/// Returns the entries of a row of the Jacobian in one block, by column of the block.
 pub(super) fn columns_in_block(
     topology: &Topology,
     row: &SparseRow,
@@ -323,7 +322,7 @@ pub(super) fn columns_in_block(
     })
 }
 
-/// Sorts links by the stage at which their child's pose is known, and renumbers references to them.
+/// Sorts links by the stage at which their child's pose is known, and renumbers references to links.
 fn order_links(topology: &mut Topology, blocks: usize) {
     let mut stage_of_body = BTreeMap::new();
     for k in topology.link_ids() {

@@ -1,4 +1,4 @@
-//! Errors of a mechanism as a whole, in the user's names.
+//! Errors of the mechanism as a whole, with the names of the model.
 
 use crate::draft::some_of;
 use crate::model::{BodyId, DriverId, JointId, Model};
@@ -6,58 +6,57 @@ use crate::model::{BodyId, DriverId, JointId, Model};
 use super::blocks::SparseRow;
 use super::{Closure, Formulation, Link, RowId, Topology};
 
-/// The mechanism cannot be driven as it is written.
+/// Error of a mechanism that its drivers cannot drive.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TopologyError {
-    /// Motions remain that no driver prescribes (HP0301).
+    /// Under-driven: motions remain that no driver prescribes (HP0301).
     #[error("{}", under_driven_text(.freedom, .bodies))]
     UnderDriven {
         /// Number of remaining free motions.
         freedom: usize,
-        /// The joints that move in them.
+        /// Joints that move in the free motions.
         joints: Vec<JointId>,
-        /// Their names.
+        /// Names, in the same order.
         joint_names: Vec<String>,
         /// Names of the bodies that move in them.
         bodies: Vec<String>,
     },
-    /// The configuration in the design configuration is singular: motions are free there that are not free nearby
-    /// (HP0304).
-    #[error("the design configuration is singular ({})", dozen(.bodies))]
+    /// Singular in the design configuration: motions are free there that are not free nearby (HP0304).
+    #[error("the mechanism is singular in the design configuration ({})", dozen(.bodies))]
     Singular {
-        /// Number of motions that are free in that position only.
+        /// Number of motions that are free in this position only.
         freedom: usize,
-        /// The joints that move in them.
+        /// Joints that move in the free motions.
         joints: Vec<JointId>,
-        /// Their names.
+        /// Names, in the same order.
         joint_names: Vec<String>,
         /// Names of the bodies that move in them.
         bodies: Vec<String>,
     },
-    /// Drivers prescribe more than can move (HP0302).
+    /// Over-driven: drivers prescribe more coordinates than there are degrees of freedom (HP0302).
     #[error(
         "the mechanism is over-driven: {} prescribe {}",
         counted(.driver_names.len(), "driver"),
         counted(*.mobility, "degree of freedom").replace("degree of freedoms", "degrees of freedom")
     )]
     OverDriven {
-        /// The drivers that contradict each other.
+        /// Contradicting drivers.
         drivers: Vec<DriverId>,
-        /// Their names.
+        /// Names, in the same order.
         driver_names: Vec<String>,
         /// Degrees of freedom without drivers.
         mobility: usize,
-        /// The joints whose constraints fail.
+        /// Joints whose constraints fail.
         joints: Vec<JointId>,
-        /// Their names, with the constraint that fails.
+        /// Names of the joints, each with the constraint that fails.
         joint_names: Vec<String>,
     },
-    /// The joints hold each other: nothing that a driver moves can move (HP0303).
-    #[error("the mechanism is immovable: its joints constrain each other ({})", dozen(.bodies))]
+    /// Immovable: the joints prevent any motion that a driver prescribes (HP0303).
+    #[error("the mechanism is immovable: its joints prevent any motion ({})", dozen(.bodies))]
     Immovable {
-        /// The joints whose constraints fail as soon as something moves.
+        /// Joints whose constraints fail with any motion.
         joints: Vec<JointId>,
-        /// Their names, with the constraint that fails.
+        /// Names of the joints, each with the constraint that fails.
         joint_names: Vec<String>,
         /// Names of the bodies in their loops.
         bodies: Vec<String>,
@@ -74,13 +73,13 @@ fn under_driven_text(freedom: &usize, bodies: &[String]) -> String {
     format!("the mechanism is under-driven: {freedom} {s} free ({})", dozen(bodies))
 }
 
-/// The names with commas between; of a long list the first dozen, and how many more there are.
+/// Joins names with commas. A longer list is cut after twelve names, with the number of the others.
 fn dozen(names: &[String]) -> String {
     some_of(names, ", ", 12)
 }
 
 impl TopologyError {
-    /// Stable code.
+    /// Returns the stable code, `HP03..`.
     pub fn code(&self) -> &'static str {
         match self {
             Self::UnderDriven { .. } => "HP0301",
@@ -90,15 +89,15 @@ impl TopologyError {
         }
     }
 
-    /// Facts.
+    /// Returns the notes: facts about the error.
     pub fn notes(&self) -> Vec<String> {
         match self {
             Self::UnderDriven { joint_names, .. } => {
-                vec![format!("the joints that still move: {}", dozen(joint_names))]
+                vec![format!("joints that still move: {}", dozen(joint_names))]
             }
             Self::Singular { freedom, joint_names, .. } => vec![
                 format!(
-                    "to first order {} there that {} not a little further on: a dead point or a change point",
+                    "to first order {} there that {} not free nearby: a dead point or a change point",
                     if *freedom == 1 {
                         "a motion is free".into()
                     } else {
@@ -106,45 +105,45 @@ impl TopologyError {
                     },
                     if *freedom == 1 { "is" } else { "are" }
                 ),
-                format!("the joints of that motion: {}", dozen(joint_names)),
+                format!("joints of that motion: {}", dozen(joint_names)),
             ],
             Self::OverDriven { driver_names, joint_names, .. } => vec![
-                format!("drivers that contradict each other: {}", dozen(driver_names)),
-                format!("where they meet: {}", dozen(joint_names)),
+                format!("contradicting drivers: {}", dozen(driver_names)),
+                format!("constraints that fail: {}", dozen(joint_names)),
             ],
             Self::Immovable { joint_names, .. } => {
-                vec![format!("the constraints that fail with any motion: {}", dozen(joint_names))]
+                vec![format!("constraints that fail with any motion: {}", dozen(joint_names))]
             }
         }
     }
 
-    /// Instruction that corrects the error.
+    /// Returns the help text: an instruction that corrects the error.
     pub fn help(&self) -> String {
         match self {
             Self::UnderDriven { freedom: 1, .. } => {
-                "add a driver on one of these joints, or a joint or rod that holds the motion".into()
+                "add a driver on one of these joints, or a joint or rod that prevents the motion".into()
             }
             Self::UnderDriven { freedom, .. } => {
-                format!("add {freedom} drivers on these joints, or joints or rods that hold the motions")
+                format!("add {freedom} drivers on these joints, or joints or rods that prevent the motions")
             }
-            Self::Singular { .. } => "move the design configuration a little along the motion, away from the position in which its bars line up; if it moves only because of its special proportions, a driver may be missing on one of these joints"
+            Self::Singular { .. } => "move the design configuration a little along its motion, away from the position in which its links line up; if the mechanism moves only because of its special proportions, add a driver on one of these joints"
                 .into(),
             Self::OverDriven { driver_names, mobility, .. } => {
                 let excess = match driver_names.len().saturating_sub(*mobility) {
                     0 | 1 => "one".into(),
                     n => n.to_string(),
                 };
-                format!("remove any {excess} of these drivers, or free a joint")
+                format!("remove any {excess} of these drivers, or use a joint with more freedom")
             }
             Self::Immovable { .. } => {
-                "make parallel axes exactly parallel, or use joints with more freedom (a spherical joint in \
-                 place of a revolute, a cylindrical joint in place of a slide)"
+                "make parallel axes exactly parallel, or use joints with more freedom (a spherical joint instead of \
+                 a revolute joint, a cylindrical joint instead of a translational one)"
                     .into()
             }
         }
     }
 
-    /// The joints that it is about.
+    /// Returns the joints of the error.
     pub fn joints(&self) -> &[JointId] {
         match self {
             Self::UnderDriven { joints, .. }
@@ -155,8 +154,8 @@ impl TopologyError {
     }
 }
 
-/// The fault of motions left free, each given as the coordinates that move in it; `nearby` of them are free in other
-/// positions too.
+/// Returns the error of free motions, each given by its coordinates and their speeds. `nearby` of the motions are free
+/// in other positions too.
 pub(super) fn free_motions(
     model: &Model,
     topology: &Topology,
@@ -172,7 +171,7 @@ pub(super) fn free_motions(
     joints.sort_unstable();
     joints.dedup();
     if topology.formulation == Formulation::Absolute {
-        // No joint carries a coordinate there: name those of the moving bodies.
+        // Absolute coordinates belong to no joint: name the joints of the moving bodies.
         joints = (0..model.joints.len())
             .filter(|&j| model.joints[j].bodies.iter().any(|b| bodies.binary_search(b).is_ok()))
             .map(JointId)
@@ -186,8 +185,8 @@ pub(super) fn free_motions(
     TopologyError::UnderDriven { freedom: free.len(), joints, joint_names, bodies }
 }
 
-/// The fault of rows that fail under the drivers' motion, each with its failure per driver.
-pub(super) fn contradicted(
+/// Returns the error of rows that fail under the drivers' motion, each with its failure per driver.
+pub(super) fn contradiction(
     model: &Model,
     topology: &Topology,
     contradictions: &[(RowId, Vec<f64>)],

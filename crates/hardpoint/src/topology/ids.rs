@@ -1,11 +1,11 @@
-//! Ids of what a plan is made of, one kind for each of its lists: `topology[link]` is the link, and a block's id finds
-//! no row.
+//! Ids of the entries of a plan, one type for each of its lists: `topology[link]` is the link, and the id of a block
+//! cannot index a row.
 
 use std::ops::{Index, IndexMut, Range};
 
 use super::{Block, Closure, Coordinate, Link, RowPlace, Topology};
 
-/// Ids that follow each other, alone or with what they stand for.
+/// Consecutive ids, alone or with their entries.
 pub trait Ids<Id>: DoubleEndedIterator<Item = Id> + ExactSizeIterator + Clone {}
 
 impl<Id, I: DoubleEndedIterator<Item = Id> + ExactSizeIterator + Clone> Ids<Id> for I {}
@@ -17,13 +17,13 @@ macro_rules! ids {
         pub struct $name(pub usize);
 
         impl $name {
-            /// Those of a range.
+            /// Ids of a range.
             #[inline(always)]
             pub fn all(range: Range<usize>) -> impl Ids<Self> {
                 range.map(Self)
             }
 
-            /// The entries of a list that has one for each, with their ids.
+            /// Entries of a list, with their ids.
             #[inline(always)]
             pub fn each<T>(list: &[T]) -> impl Ids<(Self, &T)> {
                 list.iter().enumerate().map(|(k, x)| (Self(k), x))
@@ -48,14 +48,14 @@ macro_rules! ids {
 }
 
 ids! {
-    /// A link's place in [`Topology::links`].
+    /// Index of a link in [`Topology::links`].
     LinkId: links of Link;
-    /// A coordinate's place in [`Topology::coordinates`].
+    /// Index of a coordinate in [`Topology::coordinates`].
     CoordinateId: coordinates of Coordinate;
-    /// A closure's place in [`Topology::closures`].
+    /// Index of a closure in [`Topology::closures`].
     ClosureId: closures of Closure;
-    /// A row's place in [`Topology::rows`].
+    /// Index of a row in [`Topology::rows`].
     RowId: rows of RowPlace;
-    /// A block's place in [`Topology::blocks`].
+    /// Index of a block in [`Topology::blocks`].
     BlockId: blocks of Block;
 }

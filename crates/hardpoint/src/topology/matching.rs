@@ -1,10 +1,10 @@
 //! Assignment of rows to the unknowns that they determine.
 
-/// Pairs as many columns as possible with a row that contains them; per column its row.
+/// Computes a maximum matching of columns and rows that contain them; returns the row of each column.
 ///
-/// Hopcroft and Karp's algorithm: first every row, those with the fewest columns first and then in the order
-/// given, takes a column that is still free, which is all that loops in a chain need; then the columns left
-/// over displace others along shortest paths. It takes O(entries * sqrt(columns)), and no recursion.
+/// Hopcroft and Karp's algorithm. First every row takes a free column, rows with the fewest columns first and then in
+/// the given order; chains of loops need no more. Then the remaining columns displace others along shortest paths.
+/// Takes O(entries * sqrt(columns)) time, without recursion.
 pub(super) fn match_columns(rows: &[Vec<usize>], columns: usize) -> Vec<Option<usize>> {
     let mut rows_of = vec![Vec::new(); columns];
     for (r, row) in rows.iter().enumerate() {
@@ -23,7 +23,7 @@ pub(super) fn match_columns(rows: &[Vec<usize>], columns: usize) -> Vec<Option<u
     }
     const FAR: usize = usize::MAX;
     loop {
-        // Level of a column: how many displacements lead to it from a column without a row.
+        // Level of a column: number of displacements from a column without a row.
         let mut level: Vec<usize> = row_of.iter().map(|r| if r.is_none() { 0 } else { FAR }).collect();
         let mut queue: Vec<usize> = (0..columns).filter(|&c| level[c] == 0).collect();
         let free = queue.clone();
@@ -83,14 +83,14 @@ mod tests {
 
     #[test]
     fn a_greedy_choice_is_undone_where_another_column_needs_the_row() {
-        // Rows 0 and 1 both take what row 2 could only take.
+        // Rows 0 and 1 both take the only column of row 2.
         assert_eq!(matched(&[vec![0, 1], vec![1, 2], vec![0, 2]], 3), 3);
         assert_eq!(matched(&[vec![0, 1, 2], vec![0, 1], vec![0, 1]], 3), 3);
         assert_eq!(matched(&[vec![0], vec![0], vec![0, 1]], 3), 2);
     }
 
     #[test]
-    fn as_many_are_matched_as_exhaustive_search_finds() {
+    fn matching_is_maximum_by_exhaustive_search() {
         // All bipartite graphs of three rows over three columns.
         for bits in 0..512_u32 {
             let rows: Vec<Vec<usize>> =
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn a_long_path_of_displacements_needs_no_deep_stack() {
-        // Row k may take k or k + 1, and prefers k + 1; the last row may only take the last column.
+        // Row k can take k or k + 1, and prefers k + 1; the last row can take the last column only.
         let n = 100_000;
         let rows: Vec<Vec<usize>> =
             (0..n).map(|k| if k + 1 < n { vec![k + 1, k] } else { vec![k, k] }).collect();

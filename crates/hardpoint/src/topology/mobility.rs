@@ -1,4 +1,4 @@
-//! Degrees of freedom, and whether the drivers agree with the constraints, at the design configuration.
+//! Degrees of freedom, and contradictions of drivers and constraints, in the design configuration.
 
 use std::collections::BTreeMap;
 
@@ -9,15 +9,14 @@ use super::blocks::{RANK_TOLERANCE, SparseRow, columns_in_block, design_jacobian
 use super::error::TopologyError;
 use super::{BlockId, RowId, Topology, error};
 
-/// Counts the degrees of freedom; every unknown is already known to be determined.
+/// Counts the degrees of freedom. Every unknown is already determined.
 ///
-/// Each driver in turn gets unit speed and the blocks are solved for the motion that follows. Where a
-/// row that was left out then fails, the drivers and constraints that meet there contradict each other:
-/// the mechanism has fewer freedoms than drivers.
+/// Solves the blocks for the motion at unit speed of each driver. If a redundant row fails, drivers and constraints
+/// contradict each other there: the mechanism has fewer degrees of freedom than drivers.
 pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), TopologyError> {
     let jacobian = design_jacobian(model, topology);
     let drivers = model.drivers.len();
-    // Per coordinate: its speed per unit speed of the drivers that move it, lengths in sizes of their loops.
+    // Per coordinate: speed per unit speed of each driver that moves it, lengths relative to the sizes of their loops.
     let mut speeds: Vec<Vec<(usize, f64)>> = vec![Vec::new(); topology.coordinates.len()];
     for (c, d) in topology.driven_coordinates() {
         speeds[c.0].push((d.0, 1.0));
@@ -32,11 +31,11 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
         }
         factors.factor();
         multiplications.push(factors.multiplications());
-        // Per driver that acts on the block: what its rows still lack.
+        // Per driver that acts on the block: right-hand side of its rows.
         let mut lacking: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
         for (k, &r) in block.selected.iter().enumerate() {
             for (d, [sum, _, demand]) in row_rates(topology, &jacobian, &speeds, r) {
-                // J q. = f. - (what the row has of unknowns of earlier blocks and of driven coordinates), f. = 1 of driver d alone   (9)
+                // J q. = f. - (terms of earlier blocks and of driven coordinates), f. = 1 of driver d alone   (9)
                 lacking.entry(d).or_insert_with(|| vec![0.0; block.selected.len()])[k] = demand - sum;
             }
         }
@@ -48,11 +47,11 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
         }
     }
     topology.blocks.iter_mut().zip(multiplications).for_each(|(block, n)| block.multiplications = n);
-    // A contradiction is a left-out row that fails under some driver's motion; by how much, per driver.
+    // A contradiction is a redundant row that fails under the motion of a driver, with its failure per driver.
     let mut contradictions: Vec<(RowId, Vec<f64>)> = Vec::new();
     for r in topology.redundant() {
         let rates = row_rates(topology, &jacobian, &speeds, r).into_iter();
-        // abs(sum J q. - f.) / (1 + largest term): a left-out row under the unit speed of driver d
+        // abs(sum J q. - f.) / (1 + largest term): a redundant row at unit speed of driver d
         let failures = rates.map(|(d, [sum, largest, demand])| (d, (sum - demand) / (1.0 + largest)));
         let failures: Vec<(usize, f64)> = failures.filter(|(_, f)| f.abs() > RANK_TOLERANCE.sqrt()).collect();
         if !failures.is_empty() {
@@ -63,17 +62,17 @@ pub(super) fn examine(model: &Model, topology: &mut Topology) -> Result<(), Topo
     }
     // Each independent contradiction forbids one combination of the drivers' speeds.
     let rows = contradictions.iter().map(|(_, fails)| fails.clone()).collect();
-    // Degrees of freedom = drivers - rank(what their speeds violate)
+    // Degrees of freedom = drivers - rank(violations by their speeds)
     topology.mobility = drivers - FullPivot::of(rows, drivers, RANK_TOLERANCE.sqrt()).rows.len();
     if contradictions.is_empty() {
         Ok(())
     } else {
-        Err(error::contradicted(model, topology, &contradictions))
+        Err(error::contradiction(model, topology, &contradictions))
     }
 }
 
-/// Per driver that moves what a row constrains: the rate of the row, the largest of its terms, and the rate that
-/// the driver demands of it. Unit speed of a driven length is one size per second, so that is 1 for every driver.
+/// Returns, for each driver that moves a row: the rate of the row, its largest term, and the rate that the driver
+/// prescribes. Unit speed of a driven length is one size per second, so this rate is 1 for every driver.
 fn row_rates(
     topology: &Topology,
     jacobian: &[SparseRow],

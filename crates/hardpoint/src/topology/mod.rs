@@ -1,9 +1,9 @@
-//! Plan of solution: tree joints, cut joints, order of the blocks.
+//! Solution plan: tree joints, cut joints, and the order of the blocks.
 //!
-//! Worked out once per model, at its design configuration. A spanning tree of joints places the bodies;
-//! every other joint is cut into elementary constraints. Unknown coordinates and constraint rows fall
-//! into *blocks* (in classical linkages: the Assur groups) that are solved one after another, so that
-//! the cost grows linearly with the number of independent loops (`docs/theory.md`, section 3).
+//! The plan is made once per model, in its design configuration. A spanning tree of joints places the bodies; every
+//! other joint is cut into elementary constraints. Unknown coordinates and constraint rows fall into *blocks* (in
+//! classical linkages: the Assur groups) that are solved one after another, so that the cost grows linearly with the
+//! number of independent loops (`docs/theory.md`, section 3).
 
 mod blocks;
 mod error;
@@ -35,22 +35,22 @@ pub enum Formulation {
     Absolute,
 }
 
-/// The plan of solution. All references are ids, by which the plan is indexed; the hot path only walks these lists.
+/// Solution plan. All references are ids, by which the plan is indexed; the solver only iterates over these lists.
 #[derive(Clone, Debug)]
 pub struct Topology {
-    /// The formulation that it was made for.
+    /// Formulation of the plan.
     pub formulation: Formulation,
     /// Tree joints in the order of solution: parents before children, earlier stages first.
     pub links: Vec<Link>,
-    /// Coordinates of all links, each link's in a row.
+    /// Coordinates of all links; those of a link are consecutive.
     pub coordinates: Vec<Coordinate>,
     /// Cut joints, and drivers that act across cut joints.
     pub closures: Vec<Closure>,
     /// Groups of unknowns that are solved together, in order.
     pub blocks: Vec<Block>,
-    /// For every row of every closure (numbered through): where it is.
+    /// Rows of all closures, numbered consecutively.
     pub rows: Vec<RowPlace>,
-    /// The rows that are couplers.
+    /// Rows that are couplers.
     pub coupled_rows: Vec<RowId>,
     /// Degrees of freedom without drivers, at the design configuration.
     pub mobility: usize,
@@ -58,43 +58,43 @@ pub struct Topology {
     pub roles: Vec<JointRole>,
 }
 
-/// A joint's part in the solution.
+/// Role of a joint in the solution.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JointRole {
-    /// It places a body.
+    /// Tree joint: places a body.
     Tree {
-        /// The body that it places.
+        /// Body that it places.
         child: BodyId,
         /// Number of unknown coordinates that remain.
         unknowns: usize,
     },
-    /// It is cut into constraint rows.
+    /// Cut joint: replaced by constraint rows.
     Cut(CutReason),
 }
 
 /// Reason why a joint is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CutReason {
-    /// Type has no tree form: a rod or a leg.
+    /// Joint type without a tree form: a rod or a leg.
     AlwaysCut,
-    /// Both of its bodies are placed by other joints, which leave fewer unknowns.
+    /// Joint whose bodies are placed by other joints, with fewer unknowns.
     ClosesLoop,
-    /// The model asks for it.
-    Asked,
-    /// In absolute coordinates every joint is cut.
+    /// Cut joint by request of the model.
+    Requested,
+    /// Absolute coordinates, in which every joint is cut.
     Absolute,
 }
 
-/// A joint of the tree (or the free motion of a body), seen from parent to child.
+/// Joint of the tree, or the free motion of a body, from parent to child.
 #[derive(Clone, Debug)]
 pub struct Link {
-    /// The joint; `None` for a body that moves freely from ground.
+    /// Joint; `None` for a body that moves freely relative to ground.
     pub joint: Option<JointId>,
-    /// The body that carries it.
+    /// Parent body.
     pub parent: BodyId,
-    /// The body that it places.
+    /// Body that it places.
     pub child: BodyId,
-    /// End of the joint that is on the parent: 0 (i) or 1 (j).
+    /// End of the joint on the parent: 0 (i) or 1 (j).
     pub parent_end: usize,
     /// Chain of freedoms from parent to child.
     pub steps: Vec<LinkStep>,
@@ -107,7 +107,7 @@ pub struct Link {
 pub struct LinkStep {
     /// Kind of motion.
     pub freedom: Freedom,
-    /// -1 where the link runs from body j to body i, so that coordinates stay those of j relative to i.
+    /// -1 if the link runs from body j to body i, so that coordinates remain those of j relative to i; +1 otherwise.
     pub sign: f64,
     /// First coordinate.
     pub first: CoordinateId,
@@ -122,7 +122,7 @@ pub struct Coordinate {
     pub link: LinkId,
     /// Source of the coordinate's value.
     pub set_by: SetBy,
-    /// True if it is a length (else an angle).
+    /// True for a length, false for an angle.
     pub is_length: bool,
     /// Reference length for comparison: the size of the largest loop that it moves, m, for a length; 1 rad otherwise.
     pub unit: f64,
@@ -133,9 +133,9 @@ pub struct Coordinate {
 /// Source of a coordinate's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SetBy {
-    /// A driver prescribes it.
+    /// Prescribed by a driver.
     Driver(DriverId),
-    /// It is unknown: a block is solved for it.
+    /// Unknown of a block.
     Block {
         /// Block that solves it.
         block: BlockId,
@@ -147,61 +147,61 @@ pub enum SetBy {
 /// Constraint rows between the two markers of one joint.
 #[derive(Clone, Debug)]
 pub struct Closure {
-    /// The joint whose markers they stand between.
+    /// Joint with the two markers.
     pub joint: JointId,
-    /// The driver, if these rows prescribe a coordinate of a cut joint.
+    /// Driver, if these rows prescribe a coordinate of a cut joint.
     pub driver: Option<DriverId>,
-    /// The coupler, if its row is a term of one: an index into [`Model::couplers`].
+    /// Coupler, if its row is a term of one: an index into [`Model::couplers`].
     pub coupler: Option<usize>,
     /// Bodies i and j.
     pub bodies: [BodyId; 2],
-    /// The body on which its loop is: where the ways from its two bodies to ground meet. Points are held together along
-    /// its axes, so that the loop knows nothing of where its base goes.
+    /// Base body of its loop: where the paths of its two bodies to ground meet. Point constraints are resolved along
+    /// the axes of the base, so that the loop is independent of the motion of its base.
     pub base: BodyId,
-    /// The link that places the base, if that is done by the block that solves the closure.
+    /// Link that places the base, if the block of the closure solves for it.
     pub base_link: Option<LinkId>,
     /// The elementary constraints.
     pub rows: Vec<Row>,
-    /// The first of its rows; the others follow.
+    /// First row; the others follow.
     pub first_row: RowId,
-    /// If a point follows a curve: which of all curves, counted over the closures.
+    /// Number of the curve that a point follows, counted over all closures.
     pub contact: Option<usize>,
-    /// True if any of its rows asks for the markers' axes, rather than for their points only.
+    /// True if any row uses the axes of the markers, not only their origins.
     pub has_axes: bool,
-    /// True if the rows that it is solved with ask for points only.
+    /// True if the selected rows use only the origins of the markers.
     pub solved_by_points: bool,
-    /// The block that solves it; `None` if no unknown moves it.
+    /// Block that solves it; `None` if no unknown moves it.
     pub block: Option<BlockId>,
     /// Columns of that block in which the rows have entries.
     pub entries: Vec<ClosureColumn>,
-    /// All links around the loop that it closes.
+    /// Links around the loop that it closes.
     pub links: Vec<LoopLink>,
-    /// Extent of the joints of that loop in the design configuration, m: what its gaps are compared with.
+    /// Extent of the joints of the loop in the design configuration, m; reference length for gaps.
     pub size: f64,
 }
 
-/// A column of a block in which the rows of a closure stand.
+/// Column of a block in which the rows of a closure have entries.
 #[derive(Clone, Copy, Debug)]
 pub struct ClosureColumn {
     /// The column.
     pub column: usize,
     /// Coordinate.
     pub coordinate: CoordinateId,
-    /// +1 or -1: whether it moves body j of the closure, or body i.
+    /// +1 if it moves body j of the closure, -1 for body i.
     pub side: f64,
 }
 
-/// A link on the way around a loop.
+/// Link of a loop.
 #[derive(Clone, Copy, Debug)]
 pub struct LoopLink {
     /// The link.
     pub link: LinkId,
-    /// +1 or -1: whether it is on the way to body j, or to body i.
+    /// +1 on the path to body j, -1 on the path to body i.
     pub side: f64,
 }
 
 impl Closure {
-    /// Rows' places in [`Topology::rows`].
+    /// Indices of the rows in [`Topology::rows`].
     #[inline(always)]
     fn range(&self) -> Range<usize> {
         self.first_row.0..self.first_row.0 + self.rows.len()
@@ -227,21 +227,21 @@ pub struct RowPlace {
     pub closure: ClosureId,
     /// Index of the row in its closure.
     pub index: usize,
-    /// True if it is one of the independent rows that are solved with; else it is redundant and watched.
+    /// True if it is one of the independent rows that are solved; false if it is redundant and monitored.
     pub selected: bool,
-    /// The further terms of a coupler, which this row is the first of.
+    /// Further terms of a coupler whose first term is this row.
     pub terms: Vec<RowTerm>,
-    /// For a coupler: the columns of its block in which its terms have entries.
+    /// Columns of the block in which the terms of a coupler have entries.
     pub columns: Vec<CoupledColumn>,
-    /// True if it is a further term of a coupler, and no constraint by itself.
+    /// True if it is a further term of a coupler, not a constraint by itself.
     pub is_term: bool,
-    /// Value of the sum of a coupler, per coefficient of its first term, at this term; zero elsewhere.
+    /// Constant of a coupler, divided by the coefficient of its first term; zero for other rows.
     pub constant: f64,
     /// Reference size of the residual: the size of its loop, m, for a length; 1 otherwise.
     pub unit: f64,
 }
 
-/// A row that is a part of a constraint, times its factor.
+/// Term of a constraint: a row times a factor.
 #[derive(Clone, Copy, Debug)]
 pub struct RowTerm {
     /// The row.
@@ -257,29 +257,29 @@ pub struct CoupledColumn {
     pub column: usize,
     /// The coordinate of the column.
     pub coordinate: CoordinateId,
-    /// The terms' rows, with their factors and the sides of their loops.
+    /// Rows of the terms, with their factors and the sides (+1 or -1) of their loops.
     pub parts: Vec<RowTerm>,
 }
 
-/// Unknowns and rows that are solved together.
+/// Group of unknowns and rows that are solved together.
 #[derive(Clone, Debug)]
 pub struct Block {
     /// Coordinates, by column.
     pub unknowns: Vec<CoordinateId>,
-    /// The closures whose rows belong to it.
+    /// Closures of the block.
     pub closures: Vec<ClosureId>,
-    /// Those of its rows that are couplers.
+    /// Rows of the block that are couplers.
     pub coupled: Vec<RowId>,
-    /// The independent rows that it is solved with, as many as unknowns.
+    /// Selected independent rows, the same number as unknowns.
     pub selected: Vec<RowId>,
-    /// The range of [`Topology::links`] that it places.
+    /// Range of [`Topology::links`] that it places.
     links: Range<usize>,
-    /// Number of multiplications of the block's factorisation in the design configuration, if it is sparse.
+    /// Number of multiplications of the factorisation in the design configuration, if it is sparse.
     pub multiplications: usize,
 }
 
 impl Block {
-    /// The links that it places.
+    /// Links that it places.
     #[inline(always)]
     pub fn link_ids(&self) -> impl Ids<LinkId> + use<> {
         LinkId::all(self.links.clone())
@@ -290,41 +290,40 @@ impl Topology {
     /// Plans the solution of a model.
     ///
     /// # Errors
-    /// A [`TopologyError`] where the drivers leave motions free, prescribe more than can move, or stand at
-    /// a dead point of the design configuration.
+    /// A [`TopologyError`] if motions remain free, if drivers are too many, or if the design configuration is singular.
     pub fn of(model: &Model, formulation: Formulation) -> Result<Self, TopologyError> {
-        let mut topology = tree::grow(model, formulation);
+        let mut topology = tree::choose_tree(model, formulation);
         size::measure(model, &mut topology);
         blocks::split(model, &mut topology)?;
         mobility::examine(model, &mut topology)?;
         Ok(topology)
     }
 
-    /// Links placed by drivers alone.
+    /// Returns the links that are placed by drivers alone.
     #[inline(always)]
     pub fn driven_links(&self) -> impl Ids<LinkId> + use<> {
         LinkId::all(0..self.blocks.first().map_or(self.links.len(), |b| b.links.start))
     }
 
-    /// All links.
+    /// Returns all links.
     #[inline(always)]
     pub fn link_ids(&self) -> impl Ids<LinkId> + use<> {
         LinkId::all(0..self.links.len())
     }
 
-    /// All closures.
+    /// Returns all closures.
     #[inline(always)]
     pub fn closure_ids(&self) -> impl Ids<ClosureId> + use<> {
         ClosureId::all(0..self.closures.len())
     }
 
-    /// All blocks.
+    /// Returns all blocks.
     #[inline(always)]
     pub fn block_ids(&self) -> impl Ids<BlockId> + use<> {
         BlockId::all(0..self.blocks.len())
     }
 
-    /// The coordinates that drivers prescribe.
+    /// Returns the coordinates that drivers prescribe.
     #[inline(always)]
     pub fn driven_coordinates(&self) -> impl Iterator<Item = (CoordinateId, DriverId)> {
         CoordinateId::each(&self.coordinates).filter_map(|(c, coordinate)| match coordinate.set_by {
@@ -333,19 +332,19 @@ impl Topology {
         })
     }
 
-    /// The coordinates that are unknown.
+    /// Returns the unknown coordinates.
     #[inline(always)]
     pub fn unknown_coordinates(&self) -> impl Iterator<Item = CoordinateId> {
         CoordinateId::each(&self.coordinates).filter(|(_, c)| c.is_unknown()).map(|(c, _)| c)
     }
 
-    /// The closure of a row.
+    /// Returns the closure of a row.
     #[inline(always)]
     pub fn closure_of(&self, r: RowId) -> &Closure {
         &self[self[r].closure]
     }
 
-    /// The elementary constraint of a row.
+    /// Returns the elementary constraint of a row.
     #[inline(always)]
     pub fn constraint(&self, r: RowId) -> Row {
         let place = &self[r];
@@ -357,33 +356,33 @@ impl Topology {
         self.blocks.iter().map(|b| b.unknowns.len()).sum()
     }
 
-    /// The rows that are left out because the others imply them.
+    /// Returns the redundant rows, which the others imply.
     pub fn redundant(&self) -> impl Iterator<Item = RowId> {
         RowId::each(&self.rows).filter(|(_, place)| place.is_redundant()).map(|(r, _)| r)
     }
 
-    /// All constraint rows of a block's closures, the redundant ones included.
+    /// Returns all constraint rows of a block's closures, including the redundant ones.
     pub fn rows_of_block(&self, block: BlockId) -> Vec<RowId> {
         let rows = self[block].closures.iter().flat_map(|&c| self[c].row_ids());
         rows.filter(|&r| !self[r].is_term).collect()
     }
 
-    /// The rows whose sum, each times its factor, is constraint row r: itself, and a coupler's further terms.
+    /// Returns the terms of constraint row r: the row itself, and the further terms of a coupler.
     pub fn parts_of_row(&self, r: RowId) -> impl Iterator<Item = RowTerm> + '_ {
         std::iter::once(RowTerm { row: r, factor: 1.0 }).chain(self[r].terms.iter().copied())
     }
 
-    /// The closures that follow curves, with the number of the curve.
+    /// Returns the closures with curves, with the number of the curve.
     pub fn contacts(&self) -> impl Iterator<Item = (ClosureId, usize)> + '_ {
         ClosureId::each(&self.closures).filter_map(|(c, closure)| Some((c, closure.contact?)))
     }
 
-    /// The rows that are terms of couplers, the first ones included.
+    /// Returns the rows that are terms of couplers, including the first ones.
     pub fn coupler_terms(&self) -> impl Iterator<Item = RowId> + '_ {
         self.coupled_rows.iter().flat_map(|&r| self.parts_of_row(r)).map(|term| term.row)
     }
 
-    /// Name of a row in messages: the joint with its constraint, the driver, or the coupler.
+    /// Returns the name of a row in messages: the joint with its constraint, the driver, or the coupler.
     pub fn row_name(&self, model: &Model, r: RowId) -> String {
         let closure = self.closure_of(r);
         let row = match self.constraint(r) {
@@ -400,21 +399,21 @@ impl Topology {
         }
     }
 
-    /// Selects these independent rows, in ascending order, for the solution of a block.
+    /// Selects the independent rows of a block, in ascending order.
     pub(crate) fn select(&mut self, block: BlockId, selected: Vec<RowId>) {
         for r in self.rows_of_block(block) {
             self[r].selected = selected.binary_search(&r).is_ok();
         }
         for k in 0..self[block].closures.len() {
             let c = self[block].closures[k];
-            let points_only = |(r, row): (RowId, Row)| !(self[r].drives() && row.has_axes());
+            let points_only = |(r, row): (RowId, Row)| !(self[r].has_wrench() && row.has_axes());
             let by_points = self[c].numbered_rows().all(points_only);
             self[c].solved_by_points = by_points;
         }
         self[block].selected = selected;
     }
 
-    /// Joints whose motion or closing a block decides.
+    /// Returns the joints whose motion or closure a block solves.
     pub fn joints_of_block(&self, block: BlockId) -> Vec<JointId> {
         let tree = self[block].unknowns.iter().filter_map(|&c| self[self[c].link].joint);
         let cut = self[block].closures.iter().map(|&c| self[c].joint);
@@ -426,27 +425,27 @@ impl Topology {
 }
 
 impl RowPlace {
-    /// True if the motion needs its wrench: it is solved with, or a term of a coupler.
-    pub fn drives(&self) -> bool {
+    /// True if the row has a wrench in the solution: it is selected, or a term of a coupler.
+    pub fn has_wrench(&self) -> bool {
         self.selected || self.is_term || !self.terms.is_empty()
     }
 
-    /// True if it is left out of the solution because other rows imply it.
+    /// True if the row is redundant: other rows imply it.
     pub fn is_redundant(&self) -> bool {
         !self.selected && !self.is_term
     }
 }
 
 impl Coordinate {
-    /// True if a block is solved for it.
+    /// True if a block solves for the coordinate.
     pub fn is_unknown(&self) -> bool {
         matches!(self.set_by, SetBy::Block { .. })
     }
 }
 
 impl Link {
-    /// The coordinate of this freedom of its joint, which counts from body i: a link that begins at body j has its
-    /// steps the other way round.
+    /// Returns the coordinate of a freedom of the joint, counted from body i. A link that begins at body j has its
+    /// steps in reverse order.
     pub fn coordinate_of(&self, freedom: usize) -> CoordinateId {
         let step = if self.parent_end == 0 { freedom } else { self.steps.len() - 1 - freedom };
         self.steps[step].first
@@ -457,13 +456,13 @@ impl Link {
         self.steps.iter().flat_map(LinkStep::coordinates)
     }
 
-    /// True if its unit twists never change: a single freedom that starts on ground.
+    /// True if the unit twist is constant: a single freedom relative to ground.
     #[inline(always)]
-    pub fn keeps_its_twist(&self) -> bool {
+    pub fn has_constant_twist(&self) -> bool {
         self.parent == GROUND && self.steps.len() == 1
     }
 
-    /// The frame in which its freedoms start, at the design configuration, in the world.
+    /// Returns the frame of its first freedom in the design configuration, global.
     fn frame_at_design(&self, model: &Model) -> Pose {
         match self.joint {
             Some(j) => model.marker(j, self.parent_end),
@@ -473,13 +472,13 @@ impl Link {
 }
 
 impl LinkStep {
-    /// Coordinates: one, or three of a ball.
+    /// Returns the coordinates: one, or three for a ball.
     #[inline(always)]
     pub fn coordinates(&self) -> impl Ids<CoordinateId> + use<> {
         CoordinateId::all(self.first.0..self.first.0 + self.freedom.coordinates())
     }
 
-    /// World unit twist of its coordinate k (0, or 0 to 2 for a ball) where its frame is `frame`.
+    /// Returns the global unit twist of coordinate k (0, or 0 to 2 for a ball) if the frame of the step is `frame`.
     #[inline(always)]
     pub fn twist<T: crate::space::Real>(
         &self,
@@ -488,8 +487,7 @@ impl LinkStep {
         r: crate::space::Vec3<T>,
     ) -> Twist<T> {
         match self.freedom {
-            // x = [h; c x h] of a turn about h through c, [0; h] of a slide; backwards, from j to i, with its sign
-            // turned (4)
+            // x = [h; c x h] of a rotation about h through c, [0; h] of a translation; negative from j to i (4)
             Freedom::Turn(axis) => Twist::turn(rot.cols[axis] * T::constant(self.sign), r),
             Freedom::Slide(axis) => Twist::slide(rot.cols[axis] * T::constant(self.sign)),
             Freedom::Ball => Twist::turn(rot.cols[k], r),

@@ -8,23 +8,23 @@ use crate::model::Model;
 use super::blocks::{SparseRow, columns_in_block, design_jacobian};
 use super::{CoordinateId, RowId, SetBy, Topology};
 
-/// A constraint whose part in a combination is smaller than this has no part in it.
+/// Coefficient of a constraint in a combination below which it is zero.
 const PART: f64 = 1e-7;
-/// Blocks with more unknowns than this are not taken apart: the search is cubic in them.
+/// Maximum number of unknowns of a block that is searched; the search is cubic in them.
 const MOST_UNKNOWNS: usize = 300;
 
-/// A redundant constraint and the constraints that imply it in the design configuration. Any one of all of them could
-/// be left out, and the others would still say the same.
+/// Redundant constraint, with the constraints that imply it in the design configuration. Any one of them can be removed
+/// without an effect on the motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Redundancy {
     /// The redundant row.
     pub row: RowId,
-    /// The rows that imply it; empty where they were not searched for.
+    /// Rows that imply it; empty if they were not searched.
     pub implied_by: Vec<RowId>,
 }
 
 impl Topology {
-    /// All redundant constraints, each with those that imply it.
+    /// Returns all redundant constraints, each with those that imply it.
     pub fn redundancies(&self, model: &Model) -> Vec<Redundancy> {
         let jacobian = design_jacobian(model, self);
         let mut factors: Vec<Option<Elimination<f64>>> = vec![None; self.blocks.len()];
@@ -33,8 +33,8 @@ impl Topology {
             .collect()
     }
 
-    /// The selected rows of which a row is a combination: block by block from the last, what is left of the row over
-    /// the block's unknowns is a combination of the block's own rows.
+    /// Returns the selected rows of which a row is a linear combination. Block by block from the last, the remainder of
+    /// the row over the block's unknowns is a combination of the block's own rows.
     fn implied_by(
         &self,
         row: RowId,
@@ -78,7 +78,7 @@ impl Topology {
                     *left.entry(c).or_insert(0.0) -= parts[k] * x;
                 }
             }
-            // What is left there is round-off.
+            // The remainder is round-off.
             for c in &block.unknowns {
                 left.remove(c);
             }

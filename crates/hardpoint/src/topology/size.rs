@@ -1,5 +1,5 @@
-//! Size of every loop: gaps, corrections and steps are compared with the size of their own loop and with nothing else
-//! in the file.
+//! Sizes of loops. Gaps, corrections and steps are relative to the size of their own loop, independent of the rest of
+//! the model.
 
 use std::collections::BTreeSet;
 
@@ -8,10 +8,10 @@ use crate::space::Vec3;
 
 use super::{Closure, Topology};
 
-/// Places nearer to each other than this part of their distance from the origin are one.
+/// Distance of two points, relative to their distance from the origin, below which they coincide.
 const ONE_PLACE: f64 = 1e-12;
 
-/// Measures the loops, and what coordinates and rows are compared with.
+/// Sets the sizes of the loops, and the reference sizes of coordinates and rows.
 pub(super) fn measure(model: &Model, topology: &mut Topology) {
     let joints_of_body = joints_of_bodies(model);
     let whole = model.size();
@@ -24,14 +24,14 @@ pub(super) fn measure(model: &Model, topology: &mut Topology) {
         let closure = &topology.closures[place.closure.0];
         place.unit = if closure.rows[place.index].is_length() { closure.size } else { 1.0 };
     }
-    // A coupler is one row: all of its terms are compared with what the first one is.
+    // A coupler is one row: all of its terms have the reference size of the first one.
     for k in 0..topology.coupled_rows.len() {
         let r = topology.coupled_rows[k];
         for term in topology[r].terms.clone() {
             topology[term.row].unit = topology[r].unit;
         }
     }
-    // What no loop holds is placed by drivers alone.
+    // Links without a loop are placed by drivers alone.
     let mut largest = vec![0.0_f64; topology.links.len()];
     for closure in &topology.closures {
         for around in &closure.links {
@@ -46,7 +46,7 @@ pub(super) fn measure(model: &Model, topology: &mut Topology) {
     }
 }
 
-/// Per body, its joints.
+/// Returns the joints of each body.
 fn joints_of_bodies(model: &Model) -> Vec<Vec<usize>> {
     let mut joints = vec![Vec::new(); model.bodies.len()];
     for (k, joint) in model.joints.iter().enumerate() {
@@ -57,7 +57,7 @@ fn joints_of_bodies(model: &Model) -> Vec<Vec<usize>> {
     joints
 }
 
-/// The extent of a loop's joints; where these are at one place, or the bodies move freely, that of all joints of its
+/// Returns the extent of a loop's joints. If they coincide, or if bodies move freely: the extent of all joints of its
 /// bodies.
 fn loop_size(
     model: &Model,
@@ -78,7 +78,7 @@ fn loop_size(
     if size > 0.0 { size } else { whole }
 }
 
-/// The extent of the markers of these joints in the design configuration; 0 where they are at one place.
+/// Returns the extent of the markers of joints in the design configuration; 0 if they coincide.
 fn extent(model: &Model, joints: impl Iterator<Item = usize>) -> f64 {
     let mut far = 0.0_f64;
     let places: Vec<Vec3> = joints.flat_map(|j| [0, 1].map(|end| model.marker(JointId(j), end).r)).collect();
@@ -86,6 +86,6 @@ fn extent(model: &Model, joints: impl Iterator<Item = usize>) -> f64 {
         far = far.max(place.norm());
     }
     let size = Extent::of(places.into_iter()).size_or_zero();
-    // Of places that are one but for round-off the differences have no digits.
+    // Differences of points that coincide up to round-off have no significant digits.
     if size > ONE_PLACE * far { size } else { 0.0 }
 }

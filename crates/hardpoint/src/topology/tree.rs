@@ -1,4 +1,4 @@
-//! The spanning tree that leaves the fewest unknowns.
+//! Spanning tree with the fewest unknowns.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -12,14 +12,15 @@ use super::{
     LinkStep, LoopLink, RowId, RowPlace, RowTerm, SetBy, Topology,
 };
 
-/// Cost of a joint in the tree: a body without any tree joint has six unknowns, so six is never chosen.
-const ASKED_CUT: usize = 6;
+/// Cost of a joint that the model requests to cut. A body without any tree joint has six unknowns, so a joint with a
+/// cost of six is never chosen.
+const REQUESTED_CUT: usize = 6;
 
-/// Per joint: its drivers, and the freedom of the joint that each prescribes.
+/// Drivers of each joint, with the freedom of the joint that each prescribes.
 type DriversOf = Vec<Vec<(DriverId, Option<usize>)>>;
 
-/// Chooses the tree and lists links, coordinates and closures; blocks come later.
-pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
+/// Chooses the tree and lists links, coordinates and closures. Blocks are assigned later.
+pub(super) fn choose_tree(model: &Model, formulation: Formulation) -> Topology {
     let mut roles: Vec<JointRole> = model
         .joints
         .iter()
@@ -27,7 +28,7 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
             JointRole::Cut(match (formulation, j.kind.freedoms, j.cut) {
                 (Formulation::Absolute, ..) => CutReason::Absolute,
                 (_, None, _) => CutReason::AlwaysCut,
-                (_, _, true) => CutReason::Asked,
+                (_, _, true) => CutReason::Requested,
                 _ => CutReason::ClosesLoop,
             })
         })
@@ -73,14 +74,14 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
         }
     }
     // Ground has no link, and depth 0.
-    let mut way = vec![PathToGround { link: LinkId(0), depth: 0 }; model.bodies.len()];
+    let mut paths = vec![PathToGround { link: LinkId(0), depth: 0 }; model.bodies.len()];
     for (k, link) in LinkId::each(&topology.links) {
         let depth = depth[link.child.0].expect("every body is placed by now");
-        way[link.child.0] = PathToGround { link: k, depth };
+        paths[link.child.0] = PathToGround { link: k, depth };
     }
     let mut add = |joint: usize, driver: Option<DriverId>, coupler: Option<usize>, rows: Vec<Row>| {
         let owner = Owner { joint: JointId(joint), driver, coupler };
-        add_closure(&mut topology, &way, owner, model.joints[joint].bodies, rows);
+        add_closure(&mut topology, &paths, owner, model.joints[joint].bodies, rows);
     };
     for (k, joint) in model.joints.iter().enumerate() {
         let cut = matches!(roles[k], JointRole::Cut(_));
@@ -117,20 +118,21 @@ pub(super) fn grow(model: &Model, formulation: Formulation) -> Topology {
     topology
 }
 
-/// A joint that could carry the tree on; the least is taken first.
+/// Candidate for the next tree joint; the minimum is taken first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Candidate {
     unknowns: usize,
-    /// Depth of the body that is placed already.
+    /// Depth of the body that is already placed.
     depth: usize,
     joint: usize,
     parent_end: usize,
 }
 
-/// The joints between bodies that are placed and bodies that are not.
+/// Joints between placed bodies and other bodies.
 struct Reachable<'m> {
     model: &'m Model,
-    /// Per body: its joints with a tree form, how many unknowns each would leave, and the body's end.
+    /// Joints with a tree form of each body, with the number of unknowns that each would leave, and the end on the
+    /// body.
     joints_of: Vec<Vec<(usize, usize, usize)>>,
     candidates: BinaryHeap<Reverse<Candidate>>,
 }
@@ -142,8 +144,8 @@ impl<'m> Reachable<'m> {
             for (k, j) in model.joints.iter().enumerate() {
                 let Some(freedoms) = j.kind.freedom_count() else { continue };
                 let driven = drivers_of[k].iter().filter(|d| d.1.is_some()).count();
-                let unknowns = if j.cut { ASKED_CUT } else { freedoms - driven };
-                if unknowns < ASKED_CUT {
+                let unknowns = if j.cut { REQUESTED_CUT } else { freedoms - driven };
+                if unknowns < REQUESTED_CUT {
                     for (end, body) in j.bodies.iter().enumerate() {
                         joints_of[body.0].push((k, unknowns, end));
                     }
@@ -153,7 +155,7 @@ impl<'m> Reachable<'m> {
         Self { model, joints_of, candidates: BinaryHeap::new() }
     }
 
-    /// Notes that a body is placed, and what can be reached from it.
+    /// Marks a body as placed, and adds the joints to its neighbours.
     fn place(&mut self, depth: &mut [Option<usize>], body: BodyId, at: usize) {
         depth[body.0] = Some(at);
         for &(joint, unknowns, parent_end) in &self.joints_of[body.0] {
@@ -161,7 +163,7 @@ impl<'m> Reachable<'m> {
         }
     }
 
-    /// The best joint to a body that is not placed yet.
+    /// Returns the best joint to a body that is not placed yet.
     fn next(&mut self, depth: &[Option<usize>]) -> Option<Candidate> {
         while let Some(Reverse(c)) = self.candidates.pop() {
             if depth[self.model.joints[c.joint].bodies[1 - c.parent_end].0].is_none() {
@@ -182,7 +184,7 @@ fn add_joint_link(
     parent_end: usize,
 ) {
     let freedoms = model.joints[joint.0].kind.freedoms.expect("only joints with freedoms are in the tree");
-    // From j to i the chain runs backwards with every motion reversed.
+    // From j to i the chain is reversed, and so is every motion.
     let order: Vec<usize> =
         if parent_end == 0 { (0..freedoms.len()).collect() } else { (0..freedoms.len()).rev().collect() };
     let sign = if parent_end == 0 { 1.0 } else { -1.0 };
@@ -222,7 +224,7 @@ fn add_link(
         for _ in 0..freedom.coordinates() {
             topology.coordinates.push(Coordinate {
                 link,
-                // The block of an unknown is found later.
+                // The block of an unknown is set later.
                 set_by: driver.map_or(SetBy::Block { block: BlockId(usize::MAX), column: 0 }, SetBy::Driver),
                 is_length: matches!(freedom, Freedom::Slide(_)),
                 unit: 1.0,
@@ -240,7 +242,7 @@ struct Owner {
     coupler: Option<usize>,
 }
 
-/// From a body towards ground: the link that places it, and how many links there are to ground.
+/// Link that places a body, and number of links to ground.
 #[derive(Clone, Copy)]
 struct PathToGround {
     link: LinkId,
@@ -249,7 +251,7 @@ struct PathToGround {
 
 fn add_closure(
     topology: &mut Topology,
-    way: &[PathToGround],
+    paths: &[PathToGround],
     Owner { joint, driver, coupler }: Owner,
     bodies: [BodyId; 2],
     rows: Vec<Row>,
@@ -268,7 +270,7 @@ fn add_closure(
             unit: 1.0,
         });
     }
-    let (links, base) = loop_links(topology, way, bodies);
+    let (links, base) = loop_links(topology, paths, bodies);
     let on_base = |row: &Row| if base == GROUND { *row } else { row.on_base() };
     let rows: Vec<Row> = rows.iter().map(on_base).collect();
     let follows = rows.contains(&Row::Contact);
@@ -292,18 +294,18 @@ fn add_closure(
     });
 }
 
-/// Links from j (+1) and from i (-1) down to the body where their ways to ground meet, and that body.
+/// Returns the links from j (+1) and from i (-1) down to the body where their paths to ground meet, and that body.
 ///
-/// Neither way is followed further than that: in a chain of loops, the last one is far from ground.
+/// No path is followed further: in a long chain of loops, the last one is far from ground.
 fn loop_links(
     topology: &Topology,
-    way: &[PathToGround],
+    paths: &[PathToGround],
     [mut i, mut j]: [BodyId; 2],
 ) -> (Vec<LoopLink>, BodyId) {
     let (mut from_i, mut from_j) = (Vec::new(), Vec::new());
     while i != j {
         let (PathToGround { link: a, depth: depth_i }, PathToGround { link: b, depth: depth_j }) =
-            (way[i.0], way[j.0]);
+            (paths[i.0], paths[j.0]);
         if depth_i >= depth_j {
             from_i.push(LoopLink { link: a, side: -1.0 });
             i = topology[a].parent;

@@ -44,7 +44,7 @@ fn a_second_motor_is_over_driven_and_names_both() {
             fault.to_string(),
             "the mechanism is over-driven: 2 drivers prescribe 1 degree of freedom"
         );
-        assert_eq!(fault.help(), "remove any one of these drivers, or free a joint");
+        assert_eq!(fault.help(), "remove any one of these drivers, or use a joint with more freedom");
     }
 }
 

@@ -115,7 +115,7 @@ fn vector_instructions_are_what_a_decoder_reads() {
                 Width::Avx2 => name,
             };
             for k in 0..registers {
-                // Every register in every place, each beside others.
+                // Every register in every position, each with different others.
                 let (d, a, s) =
                     (k, if operands == 3 { (k * 7 + 3) % registers } else { 0 }, (k * 5 + 1) % registers);
                 let a_text = if operands == 3 { format!("{r}{a},") } else { String::new() };
@@ -182,10 +182,10 @@ fn other_instructions_are_what_a_decoder_reads() {
     }
     a.add(Gpr::Rsp, 8);
     let length = a.bytes.len();
-    let forward = a.jump(When::Zero);
+    let forward = a.jump(Condition::Zero);
     a.zero_upper();
-    a.jump_back(When::NotZero, back);
-    a.land(forward);
+    a.jump_back(Condition::NotZero, back);
+    a.bind(forward);
     a.ret();
     let mut expected = Vec::new();
     for (r, name) in BASES {

@@ -1,4 +1,4 @@
-//! Checks of cases: what moves in each, by which laws and when.
+//! Checks of cases: laws, output times, and motion in each case.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -9,21 +9,21 @@ use crate::model::{Case, CaseId, DriverId};
 use super::{Checker, Here, LISTED_NAMES};
 
 impl Checker<'_> {
-    pub(super) fn cases(&mut self) {
+    pub(super) fn add_cases(&mut self) {
         let draft = self.draft;
-        // A law of a driver's own is looked at once, whatever cases follow it.
-        let mut seen = BTreeSet::new();
+        // The own law of a driver is reported once, however many cases use it.
+        let mut reported = BTreeSet::new();
         let known = self.model.drivers.iter().enumerate().map(|(d, driver)| (driver.name.clone(), d));
         let known: HashMap<String, usize> = known.collect();
         for (index, c) in draft.cases.iter().enumerate() {
             let here = Here { section: Section::Cases, index };
             let times = c.times.as_ref().unwrap_or(&draft.times);
             if let Some(times) = &c.times {
-                self.times_of(times, here.key("time"));
+                self.check_output_times(times, here.key("time"));
             }
             let mut laws =
                 vec![(c.rest == OtherDrivers::Held).then(|| Law::constant(0.0)); self.model.drivers.len()];
-            // The formulas of its laws are kept with it.
+            // The case stores the formulas of its laws.
             let case = CaseId(self.model.cases.len());
             let times_of_case = times.clone();
             let (name, formulas) = (c.name.clone(), Vec::new());
@@ -44,47 +44,47 @@ impl Checker<'_> {
                 let Some(&d) = known.get(driver) else { continue };
                 let given = self.formula_law_in((case, &c.name), (DriverId(d), driver), law, &at);
                 let Some(law) = given else { continue };
-                self.law_is_defined(&format!("driver `{driver}` in case `{}`", c.name), &law, times, at);
+                self.check_law(&format!("driver `{driver}` in case `{}`", c.name), &law, times, at);
                 laws[d] = Some(law);
             }
             for d in (0..laws.len()).filter(|d| laws[*d].is_none()) {
                 let (name, law) = (self.model.drivers[d].name.clone(), self.model.drivers[d].law.clone());
                 let index = self.number_of("driver", &name).unwrap_or(d);
                 let faults = self.faults.len();
-                if !seen.contains(&d) {
+                if !reported.contains(&d) {
                     let at = Here { section: Section::Drivers, index }.key("law");
-                    self.law_is_defined(&format!("driver `{name}`"), &law, times, at);
+                    self.check_law(&format!("driver `{name}`"), &law, times, at);
                 }
                 if self.faults.len() > faults {
-                    seen.insert(d);
+                    reported.insert(d);
                 }
             }
-            self.moves(c, &laws, times, here);
+            self.check_motion(c, &laws, times, here);
             self.model.cases[case.0].laws = laws;
         }
     }
 
-    /// HP0235: a case in which no driver moves, though it has several output times.
-    fn moves(&mut self, c: &CaseDraft, laws: &[Option<Law>], times: &[f64], here: Here) {
+    /// HP0235: a case with several output times in which no driver moves.
+    fn check_motion(&mut self, c: &CaseDraft, laws: &[Option<Law>], times: &[f64], here: Here) {
         let draft = self.draft;
         let faulty = self.model.drivers.len() < draft.drivers.len()
-            || self.lost("driver")
+            || self.is_table_unread("driver")
             || self.unread(here, "laws")
             || c.laws.iter().any(|(name, _)| self.number_of("driver", name).is_none())
             || (0..draft.drivers.len())
                 .any(|index| self.unread(Here { section: Section::Drivers, index }, "law"));
         let [first, .., _] = times else { return };
-        let rests = |law: &Law| {
+        let is_constant = |law: &Law| {
             let start = law.at(*first).value();
             times.iter().all(|t| law.at(*t).value() == start)
         };
         let laws = laws.iter().zip(&self.model.drivers);
-        if faulty || !laws.map(|(law, driver)| law.as_ref().unwrap_or(&driver.law)).all(rests) {
+        if faulty || !laws.map(|(law, driver)| law.as_ref().unwrap_or(&driver.law)).all(is_constant) {
             return;
         }
-        let message = format!("nothing moves in case `{}`", c.name);
+        let message = format!("case `{}` has no motion", c.name);
         let named: BTreeSet<&str> = c.laws.iter().map(|law| law.0.as_str()).collect();
-        let held: Vec<String> = draft
+        let fixed: Vec<String> = draft
             .drivers
             .iter()
             .filter(|d| !named.contains(d.name.as_str()))
@@ -92,16 +92,16 @@ impl Checker<'_> {
             .map(|d| format!("`{}`", d.name))
             .collect();
         let fault = self.fault("HP0235", here.key("name"), message);
-        if !held.is_empty() && c.rest == OtherDrivers::Held {
-            let [are, them] = if held.len() == 1 { ["is", "it"] } else { ["are", "them"] };
+        if !fixed.is_empty() && c.rest == OtherDrivers::Held {
+            let [are, them] = if fixed.len() == 1 { ["is", "it"] } else { ["are", "them"] };
             fault.note(format!(
-                "{} {are} fixed in the design configuration, since the case gives no law for {them}",
-                held.join(", ")
+                "{} {are} fixed in the design configuration, because the case has no law for {them}",
+                fixed.join(", ")
             ));
         }
         let example = draft.drivers.first().map_or("DRIVER", |d| d.name.as_str());
         fault.help(format!(
-            "give a driver a law in it, like `laws = {{ {example} = \"10*t\" }}`, or write `other_drivers = \"as_in_model\"` for those in `[drivers]`"
+            "give a driver a law in this case, like `laws = {{ {example} = \"10*t\" }}`, or write `other_drivers = \"as_in_model\"` to use the laws of `[drivers]`"
         ));
     }
 }

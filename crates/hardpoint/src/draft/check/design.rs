@@ -13,14 +13,14 @@ use crate::space::Vec3;
 use super::{Checker, Here, SAME_POINT, UNPLACED};
 
 impl Checker<'_> {
-    pub(super) fn variables(&mut self) {
+    pub(super) fn add_variables(&mut self) {
         let draft = self.draft;
         for (index, v) in draft.design.iter().enumerate() {
             let here = Here { section: Section::Design, index };
             if v.changes.is_empty() && !draft.unread.any(Section::Design, index) {
-                let message = format!("design variable `{}` changes nothing", v.name);
+                let message = format!("design variable `{}` has no effect", v.name);
                 self.fault("HP0217", here.key("name"), message)
-                    .help("say which hardpoint it moves, which joint it tilts, or give a velocity field");
+                    .help("name a hardpoint to move or a joint to tilt, or give a velocity field");
             }
             let mut changes = Vec::new();
             for (k, change) in v.changes.iter().enumerate() {
@@ -31,7 +31,7 @@ impl Checker<'_> {
                 let driver = self.model.drivers.iter().find(|d| d.name == driver)?;
                 Some((&driver.law, self.model.driven(driver).quantity))
             });
-            self.range(v, here);
+            self.check_bounds(v, here);
             self.model.variables.push(DesignVariable {
                 name: v.name.clone(),
                 quantity,
@@ -44,9 +44,9 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0229: bounds between which the model in the design configuration does not lie, or a typical size that is none.
-    fn range(&mut self, v: &VariableDraft, here: Here) {
-        // Those of a parameter are counted from its value.
+    /// HP0229: bounds that do not enclose the nominal design, or an invalid typical size or tolerance.
+    fn check_bounds(&mut self, v: &VariableDraft, here: Here) {
+        // Bounds of a parameter are relative to its value.
         if let Some([low, high]) = v.bounds.filter(|_| !self.unread(here, "value")) {
             if !(low < high && low.is_finite() && high.is_finite()) {
                 let message =
@@ -56,25 +56,25 @@ impl Checker<'_> {
             } else if !(low <= 0.0 && high >= 0.0) {
                 let message = format!("the nominal design is outside the bounds of `{}`", v.name);
                 self.fault("HP0229", here.key("bounds"), message).help(
-                    "bounds of a parameter enclose its value, those of another design variable enclose 0",
+                    "give bounds that enclose the nominal value: the value of a parameter, 0 for other design variables",
                 );
             }
         }
-        let is_none = |size: Option<f64>| size.is_some_and(|size| !(size > 0.0 && size.is_finite()));
-        if is_none(v.typical) {
+        let is_invalid = |size: Option<f64>| size.is_some_and(|size| !(size > 0.0 && size.is_finite()));
+        if is_invalid(v.typical) {
             let message = format!("the typical size of design variable `{}` is not positive", v.name);
             self.fault("HP0229", here.key("typical"), message)
-                .help("give the size of a typical change, or leave it out");
+                .help("give the size of a typical change, or remove `typical`");
         }
-        if is_none(v.tolerance) {
+        if is_invalid(v.tolerance) {
             let message = format!("the tolerance of design variable `{}` is not positive", v.name);
             self.fault("HP0229", here.key("tolerance"), message)
-                .help("give the half width of the tolerance, or leave it out");
+                .help("give the half width of the tolerance, or remove `tolerance`");
         }
     }
 
-    /// Checks a velocity field over whole bodies: hardpoints of joints and points move, axes along vectors rotate, axes
-    /// through hardpoints follow their hardpoints.
+    /// Resolves a velocity field over whole bodies: hardpoints of joints and points move, axes along vectors rotate,
+    /// axes through hardpoints follow their hardpoints.
     fn shape(
         &mut self,
         bodies: &[String],
@@ -87,7 +87,7 @@ impl Checker<'_> {
         let bodies: Vec<_> = bodies.iter().map(|b| self.body(b, at.clone())).collect();
         let field = self.shape_field(field, owner, here);
         let (bodies, field) = (bodies.into_iter().collect::<Option<Vec<BodyId>>>()?, field?);
-        let (mut moved, mut turned): (BTreeSet<usize>, Vec<JointId>) = Default::default();
+        let (mut moved, mut rotated): (BTreeSet<usize>, Vec<JointId>) = Default::default();
         for (j, joint) in self.model.joints.iter().enumerate() {
             if !joint.bodies.iter().any(|b| bodies.contains(b)) {
                 continue;
@@ -96,7 +96,7 @@ impl Checker<'_> {
             let axes = [joint.axis, joint.axis2].into_iter().flatten();
             moved.extend(axes.clone().filter_map(Direction::hardpoints).flatten().map(|h| h.0));
             if axes.clone().any(|a| matches!(a, Direction::Along(_))) {
-                turned.push(JointId(j));
+                rotated.push(JointId(j));
             }
         }
         let points = self.model.points.iter().filter(|p| bodies.contains(&p.body) && p.at != UNPLACED);
@@ -109,7 +109,7 @@ impl Checker<'_> {
                 changes.push(change::Move { hardpoint: HardpointId(h), velocity }.into());
             }
         }
-        for joint in turned {
+        for joint in rotated {
             let place = self.model.joints[joint.0].at[0];
             let [_, rotation] = field.at(self.position(place)?);
             if rotation.norm() > SAME_POINT {
@@ -118,14 +118,18 @@ impl Checker<'_> {
             }
         }
         if changes.is_empty() && !self.joint_ids.contains(&None) {
-            let message = format!("the field of design variable `{owner}` moves nothing on its bodies");
-            self.fault("HP0217", at, message).help("the field does not move any joint or point on them");
+            let message = format!(
+                "the velocity field of design variable `{owner}` moves no joint or point of its bodies"
+            );
+            self.fault("HP0217", at, message).help(
+                "give a field that is not zero at a joint or point of these bodies, or name other bodies",
+            );
             return None;
         }
         Some(changes)
     }
 
-    /// A velocity field over whole bodies.
+    /// Resolves a velocity field over whole bodies.
     fn shape_field(&mut self, field: &ShapeDraft, owner: &str, here: Here) -> Option<ShapeField> {
         let key = || here.key("field");
         Some(match field {
@@ -151,12 +155,12 @@ impl Checker<'_> {
                 let [from, to] = [ends[0]?, ends[1]?];
                 let along =
                     (to - from).unit().filter(|_| (to - from).norm() > SAME_POINT * self.extent.size());
-                let square = along.and_then(|e| (*towards - e * e.dot(*towards)).unit());
-                let Some(towards) = square else {
+                let normal = along.and_then(|e| (*towards - e * e.dot(*towards)).unit());
+                let Some(towards) = normal else {
                     let message = format!("the bend of design variable `{owner}` has no direction");
                     self.fault("HP0205", key(), message)
-                        .note("its two hardpoints are at one place, or `towards` is along the line between them")
-                        .help("name two different hardpoints, and a direction across their line");
+                        .note("its two hardpoints coincide, or `towards` is parallel to the line between them")
+                        .help("name two different hardpoints, and a direction that is not parallel to their line");
                     return None;
                 };
                 ShapeField::Bend { from, to, towards }
@@ -172,9 +176,9 @@ impl Checker<'_> {
                 let moves =
                     velocities.iter().any(|v| v.norm() > 0.0) && velocities.iter().all(|v| v.is_finite());
                 let Some(found) = found.filter(|_| moves) else {
-                    let message = format!("no field of design variable `{owner}` goes through these points");
+                    let message = format!("the points of design variable `{owner}` define no velocity field");
                     self.fault("HP0217", key(), message)
-                        .note("none of them moves, or two of them are at one place and move differently")
+                        .note("none of them moves, or two of them coincide and move differently")
                         .help("give different points, each with its displacement per unit");
                     return None;
                 };
@@ -183,7 +187,7 @@ impl Checker<'_> {
         })
     }
 
-    /// Resolves a change: its references must exist and must be able to change so.
+    /// Resolves a change. HP0204, HP0218, HP0225 or HP0226 if a reference is unknown or cannot change in this way.
     fn change(&mut self, change: &ChangeDraft, owner: &str, here: Here, k: usize) -> Option<Vec<Change>> {
         let at = here.item("changes", k);
         let change = match change {
@@ -192,13 +196,13 @@ impl Checker<'_> {
                 if self.curve_points.contains(&hardpoint) {
                     let message = format!("design variable `{owner}` moves `{name}`, a point of a curve");
                     self.fault("HP0226", at, message)
-                        .note("the shape of a curve cannot be a design variable; its place and direction can")
+                        .note("the shape of a curve cannot be a design variable; its position and direction can")
                         .help(
                             "write the curve's points as coordinates, and move the hardpoint that carries it",
                         );
                     return None;
                 }
-                self.not_null(vectors(&[*velocity]), owner, at);
+                self.check_not_zero(vectors(&[*velocity]), owner, at);
                 change::Move { hardpoint, velocity: *velocity }.into()
             }
             ChangeDraft::Tilt { joint, about } => {
@@ -208,19 +212,19 @@ impl Checker<'_> {
             }
             ChangeDraft::Marker { joint, end, position, rotation } => {
                 let joint = self.joint(joint, at.clone())?;
-                self.not_null(vectors(&[*position, *rotation]), owner, at);
+                self.check_not_zero(vectors(&[*position, *rotation]), owner, at);
                 change::Marker { joint, end: *end, position: *position, rotation: *rotation }.into()
             }
             ChangeDraft::Length { joint, rate } => {
                 let joint = self.joint(joint, at.clone())?;
-                self.not_null(number(*rate), owner, at.clone());
+                self.check_not_zero(number(*rate), owner, at.clone());
                 let j = &self.model.joints[joint.0];
                 if j.length.is_none() {
                     let (name, kind) = (j.name.clone(), j.kind.name);
-                    let message = format!("joint `{name}` has no `length` of its own that could change");
+                    let message = format!("joint `{name}` has no `length` that can change");
                     let fault = self.fault("HP0225", at, message);
                     fault.note(format!(
-                        "it is a {kind} joint; the length of a rod is measured between its hardpoints"
+                        "its type is `{kind}`; without `length`, the length of a rod is the distance between its hardpoints"
                     ));
                     fault.help(format!("give rod `{name}` a `length`, or move one of its hardpoints"));
                     return None;
@@ -230,7 +234,7 @@ impl Checker<'_> {
             ChangeDraft::Parameter { parameter, rate } => {
                 let names = self.draft.parameters.iter().map(|p| p.name.as_str());
                 let parameter = self.find("parameter", parameter, at.clone(), names).map(ParameterId)?;
-                self.not_null(number(*rate), owner, at);
+                self.check_not_zero(number(*rate), owner, at);
                 change::Parameter { parameter, rate: *rate }.into()
             }
             ChangeDraft::Law { driver, parameter, rate } => {
@@ -244,7 +248,7 @@ impl Checker<'_> {
                 let names = parameters.iter().map(|p| p.name.as_str());
                 let what = format!("parameter of the law of `{driver}`");
                 let parameter = self.find(&what, parameter, here.key("parameter"), names)?;
-                self.not_null(number(*rate), owner, at);
+                self.check_not_zero(number(*rate), owner, at);
                 // A faulty driver has been reported.
                 let driver = self.model.drivers.iter().position(|d| d.name == *driver).map(DriverId)?;
                 change::Law { driver, parameter, rate: *rate }.into()
@@ -254,7 +258,7 @@ impl Checker<'_> {
                 let joint = self.joint(joint, at.clone());
                 let body = self.body(body, at.clone());
                 let (joint, body) = (joint?, body?);
-                self.not_null(vectors(&[*v, *u]), owner, at.clone());
+                self.check_not_zero(vectors(&[*v, *u]), owner, at.clone());
                 let bodies = self.model.joints[joint.0].bodies;
                 if !bodies.contains(&body) {
                     let names = bodies.map(|b| format!("`{}`", self.model.bodies[b.0].name)).join(" and ");
@@ -271,21 +275,21 @@ impl Checker<'_> {
         Some(vec![change])
     }
 
-    /// HP0217: a change that changes nothing.
-    fn not_null(&mut self, does_something: bool, owner: &str, at: DraftLocation) {
+    /// HP0217: a change with zero velocity.
+    fn check_not_zero(&mut self, does_something: bool, owner: &str, at: DraftLocation) {
         if !does_something {
-            let message = format!("a velocity of design variable `{owner}` is null or not finite");
+            let message = format!("a velocity of design variable `{owner}` is zero or not finite");
             self.fault("HP0217", at, message);
         }
     }
 }
 
-/// True if these velocities together are one.
+/// True if all velocities are finite and one of them is not zero.
 fn vectors(velocities: &[Vec3]) -> bool {
     velocities.iter().all(|v| v.is_finite()) && velocities.iter().any(|v| v.norm() >= 1e-12)
 }
 
-/// True if a rate is one.
+/// True if a rate is finite and not zero.
 fn number(rate: f64) -> bool {
     rate.is_finite() && rate != 0.0
 }

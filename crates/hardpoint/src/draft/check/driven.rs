@@ -1,4 +1,4 @@
-//! Checks of what drivers prescribe: a joint's coordinate, or an unnamed joint that has the request.
+//! Checks of driven quantities: a coordinate of a joint, or of an unnamed joint made for the driver.
 
 use crate::constraint::Row;
 use crate::draft::{
@@ -19,43 +19,43 @@ use super::{Checker, Here, frame_along};
 pub(super) struct Driven {
     pub joint: JointId,
     pub coordinate: usize,
-    /// Value in the design configuration, if the law counts from zero.
+    /// Source of the nominal value, if the law gives absolute values.
     zero: Zero,
 }
 
-/// Value of a driver's coordinate in the design configuration.
+/// Source of the nominal value of a driver's coordinate.
 #[derive(Clone, Copy)]
 enum Zero {
-    /// Nothing: there is nothing else to count from, like a revolute joint's angle.
+    /// No absolute zero, as for the angle of a revolute joint.
     None,
-    /// Zero: what is measured is counted from the design configuration, like wheel travel.
-    AsDrawn,
-    /// Value that the joint keeps of its design configuration: the length of a rod or leg, the course of an axis.
-    Kept,
+    /// Zero, because the measure itself counts from the design configuration, like wheel travel.
+    Nominal,
+    /// Constant of the joint in the design configuration: the length of a rod or leg, the angle of an axis.
+    Constant,
     /// Position of the joint's hardpoint along its axis.
     Position,
 }
 
-/// The axes of an unnamed joint.
+/// Axes of an unnamed joint.
 struct Axes {
     axis: Direction,
     axis2: Option<Direction>,
     frames: [Mat3; 2],
 }
 
-/// A direction nearer to the line of sight than this, as a sine, has no angle.
-const HEADLESS: f64 = 1e-6;
-/// The body that is.
+/// Sine of the angle to the line of sight below which a direction has no angle.
+const MIN_SINE: f64 = 1e-6;
+/// Name of the fixed body.
 const GROUND_NAME: &str = "ground";
 
-/// Design value of a driver's coordinate, over hardpoints, or as the joint keeps it.
-pub(super) struct AsDrawn {
+/// Nominal value of a driver's coordinate as an expression over hardpoints or joint constants.
+pub(super) struct NominalValue {
     expression: Expression,
     sources: Vec<Source>,
 }
 
-impl AsDrawn {
-    /// The same as what gives a number of the model.
+impl NominalValue {
+    /// Returns the formula that defines a number of the model by this value.
     pub fn formula(&self, of: Target) -> Formula {
         let inputs = self.sources.iter().map(|s| (*s, 1.0)).collect();
         Formula { of, expression: self.expression.clone(), inputs, per_unit: 1.0 }
@@ -63,14 +63,14 @@ impl AsDrawn {
 }
 
 impl DriverDraft {
-    /// True if its laws give the whole value of what it prescribes.
+    /// True if the laws give the absolute value of the prescribed quantity.
     pub(super) fn counts_from_zero(&self) -> bool {
         self.from_zero || matches!(self.drives, DrivenDraft::Measure(_))
     }
 }
 
 impl Checker<'_> {
-    /// The joint coordinate that a driver prescribes; for what is no joint's, an unnamed joint that has it.
+    /// Returns the joint coordinate that a driver prescribes. Adds an unnamed joint if no joint has it.
     pub(super) fn driven(&mut self, d: &DriverDraft, here: Here) -> Option<Driven> {
         match &d.drives {
             DrivenDraft::Unread => None,
@@ -95,7 +95,7 @@ impl Checker<'_> {
                 let (axis, z) = self.line(about, &d.name, here, "about")?;
                 let (body, base) = (body?, base?);
                 let axes = Axes { axis, axis2: None, frames: [frame_along(z, z.any_perpendicular()); 2] };
-                let at = self.place_on(body)?;
+                let at = self.hardpoint_on(body)?;
                 self.driven_joint(d, &joint::HEADING, [base, body], [at, at], Some(axes), Zero::None)
             }
             DrivenDraft::Measure(name) => self.driven_measure(d, name, here),
@@ -112,8 +112,12 @@ impl Checker<'_> {
         let joint = self.joint(name, at[0].clone())?;
         let coordinate = self.coordinate_at(joint, coordinate, at.clone())?;
         let row = self.model.joints[joint.0].kind.coordinates[coordinate].row;
-        let zero = if row == Row::Distance { Zero::Kept } else { Zero::None };
-        self.drivable(d, name, joint, coordinate, at[0].clone()).then_some(Driven { joint, coordinate, zero })
+        let zero = if row == Row::Distance { Zero::Constant } else { Zero::None };
+        self.is_drivable(d, name, joint, coordinate, at[0].clone()).then_some(Driven {
+            joint,
+            coordinate,
+            zero,
+        })
     }
 
     fn driven_position(
@@ -141,14 +145,15 @@ impl Checker<'_> {
         let [from, to] = at;
         let (a, b) = (self.point(points[0], &d.name, from), self.point(points[1], &d.name, to.clone()));
         let [i, j] = [a?, b?].map(|p| self.model.points[p.0].clone());
-        if self.apart(i.at, j.at) == Some(None) {
-            let message = format!("the two points of driver `{}` are at the same place", d.name);
+        if self.separation(i.at, j.at) == Some(None) {
+            let message = format!("the two points of driver `{}` coincide", d.name);
             self.fault("HP0211", to, message).help("an actuator needs two different points");
         }
-        self.driven_joint(d, &joint::LEG, [i.body, j.body], [i.at, j.at], None, Zero::Kept)
+        self.driven_joint(d, &joint::LEG, [i.body, j.body], [i.at, j.at], None, Zero::Constant)
     }
 
-    /// Coordinate that has the value of a measure, in whole or relative to the design configuration like the measure.
+    /// Returns the coordinate that has the value of a measure, absolute or relative to the design configuration like
+    /// the measure.
     fn driven_measure(&mut self, d: &DriverDraft, name: &str, here: Here) -> Option<Driven> {
         let draft = self.draft;
         let at = here.key("measure");
@@ -170,35 +175,35 @@ impl Checker<'_> {
                 about: Some(about),
             } if base == GROUND_NAME => {
                 let (body, axis2) = self.ray_of_one_body(d, to, name, &at)?;
-                let place = self.place_on(body)?;
+                let place = self.hardpoint_on(body)?;
                 let z = about.unit()?;
                 let x = (*from - z * z.dot(*from)).unit();
                 let Some(x) = x else {
                     self.fault(
                         "HP0213",
                         at,
-                        format!("measure `{name}` of driver `{}` has no angle to count from", d.name),
+                        format!("measure `{name}` of driver `{}` has no zero angle", d.name),
                     )
-                    .help("its `from` must not be along its `about`");
+                    .help("give the measure a `from` that is not parallel to its `about`");
                     return None;
                 };
-                self.driven_course(d, body, place, [z, x], axis2, Zero::Kept, &at)
+                self.driven_angle(d, body, place, [z, x], axis2, Zero::Constant, &at)
             }
             MeasureKindDraft::Toe { body, spin_axis } => {
                 let body = self.body(body, at.clone())?;
                 let (axis2, _) = self.line_at(spin_axis, &d.name, at.clone())?;
-                let place = self.place_on(body)?;
+                let place = self.hardpoint_on(body)?;
                 let s = self.model.side_of_axis(axis2).sign();
-                self.driven_course(d, body, place, [up * -s, left * s], axis2, Zero::Kept, &at)
+                self.driven_angle(d, body, place, [up * -s, left * s], axis2, Zero::Constant, &at)
             }
             MeasureKindDraft::Wheel { wheel, what } => {
                 let names = draft.wheels.iter().map(|w| w.name.as_str());
                 let number = self.find("wheel", wheel, at.clone(), names)?;
-                // What is wrong with the wheel itself is said where wheels are looked at.
+                // The check of wheels reports the errors of the wheel itself.
                 let faults = self.faults.len();
-                let stands = self.wheel_as_drawn(&draft.wheels[number], number);
+                let nominal = self.nominal_wheel(&draft.wheels[number], number);
                 self.faults.truncate(faults);
-                let (body, centre, side, axis2) = stands?;
+                let (body, centre, side, axis2) = nominal?;
                 let s = side.sign();
                 let travel = |c: &mut Self, z: Vec3| {
                     let frames = [frame_along(z, z.any_perpendicular()); 2];
@@ -209,7 +214,7 @@ impl Checker<'_> {
                         [GROUND, body],
                         [centre, centre],
                         Some(axes),
-                        Zero::AsDrawn,
+                        Zero::Nominal,
                     )
                 };
                 match what {
@@ -217,21 +222,21 @@ impl Checker<'_> {
                     WheelMeasure::WheelRecession => travel(self, -forward),
                     // toe = atan2(e_x, s e_y): seen from where z is -s z, from s y
                     WheelMeasure::Toe => {
-                        self.driven_course(d, body, centre, [up * -s, left * s], axis2, Zero::Kept, &at)
+                        self.driven_angle(d, body, centre, [up * -s, left * s], axis2, Zero::Constant, &at)
                     }
                     WheelMeasure::SteerAngle => {
-                        self.driven_course(d, body, centre, [up, left * s], axis2, Zero::AsDrawn, &at)
+                        self.driven_angle(d, body, centre, [up, left * s], axis2, Zero::Nominal, &at)
                     }
-                    _ => self.no_driver_of(d, name, what.name(), &at),
+                    _ => self.report_not_drivable(d, name, what.name(), &at),
                 }
             }
-            MeasureKindDraft::Angle { .. } => self.no_driver_of(d, name, "angle", &at),
-            _ => self.no_driver_of(d, name, "type", &at),
+            MeasureKindDraft::Angle { .. } => self.report_not_drivable(d, name, "angle", &at),
+            _ => self.report_not_drivable(d, name, "type", &at),
         }
     }
 
     /// HP0213: a measure that no driver can prescribe.
-    fn no_driver_of(
+    fn report_not_drivable(
         &mut self,
         d: &DriverDraft,
         name: &str,
@@ -250,11 +255,11 @@ impl Checker<'_> {
                 format!("`{what}` of a wheel is not the value of one coordinate that a driver can prescribe")
             }
         });
-        fault.help("drivers prescribe `coordinate`, `position`, `distance`, `angle`, `toe`, `steer_angle`, `wheel_travel` and `wheel_recession`; drive one of these, and use the other as the abscissa");
+        fault.help("prescribe a `coordinate`, `position`, `distance`, `angle`, `toe`, `steer_angle`, `wheel_travel` or `wheel_recession`, and use this measure as the abscissa");
         None
     }
 
-    /// A ray that one body carries: the body, and the direction in it.
+    /// Returns the body of a ray that is fixed in one body, and its direction. HP0213 otherwise.
     fn ray_of_one_body(
         &mut self,
         d: &DriverDraft,
@@ -272,7 +277,7 @@ impl Checker<'_> {
                 let [a, b] = [0, 1].map(|k| self.point(&points[k], &d.name, at.clone()));
                 let [a, b] = [a?, b?].map(|p| self.model.points[p.0].clone());
                 if a.body != b.body {
-                    self.no_driver_of(d, measure, "angle", at);
+                    self.report_not_drivable(d, measure, "angle", at);
                     return None;
                 }
                 Some((a.body, Direction::Through(a.at, b.at)))
@@ -280,9 +285,9 @@ impl Checker<'_> {
         }
     }
 
-    /// The course of a direction of a body, seen along z of ground and counted from x.
+    /// Drives the angle of a direction of a body about z of ground, counted from x.
     #[expect(clippy::too_many_arguments, reason = "what a joint is made of")]
-    fn driven_course(
+    fn driven_angle(
         &mut self,
         d: &DriverDraft,
         body: BodyId,
@@ -293,7 +298,7 @@ impl Checker<'_> {
         at: &DraftLocation,
     ) -> Option<Driven> {
         let e = self.vector(axis2)?.unit()?;
-        if (e - z * z.dot(e)).norm() < HEADLESS {
+        if (e - z * z.dot(e)).norm() < MIN_SINE {
             let message = format!("the direction of driver `{}` is parallel to its line of sight", d.name);
             self.fault("HP0213", at.clone(), message).help("give another `about` direction");
             return None;
@@ -303,7 +308,7 @@ impl Checker<'_> {
         self.driven_joint(d, &joint::COURSE, [GROUND, body], [place, place], Some(axes), zero)
     }
 
-    /// Direction as a vector in the design configuration.
+    /// Returns a direction as a vector in the design configuration.
     fn vector(&self, direction: Direction) -> Option<Vec3> {
         match direction {
             Direction::Along(v) => Some(v),
@@ -311,14 +316,19 @@ impl Checker<'_> {
         }
     }
 
-    /// A hardpoint where a joint holds a body.
-    fn place_on(&self, body: BodyId) -> Option<HardpointId> {
+    /// Returns a hardpoint of a joint of a body.
+    fn hardpoint_on(&self, body: BodyId) -> Option<HardpointId> {
         self.model.joints.iter().find(|j| j.bodies.contains(&body)).map(|j| j.at[0])
     }
 
-    /// Value of a driver's coordinate in the design configuration, if it is not zero. HP0213 if a law counts from a
-    /// zero that does not exist.
-    pub(super) fn as_drawn(&mut self, d: &DriverDraft, driven: Driven, here: Here) -> Option<AsDrawn> {
+    /// Returns the nominal value of a driver's coordinate, if it is not zero. HP0213 if the law is absolute and the
+    /// coordinate has no absolute zero.
+    pub(super) fn nominal_value(
+        &mut self,
+        d: &DriverDraft,
+        driven: Driven,
+        here: Here,
+    ) -> Option<NominalValue> {
         let joint = &self.model.joints[driven.joint.0];
         let mut sources = Vec::new();
         let mut coordinates = |h: HardpointId| {
@@ -334,15 +344,15 @@ impl Checker<'_> {
         let between = |[a, b]: [&[String; 3]; 2]| [0, 1, 2].map(|k| format!("({} - {})", b[k], a[k]));
         let text = match (driven.zero, joint.axis) {
             (Zero::None, ..) if d.from_zero => {
-                let message = format!("the coordinate of driver `{}` has no zero of its own", d.name);
+                let message = format!("the coordinate of driver `{}` has no absolute zero", d.name);
                 self.fault("HP0213", here.key("counted_from"), message)
                     .note("lengths of rods, distances and positions have one; joint angles and displacements count from the design configuration")
-                    .help("leave `counted_from` out, or prescribe a measure with `measure = \"NAME\"`");
+                    .help("remove `counted_from`, or prescribe a measure with `measure = \"NAME\"`");
                 return None;
             }
-            (Zero::None | Zero::AsDrawn, ..) => return None,
-            // What the joint keeps, which `length` and variables of the joint itself change as well as its hardpoints.
-            (Zero::Kept, ..) => {
+            (Zero::None | Zero::Nominal, ..) => return None,
+            // The joint constant changes with `length` and variables of the joint itself, not only with its hardpoints.
+            (Zero::Constant, ..) => {
                 sources.push(Source::Kept(driven.joint, driven.coordinate));
                 "n0".to_owned()
             }
@@ -360,10 +370,10 @@ impl Checker<'_> {
             let k: usize = n[1..].parse().expect("a name that is given here");
             sources[k]
         });
-        Some(AsDrawn { sources: sources.collect(), expression: expression.clone() })
+        Some(NominalValue { sources: sources.collect(), expression: expression.clone() })
     }
 
-    /// An unnamed joint that has the coordinate that a driver prescribes.
+    /// Adds an unnamed joint with the coordinate that a driver prescribes.
     fn driven_joint(
         &mut self,
         d: &DriverDraft,
@@ -397,8 +407,8 @@ impl Checker<'_> {
         Some(Driven { joint: JointId(self.model.joints.len() - 1), coordinate: 0, zero })
     }
 
-    /// True if a joint's coordinate may be prescribed: by one driver, and not where a constraint keeps it.
-    fn drivable(
+    /// True if a driver may prescribe a joint's coordinate: no other driver does, and no constraint fixes it.
+    fn is_drivable(
         &mut self,
         d: &DriverDraft,
         name: &str,

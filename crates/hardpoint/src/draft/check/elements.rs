@@ -1,4 +1,4 @@
-//! Checks of masses and forces: what they name, and whether such a thing can be.
+//! Checks of masses and forces: references and parameters.
 
 use crate::draft::measure::Field;
 use crate::draft::{ElementDraft, FieldDraft, FieldKind, NumberDraft, Section};
@@ -13,14 +13,15 @@ use crate::space::Vec3;
 
 use super::{Checker, Here, MeasureCheck};
 
-/// A direction is across another one where the sine between them is at least this.
+/// Minimum sine of the angle between two directions that count as not parallel.
 const ACROSS: f64 = 1e-3;
 
-/// By so much may a moment of inertia exceed the sum of the other two: what typed digits leave of a flat plate.
+/// Relative tolerance by which a moment of inertia may exceed the sum of the other two: rounding of the typed digits of
+/// a flat plate.
 const FLAT: f64 = 1e-3;
 
 impl Checker<'_> {
-    pub(super) fn elements(&mut self) {
+    pub(super) fn add_elements(&mut self) {
         let draft = self.draft;
         let masses = draft.masses.iter().enumerate().map(|(k, e)| (Section::Masses, k, e));
         let forces = draft.forces.iter().enumerate().map(|(k, e)| (Section::Forces, k, e));
@@ -41,42 +42,43 @@ impl Checker<'_> {
         let kind = e.kind.resolve(&mut MeasureCheck::new(self, &e.name, here))?;
         match &kind {
             ElementKind::Rigid { centre, about, .. } => {
-                self.on_moving(*centre, &e.name, here, "centre");
+                self.check_on_moving(*centre, &e.name, here, "centre");
                 if about.is_some_and(|about| self.body_of(about) != self.body_of(*centre)) {
-                    let message = format!("`about` of `{}` is on another body than its centre", e.name);
+                    let message = format!("`about` of `{}` is not on the body of its centre", e.name);
                     self.fault("HP0251", here.key("about"), message)
-                        .help("give both on the body that it belongs to");
+                        .help("put both points on the body that has the mass");
                 }
             }
-            ElementKind::Block { centre, .. } => self.on_moving(*centre, &e.name, here, "centre"),
+            ElementKind::Block { centre, .. } => self.check_on_moving(*centre, &e.name, here, "centre"),
             ElementKind::Mesh { body, .. } => {
                 if *body == GROUND {
-                    self.mass_on_ground(&e.name, here, "body");
+                    self.report_mass_on_ground(&e.name, here, "body");
                 }
             }
             ElementKind::Bar { from, to, .. } => {
-                self.on_moving(*from, &e.name, here, "from");
+                self.check_on_moving(*from, &e.name, here, "from");
                 if self.body_of(*from) != self.body_of(*to) {
-                    let message = format!("the ends of `{}` are on two bodies", e.name);
+                    let message = format!("the ends of `{}` are on different bodies", e.name);
                     self.fault("HP0251", here.key("to"), message)
-                        .help("give both ends on the body that it belongs to");
-                } else if self.at_one_place(*from, *to) {
-                    let message = format!("the ends of `{}` are at the same place", e.name);
+                        .help("put both ends on the body that has the mass");
+                } else if self.coincide(*from, *to) {
+                    let message = format!("the ends of `{}` coincide", e.name);
                     self.fault("HP0251", here.key("to"), message).help("give two different ends");
                 }
             }
             ElementKind::Spring { from, to, stiffness, free_length, preload, .. } => {
                 if self.body_of(*from) == self.body_of(*to) {
-                    let message = format!("both ends of `{}` are on one body, which it cannot move", e.name);
+                    let message =
+                        format!("both ends of `{}` are on the same body, where it has no effect", e.name);
                     self.fault("HP0251", here.key("to"), message)
-                        .help("put its ends on two bodies; `ground` is one");
-                } else if self.at_one_place(*from, *to) {
-                    let message = format!("the ends of `{}` are at the same place", e.name);
+                        .help("put its ends on two different bodies; `ground` is also a body");
+                } else if self.coincide(*from, *to) {
+                    let message = format!("the ends of `{}` coincide", e.name);
                     self.fault("HP0251", here.key("to"), message)
                         .note("a spring of zero length has no direction")
-                        .help("separate its ends, or use a `bushing`");
+                        .help("move its ends apart, or use a `bushing`");
                 }
-                self.spring_forces(&kind, &e.name, here);
+                self.check_spring_keys(&kind, &e.name, here);
                 let table = kind.table().is_some();
                 if stiffness.is_none() && !table {
                     let message = format!("`{}` has neither a stiffness nor a table", e.name);
@@ -87,18 +89,18 @@ impl Checker<'_> {
                     let message = format!("`{}` has both a table and a `preload`", e.name);
                     self.fault("HP0251", here.key("preload"), message)
                         .note("without a `free_length` the deflection counts from the design configuration, and the table's force at 0 acts there")
-                        .help("leave the preload out: shift the table by it, or give the `free_length`");
+                        .help("remove `preload` and shift the table by it, or give the `free_length`");
                 } else if free_length.is_some() && preload.is_some() {
                     let message = format!("`{}` has both a `free_length` and a `preload`", e.name);
                     self.fault("HP0251", here.key("preload"), message)
-                        .help("leave one of them out: with the stiffness each follows from the other");
+                        .help("remove one of the two: each follows from the other and the stiffness");
                 }
             }
             ElementKind::Bushing { from, to, .. } => {
                 if self.body_of(*from) == self.body_of(*to) {
-                    let message = format!("both sides of `{}` are on one body", e.name);
+                    let message = format!("both sides of `{}` are on the same body", e.name);
                     self.fault("HP0251", here.key("to"), message)
-                        .help("put them on two bodies; `ground` is one");
+                        .help("put them on two different bodies; `ground` is also a body");
                 }
             }
             ElementKind::JointSpring { joint, coordinate, .. }
@@ -110,10 +112,8 @@ impl Checker<'_> {
                     _ => (Quantity::Angle, "joint_spring"),
                 };
                 if found.quantity != wanted {
-                    let message = format!(
-                        "the {} of joint `{}` is not what `{}` acts on",
-                        found.name, joint.name, e.name
-                    );
+                    let message =
+                        format!("`{}` cannot act on the {} of joint `{}`", e.name, found.name, joint.name);
                     self.fault("HP0251", here.key("joint"), message)
                         .help(format!("write `type = \"{other}\"`, or name another coordinate"));
                 }
@@ -124,22 +124,27 @@ impl Checker<'_> {
                     let help = match kind {
                         "translational" => "write `type = \"slide_friction\"` for a slide",
                         "universal" => {
-                            "of a universal joint make two revolutes and a body between; for viscous friction alone use the `damping` of a `torsion_spring`"
+                            "replace the universal joint by two revolute joints with a body between them; for viscous friction alone use the `damping` of a `torsion_spring`"
                         }
                         _ => {
                             "name a revolute, cylindrical or spherical joint; for viscous friction of others use the `damping` of a `torsion_spring`"
                         }
                     };
-                    self.no_friction(&e.name, *joint, "hinge or ball joint", here, help);
+                    self.report_friction_joint(&e.name, *joint, "hinge or ball joint", here, help);
                 } else if let (Some(_), "spherical") = (length, kind) {
-                    let message = format!("`{}` has a length, but a ball has none", e.name);
-                    self.fault("HP0251", here.key("length"), message).help("remove it");
+                    let message =
+                        format!("`{}` has a `length`, which does not apply to a spherical joint", e.name);
+                    self.fault("HP0251", here.key("length"), message).help("remove `length`");
                 }
                 let numbers = [(coefficient.0, "coefficient"), (radius.0, "radius")];
                 let length = length.map(|n| (n.0, "length"));
                 let transition_velocity = transition_velocity.map(|n| (n.0, "transition_velocity"));
-                self.above(numbers.into_iter().chain(length).chain(transition_velocity), &e.name, here);
-                self.not_below(viscous.map(|n| n.0), "viscous", &e.name, here);
+                self.check_positive(
+                    numbers.into_iter().chain(length).chain(transition_velocity),
+                    &e.name,
+                    here,
+                );
+                self.check_not_negative(viscous.map(|n| n.0), "viscous", &e.name, here);
             }
             ElementKind::SlideFriction {
                 joint,
@@ -157,23 +162,24 @@ impl Checker<'_> {
                             "name a translational or cylindrical joint; for viscous friction of others use the `damping` of a `joint_spring`"
                         }
                     };
-                    self.no_friction(&e.name, *joint, "slide", here, help);
+                    self.report_friction_joint(&e.name, *joint, "slide", here, help);
                 } else if let Some(normal) = ignored_direction {
                     let z = self.model.joints[joint.0].frames[0].cols[2];
                     if normal.cross(z).norm() < ACROSS {
-                        let message = format!("`ignored_direction` of `{}` runs along its slide", e.name);
+                        let message =
+                            format!("`ignored_direction` of `{}` is parallel to its sliding axis", e.name);
                         self.fault("HP0251", here.key("ignored_direction"), message)
-                            .help("give a direction across the slide, or leave it out");
+                            .help("give a direction across the sliding axis, or remove `ignored_direction`");
                     }
                 }
                 let length = length.map(|n| (n.0, "length"));
                 let transition_velocity = transition_velocity.map(|n| (n.0, "transition_velocity"));
-                self.above(
+                self.check_positive(
                     [(coefficient.0, "coefficient")].into_iter().chain(length).chain(transition_velocity),
                     &e.name,
                     here,
                 );
-                self.not_below(viscous.map(|n| n.0), "viscous", &e.name, here);
+                self.check_not_negative(viscous.map(|n| n.0), "viscous", &e.name, here);
             }
             ElementKind::WheelForce { wheel, outboard, forward, up, .. } => {
                 if [outboard, forward, up].iter().all(|n| n.is_none()) {
@@ -195,9 +201,9 @@ impl Checker<'_> {
                     self.fault("HP0251", here.key("type"), message)
                         .help("give it a stiffness along or about one of its axes, or remove it");
                 } else if given.iter().any(|n| !(self.value(*n) > 0.0)) {
-                    let message = format!("a stiffness of `{}` is not above zero", e.name);
+                    let message = format!("a stiffness of `{}` is not positive", e.name);
                     self.fault("HP0252", here.key("joint"), message)
-                        .help("correct it, or leave that direction out: then it is rigid");
+                        .help("give a positive stiffness, or remove the key to make that direction rigid");
                 }
                 if self.model.joints[joint.0].kind.places == 0 {
                     let message = format!(
@@ -220,8 +226,8 @@ impl Checker<'_> {
                 }
             }
         }
-        self.sizes(&kind, &e.name, here);
-        self.inertia(&kind, &e.name, here);
+        self.check_mass_parameters(&kind, &e.name, here);
+        self.check_inertia(&kind, &e.name, here);
         if let Some(law) = kind.law() {
             let times =
                 self.draft.times.iter().chain(self.draft.cases.iter().flat_map(|c| c.times.iter().flatten()));
@@ -237,49 +243,55 @@ impl Checker<'_> {
         self.model.points[point.0].body.0
     }
 
-    fn at_one_place(&self, a: PointId, b: PointId) -> bool {
+    fn coincide(&self, a: PointId, b: PointId) -> bool {
         let [a, b] = [a, b].map(|p| self.model.points[p.0].at);
-        self.apart(a, b) == Some(None)
+        self.separation(a, b) == Some(None)
     }
 
-    fn on_moving(&mut self, point: PointId, name: &str, here: Here, key: &'static str) {
+    fn check_on_moving(&mut self, point: PointId, name: &str, here: Here, key: &'static str) {
         if self.body_of(point) == GROUND.0 {
-            self.mass_on_ground(name, here, key);
+            self.report_mass_on_ground(name, here, key);
         }
     }
 
-    fn mass_on_ground(&mut self, name: &str, here: Here, key: &'static str) {
+    fn report_mass_on_ground(&mut self, name: &str, here: Here, key: &'static str) {
         let message = format!("mass `{name}` is on ground, where it has no effect");
         self.fault("HP0251", here.key(key), message)
             .help("put it on the body that it belongs to, or remove it");
     }
 
-    /// HP0251: friction in a joint that is no such thing.
-    fn no_friction(&mut self, name: &str, joint: JointId, what: &str, here: Here, help: &str) {
+    /// HP0251: friction in a joint of the wrong type.
+    fn report_friction_joint(&mut self, name: &str, joint: JointId, what: &str, here: Here, help: &str) {
         let message =
             format!("`{name}` acts in joint `{}`, which is not a {what}", self.model.joints[joint.0].name);
         self.fault("HP0251", here.key("joint"), message).help(help);
     }
 
-    /// HP0252: numbers of friction that have to be above zero.
-    fn above(&mut self, numbers: impl Iterator<Item = (NumberId, &'static str)>, name: &str, here: Here) {
+    /// HP0252: friction parameters that are not positive.
+    fn check_positive(
+        &mut self,
+        numbers: impl Iterator<Item = (NumberId, &'static str)>,
+        name: &str,
+        here: Here,
+    ) {
         for (number, key) in numbers {
             if !(self.value(number) > 0.0) {
-                let message = format!("the {key} of `{name}` is not above zero");
-                self.fault("HP0252", here.key(key), message).help("correct it, or remove the friction");
+                let message = format!("the {key} of `{name}` is not positive");
+                self.fault("HP0252", here.key(key), message)
+                    .help("give a positive number, or remove the friction");
             }
         }
     }
 
-    /// HP0252: a number below zero that would drive what it should brake.
-    fn not_below(&mut self, number: Option<NumberId>, key: &'static str, name: &str, here: Here) {
+    /// HP0252: a negative friction parameter, which would drive the motion.
+    fn check_not_negative(&mut self, number: Option<NumberId>, key: &'static str, name: &str, here: Here) {
         if number.is_some_and(|n| !(self.value(n) >= 0.0)) {
-            let message = format!("`{key}` of `{name}` is below zero");
+            let message = format!("`{key}` of `{name}` is negative");
             self.fault("HP0252", here.key(key), message).help("correct it, or leave it out");
         }
     }
 
-    /// The table of a spring, as tension over deflection.
+    /// Returns the table of a spring, as tension over extension.
     pub(super) fn spring_table(
         &mut self,
         points: &[[f64; 2]],
@@ -287,8 +299,9 @@ impl Checker<'_> {
         here: Here,
         key: &'static str,
     ) -> Option<SpringTable> {
-        let pushes = key == "compression";
-        let table = SpringTable::new(&if pushes { SpringTable::turned(points) } else { points.to_vec() });
+        let is_compression = key == "compression";
+        let table =
+            SpringTable::new(&if is_compression { SpringTable::turned(points) } else { points.to_vec() });
         if let Err(why) = &table {
             let message = format!("the table of `{name}` {why}");
             self.fault("HP0252", here.key(key), message)
@@ -297,18 +310,19 @@ impl Checker<'_> {
         table.ok()
     }
 
-    /// HP0251: what a spring's force depends on does not fit together.
-    fn spring_forces(&mut self, kind: &ElementKind, name: &str, here: Here) {
+    /// HP0251: contradictory keys of a spring.
+    fn check_spring_keys(&mut self, kind: &ElementKind, name: &str, here: Here) {
         let ElementKind::Spring { compression, extension, scale, .. } = kind else { return };
         if compression.is_some() && extension.is_some() {
-            let message = format!("`{name}` has two tables");
+            let message = format!("`{name}` has both `compression` and `extension`");
             self.fault("HP0251", here.key("extension"), message)
                 .note("compression is negative extension, and a compressive force is a negative tension")
-                .help("combine both in one table");
+                .help("combine the two tables in one");
         }
         if scale.is_some() && compression.is_none() && extension.is_none() {
-            let message = format!("`{name}` has a `scale` but no table");
-            self.fault("HP0251", here.key("scale"), message).help("remove it, or scale its `stiffness`");
+            let message = format!("`{name}` has a `scale`, but no table");
+            self.fault("HP0251", here.key("scale"), message)
+                .help("remove `scale`, or change its `stiffness`");
         }
     }
 
@@ -316,8 +330,8 @@ impl Checker<'_> {
         self.model.numbers[number.0].value
     }
 
-    /// HP0252: numbers that no such thing can have.
-    fn sizes(&mut self, kind: &ElementKind, name: &str, here: Here) {
+    /// HP0252: mass parameters that are not positive, or an invalid bore.
+    fn check_mass_parameters(&mut self, kind: &ElementKind, name: &str, here: Here) {
         let mut above = Vec::new();
         match kind {
             ElementKind::Rigid { mass, .. } => above.push((mass.0, "mass")),
@@ -340,22 +354,23 @@ impl Checker<'_> {
         }
         for (number, key) in above {
             if !(self.value(number) > 0.0) {
-                let message = format!("the {key} of `{name}` is not above zero");
-                self.fault("HP0252", here.key(key), message).help("correct it, or remove the mass");
+                let message = format!("the {key} of `{name}` is not positive");
+                self.fault("HP0252", here.key(key), message)
+                    .help("give a positive number, or remove the mass");
             }
         }
     }
 
-    /// HP0252: moments of inertia that no body can have, about the centre.
-    fn inertia(&mut self, kind: &ElementKind, name: &str, here: Here) {
+    /// HP0252: moments of inertia about the centre that are physically impossible.
+    fn check_inertia(&mut self, kind: &ElementKind, name: &str, here: Here) {
         let ElementKind::Rigid { centre, mass, ixx, iyy, izz, ixy, iyz, izx, about } = kind else { return };
         let given = [ixx, iyy, izz].map(|n| n.map(|n| self.value(n.0)));
         let products = [ixy, iyz, izx].map(|n| n.map(|n| self.value(n.0)));
-        let way = about.map_or(Vec3::ZERO, |about| {
+        let offset = about.map_or(Vec3::ZERO, |about| {
             let [c, p] = [*centre, about].map(|p| self.model.position(self.model.points[p.0].at));
             c - p
         });
-        let [moments, [d, e, f]] = about_centre(self.value(mass.0), way, [given, products]);
+        let [moments, [d, e, f]] = about_centre(self.value(mass.0), offset, [given, products]);
         let [a, b, c] = moments;
         let shown = || {
             format!(
@@ -367,16 +382,16 @@ impl Checker<'_> {
         let below = below.filter(|((n, _), i)| n.is_some() && !(*i >= 0.0)).map(|((_, key), _)| key).next();
         if let Some(key) = below {
             let message =
-                format!("`{key}` of `{name}` is below zero{}", if moved { " about its centre" } else { "" });
+                format!("`{key}` of `{name}` is negative{}", if moved { " about its centre" } else { "" });
             let fault = self.fault("HP0252", here.key(key), message);
             if moved {
-                fault.note(shown()).help("moments about another point are never less than those of the mass at its centre: check `about`, `centre` and the units");
+                fault.note(shown()).help("check `about`, `centre` and the units: moments of inertia about another point are never less than those about the centre of mass");
             } else {
                 fault.help("correct it, or leave it out");
             }
             return;
         }
-        // Who gives only those that a plane asks for says nothing of the others.
+        // If a planar model gives only some of the moments, the others are unknown.
         if given.iter().any(|n| n.is_none()) {
             return;
         }
@@ -390,9 +405,9 @@ impl Checker<'_> {
         let determinant = x * (y * z - e * e) - d * (d * z - e * f) + f * (d * e - y * f);
         let cubed = slack * slack * slack;
         if !(minors.iter().all(|m| *m >= 0.0) && determinant >= -cubed) {
-            let message = format!("the moments of inertia of `{name}` are impossible");
+            let message = format!("the moments of inertia of `{name}` are physically impossible");
             let fault = self.fault("HP0252", here.key("ixx"), message);
-            fault.note("each is at most the sum of the other two, in any axes; products are the integrals of x y, y z and z x");
+            fault.note("each is at most the sum of the other two, about any axes; products of inertia are the integrals of x y, y z and z x");
             if moved {
                 fault.note(shown());
             }

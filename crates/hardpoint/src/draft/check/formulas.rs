@@ -1,5 +1,4 @@
-//! Checks of parameters and formulas: what their names mean, in which order they are evaluated, and what may follow
-//! them.
+//! Checks of parameters and formulas: references, order of evaluation, and dependence on design variables.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -17,26 +16,26 @@ use crate::space::Vec3;
 
 use super::{Checker, Here, LISTED_NAMES, extent_of_joints};
 
-/// A formula, and where it is.
-pub(super) struct Written {
+/// Formula with its location in the draft.
+pub(super) struct LocatedFormula {
     formula: Formula,
     at: DraftLocation,
-    /// Name of the defined number, as it appears in messages.
+    /// Name of the defined number in messages.
     name: String,
-    /// The case to whose laws it belongs.
+    /// Case whose laws it defines.
     case: Option<CaseId>,
 }
 
 impl<'a> Checker<'a> {
-    /// Parameters, and the formulas that give them and the coordinates of named hardpoints.
-    pub(super) fn formulas(&mut self) {
+    /// Adds the parameters, and resolves the formulas of parameters and of coordinates of named hardpoints.
+    pub(super) fn add_formulas(&mut self) {
         let draft = self.draft;
         for (index, p) in draft.parameters.iter().enumerate() {
             let at = Here { section: Section::Parameters, index };
             if !p.name.trim().is_empty() && !Expression::can_name(&p.name) {
-                let message = format!("invalid name of a parameter: `{}`", p.name);
+                let message = format!("invalid parameter name: `{}`", p.name);
                 self.fault("HP0201", at.key("name"), message).help(
-                    "use letters, digits and `_`, and no name that expressions know already, such as `t` or `sin`",
+                    "use letters, digits and `_`, and no name that is built into expressions, such as `t` or `sin`",
                 );
             }
             if !p.value.is_finite() {
@@ -44,7 +43,7 @@ impl<'a> Checker<'a> {
                 self.fault("HP0202", at.key("value"), message);
             }
             if self.unread(at, "value") {
-                self.spoilt.insert(Source::Parameter(ParameterId(index)));
+                self.unknown_sources.insert(Source::Parameter(ParameterId(index)));
             }
             let (name, value, quantity) = (p.name.clone(), p.value, p.quantity);
             self.model.parameters.push(NamedNumber { name, value, quantity });
@@ -52,10 +51,10 @@ impl<'a> Checker<'a> {
         for index in 0..draft.hardpoints.len() {
             if self.unread(Here { section: Section::Hardpoints, index }, "position") {
                 let coordinates = (0..3).map(|axis| Source::Coordinate(HardpointId(index), axis));
-                self.spoilt.extend(coordinates);
+                self.unknown_sources.extend(coordinates);
             }
         }
-        let mut written: Vec<Written> = Vec::new();
+        let mut written: Vec<LocatedFormula> = Vec::new();
         for f in &draft.formulas {
             let (found, at, name) = match &f.of {
                 FormulaOf::Parameter(parameter) => {
@@ -70,7 +69,7 @@ impl<'a> Checker<'a> {
                     let target = k.map(|k| Target::Coordinate(HardpointId(k), *axis % 3));
                     (target, here.item("position", *axis % 3), name)
                 }
-                // Their joints and drivers ask for them.
+                // Joints and drivers resolve their own formulas.
                 FormulaOf::Length(_) | FormulaOf::Law(..) | FormulaOf::CaseLaw(..) => continue,
             };
             let Some(of) = found else {
@@ -79,19 +78,19 @@ impl<'a> Checker<'a> {
                 continue;
             };
             match self.formula(of, &f.expression, &at) {
-                Some(formula) => written.push(Written { formula, at, name, case: None }),
-                None => self.spoil(of),
+                Some(formula) => written.push(LocatedFormula { formula, at, name, case: None }),
+                None => self.mark_unknown(of),
             }
         }
-        self.order(written);
-        self.extent = extent_of_joints(self.draft, &self.model.hardpoints, &self.spoilt);
+        self.evaluate_in_order(written);
+        self.extent = extent_of_joints(self.draft, &self.model.hardpoints, &self.unknown_sources);
     }
 
     pub(super) fn number_of(&self, what: &str, name: &str) -> Option<usize> {
         self.numbers.get(what).and_then(|numbers| numbers.get(name)).copied()
     }
 
-    /// The formula of an expression, with its names resolved.
+    /// Returns the formula of an expression, with its names resolved.
     fn formula(&mut self, of: Target, expression: &Expression, at: &DraftLocation) -> Option<Formula> {
         let per_metre = expression.per_metre();
         let inputs: Vec<_> = expression.names().iter().map(|name| self.source(name, per_metre, at)).collect();
@@ -109,7 +108,7 @@ impl<'a> Checker<'a> {
         Some(Formula { of, expression: expression.clone(), inputs, per_unit })
     }
 
-    /// Source that a name in an expression refers to, with the number of units of the text per SI unit.
+    /// Returns the source that a name in an expression refers to, with the number of units of the text per SI unit.
     fn source(&mut self, name: &str, per_metre: f64, at: &DraftLocation) -> Option<(Source, f64)> {
         let draft = self.draft;
         if let Some((hardpoint, axis)) = name.split_once('.') {
@@ -135,74 +134,73 @@ impl<'a> Checker<'a> {
         Some((Source::Parameter(parameter), if of_length { per_metre } else { 1.0 }))
     }
 
-    /// Takes formulas in an order in which each comes after those whose results it uses; HP0227 for those that have
-    /// none.
-    fn order(&mut self, written: Vec<Written>) {
-        let giver: HashMap<Source, usize> =
+    /// Evaluates formulas in an order in which each comes after those whose results it uses. HP0227 for circular ones.
+    fn evaluate_in_order(&mut self, written: Vec<LocatedFormula>) {
+        let definition: HashMap<Source, usize> =
             written.iter().enumerate().filter_map(|(k, w)| Some((w.formula.gives()?, k))).collect();
-        let uses = |k: usize| written[k].formula.sources().filter_map(|s| giver.get(&s).copied());
+        let uses = |k: usize| written[k].formula.sources().filter_map(|s| definition.get(&s).copied());
         let mut users = vec![Vec::new(); written.len()];
-        let mut waits: Vec<usize> = vec![0; written.len()];
+        let mut open_inputs: Vec<usize> = vec![0; written.len()];
         for k in 0..written.len() {
             for other in uses(k) {
                 users[other].push(k);
-                waits[k] += 1;
+                open_inputs[k] += 1;
             }
         }
-        let mut order: Vec<usize> = (0..written.len()).filter(|k| waits[*k] == 0).collect();
+        let mut order: Vec<usize> = (0..written.len()).filter(|k| open_inputs[*k] == 0).collect();
         let mut next = 0;
         while let Some(&k) = order.get(next) {
             next += 1;
             for &user in &users[k] {
-                waits[user] -= 1;
-                if waits[user] == 0 {
+                open_inputs[user] -= 1;
+                if open_inputs[user] == 0 {
                     order.push(user);
                 }
             }
         }
-        // From each of the rest a walk along what waits itself runs into a circle, or into one that is known.
-        let mut walk_of: Vec<Option<usize>> = vec![None; written.len()];
-        let mut circles = Vec::new();
-        for start in (0..written.len()).filter(|k| waits[*k] > 0) {
-            let (mut k, mut walk) = (start, Vec::new());
-            while walk_of[k].is_none() {
-                walk_of[k] = Some(start);
-                walk.push(k);
-                k = uses(k).find(|other| waits[*other] > 0).unwrap_or(k);
+        // From each remaining formula, the path along unresolved formulas ends in a new cycle or in a known one.
+        let mut path_of: Vec<Option<usize>> = vec![None; written.len()];
+        let mut cycles = Vec::new();
+        for start in (0..written.len()).filter(|k| open_inputs[*k] > 0) {
+            let (mut k, mut path) = (start, Vec::new());
+            while path_of[k].is_none() {
+                path_of[k] = Some(start);
+                path.push(k);
+                k = uses(k).find(|other| open_inputs[*other] > 0).unwrap_or(k);
             }
-            if walk_of[k] == Some(start) {
-                let first = walk.iter().position(|w| *w == k).unwrap_or(0);
-                circles.push(walk.split_off(first));
+            if path_of[k] == Some(start) {
+                let first = path.iter().position(|w| *w == k).unwrap_or(0);
+                cycles.push(path.split_off(first));
             }
         }
-        for circle in circles {
+        for cycle in cycles {
             let shown = |k: &usize| format!("`{}`", written[*k].name);
-            let first = &written[circle[0]];
-            let message = match circle.as_slice() {
-                [one] => format!("{} is defined by itself", shown(one)),
-                _ => format!("the formula of {} is circular", shown(&circle[0])),
+            let first = &written[cycle[0]];
+            let message = match cycle.as_slice() {
+                [one] => format!("the formula of {} refers to itself", shown(one)),
+                _ => format!("the formula of {} is circular", shown(&cycle[0])),
             };
-            let way = circle.iter().take(LISTED_NAMES).chain([&circle[0]]).map(shown).collect::<Vec<_>>();
+            let chain = cycle.iter().take(LISTED_NAMES).chain([&cycle[0]]).map(shown).collect::<Vec<_>>();
             let fault = self.fault("HP0227", first.at.clone(), message);
-            if circle.len() > 1 {
-                fault.note(way.join(" uses "));
+            if cycle.len() > 1 {
+                fault.note(chain.join(" uses "));
             }
-            fault.help("define one of them by a number, or by other names");
+            fault.help("define one of them by a number, or by an expression of other names");
         }
-        for k in (0..written.len()).filter(|k| waits[*k] > 0) {
-            self.spoil(written[k].formula.of);
+        for k in (0..written.len()).filter(|k| open_inputs[*k] > 0) {
+            self.mark_unknown(written[k].formula.of);
         }
-        let mut by_number: Vec<Option<Written>> = written.into_iter().map(Some).collect();
+        let mut by_number: Vec<Option<LocatedFormula>> = written.into_iter().map(Some).collect();
         for k in order {
             let w = by_number[k].take().expect("each comes once");
-            self.take(w);
+            self.evaluate(w);
         }
     }
 
-    /// Sets what a formula gives in the nominal design. HP0228 where that is no number.
-    fn take(&mut self, w: Written) -> Option<f64> {
-        if w.formula.sources().any(|s| self.is_spoilt(s)) {
-            self.spoil(w.formula.of);
+    /// Sets the result of a formula in the nominal design. HP0228 if it is not finite.
+    fn evaluate(&mut self, w: LocatedFormula) -> Option<f64> {
+        if w.formula.sources().any(|s| self.is_unknown(s)) {
+            self.mark_unknown(w.formula.of);
             return None;
         }
         let value = w.formula.at(|s| self.model.nominal(s));
@@ -220,8 +218,8 @@ impl<'a> Checker<'a> {
             if !numbers.is_empty() {
                 fault.note(format!("with {}", numbers.join(", ")));
             }
-            fault.help("it divides by zero or takes a root of a negative number there; change the expression or its parameters");
-            self.spoil(of);
+            fault.help("change the expression or its parameters: it divides by zero or takes a root of a negative number there");
+            self.mark_unknown(of);
             return None;
         }
         match w.formula.of {
@@ -234,12 +232,15 @@ impl<'a> Checker<'a> {
         Some(value)
     }
 
-    fn is_spoilt(&self, source: Source) -> bool {
+    fn is_unknown(&self, source: Source) -> bool {
         match source {
-            Source::Parameter(_) | Source::Coordinate(..) => self.spoilt.contains(&source),
+            Source::Parameter(_) | Source::Coordinate(..) => self.unknown_sources.contains(&source),
             Source::Kept(j, _) => {
                 let coordinates = |h| (0..3).map(move |axis| Source::Coordinate(h, axis));
-                self.model.joints[j.0].hardpoints().flat_map(coordinates).any(|s| self.spoilt.contains(&s))
+                self.model.joints[j.0]
+                    .hardpoints()
+                    .flat_map(coordinates)
+                    .any(|s| self.unknown_sources.contains(&s))
             }
         }
     }
@@ -251,22 +252,28 @@ impl<'a> Checker<'a> {
         *position = coordinates.into();
     }
 
-    /// Marks the result of a faulty formula as unknown, with all that depends on it.
-    fn spoil(&mut self, of: Target) {
+    /// Marks the result of a faulty formula as unknown.
+    fn mark_unknown(&mut self, of: Target) {
         match of {
-            Target::Parameter(p) => drop(self.spoilt.insert(Source::Parameter(p))),
-            Target::Coordinate(h, axis) => drop(self.spoilt.insert(Source::Coordinate(h, axis))),
+            Target::Parameter(p) => drop(self.unknown_sources.insert(Source::Parameter(p))),
+            Target::Coordinate(h, axis) => drop(self.unknown_sources.insert(Source::Coordinate(h, axis))),
             Target::Length(_) | Target::Law(..) | Target::Number(_) => {}
         }
     }
 
-    /// The number that an expression gives in the nominal design, which follows the design from now on.
-    fn given(&mut self, of: Target, expression: &Expression, at: DraftLocation, name: String) -> Option<f64> {
-        self.given_in(None, of, expression, at, name)
+    /// Returns the nominal value of an expression, and adds its formula to the model.
+    fn add_formula(
+        &mut self,
+        of: Target,
+        expression: &Expression,
+        at: DraftLocation,
+        name: String,
+    ) -> Option<f64> {
+        self.add_formula_in(None, of, expression, at, name)
     }
 
-    /// The same in a case.
-    fn given_in(
+    /// [`Checker::given`] for a number of a case.
+    fn add_formula_in(
         &mut self,
         case: Option<CaseId>,
         of: Target,
@@ -275,10 +282,10 @@ impl<'a> Checker<'a> {
         name: String,
     ) -> Option<f64> {
         let formula = self.formula(of, expression, &at)?;
-        self.take(Written { formula, at, name, case })
+        self.evaluate(LocatedFormula { formula, at, name, case })
     }
 
-    /// A new unnamed hardpoint at coordinates that expressions give.
+    /// Adds an unnamed hardpoint at coordinates defined by expressions.
     pub(super) fn formula_place(
         &mut self,
         coordinates: &[Expression; 3],
@@ -289,7 +296,7 @@ impl<'a> Checker<'a> {
         self.model.hardpoints.push(Hardpoint { name: owner.into(), position: Vec3::ZERO, unnamed: true });
         let given = [0, 1, 2].map(|axis| {
             let name = format!("{} of {owner}", AXES[axis]);
-            self.given(Target::Coordinate(h, axis), &coordinates[axis], at.clone(), name)
+            self.add_formula(Target::Coordinate(h, axis), &coordinates[axis], at.clone(), name)
         });
         given.iter().all(Option::is_some).then(|| {
             self.extent.include(self.model.hardpoints[h.0].position);
@@ -297,7 +304,7 @@ impl<'a> Checker<'a> {
         })
     }
 
-    /// A number of a mass or force, by itself or by an expression.
+    /// Adds a number of a mass or force, given as a value or an expression.
     pub(super) fn element_number(
         &mut self,
         number: &NumberDraft,
@@ -310,7 +317,7 @@ impl<'a> Checker<'a> {
         self.model.numbers.push(ElementNumber { owner: owner.into(), key, value, per_unit });
         match &number.expression {
             Some(expression) => {
-                self.given(Target::Number(id), expression, at, format!("{key} of {owner}"))?;
+                self.add_formula(Target::Number(id), expression, at, format!("{key} of {owner}"))?;
             }
             None if !value.is_finite() => {
                 self.fault("HP0202", at, format!("`{key}` of `{owner}` is not a finite number"));
@@ -321,21 +328,21 @@ impl<'a> Checker<'a> {
         Some(id)
     }
 
-    /// The length that a rod is given by an expression, if it is.
+    /// Returns the length of a rod that is defined by an expression, if any.
     pub(super) fn formula_length(&mut self, name: &str, at: DraftLocation) -> Option<Option<f64>> {
         let expression = self.length_formulas.get(name).copied()?;
         let joint = JointId(self.model.joints.len());
-        Some(self.given(Target::Length(joint), expression, at, format!("length of {name}")))
+        Some(self.add_formula(Target::Length(joint), expression, at, format!("length of {name}")))
     }
 
-    /// A driver's law with the parameters that expressions give.
+    /// Returns a driver's law with the parameters that are defined by expressions.
     pub(super) fn formula_law(&mut self, name: &str, law: &Law, at: &DraftLocation) -> Option<Law> {
         let driver = DriverId(self.model.drivers.len());
         let given = self.law_formulas.get(name).cloned().unwrap_or_default();
         self.law_with(&given, None, (driver, name), law, at)
     }
 
-    /// The law that a case gives a driver, with the parameters that expressions give.
+    /// Returns the law of a driver in a case, with the parameters that are defined by expressions.
     pub(super) fn formula_law_in(
         &mut self,
         (case, case_name): (CaseId, &str),
@@ -347,7 +354,7 @@ impl<'a> Checker<'a> {
         self.law_with(&given, Some(case), driver, law, at)
     }
 
-    /// A law, with the parameters that expressions give, that counts as its driver does.
+    /// Returns a law with the parameters that are defined by expressions, absolute or relative like its driver.
     fn law_with(
         &mut self,
         given: &[(&str, &Expression)],
@@ -365,19 +372,19 @@ impl<'a> Checker<'a> {
                 continue;
             };
             let of = Target::Law(driver, p);
-            let value = self.given_in(case, of, expression, at.clone(), parameter.to_owned())?;
+            let value = self.add_formula_in(case, of, expression, at.clone(), parameter.to_owned())?;
             law = law.with_parameter(p, value);
         }
         let Some(zero) = self.zeros.get(&driver) else { return Some(law) };
         let parameters = law.parameters().len();
         let formula = zero.formula(Target::Law(driver, parameters));
-        let value = self.take(Written { formula, at: at.clone(), name: name.to_owned(), case })?;
+        let value = self.evaluate(LocatedFormula { formula, at: at.clone(), name: name.to_owned(), case })?;
         Some(law.from_zero(value))
     }
 
-    /// Keeps the formulas that follow design variables: HP0228 for those that have no derivative, HP0226 for those that
-    /// would change the shape of a curve.
-    pub(super) fn formulas_that_vary(&mut self) {
+    /// Stores the formulas that depend on design variables. HP0228 for those without a derivative, HP0226 for those
+    /// that would change the shape of a curve.
+    pub(super) fn add_varying_formulas(&mut self) {
         let mut varying: BTreeSet<Source> = BTreeSet::new();
         for change in self.model.variables.iter().flat_map(|v| &v.changes) {
             varying.extend(change.parameter().map(|(parameter, _)| Source::Parameter(parameter)));
@@ -389,7 +396,7 @@ impl<'a> Checker<'a> {
         let changed: BTreeSet<JointId> =
             self.model.variables.iter().flat_map(|v| &v.changes).filter_map(Effect::joint).collect();
         let mut lengths: BTreeSet<JointId> = BTreeSet::new();
-        for Written { mut formula, at, name, case } in std::mem::take(&mut self.written) {
+        for LocatedFormula { mut formula, at, name, case } in std::mem::take(&mut self.written) {
             let model = &self.model;
             let varies = |s: &Source| match *s {
                 Source::Parameter(_) | Source::Coordinate(..) => varying.contains(s),
@@ -409,22 +416,22 @@ impl<'a> Checker<'a> {
             }
             formula.expression = formula.expression.with_some(|k| fixed[k]);
             formula.inputs.retain(|(s, _)| varies(s));
-            // One derivative along all inputs at once is finite only if all are.
+            // The derivative along all inputs at once is finite only if all partial derivatives are.
             let along = |s: Source| Dual { v: model.nominal(s), d: 1.0 };
             let slope = formula.at(along).d;
             if !slope.is_finite() {
                 let message = format!("the expression for `{name}` has no derivative in the nominal design");
                 let names: Vec<_> = formula.expression.names().iter().map(|n| format!("`{n}`")).collect();
                 self.fault("HP0228", at.clone(), message)
-                    .note(format!("it cannot be differentiated by {}", names.join(", ")))
-                    .help("change the expression or its numbers: a root of zero and an arc sine of 1 have no derivative");
+                    .note(format!("it cannot be differentiated with respect to {}", names.join(", ")))
+                    .help("change the expression or its numbers: the square root at 0 and the arcsine at 1 have no derivative");
             }
             if let Target::Coordinate(h, _) = formula.of
                 && self.curve_points.contains(&h)
             {
                 let message = format!("the expression for `{name}` moves a point of a curve");
                 self.fault("HP0226", at, message)
-                    .note("the shape of a curve cannot be a design variable; its place and direction can")
+                    .note("the shape of a curve cannot be a design variable; its position and direction can")
                     .help(
                         "write `design = false` for the parameters in it, or the curve's points as numbers",
                     );
@@ -441,11 +448,11 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// The coordinates of a hardpoint, as expressions name them.
+/// Names of the coordinates of a hardpoint in expressions.
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Formula {
-    /// Source that other formulas may use.
+    /// Returns the source that other formulas can use.
     pub(super) fn gives(&self) -> Option<Source> {
         match self.of {
             Target::Parameter(p) => Some(Source::Parameter(p)),
@@ -455,22 +462,21 @@ impl Formula {
     }
 }
 
-/// Values of the parameters and formulas of a draft with all design variables at zero, for numbers that no change of
-/// the design affects.
+/// Nominal values of the parameters and formulas of a draft, for numbers that do not change with the design.
 #[derive(Clone, Debug, Default)]
 pub struct Nominal {
-    /// Position of each hardpoint of the draft, m; null if a formula of it is faulty.
+    /// Position of each hardpoint of the draft, m; zero if one of its formulas is faulty.
     pub positions: Vec<Vec3>,
-    /// By name: its value in SI if it has one, its quantity, and a design variable or hardpoint that it follows.
+    /// Value in SI if known, quantity, and a design variable or hardpoint on which it depends, by name.
     parameters: BTreeMap<String, (Option<f64>, Quantity, Option<String>)>,
 }
 
 /// Reason why an expression is not a constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ConstantError {
-    /// It names what is no parameter.
+    /// It uses a name that is not a parameter.
     Unknown(String),
-    /// It uses this parameter, which follows this (`design variable `b``, or `hardpoint `A``).
+    /// It uses this parameter, which depends on this variable or entry (`design variable `b``, or `hardpoint `A``).
     Follows(String, String),
     /// It uses a parameter that is faulty, which is reported elsewhere.
     Faulty,
@@ -479,11 +485,11 @@ pub enum ConstantError {
 }
 
 impl Nominal {
-    /// Values of the parameters and hardpoints of a draft with all design variables at zero. Faulty entries are left
-    /// out; [`Model::from_draft`](crate::model::Model::from_draft) reports them.
+    /// Evaluates the parameters and hardpoints of a draft with all design variables at zero. Faulty entries have no
+    /// value; [`Model::from_draft`](crate::model::Model::from_draft) reports them.
     pub fn of(draft: &Draft) -> Self {
         let mut c = Checker::new(draft);
-        c.formulas();
+        c.add_formulas();
         let mut followed: HashMap<&str, String> = HashMap::new();
         for v in &draft.design {
             for change in &v.changes {
@@ -505,35 +511,35 @@ impl Nominal {
             }
         }
         let parameters = c.model.parameters.iter().zip(follows).enumerate().map(|(k, (p, follows))| {
-            let is_known = !c.spoilt.contains(&Source::Parameter(ParameterId(k)));
+            let is_known = !c.unknown_sources.contains(&Source::Parameter(ParameterId(k)));
             (p.name.clone(), (is_known.then_some(p.value), p.quantity, follows))
         });
         let parameters = parameters.collect();
         Self { positions: c.model.hardpoints.iter().map(|h| h.position).collect(), parameters }
     }
 
-    /// The names of all parameters.
+    /// Returns the names of all parameters.
     pub fn names(&self) -> impl Iterator<Item = &str> + Clone {
         self.parameters.keys().map(String::as_str)
     }
 
-    /// The value in SI and the quantity of a parameter; no value if it is faulty.
+    /// Returns the value in SI and the quantity of a parameter; no value if it is faulty.
     pub fn parameter(&self, name: &str) -> Option<(Option<f64>, Quantity)> {
         self.parameters.get(name).map(|p| (p.0, p.1))
     }
 
-    /// The value of an expression over parameters, as its text means it.
+    /// Returns the value of an expression over parameters, in the units of its text.
     ///
     /// # Errors
-    /// Why it has none; that it follows the design is no reason.
+    /// A [`ConstantError`] if it has no value. A dependence on the design is allowed.
     pub fn value(&self, expression: &Expression) -> Result<f64, ConstantError> {
         self.evaluated(expression, true)
     }
 
-    /// The value of an expression over parameters that no change of the design moves, as its text means it.
+    /// Returns the value of an expression over parameters that do not depend on the design, in the units of its text.
     ///
     /// # Errors
-    /// Why it is no such constant.
+    /// A [`ConstantError`] if it is not a constant.
     pub fn constant(&self, expression: &Expression) -> Result<f64, ConstantError> {
         self.evaluated(expression, false)
     }

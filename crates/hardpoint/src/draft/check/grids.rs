@@ -5,16 +5,16 @@ use crate::model::{DriverId, Grid};
 
 use super::{Checker, Here};
 
-/// More positions than this are surely a slip: each is solved with all its sensitivities, and all are held.
+/// Maximum number of positions of a grid. Each position is solved with all sensitivities, and all are stored.
 const MOST_POSITIONS: usize = 100_000;
 
-/// Positions nearer to each other than this part of a driver's way cannot be distinguished by the times at which it
-/// passes them.
-const APART: f64 = 1e-9;
+/// Minimum distance of two positions, relative to the range of the driver. Nearer positions cannot be distinguished by
+/// their times.
+const MIN_SEPARATION: f64 = 1e-9;
 
 impl Checker<'_> {
-    /// HP0240: grids that are none, or too large to be solved.
-    pub(super) fn grids(&mut self) {
+    /// HP0240: invalid grids, or grids that are too large.
+    pub(super) fn add_grids(&mut self) {
         let draft = self.draft;
         for (index, g) in draft.grids.iter().enumerate() {
             let here = Here { section: Section::Grids, index };
@@ -25,15 +25,15 @@ impl Checker<'_> {
                 if self.find("driver", driver, here.item("grid", k), names).is_none() {
                     continue;
                 }
-                let way = values.last().zip(values.first()).map_or(0.0, |(last, first)| last - first);
-                let rises = values.windows(2).all(|pair| pair[1] - pair[0] > APART * way);
-                if !(way > 0.0 && way.is_finite() && rises) {
+                let range = values.last().zip(values.first()).map_or(0.0, |(last, first)| last - first);
+                let ascends = values.windows(2).all(|pair| pair[1] - pair[0] > MIN_SEPARATION * range);
+                if !(range > 0.0 && range.is_finite() && ascends) {
                     let message = format!("driver `{driver}` has no range in the grid of case `{}`", g.name);
                     self.fault("HP0240", here.item("grid", k), message)
-                        .help("give at least two finite positions, each above the one before");
+                        .help("give at least two finite positions in ascending order");
                     continue;
                 }
-                // A faulty driver has been reported.
+                // A faulty driver is already reported.
                 drivers.extend(self.model.drivers.iter().position(|d| d.name == *driver).map(DriverId));
             }
             let [(a, first), (b, second)] = &g.sweeps[..] else {
@@ -44,9 +44,9 @@ impl Checker<'_> {
                 };
                 let [x, y] = [0, 1].map(|k| draft.drivers.get(k).map_or("DRIVER", |d| d.name.as_str()));
                 let fault = self.fault("HP0240", at, message);
-                fault.note("a grid has two drivers; all others are fixed in the design configuration");
+                fault.note("a grid moves two drivers; all others are fixed in the design configuration");
                 fault.help(match draft.drivers.len() {
-                    0 | 1 => "a mechanism with fewer than two drivers has no grid: give the case `laws` instead".into(),
+                    0 | 1 => "give the case `laws` instead: a grid needs two drivers".into(),
                     _ => format!(
                         "name two, like `grid = {{ {x} = {{ from = -10, to = 10, steps = 8 }}, {y} = {{ from = -10, to = 10, steps = 8 }} }}`"
                     ),
@@ -62,7 +62,7 @@ impl Checker<'_> {
             if positions > MOST_POSITIONS {
                 let message = format!("the grid of case `{}` has {positions} positions", g.name);
                 self.fault("HP0240", at, message)
-                    .help(format!("ask for fewer `steps`: at most {MOST_POSITIONS} positions are solved"));
+                    .help(format!("use fewer `steps`: a grid has at most {MOST_POSITIONS} positions"));
                 continue;
             }
             if let [a, b] = drivers[..] {

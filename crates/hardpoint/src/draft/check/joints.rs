@@ -1,4 +1,4 @@
-//! Checks of joints: their bodies, places, axes, lengths, leads and curves.
+//! Checks of joints: bodies, locations, axes, lengths, leads and curves.
 
 use crate::constraint::Row;
 use crate::draft::{DirectionDraft, JointDraft, Section};
@@ -7,17 +7,17 @@ use crate::joint::{JointType, Need};
 use crate::model::{Curve, Direction, GROUND, Hardpoint, HardpointId, Joint, JointId};
 use crate::space::{Mat3, Pose, Vec3};
 
-use super::{Checker, Here, SAME_POINT, SQUARE_TOLERANCE, UNPLACED, degrees_between, frame_along};
+use super::{Checker, Here, PERPENDICULAR_TOLERANCE, SAME_POINT, UNPLACED, degrees_between, frame_along};
 
-/// Direction of the markers' x axis where none is given; of an image across a global axis, the image of the original's
-/// default.
+/// Returns the default direction of the markers' x axis. For a mirror image across a global axis: the image of the
+/// original's default.
 fn default_x(z: Vec3, mirror: Option<usize>) -> Vec3 {
     let reflected = |v: Vec3| mirror.map_or(v, |k| v - Vec3::AXES[k] * (2.0 * v.dot(Vec3::AXES[k])));
     reflected(reflected(z).any_perpendicular())
 }
 
 impl Checker<'_> {
-    pub(super) fn joints(&mut self) {
+    pub(super) fn add_joints(&mut self) {
         let draft = self.draft;
         for (index, j) in draft.joints.iter().enumerate() {
             let before = self.faults.len();
@@ -58,7 +58,7 @@ impl Checker<'_> {
                     (None, Need::Optional | Need::Unused) => None,
                     (None, _) if self.unread(here, key) => None,
                     (None, Need::Required | Need::OnBodyJ) => {
-                        let message = format!("joint `{name}` needs `{key}`");
+                        let message = format!("joint `{name}` has no `{key}`");
                         self.fault("HP0208", here.key("type"), message)
                         .note(format!("{}: {}", kind.name, kind.summary))
                         .help(format!(
@@ -67,7 +67,7 @@ impl Checker<'_> {
                         None
                     }
                     (Some(_), Need::Unused) => {
-                        let message = format!("a {} joint has no `{key}`", kind.name);
+                        let message = format!("`{key}` does not apply to {} joints", kind.name);
                         self.fault("HP0208", here.key(key), message)
                             .help(format!("remove `{key}` from `{name}`"));
                         None
@@ -78,25 +78,26 @@ impl Checker<'_> {
         let frames = match (axis, axis2) {
             (Some((_, z)), Some((_, z_j))) if kind.axis2 == Need::OnBodyJ => {
                 let cosine = z.dot(z_j);
-                if kind.rows.contains(&Row::Cosine) && cosine.abs() > 1.0 - SQUARE_TOLERANCE {
-                    let message =
-                        format!("the axes of joint `{name}` are parallel, so that their angle is singular");
+                if kind.rows.contains(&Row::Cosine) && cosine.abs() > 1.0 - PERPENDICULAR_TOLERANCE {
+                    let message = format!(
+                        "the axes of joint `{name}` are parallel, where the angle between them is singular"
+                    );
                     self.fault("HP0209", here.key("axis2"), message).help("use a `parallel` joint");
                 }
-                if kind.rows.contains(&Row::ConstantVelocity) && cosine < SQUARE_TOLERANCE {
-                    let message = format!("the shafts of joint `{name}` are opposite or perpendicular");
+                if kind.rows.contains(&Row::ConstantVelocity) && cosine < PERPENDICULAR_TOLERANCE {
+                    let message = format!("the shafts of joint `{name}` are at an angle of 90 deg or more");
                     self.fault("HP0209", here.key("axis2"), message)
                         .note(format!(
                             "the angle between `axis` and `axis2` is {:.4} deg",
                             degrees_between(z, z_j)
                         ))
-                        .help("point both in the same direction along the train, less than 90 deg apart");
+                        .help("point both axes along the train, less than 90 deg apart");
                 }
                 let i = frame_along(z, default_x(z, j.mirror));
                 [i, Mat3::between(z, z_j) * i]
             }
             (Some((_, z)), Some((_, x))) => {
-                if z.dot(x).abs() > SQUARE_TOLERANCE {
+                if z.dot(x).abs() > PERPENDICULAR_TOLERANCE {
                     let angle = degrees_between(z, x);
                     let message = format!("the axes of joint `{name}` are not perpendicular to each other");
                     self.fault("HP0209", here.key("axis2"), message)
@@ -109,7 +110,7 @@ impl Checker<'_> {
             _ => [Mat3::IDENTITY; 2],
         };
         let length = self.rod_length(j, kind, here);
-        self.lead(j, kind, here);
+        self.check_lead(j, kind, here);
         let (axis, axis2) = (axis.map(|a| a.0), axis2.map(|a| a.0));
         let bodies = [body_i?, body_j?];
         let (name, cut) = (name.clone(), j.cut);
@@ -121,7 +122,8 @@ impl Checker<'_> {
         Some(Joint { name, kind, bodies, at, axis, axis2, frames, length, curve, cut, unnamed: false })
     }
 
-    /// HP0226: a curve that is missing, out of place, or no curve in the plane perpendicular to the joint's axis.
+    /// HP0226: a curve that is missing, does not apply to the joint type, or is invalid in the plane perpendicular to
+    /// the joint's axis.
     fn curve(
         &mut self,
         j: &JointDraft,
@@ -137,12 +139,16 @@ impl Checker<'_> {
         let draft = match (&j.curve, kind.follows_curve()) {
             (None, false) => return None,
             (Some(_), false) => {
-                self.fault("HP0226", here.key("curve"), format!("a {} joint has no `curve`", kind.name))
-                    .help(format!("remove `curve` from `{name}`, or make it a `point_on_curve`"));
+                self.fault(
+                    "HP0226",
+                    here.key("curve"),
+                    format!("`curve` does not apply to {} joints", kind.name),
+                )
+                .help(format!("remove `curve` from `{name}`, or make it a `point_on_curve`"));
                 return None;
             }
             (None, true) => {
-                self.fault("HP0226", here.key("type"), format!("joint `{name}` needs a `curve`"))
+                self.fault("HP0226", here.key("type"), format!("joint `{name}` has no `curve`"))
                     .help("give the points of the cam or slot, like `curve = { points = [[0, 0, 0], ...], closed = true }`");
                 return None;
             }
@@ -163,24 +169,24 @@ impl Checker<'_> {
             return None;
         }
         let off_plane =
-            local.iter().enumerate().find(|(_, p)| (p.z - local[0].z).abs() > SQUARE_TOLERANCE * size);
+            local.iter().enumerate().find(|(_, p)| (p.z - local[0].z).abs() > PERPENDICULAR_TOLERANCE * size);
         if let Some((k, p)) = off_plane {
             let message = format!("the curve of `{name}` does not lie in a plane perpendicular to its axis");
             self.fault("HP0226", here.key("curve"), message)
                 .note(format!("point {k} is {:e} m from the plane of point 0", (p.z - local[0].z).abs()))
-                .help("let all points have the same coordinate along `axis`");
+                .help("give all points the same coordinate along `axis`");
             return None;
         }
         let next = |k: usize| local[(k + 1) % local.len()];
         let last = if draft.closed { local.len() } else { local.len() - 1 };
         if let Some(k) = (0..last).find(|&k| (next(k) - local[k]).norm() <= SAME_POINT * size) {
             let message = format!(
-                "points {} and {} of the curve of `{name}` are at the same place",
+                "points {} and {} of the curve of `{name}` coincide",
                 k + 1,
                 (k + 1) % local.len() + 1
             );
             self.fault("HP0226", here.key("curve"), message)
-                .help("leave one of them out; a closed curve does not repeat its first point");
+                .help("remove one of them; a closed curve does not repeat its first point");
             return None;
         }
         let points: Vec<[f64; 2]> = local.iter().map(|p| [p.x, p.y]).collect();
@@ -191,7 +197,7 @@ impl Checker<'_> {
             Ok(_) => {
                 let message = format!("the point of `{name}` is beyond the ends of its curve");
                 self.fault("HP0226", here.key("at"), message)
-                    .help("move it next to the curve, or extend the curve");
+                    .help("move the point next to the curve, or extend the curve");
                 None
             }
             Err(error) => {
@@ -201,49 +207,57 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0223: a length where there is no rod, or that is none.
+    /// HP0223: a length of a joint that is not a rod or follower, or a length that is not positive.
     fn rod_length(&mut self, j: &JointDraft, kind: &'static JointType, here: Here) -> Option<f64> {
         let length = match self.formula_length(&j.name, here.key("length")) {
             Some(given) => given?,
             None => j.length?,
         };
         if !kind.is_rod() && !kind.follows_curve() {
-            self.fault("HP0223", here.key("length"), format!("a {} joint has no `length`", kind.name))
-                .help(format!("remove `length` from `{}`", j.name));
+            self.fault(
+                "HP0223",
+                here.key("length"),
+                format!("`length` does not apply to {} joints", kind.name),
+            )
+            .help(format!("remove `length` from `{}`", j.name));
         } else if !(length > 0.0 && length.is_finite()) {
-            self.fault("HP0223", here.key("length"), format!("the length of `{}` must be positive", j.name))
+            self.fault("HP0223", here.key("length"), format!("the length of `{}` is not positive", j.name))
                 .help(
-                    "give the distance between its two ends, or leave it out: the distance is then measured",
+                    "give the distance between its two ends, or remove `length` to use the distance in the design configuration",
                 );
         }
         Some(length)
     }
 
     /// HP0223: a screw without a lead, or a lead without a screw.
-    fn lead(&mut self, j: &JointDraft, kind: &'static JointType, here: Here) {
+    fn check_lead(&mut self, j: &JointDraft, kind: &'static JointType, here: Here) {
         let has_lead = kind.has_lead();
         if self.unread(here, "lead") {
             return;
         }
         match j.lead {
             Some(_) if !has_lead => {
-                self.fault("HP0223", here.key("lead"), format!("a {} joint has no `lead`", kind.name))
-                    .help(format!("remove `lead` from `{}`, or make it a `screw`", j.name));
+                self.fault(
+                    "HP0223",
+                    here.key("lead"),
+                    format!("`lead` does not apply to {} joints", kind.name),
+                )
+                .help(format!("remove `lead` from `{}`, or make it a `screw`", j.name));
             }
             Some(lead) if !(lead != 0.0 && lead.is_finite()) => {
-                let message = format!("the lead of screw `{}` must not be zero", j.name);
+                let message = format!("the lead of screw `{}` is zero or not finite", j.name);
                 self.fault("HP0223", here.key("lead"), message)
-                    .help("give the advance of one turn; negative for a left-hand thread");
+                    .help("give the advance per turn, negative for a left-hand thread");
             }
             None if has_lead => {
-                self.fault("HP0223", here.key("type"), format!("screw `{}` needs `lead`", j.name))
-                    .help("give the advance of one turn, like `lead = 5`; negative for a left-hand thread");
+                self.fault("HP0223", here.key("type"), format!("screw `{}` has no `lead`", j.name))
+                    .help("give the advance per turn, like `lead = 5`, negative for a left-hand thread");
             }
             _ => {}
         }
     }
 
-    /// The hardpoints of the two markers: one shared, or one on each body.
+    /// Returns the hardpoints of the two markers: one shared, or one on each body. HP0210 if their number is wrong.
     fn joint_places(
         &mut self,
         j: &JointDraft,
@@ -255,7 +269,7 @@ impl Checker<'_> {
         if let (true, Some(Direction::Through(a, _))) = (j.at.is_empty() && kind.places == 1, axis) {
             return Some([a, a]);
         }
-        // Where the places are, or might be, is not known.
+        // The locations, or the axis that defines them, could not be read.
         let by_axis = matches!(j.axis, Some(DirectionDraft::Through(..))) || self.unread(here, "axis");
         if self.unread(here, "at") || j.at.is_empty() && kind.places == 1 && by_axis {
             return None;
@@ -281,25 +295,26 @@ impl Checker<'_> {
             let fault = self.fault("HP0210", at, message);
             fault.note(format!("{}: {}", kind.name, kind.summary));
             fault.help(match (kind.places, j.at.len()) {
-                (0, _) => "only its directions matter; leave `at` out".to_string(),
-                (1, _) => "name the hardpoint where the bodies meet".into(),
-                _ => format!("first the point on `{}`, then the point on `{}`", j.bodies[0], j.bodies[1]),
+                (0, _) => "remove `at`: only directions matter for this type".to_string(),
+                (1, _) => "name the hardpoint at which the bodies are connected".into(),
+                _ => {
+                    format!("name the point on `{}` first, then the point on `{}`", j.bodies[0], j.bodies[1])
+                }
             });
             return None;
         }
         let places: Vec<_> =
             j.at.iter().enumerate().map(|(k, p)| self.place(p, name, here.item("at", k))).collect();
         let (first, last) = (places[0]?, places[places.len() - 1]?);
-        if kind.is_rod() && self.apart(first, last) == Some(None) {
-            self.fault("HP0211", here.key("at"), format!("the two ends of `{name}` are at the same place"))
+        if kind.is_rod() && self.separation(first, last) == Some(None) {
+            self.fault("HP0211", here.key("at"), format!("the two ends of `{name}` coincide"))
                 .help("a rod needs two different points");
         }
         Some([first, last])
     }
 
-    /// Joints that need no place get one all the same, amid the places of their bodies' other joints, for their
-    /// markers.
-    pub(super) fn places_of_directions(&mut self) {
+    /// Gives joints without a location one for their markers: the mean of the locations of their bodies' other joints.
+    pub(super) fn place_unplaced_joints(&mut self) {
         let mut joints_on = vec![Vec::new(); self.model.bodies.len()];
         for (k, j) in self.model.joints.iter().enumerate() {
             for body in j.bodies.iter().filter(|body| **body != GROUND) {

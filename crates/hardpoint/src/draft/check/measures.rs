@@ -1,4 +1,4 @@
-//! Checks of measures: what they name, and whether it can be known.
+//! Checks of measures and metrics: references, and availability of derivatives.
 
 use crate::draft::measure::Field;
 use crate::draft::{
@@ -16,7 +16,7 @@ use crate::space::Vec3;
 use super::{Checker, Here};
 
 impl Checker<'_> {
-    pub(super) fn measures(&mut self) {
+    pub(super) fn add_measures(&mut self) {
         let draft = self.draft;
         for (index, m) in draft.measures.iter().enumerate() {
             let here = Here { section: Section::Measures, index };
@@ -25,38 +25,40 @@ impl Checker<'_> {
             }
         }
         if self.model.measures.len() == draft.measures.len() {
-            self.measures_of_measures();
+            self.check_dependencies();
         }
     }
 
     fn one_measure(&mut self, m: &MeasureDraft, here: Here) -> Option<MeasureKind> {
         let kind = m.kind.resolve(&mut MeasureCheck::new(self, &m.name, here))?;
-        self.loads(&kind, m, here);
+        self.check_load(&kind, m, here);
         if let MeasureKind::Distance { from, to } = kind {
             let [a, b] = [from, to].map(|p| self.model.points[p.0].clone());
-            let at_one_place = self.apart(a.at, b.at) == Some(None);
+            let at_one_place = self.separation(a.at, b.at) == Some(None);
             if from == to || a.body == b.body && at_one_place {
                 let message = format!("measure `{}` is the distance of a point from itself", m.name);
                 self.fault("HP0216", here.key("to"), message);
             } else if at_one_place {
-                let message = format!("the two points of measure `{}` are at the same place", m.name);
+                let message = format!("the two points of measure `{}` coincide", m.name);
                 self.fault("HP0216", here.key("to"), message).note("a distance of zero has no rate").help(
-                    "measure the `position` of one of them along each direction, or points that lie apart",
+                    "measure the `position` of one of them along each direction, or name points that do not coincide",
                 );
             }
         }
         Some(kind)
     }
 
-    /// HP0250: loads of what has none; HP0251: reactions on a body that the joint does not hold.
-    fn loads(&mut self, kind: &MeasureKind, m: &MeasureDraft, here: Here) {
+    /// HP0250: loads or compliances of a model without any. HP0251: reactions on a body that the joint does not
+    /// connect.
+    fn check_load(&mut self, kind: &MeasureKind, m: &MeasureDraft, here: Here) {
         let draft = self.draft;
         let nothing = draft.masses.is_empty() && draft.forces.is_empty();
-        if kind.is_load() && nothing && !self.lost("mass") && !self.lost("force") {
-            let message = format!("`{}` measures a load, but the model has no masses and no forces", m.name);
+        if kind.is_load() && nothing && !self.is_table_unread("mass") && !self.is_table_unread("force") {
+            let message =
+                format!("measure `{}` is a load, but the model has no masses and no forces", m.name);
             self.fault("HP0250", here.key("type"), message).help("add `[masses]`, `[gravity]` or `[forces]`");
         }
-        let gives = |e: &Element| {
+        let deflects = |e: &Element| {
             let rigid = matches!(
                 e.kind,
                 ElementKind::PointForce { .. }
@@ -65,13 +67,13 @@ impl Checker<'_> {
             );
             !e.kind.has_mass() && !rigid && !e.kind.rubs()
         };
-        let rigid = !self.model.elements.iter().any(gives);
+        let rigid = !self.model.elements.iter().any(deflects);
         if matches!(kind, MeasureKind::Compliance { .. })
             && rigid
             && !self.draft.unread.any_of(Section::Forces)
         {
             let message =
-                format!("`{}` measures a compliance, but no part of the model is compliant", m.name);
+                format!("measure `{}` is a compliance, but no part of the model is compliant", m.name);
             self.fault("HP0250", here.key("type"), message)
                 .help("add compliant joints as `[forces]` of `type = \"elastic_joint\"`");
         }
@@ -79,10 +81,11 @@ impl Checker<'_> {
             && at.is_some() == wheel.is_some()
         {
             let (message, help) = match at {
-                Some(_) => ("has a force at a point and at a wheel", "leave `at` or `wheel` out"),
-                None => {
-                    ("has no point of action", "give the point as `at`, or the `wheel` that the road acts on")
-                }
+                Some(_) => ("has both `at` and `wheel`", "leave `at` or `wheel` out"),
+                None => (
+                    "has no point of application",
+                    "give the point as `at`, or the `wheel` that the road acts on",
+                ),
             };
             self.fault("HP0251", here.key("at"), format!("`{}` {message}", m.name)).help(help);
         }
@@ -90,21 +93,23 @@ impl Checker<'_> {
             let joint = &self.model.joints[joint.0];
             if !joint.bodies.contains(on) {
                 let [i, j] = joint.bodies.map(|b| self.model.bodies[b.0].name.clone());
-                let message =
-                    format!("joint `{}` does not hold body `{}`", joint.name, self.model.bodies[on.0].name);
+                let message = format!(
+                    "joint `{}` does not connect body `{}`",
+                    joint.name, self.model.bodies[on.0].name
+                );
                 self.fault("HP0251", here.key("on"), message).help(format!("write `{i}` or `{j}`"));
             }
         }
     }
 
-    /// The wheel of that name.
+    /// Returns the wheel with this name.
     fn wheel_named(&mut self, name: &str, at: DraftLocation) -> Option<WheelId> {
         let draft = self.draft;
         let k = self.find("wheel", name, at, draft.wheels.iter().map(|w| w.name.as_str()))?;
         self.wheel_ids[k]
     }
 
-    /// The force of that name.
+    /// Returns the force with this name.
     fn force(&mut self, name: &str, at: DraftLocation) -> Option<ElementId> {
         let draft = self.draft;
         let k = self.find("force", name, at, draft.forces.iter().map(|f| f.name.as_str()))?;
@@ -113,7 +118,7 @@ impl Checker<'_> {
         self.model.elements.iter().position(is_it).map(ElementId)
     }
 
-    pub(super) fn metrics(&mut self) {
+    pub(super) fn add_metrics(&mut self) {
         let draft = self.draft;
         for (index, m) in draft.metrics.iter().enumerate() {
             let here = Here { section: Section::Metrics, index };
@@ -132,7 +137,7 @@ impl Checker<'_> {
         };
         let of = of?;
         if self.model.measures.len() < self.draft.measures.len() {
-            // What a faulty measure is measured in is not known.
+            // The unit of a faulty measure is unknown.
             return None;
         }
         let si = |dimension: Dimension, x: f64| {
@@ -177,19 +182,19 @@ impl Checker<'_> {
             return None;
         }
         if let (Reduction::Slope(_), KnownOrders { orders: 1, .. }) = (&take, self.model.known(of)) {
-            let message = format!("the rate of `{}` is not known, so metric `{}` is not", m.of, m.name);
+            let message = format!("metric `{}` needs the rate of `{}`, which is not known", m.name, m.of);
             self.fault("HP0233", here.key("of"), message)
-                .note("the motion is solved up to accelerations, and slopes over a driver up to their values")
-                .help("take its value, or the slope of something that follows from positions");
+                .note("the motion is solved up to accelerations, and slopes over a driver have no rates")
+                .help("use its value, or the slope of a measure that depends on positions only");
             return None;
         }
         if let Some(over) = over
             && self.model.known(over).orders == 1
         {
             let name = m.over.as_deref().unwrap_or_default();
-            let message = format!("the rate of `{name}` is not known, so it cannot be an abscissa");
+            let message = format!("`{name}` cannot be an abscissa, because its rate is not known");
             self.fault("HP0233", here.key("over"), message)
-                .help("take something that follows from positions or velocities");
+                .help("use a measure that depends on positions or velocities only");
             return None;
         }
         let window = m.window.map(|w| w.map(|end| si(x, end)));
@@ -200,26 +205,26 @@ impl Checker<'_> {
         Some(Metric { name: m.name.clone(), of, over, take, window, case })
     }
 
-    /// The case of that name.
+    /// Returns the case with this name.
     fn case(&mut self, name: &str, at: DraftLocation) -> Option<CaseId> {
         let draft = self.draft;
         if draft.grids.iter().any(|g| g.name == name) {
-            self.fault("HP0204", at, format!("case `{name}` has a grid, and no motion to take a metric of")).help(
+            self.fault("HP0204", at, format!("case `{name}` is a grid, which has no metrics")).help(
                 "name a case with `laws`; `run` writes every measure of a grid with its derivatives into `maps.json`",
             );
             return None;
         }
         let found = self.find("case", name, at, draft.cases.iter().map(|c| c.name.as_str()));
-        if found.is_none() && draft.cases.is_empty() && !self.lost("case") {
+        if found.is_none() && draft.cases.is_empty() && !self.is_table_unread("case") {
             let fault = self.faults.last_mut().expect("just reported");
             fault.help(format!(
-                "declare it with `[cases.{name}]`, or leave `case` out: without cases there is one motion"
+                "declare it as `[cases.{name}]`, or remove `case`: a model without cases has a single motion"
             ));
         }
         found.map(CaseId)
     }
 
-    /// A direction that an angle is measured from or to.
+    /// Resolves a direction that an angle is measured from or to.
     fn ray(&mut self, ray: &RayDraft, owner: &str, here: Here, key: &'static str) -> Option<Ray> {
         match ray {
             RayDraft::Between([from, to]) => {
@@ -227,9 +232,8 @@ impl Checker<'_> {
                     (self.point(from, owner, here.item(key, 0)), self.point(to, owner, here.item(key, 1)));
                 let ends = [points.0?, points.1?];
                 let [a, b] = ends.map(|p| self.model.points[p.0].at);
-                if self.apart(a, b) == Some(None) {
-                    let message =
-                        format!("the two points of `{key}` of measure `{owner}` are at the same place");
+                if self.separation(a, b) == Some(None) {
+                    let message = format!("the two points of `{key}` of measure `{owner}` coincide");
                     self.fault("HP0216", here.key(key), message).help("name two different points");
                     return None;
                 }
@@ -243,7 +247,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The output of that name: a measure, or a component of a point.
+    /// Returns the output with this name: a measure, or a component of a point.
     fn output(&mut self, name: &str, at: DraftLocation) -> Option<OutputSource> {
         let number = |what: &str, name: &str| self.numbers.get(what).and_then(|n| n.get(name)).copied();
         if let Some(k) = number("measure", name) {
@@ -263,12 +267,12 @@ impl Checker<'_> {
         self.find("measure", name, at, draft.measures.iter().map(|m| m.name.as_str()));
         if !draft.points.is_empty() && self.faults.last().is_some_and(|f| f.help.is_none()) {
             let fault = self.faults.last_mut().expect("just reported");
-            fault.help("for a component of a point write `POINT.x`, `POINT.y` or `POINT.z`");
+            fault.help("write a component of a point as `POINT.x`, `POINT.y` or `POINT.z`");
         }
         None
     }
 
-    /// True if a wheel or an axle of that name may measure what could not be read.
+    /// True if a wheel or axle with this name may define a measure that could not be read.
     fn may_measure(&self, owner: &str) -> bool {
         let (draft, unread) = (self.draft, &self.draft.unread);
         let wheel = draft.wheels.iter().position(|w| w.name == owner).map(|k| (Section::Wheels, k));
@@ -277,14 +281,14 @@ impl Checker<'_> {
         owners.any(|(section, k)| unread.any(section, k) || self.vehicle_is_unread())
     }
 
-    /// The driver of that name, or the only one there is.
+    /// Returns the driver with this name, or the only driver.
     pub(super) fn driver_or_only(&mut self, name: Option<&str>, owner: &str, here: Here) -> Option<DriverId> {
         let draft = self.draft;
         let names = draft.drivers.iter().map(|d| d.name.as_str());
         match name {
             Some(name) => self.find("driver", name, here.key("driver"), names).map(DriverId),
             None if draft.drivers.len() == 1 => Some(DriverId(0)),
-            None if self.lost("driver") => None,
+            None if self.is_table_unread("driver") => None,
             None => {
                 let listed: Vec<String> = names.map(|n| format!("`{n}`")).collect();
                 let message = format!("measure `{owner}` has no driver");
@@ -296,16 +300,16 @@ impl Checker<'_> {
         }
     }
 
-    /// Measures of other measures: none of itself, and only of what is known.
-    fn measures_of_measures(&mut self) {
+    /// Checks measures of other measures: no cycles, and only known derivatives.
+    fn check_dependencies(&mut self) {
         let mut state = vec![Visit::New; self.model.measures.len()];
         for k in 0..state.len() {
-            self.visit(k, &mut state);
+            self.check_after_sources(k, &mut state);
         }
     }
 
-    /// Looks at a measure after those that it uses; whether it is sound.
-    fn visit(&mut self, k: usize, state: &mut [Visit]) -> bool {
+    /// Checks a measure after those that it uses; true if it is valid.
+    fn check_after_sources(&mut self, k: usize, state: &mut [Visit]) -> bool {
         let here = Here { section: Section::Measures, index: k };
         let name = self.model.measures[k].name.clone();
         match state[k] {
@@ -321,11 +325,11 @@ impl Checker<'_> {
         let mut sound = true;
         for source in kind.sources() {
             if let OutputSource::Measure(other) = source {
-                sound &= self.visit(other, state);
+                sound &= self.check_after_sources(other, state);
             }
         }
         if sound {
-            sound = self.is_known(&kind, &name, here);
+            sound = self.has_known_derivatives(&kind, &name, here);
         }
         if sound && let MeasureKind::Combination { expression } = &kind {
             let expression = self.in_units(expression);
@@ -335,26 +339,27 @@ impl Checker<'_> {
         sound
     }
 
-    /// HP0233: rates of what has none, slopes of what is no matter of positions.
-    fn is_known(&mut self, kind: &MeasureKind, name: &str, here: Here) -> bool {
+    /// HP0233: rates of measures without rates; slopes and compliances of measures that do not depend on positions
+    /// only.
+    fn has_known_derivatives(&mut self, kind: &MeasureKind, name: &str, here: Here) -> bool {
         match kind {
             MeasureKind::Rate { of } if self.model.known(*of).orders < 2 => {
                 let of = self.model.output_name(*of);
                 self.fault(
                     "HP0233",
                     here.key("of"),
-                    format!("the rate of `{of}` is not known, so `{name}` is not"),
+                    format!("`{name}` needs the rate of `{of}`, which is not known"),
                 )
-                .note("the motion is solved up to accelerations, and slopes over a driver up to their values")
-                .help("measure the rate of something that follows from positions or velocities");
+                .note("the motion is solved up to accelerations, and slopes over a driver have no rates")
+                .help("use a measure that depends on positions or velocities only");
                 false
             }
             MeasureKind::Compliance { of, .. } if !self.model.known(*of).by_position => {
                 let what = self.model.output_name(*of);
                 let message = format!("`{name}` needs the compliance of `{what}`, which is not known");
                 self.fault("HP0233", here.key("of"), message)
-                    .note("deflections are computed at every position by itself")
-                    .help("take a measure that follows from positions alone");
+                    .note("deflections are computed at each position separately")
+                    .help("use a measure that depends on positions only");
                 false
             }
             MeasureKind::Slope { of, over, .. } => {
@@ -364,10 +369,10 @@ impl Checker<'_> {
                         self.fault(
                             "HP0233",
                             here.key(key),
-                            format!("`{name}` needs the slope of `{what}`, which has none"),
+                            format!("`{name}` needs the slope of `{what}`, which is not known"),
                         )
-                        .note("a slope over a driver is of what follows from positions alone")
-                        .help("take measures that are neither rates nor velocities nor slopes themselves");
+                        .note("slopes over a driver exist only for measures that depend on positions only")
+                        .help("use measures that are not rates, velocities or slopes themselves");
                         return false;
                     }
                 }
@@ -377,7 +382,7 @@ impl Checker<'_> {
         }
     }
 
-    /// A combination with its units, whose inputs have theirs already.
+    /// Returns a combination with its units; the units of its inputs are known.
     fn in_units(&self, c: &Combination) -> Combination {
         let per_metre = c.expression.per_metre();
         let per_unit = |d: Dimension| per_metre.powi(d.length_in_units().into());
@@ -388,12 +393,12 @@ impl Checker<'_> {
     }
 }
 
-/// The check of one measure.
+/// Check of one measure.
 pub(in crate::draft) struct MeasureCheck<'c, 'd> {
     check: &'c mut Checker<'d>,
     owner: &'c str,
     here: Here,
-    /// The joint that it names.
+    /// Joint of the measure, for the field that names its coordinate.
     joint: Option<JointId>,
 }
 
@@ -522,14 +527,14 @@ enum Visit {
     Done(bool),
 }
 
-/// A power law holds to this where it holds.
+/// Tolerance of the exponents of a power law.
 const HOMOGENEOUS: f64 = 1e-9;
 
 /// Dimension of an expression: the powers by which it grows with the units of length, angle and time of its inputs. If
 /// that is not a power law, as in `toe + 3`, the result is a plain number in that unit.
 fn dimension_of(expression: &Expression, inputs: &[Dimension]) -> Dimension {
     let value = |powers: &dyn Fn(&Dimension) -> i8, scale: f64| {
-        // Any numbers will do; below 1, so that inverse sines have values.
+        // Arbitrary numbers below 1, so that inverse sines have values.
         let at: Vec<f64> = inputs
             .iter()
             .enumerate()

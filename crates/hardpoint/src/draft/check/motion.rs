@@ -1,4 +1,4 @@
-//! Checks of what moves and is moved together: drivers and couplers, and the coordinates that they name.
+//! Checks of drivers and couplers, and of the coordinates that they name.
 
 use crate::draft::{CouplerKindDraft, DraftLocation, Section};
 use crate::joint;
@@ -9,16 +9,17 @@ use crate::model::{Coupler, CouplerTerm, Driver, DriverId, JointId, Transmission
 use super::driven::Driven;
 use super::{Checker, Here};
 
-/// Accelerations go with the square of a speed, jerks with its cube, and these must have room in a number.
+/// Upper bound of the derivatives of a law. Accelerations are quadratic in speeds and jerks cubic, and must not
+/// overflow.
 const LARGEST_RATE: f64 = 1e100;
 
 impl Checker<'_> {
-    /// A coordinate of a joint, by name or as its only one.
+    /// Returns a coordinate of a joint, by name or as its only one.
     pub(super) fn coordinate(&mut self, joint: JointId, name: Option<&str>, here: Here) -> Option<usize> {
         self.coordinate_at(joint, name, [here.key("joint"), here.key("coordinate")])
     }
 
-    /// As [`Checker::coordinate`], where the joint and the coordinate are named at these places.
+    /// [`Checker::coordinate`], with errors reported at these locations of the joint and the coordinate.
     pub(super) fn coordinate_at(
         &mut self,
         joint: JointId,
@@ -31,36 +32,38 @@ impl Checker<'_> {
             |c: &[CoordinateType]| c.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
         let joint_name = self.model.joints[joint.0].name.clone();
         let (message, at) = match (name, kind.coordinates) {
-            (_, []) => (format!("a {} joint has no coordinate to name", kind.name), at_joint),
+            (_, []) => (format!("{} joints have no coordinates", kind.name), at_joint),
             (None, [_]) => return Some(0),
             (None, _) => (format!("joint `{joint_name}` has more than one coordinate"), at_joint),
             (Some(name), coordinates) => match coordinates.iter().position(|c| c.name == name) {
                 Some(k) => return Some(k),
-                None => (format!("a {} joint has no coordinate `{name}`", kind.name), at_coordinate),
+                None => (format!("{} joints have no coordinate `{name}`", kind.name), at_coordinate),
             },
         };
         let fault = self.fault("HP0213", at, message);
         fault.note(format!("type of `{joint_name}`: {} ({})", kind.name, kind.summary));
         fault.help(if kind.coordinates.is_empty() {
-            "name a joint that has one: a revolute, translational or cylindrical joint, a rod or a leg".into()
+            "name a joint with coordinates: a revolute, translational or cylindrical joint, a rod or a leg"
+                .into()
         } else {
-            format!("its coordinates: {}", list(kind.coordinates))
+            format!("name one of its coordinates: {}", list(kind.coordinates))
         });
         None
     }
 
-    pub(super) fn drivers(&mut self) {
+    pub(super) fn add_drivers(&mut self) {
         let draft = self.draft;
         for (index, d) in draft.drivers.iter().enumerate() {
             let here = Here { section: Section::Drivers, index };
             let driver = DriverId(self.model.drivers.len());
             let driven = self.driven(d, here);
-            let zero =
-                driven.filter(|_| d.counts_from_zero()).and_then(|driven| self.as_drawn(d, driven, here));
+            let zero = driven
+                .filter(|_| d.counts_from_zero())
+                .and_then(|driven| self.nominal_value(d, driven, here));
             self.zeros.extend(zero.map(|zero| (driver, zero)));
             let Some(law) = self.formula_law(&d.name, &d.law, &here.key("law")) else { continue };
             if draft.cases.is_empty() {
-                self.law_is_defined(&format!("driver `{}`", d.name), &law, &draft.times, here.key("law"));
+                self.check_law(&format!("driver `{}`", d.name), &law, &draft.times, here.key("law"));
             }
             let Some(Driven { joint, coordinate, .. }) = driven else { continue };
             self.driver_of.insert((joint, coordinate), driver);
@@ -69,13 +72,13 @@ impl Checker<'_> {
     }
 
     /// HP0214: a law that is not finite, or too fast, at an output time.
-    pub(super) fn law_is_defined(&mut self, of: &str, law: &Law, times: &[f64], at: DraftLocation) {
+    pub(super) fn check_law(&mut self, of: &str, law: &Law, times: &[f64], at: DraftLocation) {
         let all = |t: f64, holds: &dyn Fn(&f64) -> bool| law.at(t).derivatives()[..3].iter().all(holds);
         if let Some(&t) = times.iter().find(|&&t| !all(t, &|x| x.abs() < LARGEST_RATE)) {
             let [f, fd, fdd, _] = law.at(t).derivatives();
             let (what, remedy) = match all(t, &|x| x.is_finite()) {
                 false => ("has no finite value", "are finite".to_owned()),
-                true => ("is too fast to be solved", format!("are below {LARGEST_RATE:e}")),
+                true => ("changes too fast", format!("are below {LARGEST_RATE:e}")),
             };
             self.fault("HP0214", at, format!("the law of {of} {what} at t = {t} s"))
                 .note(format!("value {f}, first derivative {fd}, second derivative {fdd} there"))
@@ -83,8 +86,8 @@ impl Checker<'_> {
         }
     }
 
-    /// Couplers, then those that screws are.
-    pub(super) fn couplers(&mut self) {
+    /// Adds the couplers, then the couplers of screws.
+    pub(super) fn add_couplers(&mut self) {
         let draft = self.draft;
         for (index, c) in draft.couplers.iter().enumerate() {
             let here = Here { section: Section::Couplers, index };
@@ -116,7 +119,7 @@ impl Checker<'_> {
             if !terms.iter().all(|t| t.coefficient.is_finite() && t.coefficient != 0.0) {
                 let message = format!("coupler `{}` has a ratio that is zero or not finite", c.name);
                 self.fault("HP0224", here.key(ratios), message)
-                    .help("give every joint a number of teeth, a radius or a coefficient other than zero");
+                    .help("give every joint a non-zero number of teeth, radius or coefficient");
             }
             if !c.constant.is_finite() {
                 let message = format!("the constant of coupler `{}` is not finite", c.name);
@@ -126,7 +129,7 @@ impl Checker<'_> {
                 terms[..k].iter().any(|t| t.joint == terms[k].joint && t.coordinate == terms[k].coordinate)
             });
             if terms.len() < 2 || twice {
-                let message = format!("coupler `{}` must couple at least two different coordinates", c.name);
+                let message = format!("coupler `{}` connects fewer than two different coordinates", c.name);
                 self.fault("HP0224", here.key(joints), message)
                     .help("name two joints, or two coordinates of one joint");
             }
@@ -153,7 +156,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The terms of two joints.
+    /// Returns the terms of a transmission between two joints.
     fn pair(&mut self, joints: &[String; 2], by: Transmission, here: Here) -> Option<Vec<CouplerTerm>> {
         let relation = by.relation();
         let terms = [0, 1].map(|k| {

@@ -1,4 +1,4 @@
-//! Checks of what a design is to be optimised for: what it names, and whether that can hold.
+//! Checks of the optimisation: variables, goals and limits.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -20,12 +20,12 @@ type Tightest<'d> = HashMap<Key, [Option<(f64, f64, &'d str)>; 2]>;
 type Key = (u8, usize, usize);
 
 impl Checker<'_> {
-    pub(super) fn optimization(&mut self) {
+    pub(super) fn add_optimization(&mut self) {
         let draft = self.draft;
         let Some(o) = &draft.optimization else { return };
         let here = Here { section: Section::Optimize, index: 0 };
-        let variables = self.optimized(o, here);
-        // What can be limited follows from all that is checked before.
+        let variables = self.optimized_variables(o, here);
+        // The check of ineffective limits needs a valid model.
         let sound = self.faults.is_empty() && draft.unread.is_empty();
         if o.goals.is_empty() {
             self.fault("HP0236", here.key("goals"), "invalid optimisation: there are no goals")
@@ -34,14 +34,14 @@ impl Checker<'_> {
         if let Some(margin) = o.margin
             && !(margin > 0.0 && margin < 1.0)
         {
-            let message = format!("the margin of the optimisation cannot be {margin}");
+            let message = format!("invalid `min_margin` of the optimisation: {margin}");
             self.fault("HP0237", here.key("min_margin"), message)
-                .note("it is 0 at a singular position, and 1 far from any")
-                .help("give a number above 0 and below 1, like `min_margin = 0.02`, or leave it out");
+                .note("the margin is 0 at a singular position and 1 far from any")
+                .help("give a number between 0 and 1, like `min_margin = 0.02`, or remove it");
         }
         for (key, count) in [("starts", o.starts), ("max_iterations", o.iterations)] {
             if count == 0 {
-                let message = format!("`{key}` of the optimisation cannot be 0");
+                let message = format!("`{key}` of the optimisation is 0");
                 self.fault("HP0237", here.key(key), message).help("give a whole number from 1");
             }
         }
@@ -52,13 +52,13 @@ impl Checker<'_> {
             let here = Here { section: Section::Limits, index };
             let found = if self.unread(here, "") { None } else { self.limit(limit, here) };
             if let Some(limit) = &found {
-                self.contradiction(&o.limits[index], limit, &mut tightest, here);
+                self.check_contradiction(&o.limits[index], limit, &mut tightest, here);
             }
             limits.extend(found.map(|limit| (here, limit)));
         }
         let Some(variables) = variables else { return };
         if sound {
-            self.out_of_reach(&variables, &limits);
+            self.check_ineffective_limits(&variables, &limits);
         }
         let limits = limits.into_iter().map(|(_, limit)| limit).collect();
         let (margin, starts, iterations) = (o.margin, o.starts, o.iterations);
@@ -67,8 +67,8 @@ impl Checker<'_> {
             Some(OptimizationSettings { variables, goals, limits, margin, starts, iterations });
     }
 
-    /// HP0236: the variables that may change, each with bounds, each once.
-    fn optimized(&mut self, o: &OptimizationSettingsDraft, here: Here) -> Option<Vec<VariableId>> {
+    /// Returns the optimised variables. HP0236 unless each has bounds and is listed once.
+    fn optimized_variables(&mut self, o: &OptimizationSettingsDraft, here: Here) -> Option<Vec<VariableId>> {
         let draft = self.draft;
         if self.unread(here, "variables") {
             return None;
@@ -77,11 +77,11 @@ impl Checker<'_> {
             let with_bounds = (0..draft.design.len()).filter(|k| draft.design[*k].bounds.is_some());
             let found: Vec<VariableId> = with_bounds.map(VariableId).collect();
             let unknown = draft.unread.anywhere(Section::Design, "bounds")
-                || self.lost("design variable")
-                || self.lost("parameter");
+                || self.is_table_unread("design variable")
+                || self.is_table_unread("parameter");
             if found.is_empty() && !unknown {
                 self.fault("HP0236", here.key(""), "invalid optimisation: no design variable has bounds").help(
-                    "give bounds to the variables that may change, like `bounds = [-5, 5]` in `[design.NAME]`, or `NAME = { value = 60, bounds = [50, 70] }` in `[parameters]`",
+                    "give bounds to the variables to optimise, like `bounds = [-5, 5]` in `[design.NAME]`, or `NAME = { value = 60, bounds = [50, 70] }` in `[parameters]`",
                 );
             }
             return Some(found);
@@ -92,7 +92,7 @@ impl Checker<'_> {
                 here.key("variables"),
                 "invalid optimisation: the list of variables is empty",
             )
-            .help("name the variables that may change, or leave `variables` out for all that have bounds");
+            .help("name the variables to optimise, or remove `variables` to use all that have bounds");
         }
         let mut first_of: BTreeMap<&str, usize> = BTreeMap::new();
         let mut found = Vec::new();
@@ -100,16 +100,16 @@ impl Checker<'_> {
             let at = here.item("variables", k);
             let first = *first_of.entry(name).or_insert(k);
             if first < k {
-                let message = format!("design variable `{name}` is named twice");
+                let message = format!("design variable `{name}` is listed twice");
                 self.fault("HP0236", at, message)
-                    .note(format!("as number {} and number {} of the list", first + 1, k + 1))
+                    .note(format!("it is number {} and number {} of the list", first + 1, k + 1))
                     .help("remove one of the two");
                 continue;
             }
-            let Some(index) = self.optimized_variable(name, at.clone()) else { continue };
+            let Some(index) = self.variable_index(name, at.clone()) else { continue };
             let v = &draft.design[index];
             if v.bounds.is_none() && !draft.unread.any(Section::Design, index) {
-                let message = format!("design variable `{name}` has no bounds to be searched within");
+                let message = format!("design variable `{name}` has no bounds");
                 self.fault("HP0236", at, message).help(bounds_of(v));
             }
             found.push(VariableId(index));
@@ -117,12 +117,12 @@ impl Checker<'_> {
         Some(found)
     }
 
-    /// The place of a design variable in the draft.
-    pub(super) fn optimized_variable(&mut self, name: &str, at: DraftLocation) -> Option<usize> {
+    /// Returns the index of a design variable in the draft.
+    pub(super) fn variable_index(&mut self, name: &str, at: DraftLocation) -> Option<usize> {
         let draft = self.draft;
         let known = self.number_of("design variable", name);
-        // What could not be read may be this variable.
-        if known.is_some() || self.lost("parameter") || draft.unread.any_of(Section::Design) {
+        // An unread entry may be this variable.
+        if known.is_some() || self.is_table_unread("parameter") || draft.unread.any_of(Section::Design) {
             return known;
         }
         self.find("design variable", name, at, draft.design.iter().map(|v| v.name.as_str()));
@@ -137,26 +137,26 @@ impl Checker<'_> {
             && !self.draft.unread.has(Section::Model, 0, "design")
         {
             if !parts.is_empty() {
-                fault.help(format!("`[design.{name}]` makes several: {}", parts.join(", ")));
+                fault.help(format!("name one of the variables of `[design.{name}]`: {}", parts.join(", ")));
             } else if derived {
                 fault.help(format!(
-                    "parameter `{name}` is no design variable, since an expression gives it or `design = false` says so; name what it follows"
+                    "name a variable on which parameter `{name}` depends: it is not a design variable itself, because it is defined by an expression or has `design = false`"
                 ));
             }
         }
         None
     }
 
-    /// The place of a metric in the model; `None`, without a second fault, where the metric itself is faulty.
+    /// Returns the index of a metric in the model; `None`, without a second error, if the metric itself is faulty.
     pub(super) fn metric(&mut self, name: &str, at: DraftLocation) -> Option<usize> {
         let draft = self.draft;
         let known = self.find("metric", name, at, draft.metrics.iter().map(|m| m.name.as_str()));
-        if known.is_none() && !self.lost("metric") {
+        if known.is_none() && !self.is_table_unread("metric") {
             let is_measure = self.number_of("measure", name).is_some();
             let fault = self.faults.last_mut().expect("just reported");
             if is_measure {
                 fault.help(format!(
-                    "`{name}` is a measure, a whole curve; declare a metric of it, like `[metrics.{name}_range]` with `of = \"{name}\"` and `take = \"range\"`"
+                    "declare a metric of measure `{name}`, like `[metrics.{name}_range]` with `of = \"{name}\"` and `take = \"range\"`"
                 ));
             } else if draft.metrics.is_empty() {
                 fault.help("declare it in `[metrics.NAME]`");
@@ -165,16 +165,16 @@ impl Checker<'_> {
         self.metric_ids.get(known?).copied().flatten()
     }
 
-    /// HP0237: a goal whose numbers make none.
+    /// Resolves a goal. HP0237 if its weight or target is invalid.
     fn goal(&mut self, g: &GoalDraft, index: usize) -> Option<Goal> {
         let here = Here { section: Section::Goals, index };
         if self.unread(here, "") {
             return None;
         }
         if !(g.weight > 0.0 && g.weight.is_finite()) {
-            let message = format!("the weight of goal `{}` cannot be {}", g.name, g.weight);
+            let message = format!("invalid weight of goal `{}`: {}", g.name, g.weight);
             self.fault("HP0237", here.key("weight"), message).help(
-                "give a number above zero, or remove the goal; to maximise a metric, give it a large `target`",
+                "give a positive number, or remove the goal; to maximise a metric, give it a large `target`",
             );
         }
         if g.target.is_some_and(|target| !target.is_finite()) {
@@ -186,10 +186,12 @@ impl Checker<'_> {
         if m.take.target().is_some() && g.target.is_some() {
             let message =
                 format!("goal `{}` cannot have a target: its metric `{}` is an `rms`", g.name, g.metric);
-            let help =
-                format!("remove it; give the curve to be followed as `target` of `[metrics.{}]`", g.metric);
+            let help = format!(
+                "remove `target`, and give the curve to follow as `target` of `[metrics.{}]`",
+                g.metric
+            );
             self.fault("HP0237", here.key("target"), message)
-                .note("an `rms` measures the distance of a curve from its target, and is minimised")
+                .note("an `rms` is the distance of a curve from its own target, and is minimised")
                 .help(help);
             return None;
         }
@@ -200,11 +202,11 @@ impl Checker<'_> {
 
     /// Resolves a limit to its quantity and its bounds in SI. HP0238 if no number can satisfy it.
     pub(super) fn limit(&mut self, l: &LimitDraft, here: Here) -> Option<Limit> {
-        let of = self.limited(l, here);
+        let of = self.limit_target(l, here);
         for (key, bound) in [("min", l.least), ("max", l.most)] {
             if bound.is_some_and(|x| !x.is_finite()) {
                 let message = format!("the `{key}` of limit `{}` is not a finite number", l.name);
-                self.fault("HP0238", here.key(key), message).help("give a number, or leave it out");
+                self.fault("HP0238", here.key(key), message).help("give a finite number, or remove the key");
                 return None;
             }
         }
@@ -212,14 +214,14 @@ impl Checker<'_> {
             (None, None) => {
                 let message = format!("limit `{}` has no bound", l.name);
                 self.fault("HP0238", here.key("name"), message)
-                    .help("give `min`, `max`, both of them, or `equal`");
+                    .help("give `min`, `max` or both, or give `equal`");
                 return None;
             }
             (Some(least), Some(most)) if least > most => {
                 let message = format!("the bounds of limit `{}` contradict each other", l.name);
                 self.fault("HP0238", here.key(side_of(&l.of)), message)
                     .note(format!("its minimum is {least} and its maximum is {most}"))
-                    .help("give the lower one first, or as `min`");
+                    .help("give the lower bound first, or as `min`");
                 return None;
             }
             _ => {}
@@ -229,7 +231,7 @@ impl Checker<'_> {
             let message = format!("limit `{}` is impossible: a length cannot be negative", l.name);
             self.fault("HP0238", here.key("max"), message)
                 .note(format!("its maximum is {most}"))
-                .help("give a length above zero");
+                .help("give a positive length");
             return None;
         }
         let of = of?;
@@ -244,7 +246,7 @@ impl Checker<'_> {
         Some(Limit { name: l.name.clone(), of, least, most })
     }
 
-    fn limited(&mut self, l: &LimitDraft, here: Here) -> Option<LimitTarget> {
+    fn limit_target(&mut self, l: &LimitDraft, here: Here) -> Option<LimitTarget> {
         Some(match &l.of {
             LimitTargetDraft::Unread => return None,
             LimitTargetDraft::Metric(name) => LimitTarget::Metric(self.metric(name, here.key("metric"))?),
@@ -266,10 +268,9 @@ impl Checker<'_> {
                 let joint = self.joint(name, here.key("length"))?;
                 let kind = self.model.joints[joint.0].kind;
                 if !kind.is_rod() {
-                    let message =
-                        format!("joint `{name}` has no length that limit `{}` could be put on", l.name);
+                    let message = format!("joint `{name}` has no length for limit `{}`", l.name);
                     self.fault("HP0225", here.key("length"), message)
-                        .note(format!("it is a {} joint", kind.name))
+                        .note(format!("its type is `{}`", kind.name))
                         .help("name a rod or a leg; for two hardpoints write `between = [\"A\", \"B\"]`");
                     return None;
                 }
@@ -278,8 +279,8 @@ impl Checker<'_> {
         })
     }
 
-    /// HP0238: limits of one thing that cannot hold together.
-    fn contradiction<'d>(
+    /// HP0238: contradictory limits of one quantity.
+    fn check_contradiction<'d>(
         &mut self,
         written: &'d LimitDraft,
         limit: &Limit,
@@ -309,8 +310,8 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0239: limits on what no variable changes.
-    fn out_of_reach(&mut self, variables: &[VariableId], limits: &[(Here, Limit)]) {
+    /// HP0239: limits of quantities that no variable changes.
+    fn check_ineffective_limits(&mut self, variables: &[VariableId], limits: &[(Here, Limit)]) {
         let (mut moved, mut joints): (BTreeSet<Source>, BTreeSet<JointId>) = Default::default();
         let model = &self.model;
         for change in variables.iter().flat_map(|v| &model.variables[v.0].changes) {
@@ -358,13 +359,13 @@ impl Checker<'_> {
         for (at, limit, what) in fixed {
             let message = format!("limit `{limit}` applies to {what}, which no variable changes");
             self.fault("HP0239", at, message)
-                .note(format!("variables that may change: {names}"))
-                .help("add a variable that moves it, with bounds, or remove the limit");
+                .note(format!("optimised variables: {names}"))
+                .help("add a variable with bounds that changes it, or remove the limit");
         }
     }
 }
 
-/// Field that holds the side of a box; for other limits the name.
+/// Field of the bounds of a coordinate limit; the name for other limits.
 fn side_of(of: &LimitTargetDraft) -> &'static str {
     if let LimitTargetDraft::Coordinate(_, axis) = of { AXES[axis % 3] } else { "name" }
 }
@@ -383,7 +384,7 @@ pub(super) fn per_si(of: Dimension, per_metre: f64, per_radian: f64) -> f64 {
     per_metre.powi(of.length_in_units().into()) * per_radian.powi(of.angle.into())
 }
 
-/// Suggests how to give a variable bounds.
+/// Returns a help text that shows the bounds of a variable.
 fn bounds_of(v: &VariableDraft) -> String {
     match v.changes.as_slice() {
         [ChangeDraft::Parameter { parameter, .. }] if *parameter == v.name => format!(

@@ -1,4 +1,4 @@
-//! Checks of which designs are swept over: what is named, and whether there are such designs.
+//! Checks of the sweep: variables, ranges and lists of designs.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use super::{Checker, Here};
 const HERE: Here = Here { section: Section::Sweep, index: 0 };
 
 impl Checker<'_> {
-    pub(super) fn sweeping(&mut self) {
+    pub(super) fn add_sweeping(&mut self) {
         let draft = self.draft;
         let Some(s) = &draft.sweeping else { return };
         let metrics = match &s.metrics {
@@ -24,7 +24,8 @@ impl Checker<'_> {
             }
         };
         let curves = s.curves.iter().enumerate();
-        let curves = curves.filter_map(|(k, name)| self.curve_of(name, HERE.item("curves", k))).collect();
+        let curves =
+            curves.filter_map(|(k, name)| self.measure_index(name, HERE.item("curves", k))).collect();
         let mut sweeping = SweepSettings {
             metrics,
             curves,
@@ -46,7 +47,7 @@ impl Checker<'_> {
             sweeping.ranges = self.ranges(s, ranges);
         } else {
             sweeping.ranges.iter_mut().for_each(|r| r.levels = s.levels);
-            self.levels(s.levels, HERE);
+            self.check_levels(s.levels, HERE);
         }
         let unknown = !draft.unread.is_empty() || !self.faults.is_empty();
         if sweeping.ranges.is_empty() && !unknown {
@@ -57,13 +58,13 @@ impl Checker<'_> {
         if sweeping.count().is_none() && !unknown {
             let message = format!("the sweep has more than {} designs", SweepSettings::MOST);
             self.fault("HP0246", HERE.key("method"), message)
-                .note("every level of a variable multiplies their number")
-                .help("give fewer `levels`, or use `method = \"sobol\"` with as many `samples` as you have time for");
+                .note("the number of designs is the product of the `levels` of all variables")
+                .help("use fewer `levels`, or use `method = \"sobol\"` with a smaller number of `samples`");
         }
         self.model.sweeping = Some(sweeping);
     }
 
-    /// HP0246: every range of a variable of its own, that rises.
+    /// Resolves the ranges of the variables. HP0246 unless each is in ascending order.
     fn ranges(&mut self, s: &SweepSettingsDraft, ranges: &[SweepRangeDraft]) -> Vec<SweepRange> {
         let draft = self.draft;
         let mut found = Vec::new();
@@ -73,9 +74,9 @@ impl Checker<'_> {
                 continue;
             }
             let name = &one.name;
-            let Some(k) = self.optimized_variable(name, here.key("name")) else { continue };
+            let Some(k) = self.variable_index(name, here.key("name")) else { continue };
             let levels = one.levels.unwrap_or(s.levels);
-            self.levels(levels, if one.levels.is_some() { here } else { HERE });
+            self.check_levels(levels, if one.levels.is_some() { here } else { HERE });
             let Some(quantity) = self.model.variables.get(k).map(|v| v.quantity) else { continue };
             let variable = VariableId(k);
             let in_si = |x: f64| self.in_si(variable, quantity, x, [one.per_metre, one.per_radian]);
@@ -96,7 +97,7 @@ impl Checker<'_> {
                 let key = if one.low.is_some() { "from" } else { "to" };
                 self.fault("HP0246", here.key(key), message)
                     .note("`from` is the lower end and `to` the upper end; the bounds of the variable are their defaults")
-                    .help("give the lower one as `from`; leave out a variable that is constant");
+                    .help("give the lower end as `from`; remove variables that are constant");
                 continue;
             }
             found.push(SweepRange { variable, low, high, levels });
@@ -104,18 +105,20 @@ impl Checker<'_> {
         found
     }
 
-    fn levels(&mut self, levels: usize, here: Here) {
+    fn check_levels(&mut self, levels: usize, here: Here) {
         if levels < 2 {
             self.fault(
                 "HP0246",
                 here.key("levels"),
-                format!("a factorial of {levels} level changes nothing"),
+                format!("a factorial sweep needs at least 2 levels, not {levels}"),
             )
-            .help("give a whole number from 2: both ends of the range, and what is evenly between them");
+            .help(
+                "give a whole number from 2: levels are evenly spaced from one end of the range to the other",
+            );
         }
     }
 
-    /// HP0247: the designs of a list, of variables that there are, each once.
+    /// Resolves a list of designs. HP0247 unless each column is a different design variable.
     fn design_list(&mut self, list: &DesignListDraft) -> Option<(Vec<SweepRange>, Vec<Vec<f64>>)> {
         let at = HERE.key("designs");
         let mut first_of: BTreeMap<&str, usize> = BTreeMap::new();
@@ -130,7 +133,7 @@ impl Checker<'_> {
                 return None;
             }
             let faults = self.faults.len();
-            let found = self.optimized_variable(name, at.clone());
+            let found = self.variable_index(name, at.clone());
             if let Some(fault) = self.faults.get_mut(faults) {
                 fault.note(format!("it is the title of column {} of `{}`", column + 1, list.file));
             }
@@ -148,13 +151,14 @@ impl Checker<'_> {
         Some((SweepSettings::spanned(&variables, &rows), rows))
     }
 
-    /// A value of a variable as a file writes it, as a change in SI: of a parameter from its own value.
+    /// Converts a value of a variable from user units to a change in SI; values of a parameter are relative to its
+    /// nominal value.
     fn in_si(&self, variable: VariableId, quantity: Quantity, x: f64, per: [f64; 2]) -> f64 {
         x / per_si(Dimension::from(quantity), per[0], per[1]) - self.model.nominal_value(variable)
     }
 
-    /// The place of a measure in the model.
-    pub(super) fn curve_of(&mut self, name: &str, at: crate::draft::DraftLocation) -> Option<usize> {
+    /// Returns the index of a measure in the model.
+    pub(super) fn measure_index(&mut self, name: &str, at: crate::draft::DraftLocation) -> Option<usize> {
         let draft = self.draft;
         self.find("measure", name, at, draft.measures.iter().map(|m| m.name.as_str()))?;
         self.model.measures.iter().position(|m| m.name == name)

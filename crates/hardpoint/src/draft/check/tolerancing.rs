@@ -1,4 +1,4 @@
-//! Checks of how far off a design may be made: what is named, and whether that can be.
+//! Checks of the tolerance study: tolerances, correlations, limits and allocation.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use super::{Checker, Here};
 const HERE: Here = Here { section: Section::Tolerance, index: 0 };
 
 impl Checker<'_> {
-    pub(super) fn tolerancing(&mut self) {
+    pub(super) fn add_tolerancing(&mut self) {
         let draft = self.draft;
         let Some(t) = &draft.tolerancing else { return };
         let default = self.scatter(t.scatter, ScatterDraft::default(), HERE, "the tolerances");
@@ -42,10 +42,10 @@ impl Checker<'_> {
             Some(names) => names
                 .iter()
                 .enumerate()
-                .filter_map(|(k, name)| self.curve_of(name, HERE.item("curves", k)))
+                .filter_map(|(k, name)| self.measure_index(name, HERE.item("curves", k)))
                 .collect(),
         };
-        self.allocation_needs(t);
+        self.check_allocation(t);
         if default.is_none() {
             return;
         }
@@ -63,7 +63,7 @@ impl Checker<'_> {
         });
     }
 
-    /// HP0241: every tolerance with a reach that can be, and each variable in one of them.
+    /// Resolves the tolerances. HP0241 unless each is positive and each variable has at most one.
     fn tolerances(&mut self, t: &ToleranceSettingsDraft) -> Vec<Tolerance> {
         let draft = self.draft;
         let mut of: BTreeMap<usize, &str> = BTreeMap::new();
@@ -77,9 +77,9 @@ impl Checker<'_> {
             if let Some((v, other)) = variables.iter().find_map(|v| Some((*v, *of.get(v)?))) {
                 let message = format!("design variable `{}` has two tolerances", draft.design[v].name);
                 self.fault("HP0241", here.key("name"), message)
-                    .note(format!("by `{other}` and by `{}`", one.name))
+                    .note(format!("its tolerances are `{other}` and `{}`", one.name))
                     .help(
-                        "remove one of the two: that of a point is a sphere, those of its coordinates a box",
+                        "remove one of the two: the tolerance of a point is a sphere, those of its coordinates are a box",
                     );
                 continue;
             }
@@ -101,7 +101,7 @@ impl Checker<'_> {
         found
     }
 
-    /// The variables that a tolerance is of: that of its name, or the coordinates that an entry of that name makes.
+    /// Returns the variables of a tolerance: the one with its name, or the coordinates of the entry with its name.
     fn variables_of_tolerance(&mut self, one: &ToleranceDraft, here: Here) -> Vec<usize> {
         if let Some(known) = self.number_of("design variable", &one.name) {
             return vec![known];
@@ -110,7 +110,7 @@ impl Checker<'_> {
             AXES.iter().filter_map(|axis| self.number_of("design variable", &format!("{}_{axis}", one.name)));
         let parts: Vec<usize> = parts.collect();
         if parts.is_empty() {
-            self.optimized_variable(&one.name, here.key("name"));
+            self.variable_index(&one.name, here.key("name"));
         }
         parts
     }
@@ -130,17 +130,17 @@ impl Checker<'_> {
         let scatter = self.scatter(one.scatter, t.scatter, here, &format!("the tolerance of `{name}`"));
         if one.cost.is_some_and(|cost| !(cost > 0.0 && cost.is_finite())) {
             let message =
-                format!("the cost of the tolerance of `{name}` cannot be {}", one.cost.unwrap_or_default());
+                format!("invalid cost of the tolerance of `{name}`: {}", one.cost.unwrap_or_default());
             self.fault("HP0241", here.key("cost"), message)
                 .note("a tolerance t costs `cost / t`, relative to the others")
-                .help("give a number above zero, or leave it out for a fixed tolerance");
+                .help("give a positive number, or remove `cost` for a fixed tolerance");
         }
         let reach = match one.reach {
             Some(reach) if !(reach > 0.0 && reach.is_finite()) => {
-                let message = format!("the tolerance of `{name}` cannot be {reach}");
+                let message = format!("invalid tolerance of `{name}`: {reach}");
                 self.fault("HP0241", here.key("tolerance"), message)
-                    .note("it is the half width of the deviations")
-                    .help("give a number above zero, or leave the variable out if it is exact");
+                    .note("a tolerance is the half width of the deviations")
+                    .help("give a positive number, or remove the variable if it is exact");
                 return None;
             }
             Some(reach) => reach / per_si(Dimension::from(quantity?), one.per_metre, one.per_radian),
@@ -166,16 +166,16 @@ impl Checker<'_> {
         if let Some(sigmas) = own.sigmas {
             let even = own.kind.or(all.kind) == Some(0) && here.section == Section::Tolerances;
             if even {
-                let message = format!("{what} is uniform, and has no `sigmas`");
+                let message = format!("{what} is uniform, which takes no `sigmas`");
                 self.fault("HP0241", here.key("sigmas"), message)
                     .help("remove `sigmas`, or write `distribution = \"truncated\"`");
                 return None;
             }
             if !(sigmas > 0.0 && sigmas <= MOST_SIGMAS) {
-                let message = format!("`sigmas` of {what} cannot be {sigmas}");
+                let message = format!("invalid `sigmas` of {what}: {sigmas}");
                 self.fault("HP0241", here.key("sigmas"), message)
-                    .note("it is the number of standard deviations in a tolerance")
-                    .help(format!("give a number above zero, up to {MOST_SIGMAS}, like `sigmas = 3`"));
+                    .note("`sigmas` is the number of standard deviations in a tolerance")
+                    .help(format!("give a positive number up to {MOST_SIGMAS}, like `sigmas = 3`"));
                 return None;
             }
         }
@@ -191,14 +191,14 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0242: correlations of normal variables, of each pair one, that can hold together.
+    /// Resolves the correlations. HP0242 unless they relate normal variables, one for each pair, without contradiction.
     fn correlations(&mut self, t: &ToleranceSettingsDraft, tolerances: &[Tolerance]) -> Vec<Correlation> {
         let mut pairs: BTreeMap<[usize; 2], &str> = BTreeMap::new();
         let mut found = Vec::new();
         if t.correlations.len() > MOST_CORRELATIONS {
-            let message = format!("{} correlations are too many", t.correlations.len());
+            let message = format!("too many correlations: {}", t.correlations.len());
             self.fault("HP0242", HERE.key("correlations"), message).help(format!(
-                "give at most {MOST_CORRELATIONS}, or let one design variable move all that is correlated"
+                "give at most {MOST_CORRELATIONS}, or use one design variable that moves all correlated dimensions"
             ));
             return found;
         }
@@ -207,23 +207,24 @@ impl Checker<'_> {
             if self.unread(here, "") {
                 continue;
             }
-            let between = [0, 1].map(|k| self.optimized_variable(&one.between[k], here.item("between", k)));
+            let between = [0, 1].map(|k| self.variable_index(&one.between[k], here.item("between", k)));
             let [Some(a), Some(b)] = between else { continue };
             if !(one.coefficient.abs() <= 1.0) {
-                let message = format!("correlation `{}` cannot be {}", one.name, one.coefficient);
+                let message =
+                    format!("invalid coefficient of correlation `{}`: {}", one.name, one.coefficient);
                 self.fault("HP0242", here.key("coefficient"), message)
                     .help("give a number from -1 to 1: 1 if both deviations are always equal, 0 if they are independent");
                 continue;
             }
             let name = &one.name;
             if a == b {
-                let message = format!("correlation `{name}` is one of `{}` with itself", one.between[0]);
+                let message = format!("correlation `{name}` relates `{}` to itself", one.between[0]);
                 self.fault("HP0242", here.key("between"), message)
                     .help("name two different design variables");
                 continue;
             }
             if let Some(other) = pairs.insert([a.min(b), a.max(b)], name) {
-                let message = format!("correlations `{other}` and `{name}` are of the same two variables");
+                let message = format!("correlations `{other}` and `{name}` relate the same two variables");
                 self.fault("HP0242", here.key("between"), message).help("remove one of the two");
                 continue;
             }
@@ -237,12 +238,12 @@ impl Checker<'_> {
             let message = "the correlations contradict each other";
             self.fault("HP0242", HERE.key("correlations"), message)
                 .note(format!("their matrix is not positive semidefinite: {}", super::super::some_of(&names, ", ", super::LISTED_NAMES)))
-                .help("if a is correlated with b and b with c, so is a with c: at least `r_ab r_bc - sqrt((1 - r_ab^2) (1 - r_bc^2))`");
+                .help("reduce one of them, or correlate the third pair too: if a is correlated with b and b with c, a is correlated with c by at least `r_ab r_bc - sqrt((1 - r_ab^2) (1 - r_bc^2))`");
         }
         found
     }
 
-    /// True if both have a tolerance that is normal.
+    /// True if both variables have a normal tolerance.
     fn can_correlate(
         &mut self,
         one: &CorrelationDraft,
@@ -255,7 +256,7 @@ impl Checker<'_> {
             let tolerance = tolerances.iter().find(|t| t.variables.contains(&VariableId(v)));
             let at = here.item("between", k);
             let Some(tolerance) = tolerance else {
-                // It may be one that could not be read.
+                // The tolerance may be an unread entry.
                 if self.draft.unread.any_of(Section::Tolerances) || self.draft.unread.any_of(Section::Design)
                 {
                     return false;
@@ -268,7 +269,7 @@ impl Checker<'_> {
                 let message =
                     format!("`{name}` of correlation `{}` is {}", one.name, tolerance.scatter.name());
                 self.fault("HP0242", at, message)
-                    .note("a truncated distribution cannot be correlated")
+                    .note("only normal distributions can be correlated")
                     .help("give it `distribution = \"normal\"`, or move both by one design variable");
                 return false;
             }
@@ -276,20 +277,20 @@ impl Checker<'_> {
         true
     }
 
-    /// HP0243: an allocation without what it is to find or keep.
-    fn allocation_needs(&mut self, t: &ToleranceSettingsDraft) {
+    /// HP0243: an allocation without a limit or a cost, or with invalid `required_sigmas`.
+    fn check_allocation(&mut self, t: &ToleranceSettingsDraft) {
         let Some(rule) = t.allocation else { return };
         if let AllocationRule::Rss { sigmas } = rule
             && !(sigmas > 0.0 && sigmas <= MOST_SIGMAS)
         {
-            let message = format!("`required_sigmas` cannot be {sigmas}");
+            let message = format!("invalid `required_sigmas`: {sigmas}");
             self.fault("HP0243", HERE.key("required_sigmas"), message)
-                .note("it is the number of standard deviations between the nominal value of a metric and its limit")
-                .help(format!("give a number above zero, up to {MOST_SIGMAS}, like `required_sigmas = 3`"));
+                .note("`required_sigmas` is the number of standard deviations between the nominal value of a metric and its limit")
+                .help(format!("give a positive number up to {MOST_SIGMAS}, like `required_sigmas = 3`"));
         }
         if t.limits.is_empty() && !self.unread(HERE, "limits") {
             self.fault("HP0243", HERE.key("allocate"), "invalid allocation: there is no limit").help(
-                "add one, like `[tolerance.limits]` with `toe = { metric = \"toe_range\", max = 0.5 }`",
+                "add a limit, like `[tolerance.limits]` with `toe = { metric = \"toe_range\", max = 0.5 }`",
             );
         }
         if t.tolerances.iter().all(|one| one.cost.is_none()) && !self.draft.unread.any_of(Section::Tolerances)
@@ -301,9 +302,9 @@ impl Checker<'_> {
     }
 }
 
-/// More standard deviations than these are surely a slip, and no normal distribution knows them.
+/// Maximum number of standard deviations; a larger value is surely a slip.
 const MOST_SIGMAS: f64 = 30.0;
-/// True if they can hold together takes the cube of their number.
+/// Maximum number of correlations; the check for contradictions is cubic in their number.
 const MOST_CORRELATIONS: usize = 300;
 
 /// Correlation matrix of the correlated variables.

@@ -1,4 +1,4 @@
-//! Checks of road wheels and of what is measured at them.
+//! Checks of the vehicle, road wheels, axles and their measures.
 
 use crate::draft::{AxleDraft, PointRef, Section, WheelDraft, WheelSpinDraft};
 use crate::model::{
@@ -9,17 +9,18 @@ use crate::space::Vec3;
 
 use super::{Checker, Here, SAME_POINT};
 
-/// A direction nearer to the vertical than this, as a cosine, has no heading, and one nearer to the horizontal no rise.
-const HEADLESS: f64 = 1e-6;
+/// Relative horizontal component below which a direction is vertical, and vertical component below which it is
+/// horizontal.
+const MIN_SINE: f64 = 1e-6;
 
 impl Checker<'_> {
-    pub(super) fn vehicle(&mut self) {
+    pub(super) fn check_vehicle(&mut self) {
         let v = &self.draft.vehicle;
         let here = Here { section: Section::Vehicle, index: 0 };
         for (key, value) in [("wheelbase", v.wheelbase), ("cg_height", v.cg_height)] {
             if value.is_some_and(|x| !(x > 0.0 && x.is_finite())) {
-                self.fault("HP0231", here.key(key), format!("the {key} of the vehicle is not above zero"))
-                    .help("give a length above zero, in the file's length unit");
+                self.fault("HP0231", here.key(key), format!("the {key} of the vehicle is not positive"))
+                    .help("give a positive length, in the file's length unit");
             }
         }
         for (key, value) in
@@ -36,7 +37,7 @@ impl Checker<'_> {
         }
     }
 
-    pub(super) fn axles(&mut self) {
+    pub(super) fn add_axles(&mut self) {
         let draft = self.draft;
         for (index, a) in draft.axles.iter().enumerate() {
             let here = Here { section: Section::Axles, index };
@@ -46,7 +47,7 @@ impl Checker<'_> {
         }
     }
 
-    /// An axle; `None` where it or one of its wheels is faulty.
+    /// Resolves an axle; `None` if it or one of its wheels is faulty.
     fn one_axle(&mut self, a: &AxleDraft, here: Here) -> Option<Axle> {
         let draft = self.draft;
         let mut wheel = |key: &'static str, name: &str, side: Side| {
@@ -55,7 +56,7 @@ impl Checker<'_> {
             let id = self.wheel_ids[k]?;
             if self.model.wheels[id.0].side != side {
                 let message =
-                    format!("the {key} wheel of axle `{}` is on the other side of the vehicle", a.name);
+                    format!("the {key} wheel of axle `{}` is on the wrong side of the vehicle", a.name);
                 self.fault("HP0231", here.key(key), message)
                     .help(format!("name the wheel on the {key}; y points left"));
                 return None;
@@ -66,7 +67,7 @@ impl Checker<'_> {
         Some(Axle { name: a.name.clone(), wheels: [left?, right?] })
     }
 
-    /// A measure of an axle; `None`, without a second fault, where the axle itself is faulty.
+    /// Resolves a measure of an axle; `None`, without a second error, if the axle itself is faulty.
     pub(super) fn axle_measure(&mut self, name: &str, what: AxleMeasure, here: Here) -> Option<MeasureKind> {
         let draft = self.draft;
         let names = draft.axles.iter().map(|a| a.name.as_str());
@@ -84,18 +85,18 @@ impl Checker<'_> {
             self.model.axles[axle.0].wheels.into_iter().find(|w| self.model.wheels[w.0].bump.is_none());
         if let Some(wheel) = unmoved.filter(|_| what.depends_on_driver()) {
             let wheel = self.model.wheels[wheel.0].name.clone();
-            self.needs_driver(what.name(), &wheel, WheelRequirement::Bump, here);
+            self.report_missing_driver(what.name(), &wheel, WheelRequirement::Bump, here);
             return None;
         }
         Some(MeasureKind::Axle { axle, what })
     }
 
     pub(super) fn vehicle_is_unread(&self) -> bool {
-        self.draft.unread.any(Section::Vehicle, 0) || self.lost("vehicle")
+        self.draft.unread.any(Section::Vehicle, 0) || self.is_table_unread("vehicle")
     }
 
-    fn needs_driver(&mut self, what: &str, wheel: &str, need: WheelRequirement, here: Here) {
-        if self.lost("driver") {
+    fn report_missing_driver(&mut self, what: &str, wheel: &str, need: WheelRequirement, here: Here) {
+        if self.is_table_unread("driver") {
             return;
         }
         let drivers: Vec<String> = self.draft.drivers.iter().map(|d| format!("`{}`", d.name)).collect();
@@ -109,7 +110,7 @@ impl Checker<'_> {
             .help(format!("add `{key} = DRIVER` to the wheel"));
     }
 
-    pub(super) fn wheels(&mut self) {
+    pub(super) fn add_wheels(&mut self) {
         let draft = self.draft;
         for (index, w) in draft.wheels.iter().enumerate() {
             let here = Here { section: Section::Wheels, index };
@@ -117,7 +118,7 @@ impl Checker<'_> {
             self.wheel_ids.push(wheel.as_ref().map(|_| WheelId(self.model.wheels.len())));
             self.model.wheels.extend(wheel);
         }
-        // A body that carries wheels of both sides is a live axle, with its differential on it.
+        // A body that carries wheels of both sides is a live axle with its differential.
         let carried: Vec<(BodyId, Side)> = self.model.wheels.iter().map(|w| (w.body, w.side)).collect();
         for (id, given) in self.wheel_ids.iter().zip(&draft.wheels) {
             let Some(id) = id.filter(|_| given.drive.is_none()) else { continue };
@@ -128,7 +129,7 @@ impl Checker<'_> {
         }
     }
 
-    /// A wheel, as long as nothing is wrong with it.
+    /// Resolves a wheel; `None` if it is faulty.
     fn one_wheel(&mut self, w: &WheelDraft, here: Here) -> Option<Wheel> {
         let faults = self.faults.len();
         let body = self.body(&w.body, here.key("body"));
@@ -142,7 +143,7 @@ impl Checker<'_> {
             self.fault(
                 "HP0231",
                 here.key("radius"),
-                format!("the radius of wheel `{}` is not above zero", w.name),
+                format!("the radius of wheel `{}` is not positive", w.name),
             )
             .help("give the distance from the wheel's centre to the ground");
         }
@@ -204,8 +205,8 @@ impl Checker<'_> {
         (self.faults.len() == faults && !self.draft.unread.any(here.section, here.index)).then_some(wheel)
     }
 
-    /// Wheel in the design configuration: its body, centre, side and spin axis.
-    pub(super) fn wheel_as_drawn(
+    /// Returns body, centre, side and spin axis of a wheel in the design configuration.
+    pub(super) fn nominal_wheel(
         &mut self,
         w: &WheelDraft,
         index: usize,
@@ -220,27 +221,27 @@ impl Checker<'_> {
         Some((body, centre, side, self.spin_axis(w, Some(side), here)?))
     }
 
-    /// The side of the vehicle that a wheel's centre is on.
+    /// Returns the side of the vehicle of a wheel's centre; y points left.
     fn side_of(&mut self, w: &WheelDraft, centre: HardpointId, here: Here) -> Option<Side> {
         let y = self.position(centre)?.y;
         if !(y.abs() > SAME_POINT * self.extent.size()) {
             let message = format!("wheel `{}` is on neither side of the vehicle", w.name);
             self.fault("HP0231", here.key("centre"), message)
-                .note("the y of its centre is zero")
+                .note("the y coordinate of its centre is zero")
                 .help("give `side = \"left\"` or `side = \"right\"`");
             return None;
         }
         Some(if y > 0.0 { Side::Left } else { Side::Right })
     }
 
-    /// The spin axis, which must point outboard.
+    /// Resolves the spin axis. HP0231 unless it points outboard.
     fn spin_axis(&mut self, w: &WheelDraft, side: Option<Side>, here: Here) -> Option<Direction> {
         match &w.spin {
             WheelSpinDraft::Axis(line) => {
                 let (axis, e) = self.line(line, &w.name, here, "spin_axis")?;
                 let side = side?;
                 let name = &w.name;
-                let (message, help) = if e.x.hypot(e.y) <= HEADLESS {
+                let (message, help) = if e.x.hypot(e.y) <= MIN_SINE {
                     (
                         format!("the spin axis of wheel `{name}` is vertical"),
                         "give the axis that the wheel spins about",
@@ -267,9 +268,9 @@ impl Checker<'_> {
                 let quarter = std::f64::consts::FRAC_PI_2;
                 let mut upright = true;
                 for (key, angle) in [("toe", toe), ("camber", camber)] {
-                    if !(angle.abs() < quarter * (1.0 - HEADLESS)) {
+                    if !(angle.abs() < quarter * (1.0 - MIN_SINE)) {
                         upright = false;
-                        let message = format!("the {key} of wheel `{}` is a quarter turn or more", w.name);
+                        let message = format!("the {key} of wheel `{}` is 90 deg or more", w.name);
                         self.fault("HP0231", here.key(key), message)
                             .help("give the angle of the design configuration, in the file's angle unit");
                     }
@@ -281,7 +282,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The points of the kingpin, the upper one above the lower.
+    /// Resolves the points of the kingpin. HP0231 unless the upper one is above the lower.
     fn kingpin(&mut self, w: &WheelDraft, points: &[PointRef; 2], here: Here) -> Option<[PointId; 2]> {
         let [lower, upper] = [0, 1].map(|k| self.point(&points[k], &w.name, here.item("kingpin", k)));
         let (lower, upper) = (lower?, upper?);
@@ -290,13 +291,13 @@ impl Checker<'_> {
         let name = &w.name;
         let (message, help) = if !(k.norm() > SAME_POINT * self.extent.size()) {
             (
-                format!("the two points of the kingpin of wheel `{name}` are at the same place"),
+                format!("the two points of the kingpin of wheel `{name}` coincide"),
                 "name a lower and an upper point of the axis that the wheel steers about",
             )
-        } else if k.z.abs() <= HEADLESS * k.norm() {
+        } else if k.z.abs() <= MIN_SINE * k.norm() {
             (
-                format!("the kingpin of wheel `{name}` is level"),
-                "its upper point must lie above its lower one",
+                format!("the kingpin of wheel `{name}` is horizontal"),
+                "name an upper point that lies above the lower one",
             )
         } else if !(k.z > 0.0) {
             (
@@ -310,7 +311,7 @@ impl Checker<'_> {
         None
     }
 
-    /// The plane of an arm, by points that make one.
+    /// Resolves the plane of an arm. HP0231 unless its points define a plane.
     fn arm_plane(&mut self, w: &WheelDraft, points: &[PointRef], arm: usize, here: Here) -> Option<ArmPlane> {
         let found: Vec<Option<PointId>> =
             points.iter().map(|p| self.point(p, &w.name, here.item("arm_planes", arm))).collect();
@@ -326,10 +327,9 @@ impl Checker<'_> {
             }
             (&[a, b], &[p, q]) => (ArmPlane::Square([a, b]), (q - p).norm() > SAME_POINT * size),
             _ => {
-                let message =
-                    format!("the {which} plane of wheel `{name}` is given by {} points", found.len());
+                let message = format!("the {which} plane of wheel `{name}` has {} points", found.len());
                 self.fault("HP0231", here.item("arm_planes", arm), message).help(
-                    "give three points of an arm, or two of a strut: its top mount, and another one of its axis",
+                    "give three points of an arm, or two of a strut: its top mount and another point of its axis",
                 );
                 return None;
             }
@@ -339,26 +339,27 @@ impl Checker<'_> {
         }
         let message = format!("the points of the {which} plane of wheel `{name}` do not define a plane");
         self.fault("HP0231", here.item("arm_planes", arm), message).help(match plane {
-            ArmPlane::Through(_) => "name two pivots and the ball joint of an arm, which are not on one line",
+            ArmPlane::Through(_) => "name two pivots and the ball joint of an arm that are not on one line",
             ArmPlane::Square(_) => "name a strut's top mount and another point of its axis",
         });
         None
     }
 
-    /// The ends of the spring, which are apart.
+    /// Resolves the ends of the spring. HP0231 if they coincide.
     fn spring(&mut self, w: &WheelDraft, ends: &[PointRef; 2], here: Here) -> Option<[PointId; 2]> {
         let [a, b] = [0, 1].map(|k| self.point(&ends[k], &w.name, here.item("spring", k)));
         let ends = [a?, b?];
         let [p, q] = ends.map(|p| self.position(self.model.points[p.0].at));
         if !((q? - p?).norm() > SAME_POINT * self.extent.size()) {
-            let message = format!("the two ends of the spring of wheel `{}` are at the same place", w.name);
-            self.fault("HP0231", here.key("spring"), message).help("name its ends on either body");
+            let message = format!("the two ends of the spring of wheel `{}` coincide", w.name);
+            self.fault("HP0231", here.key("spring"), message)
+                .help("name the ends of the spring, one on each body");
             return None;
         }
         Some(ends)
     }
 
-    /// A measure of a wheel; `None`, without a second fault, where the wheel itself is faulty.
+    /// Resolves a measure of a wheel; `None`, without a second error, if the wheel itself is faulty.
     pub(super) fn wheel_measure(
         &mut self,
         name: &str,
@@ -398,14 +399,14 @@ impl Checker<'_> {
         let id = self.wheel_ids[k]?;
         let (needs, wheel) = (what.needs(), &self.model.wheels[id.0]);
         if needs.depends_on_driver() && wheel.driver(needs).is_none() {
-            self.needs_driver(what.name(), name, needs, here);
+            self.report_missing_driver(what.name(), name, needs, here);
             return None;
         }
         if let (Some(end), Some(at)) = (needs.end(), wheel.end)
             && end != at
         {
             let message =
-                format!("`{}` applies to {} wheels, and `{name}` is not one", what.name(), end.name());
+                format!("`{}` applies to {} wheels, but `{name}` is not one", what.name(), end.name());
             self.fault("HP0232", here.key("type"), message).help(match end {
                 VehicleEnd::Front => "at the rear measure `anti_lift` or `anti_squat`",
                 VehicleEnd::Rear => "at the front measure `anti_dive` or `anti_rise`",
@@ -417,7 +418,7 @@ impl Checker<'_> {
             return None;
         }
         if !missing.is_empty() {
-            let message = format!("`{}` needs more data of the vehicle", what.name());
+            let message = format!("`{}` needs vehicle data that is missing", what.name());
             let help = format!("add to `[vehicle]`: {}", missing.join(", "));
             self.fault("HP0232", here.key("type"), message).help(help);
             return None;

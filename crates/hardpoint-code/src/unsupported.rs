@@ -1,10 +1,10 @@
-//! Machines for which no code is made.
+//! Unsupported machines.
 
 use hardpoint_tape::{Lanes, Program};
 
 use crate::{Counts, Line, PARTS, UnsupportedProgram, Width};
 
-/// There is none.
+/// Uninhabited: no code exists on this machine.
 #[derive(Debug)]
 pub enum Machine {}
 
