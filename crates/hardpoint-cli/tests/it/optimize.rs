@@ -98,7 +98,7 @@ fn what_cannot_be_searched_or_saved_is_told() {
     refused(&["run", "four_bar.toml", "--case", "bump"], 2, &["--case bump", "has no cases"]);
     let few = bench.run(&["optimize", "four_bar_inverse.toml", "--iterations", "2"]);
     assert_eq!(few.status.code(), Some(1));
-    assert!(String::from_utf8_lossy(&few.stdout).contains("more `iterations`"));
+    assert!(String::from_utf8_lossy(&few.stdout).contains("increase `max_iterations`"));
 }
 
 #[test]

@@ -403,7 +403,7 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
         "sigma of nothing",
         "spring_strut,toe,sigma camber\n0,1,1\n",
         "HP0248",
-        &["`sigma camber` is of nothing"],
+        &["`sigma camber` has no column of readings"],
     ),
     ("no place", "spring_strut,toe\n,1\n", "HP0112", &["line 2, column 1 (`spring_strut`) is missing"]),
     ("sigma of zero", "spring_strut,toe,sigma toe\n0,1,0\n", "HP0249", &["line 2, column 3", "cannot be 0"]),
