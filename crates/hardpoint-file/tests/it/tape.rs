@@ -1,6 +1,8 @@
 //! Steps as straight-line programs against the kernel that they were recorded of, on the whole gallery.
 
-use hardpoint::model::{Axes, DriverId, JointId, Measure, MeasureKind, Model, ReactionPart, VariableId};
+use hardpoint::model::{
+    Axes, DriverId, JointId, Measure, MeasureKind, Model, ReactionPart, VariableId, VehicleEnd, WheelMeasure,
+};
 use hardpoint::motion::{BodyState, Execution};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::{Analysis, Run, Solution};
@@ -18,6 +20,9 @@ const OF_ONE_MOTION: f64 = 1e-10;
 /// Mechanisms that no program is recorded of: their couplers count angles by the turn that is expected, or a point
 /// follows a curve.
 const BY_THE_KERNEL: [&str; 2] = ["cam", "gear_train"];
+
+/// Mechanisms with a variable that changes the law of a driver, so that no program knows their sensitivities.
+const BY_LAWS: [&str; 2] = ["drive_shaft", "four_bar_by_lengths"];
 
 fn gallery() -> Vec<(String, Model)> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models");
@@ -119,6 +124,7 @@ fn output_times_by_programs_are_those_of_the_kernel() {
 #[test]
 fn measures_and_margins_by_programs_are_those_of_the_kernel() {
     let (mut by_programs, mut of_one_motion, mut by_formulas) = (0, 0, [0; 2]);
+    let mut by_kernel = Vec::new();
     for (name, model) in gallery() {
         let model = resolved(&model);
         let solve = |execution| Analysis::new(&model).unwrap().executed(execution).run();
@@ -126,6 +132,9 @@ fn measures_and_margins_by_programs_are_those_of_the_kernel() {
         for execution in [Execution::Interpreted, Execution::Compiled] {
             let again = solve(execution);
             by_programs += usize::from(again.motion.effort.by_program > 0);
+            if again.motion.effort.by_program == 0 {
+                by_kernel.push(name.clone());
+            }
             let is_one_motion =
                 states(&again) == states(&right) && sensitivities(&again) == sensitivities(&right);
             of_one_motion += usize::from(is_one_motion);
@@ -161,6 +170,9 @@ fn measures_and_margins_by_programs_are_those_of_the_kernel() {
         }
     }
     assert!(by_programs > 30 && of_one_motion > 5, "{by_programs} {of_one_motion}");
+    by_kernel.dedup();
+    by_kernel.retain(|name| !BY_LAWS.contains(&name.as_str()));
+    assert_eq!(by_kernel, BY_THE_KERNEL);
     // Those that depend on a driver that moves alone, and few others.
     println!("{by_formulas:?}");
     assert!(8 * by_formulas[0] < by_formulas[1], "{by_formulas:?}");
@@ -205,6 +217,38 @@ fn designs_by_programs_are_those_of_the_kernel() {
         }
     }
     assert!(solved > 30, "{solved}");
+}
+
+#[test]
+fn all_that_wheels_do_as_one_driver_moves_is_by_programs_that_of_the_kernel() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models");
+    let axle = std::fs::read_to_string(format!("{folder}/front_axle.toml")).unwrap();
+    let (before, after) = axle.split_once("measures = [\n").unwrap();
+    let (_, after) = after.split_once("]\n").unwrap();
+    let before = before.replace("end = \"front\"", "");
+    for (end, other, reacted) in [
+        ("front", VehicleEnd::Rear, "drive = \"outboard\"\nbrakes = \"inboard\""),
+        ("rear", VehicleEnd::Front, "drive = \"inboard\"\nbrakes = \"outboard\""),
+    ] {
+        let asked = WheelMeasure::ALL.iter().filter(|m| m.needs().depends_on_driver());
+        let asked = asked.filter(|m| m.needs().end() != Some(other)).map(|m| format!("\"{}\"", m.name()));
+        let measures = asked.chain(["\"wheel_travel\"".to_owned()]).collect::<Vec<_>>().join(", ");
+        let spring = "[{ body = \"ground\", at = \"left_damper_top\" }, { body = \"left_lca\", at = \"left_damper_foot\" }]";
+        let text = format!(
+            "{before}end = \"{end}\"\nsteer = \"steering\"\n{reacted}\nspring = {spring}\n\
+             measures = [{measures}]\n{after}"
+        );
+        let (text, _) = text.split_once("[metrics]").unwrap();
+        // An expression asks for a toe that is not among these.
+        let text = text.replace("left.toe - right.toe", "left.wheel_travel - right.wheel_travel")
+            + "\n[time]\nend = 1.0\nsteps = 400\n";
+        let file = hardpoint_file::parse(&text, "axle.toml").unwrap_or_else(|e| panic!("{e}"));
+        for execution in [Execution::Interpreted, Execution::Compiled] {
+            let (worst, steps) = loads_apart(&file.model, execution);
+            println!("{end} {execution:?}: {worst:e}, {steps} of {} by program", file.model.times.len());
+            assert!(worst < CARRIED && steps > 300, "{end} {execution:?}: {worst:e}, {steps} steps");
+        }
+    }
 }
 
 /// Loads divide by pivots as accelerations do.

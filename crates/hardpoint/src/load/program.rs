@@ -8,6 +8,7 @@
 use hardpoint_tape::Number;
 
 use crate::design::DesignMap;
+use crate::measure::{RecordedValue, RecordedValues};
 use crate::model::{ElementId, ElementKind, MeasureKind, Model};
 use crate::motion::kinematics::State;
 use crate::motion::step_program::RecordedStep;
@@ -153,8 +154,14 @@ impl<'a> RecordedLoads<'a> {
         found.push(derivatives);
     }
 
-    /// All of them: how much redundant constraints make of each measure, values, then derivatives variable by variable.
-    pub fn numbers(self) -> Vec<Number> {
-        self.excess.into_iter().chain(self.found.concat()).collect()
+    /// All of them, each with how much redundant constraints make of it.
+    pub fn values(self) -> RecordedValues {
+        let Self { excess, found, .. } = self;
+        let value = |(n, measure): (usize, usize)| RecordedValue {
+            measure,
+            excess: excess[n],
+            numbers: found.iter().map(|found| found[n]).collect(),
+        };
+        RecordedValues(asked(self.model).into_iter().enumerate().map(value).collect())
     }
 }

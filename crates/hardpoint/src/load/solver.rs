@@ -1,8 +1,5 @@
 //! Loads step after step, in one design.
 
-use std::ops::Range;
-
-use crate::blocks::AlignedLanes;
 use crate::design::{DesignMap, Geometry};
 use crate::measure::StepValues;
 use crate::model::{Axes, ElementId, JointId, MeasureKind, Model, PointId, ReactionPart, VariableId};
@@ -207,15 +204,6 @@ impl<'a> LoadSolver<'a> {
                 out.set_d(v, m, d[m]);
             }
         }
-    }
-
-    /// The same of what a program has found in some lanes, in the order in which it is recorded
-    /// ([`RecordedLoads::numbers`]).
-    ///
-    /// [`RecordedLoads::numbers`]: super::program::RecordedLoads::numbers
-    pub fn enter_recorded(&self, found: &[AlignedLanes], lanes: Range<usize>, out: &mut StepValues) {
-        let (excess, found) = found.split_at(self.asked.len());
-        out.take(lanes, excess, found);
     }
 
     /// Their derivatives by a variable, for which the motion has been solved.

@@ -3,30 +3,71 @@
 //! A driver that moves by itself is a direction like a change of the design (`docs/theory.md`, section 7); how the
 //! outcome changes with the design is the second derivative along both.
 
+use hardpoint_tape::{Number, record};
+
 use crate::design::{BodyFixed, DesignMap};
 use crate::model::{
     AxleMeasure, DriverId, GROUND, MeasureKind, Model, VariableId, WheelId, WheelRequirement,
 };
+use crate::motion::kinematics::State;
+use crate::motion::step_program::RecordedStep;
 use crate::motion::stepper::Stepper;
-use crate::number::{Dual, Real};
+use crate::number::{Dual, Real, record as recording};
 use crate::sensitivity::{PairDirection, Seconds};
-use crate::space::Pose;
+use crate::space::{Mat3, Pose, Vec3};
 use crate::topology::Topology;
 
+use super::step_values::{RecordedValue, RecordedValues};
 use super::wheel::{TravellingWheel, axle_roll_centre};
 use super::{Instant, StepValues, bodies_asked_for};
 
-/// Evaluates the measures that depend on a driver, where a stepper is.
-pub(crate) struct Slopes<'a> {
+/// Maximum number of combinations of a driver, a body and a variable for which slopes are recorded: each takes some
+/// hundred operations.
+const MOST_PAIRS: usize = 10_000;
+
+/// Evaluates the measures that depend on a driver, where a stepper is; or records them with a step.
+pub(crate) struct Slopes<'a, T = f64> {
     model: &'a Model,
     drivers: Vec<DriverId>,
     variables: usize,
-    seconds: Seconds,
+    seconds: Seconds<T>,
     /// Per variable, what measures depend on; the last is that of no change.
-    fixed: Vec<BodyFixed<Dual<Dual>>>,
+    fixed: Vec<BodyFixed<Dual<Dual<T>>>>,
     asked_for: Vec<usize>,
     /// Per driver.
-    poses: Vec<Vec<Pose<Dual<Dual>>>>,
+    poses: Vec<Vec<Pose<Dual<Dual<T>>>>>,
+}
+
+/// Drivers that move alone and variables: directions of [`Seconds`], first the drivers, then unit vectors of the
+/// variables; pairs are every driver u with every variable w (15).
+struct Ways {
+    drivers: Vec<DriverId>,
+    variables: usize,
+    directions: Vec<PairDirection>,
+    pairs: Vec<[usize; 2]>,
+}
+
+impl Ways {
+    /// Those of a model, with derivatives by the variables if they are wanted; `None` for a model without such
+    /// measures.
+    fn of(model: &Model, sensitivities: bool) -> Option<Self> {
+        let drivers = drivers_of(model);
+        if drivers.is_empty() {
+            return None;
+        }
+        let variables = if sensitivities { model.variables.len() } else { 0 };
+        let unit = |v: usize| model.alone(VariableId(v), 1.0);
+        let directions = drivers
+            .iter()
+            .map(|d| PairDirection::Driver(*d))
+            .chain((0..variables).map(|v| PairDirection::Design(unit(v))))
+            .collect();
+        let pairs = (0..variables)
+            .flat_map(|v| (0..drivers.len()).map(move |d| (d, v)))
+            .map(|(d, v)| [d, drivers.len() + v])
+            .collect();
+        Some(Self { drivers, variables, directions, pairs })
+    }
 }
 
 impl<'a> Slopes<'a> {
@@ -38,49 +79,92 @@ impl<'a> Slopes<'a> {
         values: &[f64],
         sensitivities: bool,
     ) -> Option<Self> {
-        let model = design_map.model();
-        let mut drivers: Vec<DriverId> =
-            (0..model.measures.len()).flat_map(|k| driver_of(model, k)).flatten().collect();
-        drivers.sort_unstable();
-        drivers.dedup();
-        if drivers.is_empty() {
-            return None;
-        }
-        let variables = if sensitivities { model.variables.len() } else { 0 };
-        let unit = |v: usize| model.alone(VariableId(v), 1.0);
-        let ways = drivers
-            .iter()
-            .map(|d| PairDirection::Driver(*d))
-            .chain((0..variables).map(|v| PairDirection::Design(unit(v))));
-        // Directions: first the drivers, then unit vectors of the variables; pairs: every driver u with every variable
-        // w (15).
-        let ways: Vec<PairDirection> = ways.collect();
-        let pairs: Vec<[usize; 2]> = (0..variables)
-            .flat_map(|v| (0..drivers.len()).map(move |d| (d, v)))
-            .map(|(d, v)| [d, drivers.len() + v])
-            .collect();
-        let fixed = |by: usize| {
-            // With the driver none of it goes (the outer `d` is 0); along the variable what that moves in its body (the
-            // inner `d`).
-            let value = |k: usize| Dual::constant(Dual { v: values[k], d: f64::from(u8::from(k == by)) });
-            let values: Vec<_> = (0..values.len()).map(value).collect();
-            design_map.fixed(&values)
-        };
-        Some(Self {
-            model,
-            seconds: Seconds::new(design_map, topology, values, &ways, &pairs),
-            fixed: (0..variables).chain([usize::MAX]).map(fixed).collect(),
-            asked_for: bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect(),
-            poses: vec![vec![Pose::IDENTITY.spread(); model.bodies.len()]; drivers.len()],
-            variables,
-            drivers,
-        })
+        let ways = Ways::of(design_map.model(), sensitivities)?;
+        let seconds = Seconds::new(design_map, topology, values, &ways.directions, &ways.pairs);
+        Some(Self::along(design_map, values, ways, seconds))
     }
 
     /// Enters what is found at time t, the one that was begun last.
     pub fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, out: &mut StepValues) {
         self.seconds.solve(stepper, t);
-        let state = &stepper.state;
+        let variables = self.variables;
+        let enter = |k, by, x: Dual| if by < variables { out.set_d(by, k, x.d) } else { out.set(k, x.v) };
+        self.measure(&stepper.state, enter);
+    }
+}
+
+impl<'a> Slopes<'a, Number> {
+    /// Records these measures with a step, with derivatives by the variables if they are wanted; `None` where they are
+    /// no arithmetic. The limits are conditions: if any of these is positive, the results are invalid.
+    pub fn record(
+        design_map: &'a DesignMap<'a>,
+        step: &mut RecordedStep<'_>,
+        sensitivities: bool,
+    ) -> Option<(RecordedValues, Vec<Number>)> {
+        let RecordedStep { topology, state, values, .. } = step;
+        let model = design_map.model();
+        let ways = Ways::of(model, sensitivities)?;
+        let seconds = Seconds::recorded(design_map, topology, values, &ways.directions, &ways.pairs)?;
+        let mut slopes = recording::strictly(|| Self::along(design_map, values, ways, seconds));
+        slopes.seconds.solve_at(topology, state);
+        let (variables, mut limits) = (slopes.variables, recording::limits());
+        let zero = Number::constant(0.0);
+        let mut found: Vec<RecordedValue> = Vec::new();
+        slopes.measure(state, |measure, by, x| {
+            let holds = recording::limits();
+            let place = match found.iter().position(|f| f.measure == measure) {
+                Some(place) => place,
+                None => {
+                    found.push(RecordedValue { measure, excess: zero, numbers: vec![zero; 1 + variables] });
+                    found.len() - 1
+                }
+            };
+            let RecordedValue { excess, numbers, .. } = &mut found[place];
+            if matches!(model.measures[measure].kind, MeasureKind::Slope { .. }) {
+                // A formula has another number beyond its limits; ...
+                limits.extend(holds);
+            } else {
+                // ... an instant centre has none at infinity.
+                *excess = holds.into_iter().fold(*excess, Number::larger);
+            }
+            if by < variables {
+                numbers[1 + by] = x.d;
+            } else {
+                numbers[0] = x.v;
+                // What is no number is left to the kernel: a recording has no sign of zero.
+                limits.extend(x.v.known().is_none().then(|| x.v.abs() + -f64::MAX));
+            }
+        });
+        Some((RecordedValues(found), limits))
+    }
+}
+
+impl<'a, T: Real> Slopes<'a, T> {
+    fn along(design_map: &'a DesignMap<'a>, values: &[T], ways: Ways, seconds: Seconds<T>) -> Self {
+        let Ways { drivers, variables, .. } = ways;
+        let model = design_map.model();
+        let fixed = |by: usize| {
+            // With the driver none of it goes (the outer `d` is 0); along the variable what that moves in its body (the
+            // inner `d`).
+            let along = |k: usize| if k == by { T::one() } else { T::zero() };
+            let value = |k: usize| Dual::constant(Dual { v: values[k], d: along(k) });
+            let values: Vec<_> = (0..values.len()).map(value).collect();
+            design_map.fixed(&values)
+        };
+        Self {
+            model,
+            seconds,
+            fixed: (0..variables).chain([usize::MAX]).map(fixed).collect(),
+            asked_for: bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect(),
+            poses: vec![vec![Pose::IDENTITY.spread(); model.bodies.len()]; drivers.len()],
+            variables,
+            drivers,
+        }
+    }
+
+    /// Evaluates all of them at a state that was solved: `found` gets each measure with a variable and the derivative
+    /// by that, and after the last variable with their number and the value.
+    fn measure(&mut self, state: &State<T>, mut found: impl FnMut(usize, usize, Dual<T>)) {
         for by in 0..=self.variables {
             for (d, poses) in self.poses.iter_mut().enumerate() {
                 for &body in &self.asked_for {
@@ -97,11 +181,54 @@ impl<'a> Slopes<'a> {
                 instants: self.poses.iter().map(|p| Instant::new(self.model, &self.fixed[by], p)).collect(),
             };
             for k in (0..self.model.measures.len()).filter(|k| self.model.depends_on_driver(*k)) {
-                let x = alone.measure(self.model, k);
-                if by < self.variables { out.set_d(by, k, x.d) } else { out.set(k, x.v) }
+                found(k, by, alone.measure(self.model, k));
             }
         }
     }
+}
+
+/// Drivers that measures depend on.
+fn drivers_of(model: &Model) -> Vec<DriverId> {
+    let mut drivers: Vec<DriverId> =
+        (0..model.measures.len()).flat_map(|k| driver_of(model, k)).flatten().collect();
+    drivers.sort_unstable();
+    drivers.dedup();
+    drivers
+}
+
+/// Reason why the measures of a model that depend on a driver are not recorded, if they are not.
+pub(crate) fn hindrance(design_map: &DesignMap<'_>) -> Option<&'static str> {
+    let model = design_map.model();
+    let pairs = drivers_of(model).len() * (1 + model.variables.len()) * model.bodies.len();
+    if pairs > MOST_PAIRS {
+        return Some("the program of what single drivers do would be too long");
+    }
+    let slopes = model.measures.iter().filter_map(|m| match m.kind {
+        MeasureKind::Slope { of, over, .. } => Some([of, over]),
+        _ => None,
+    });
+    let outputs: Vec<_> = slopes.flatten().collect();
+    if outputs.is_empty() {
+        return None;
+    }
+    let mut fits = true;
+    recording::begin();
+    record(|| {
+        let number =
+            |x: f64| Dual { v: Dual::constant(Number::input(x)), d: Dual::constant(Number::input(0.0)) };
+        let vector = |v: Vec3| v.map(number);
+        let poses: Vec<_> = model
+            .bodies
+            .iter()
+            .map(|b| Pose { rot: Mat3 { cols: b.frame.rot.cols.map(vector) }, r: vector(b.frame.r) })
+            .collect();
+        let fixed =
+            design_map.fixed(&model.whole(&[])).map(|x| Dual::constant(Dual::constant(Number::constant(x))));
+        outputs.iter().for_each(|output| _ = Instant::new(model, &fixed, &poses).output(*output));
+        fits = recording::is_arithmetic();
+        []
+    });
+    (!fits).then_some("a slope is that of a formula that decides by values")
 }
 
 /// The drivers that a measure depends on, if it does: those of both wheels of an axle may differ.

@@ -3,10 +3,42 @@
 
 use std::ops::Range;
 
-use hardpoint_tape::{LANES, Lanes};
+use hardpoint_tape::{LANES, Lanes, Number};
 
 use crate::blocks::{AlignedLanes, Blocks};
 use crate::model::Model;
+
+/// A measure that was recorded with a step.
+pub(crate) struct RecordedValue {
+    /// Index of the measure.
+    pub measure: usize,
+    /// Condition: if it is positive, the measure is not determined.
+    pub excess: Number,
+    /// Value, then derivatives variable by variable.
+    pub numbers: Vec<Number>,
+}
+
+/// Measures that were recorded with a step.
+#[derive(Default)]
+pub(crate) struct RecordedValues(pub Vec<RecordedValue>);
+
+impl RecordedValues {
+    /// With further ones.
+    pub fn and(mut self, more: Self) -> Self {
+        self.0.extend(more.0);
+        self
+    }
+
+    /// All numbers in the order of [`StepValues::take_recorded`]: the excess of each measure, values, then derivatives
+    /// variable by variable.
+    pub fn numbers(mut self) -> Vec<Number> {
+        self.0.sort_by_key(|found| found.measure);
+        let excess = self.0.iter().map(|found| found.excess);
+        let numbers = self.0.first().map_or(0, |found| found.numbers.len());
+        let found = (0..numbers).flat_map(|n| self.0.iter().map(move |found| found.numbers[n]));
+        excess.chain(found).collect()
+    }
+}
 
 /// Values of the measures that need more of a step than where the bodies are, over a motion, and their derivatives by
 /// the design variables; eight output times side by side.
@@ -67,9 +99,9 @@ impl StepValues {
         }
     }
 
-    /// Adds several output times at once, from these lanes of the results: values of all measures, then derivatives
-    /// variable by variable. A measure is not determined if its `excess` is above zero.
-    pub fn take(&mut self, lanes: Range<usize>, excess: &[AlignedLanes], found: &[AlignedLanes]) {
+    /// Adds several output times at once, from these lanes of the results ([`RecordedValues::numbers`]).
+    pub fn take_recorded(&mut self, found: &[AlignedLanes], lanes: Range<usize>) {
+        let (excess, found) = found.split_at(self.measures.len());
         let to = self.numbers.block_mut(self.steps);
         // Written so that NaN is not known.
         let all_known = excess.iter().all(|excess| excess.0.iter().fold(true, |all, x| all & (*x <= 0.0)));

@@ -337,10 +337,11 @@ const AT_INFINITY: f64 = 1e-2;
 
 /// A component of a turn, for division; NaN where an instant centre seen along it is at infinity.
 fn seen<T: Real>(component: T, turn: Vec3<T>) -> T {
-    if component.value().abs() < AT_INFINITY * turn.norm().value() {
-        T::constant(f64::NAN)
-    } else {
+    // What is recorded takes the turn for granted, and this as its limit.
+    if component.abs().exceeds(turn.norm() * T::constant(AT_INFINITY)) {
         component
+    } else {
+        T::constant(f64::NAN)
     }
 }
 

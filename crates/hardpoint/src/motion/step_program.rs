@@ -58,6 +58,8 @@ pub(crate) struct Purpose {
     pub sensitivities: bool,
     /// True if it works out how far from a singular position the mechanism is.
     pub margins: bool,
+    /// True if it works out the measures that depend on a driver that moves alone.
+    pub slopes: bool,
     /// True if it works out the loads that are requested.
     pub loads: bool,
 }
@@ -74,8 +76,8 @@ pub(crate) struct RecordedExtras {
     pub moved: Vec<(VariableId, BodyId)>,
     /// Pairs of a variable and a row that it could open.
     pub defects: Vec<(VariableId, RowId)>,
-    /// Measures of loads, and their derivatives.
-    pub loads: Vec<Number>,
+    /// Measures of loads and those that depend on a driver that moves alone, and their derivatives.
+    pub measures: Vec<Number>,
 }
 
 /// A step while it is recorded, solved.
@@ -184,7 +186,7 @@ pub(crate) struct Outputs {
     pub blocks: usize,
     pub margins: usize,
     pub defects: usize,
-    pub loads: usize,
+    pub measures: usize,
     pub states: usize,
     derivatives: usize,
 }
@@ -267,8 +269,8 @@ impl StepProgram {
             blocks = recorded.collect::<Vec<_>>();
             fits &= blocks.len() == topology.blocks.len();
 
-            // Outputs, in the order of `Outputs`: channels, what is judged, blocks, margins, defects, loads, bodies,
-            // derivatives.
+            // Outputs, in the order of `Outputs`: channels, what is judged, blocks, margins, defects, measures,
+            // bodies, derivatives.
             let mut out = moves(topology, &channels, &state);
             let bodies = BodyState::all(&state);
             let (margins, mut limits) = match purpose.margins {
@@ -299,18 +301,18 @@ impl StepProgram {
             out.extend(watched.flat_map(|(w, determinant)| [*determinant, w.most * w.least]));
             let margins_at = out.len();
             let defects_at = margins_at + margins.len();
-            let loads = defects_at + more.judged.len();
-            let states = loads + more.loads.len();
+            let measures = defects_at + more.judged.len();
+            let states = measures + more.measures.len();
             places = Some(Outputs {
                 judged,
                 blocks: blocks_at,
                 margins: margins_at,
                 defects: defects_at,
-                loads,
+                measures,
                 states,
                 derivatives: states + bodies.len(),
             });
-            out.extend([margins, more.judged, more.loads, bodies, more.results].concat());
+            out.extend([margins, more.judged, more.measures, bodies, more.results].concat());
             out
         });
         let outputs = places.filter(|_| fits && recording::is_arithmetic())?;

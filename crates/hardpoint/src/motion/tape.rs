@@ -292,10 +292,10 @@ impl Tape {
         &self.outputs[margins..defects]
     }
 
-    /// Measures of loads, then their derivatives variable by variable, if they are worked out.
-    pub fn loads(&self) -> &[AlignedLanes] {
-        let Outputs { loads, states, .. } = self.program.outputs;
-        &self.outputs[loads..states]
+    /// Measures that need more of a step than where the bodies are, with their derivatives, if they are worked out.
+    pub fn measures(&self) -> &[AlignedLanes] {
+        let Outputs { measures, states, .. } = self.program.outputs;
+        &self.outputs[measures..states]
     }
 
     /// Number of values of all bodies but ground, and of their derivatives.
@@ -306,8 +306,8 @@ impl Tape {
 
     /// Defects of all pairs of a variable and a row, with the part that may be round-off; variable by variable.
     pub fn defects(&self) -> impl Iterator<Item = (VariableId, RowId, &[Lanes; 2])> {
-        let Outputs { defects, loads, .. } = self.program.outputs;
-        let found: &[Lanes] = bytemuck::cast_slice(&self.outputs[defects..loads]);
+        let Outputs { defects, measures, .. } = self.program.outputs;
+        let found: &[Lanes] = bytemuck::cast_slice(&self.outputs[defects..measures]);
         let found = found.as_chunks().0;
         self.program.defects.iter().zip(found).map(|(&(variable, row), found)| (variable, row, found))
     }

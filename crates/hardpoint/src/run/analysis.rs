@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 use crate::design::DesignMap;
 use crate::law::Law;
 use crate::load::{self, RecordedLoads};
-use crate::measure::{self, MeasureResults, StepValues};
+use crate::measure::{self, MeasureResults, Slopes, StepValues};
 use crate::model::{BodyId, MeasureKind, Model, SharedModel};
 use crate::motion::execution::{Cache, Runnable};
 use crate::motion::parts::PlanGeometry;
@@ -55,6 +55,8 @@ pub struct Analysis<'m> {
     programs: Arc<Programs>,
     /// The same of measures.
     formulas: Arc<Cache<measure::ProgramKey, measure::MeasureProgram>>,
+    /// Reason why measures need the kernel, if they do: worked out when first requested.
+    kernel: Arc<OnceLock<Option<&'static str>>>,
     /// Once set, whatever is being solved ends at its next output time.
     end: Option<Arc<AtomicBool>>,
 }
@@ -83,6 +85,7 @@ impl<'m> Analysis<'m> {
             between: Arc::default(),
             programs,
             formulas: Arc::default(),
+            kernel: Arc::default(),
             end: None,
         })
     }
@@ -133,7 +136,7 @@ impl<'m> Analysis<'m> {
     pub fn stream(&self, mut run: Run<'_>, sink: &mut impl Sink) -> StreamSummary {
         let design = self.prepare(run.design, run.scope);
         let wanted = self.wanted(std::slice::from_ref(sink));
-        let mut walk = Walk::by_programs(self, &design, wanted, (false, false));
+        let mut walk = Walk::by_programs(self, &design, wanted, (false, false, false));
         let stop = walk.all(sink, &mut *run.progress, |_, _, _, _| ());
         let (steps, effort) = (walk.done, walk.one.effort);
         StreamSummary { steps, admissibility: walk.admissibility(&design.opens), effort, stop }
@@ -198,6 +201,7 @@ impl<'m> Analysis<'m> {
             between: Arc::default(),
             programs: self.programs.clone(),
             formulas: self.formulas.clone(),
+            kernel: self.kernel.clone(),
             end: self.end.clone(),
         }
     }
@@ -235,12 +239,14 @@ impl<'m> Analysis<'m> {
 
     /// Reason why measures need more of a step than programs provide, if they do.
     pub(super) fn needs_kernel(&self) -> Option<&'static str> {
-        let model = self.model();
-        let is_compliance = |k: usize| matches!(model.measures[k].kind, MeasureKind::Compliance { .. });
-        if (0..model.measures.len()).any(|k| model.depends_on_driver(k) || is_compliance(k)) {
-            return Some("measures depend on a driver that moves alone, or say how elastic joints deflect");
-        }
-        if self.asks_for_loads() { load::hindrance(model, &self.topology) } else { None }
+        *self.kernel.get_or_init(|| {
+            let model = self.model();
+            if model.measures.iter().any(|m| matches!(m.kind, MeasureKind::Compliance { .. })) {
+                return Some("measures say how elastic joints deflect");
+            }
+            let of_loads = || load::hindrance(model, &self.topology).filter(|_| self.asks_for_loads());
+            measure::hindrance(&self.design_map).or_else(of_loads)
+        })
     }
 
     /// Program that evaluates these laws at many times, if they are those of the nominal design and it pays.
@@ -320,8 +326,8 @@ impl<'m> Analysis<'m> {
                 let wanted = purpose.sensitivities;
                 let mut loads =
                     purpose.loads.then(|| RecordedLoads::new(&self.design_map, &mut step, wanted));
-                let RecordedStep { topology, state, values, .. } = step;
-                let extras = if purpose.sensitivities {
+                let mut extras = if purpose.sensitivities {
+                    let RecordedStep { topology, state, values, .. } = &mut step;
                     let fields = recording::strictly(|| self.design_map.fields(values));
                     record_derivatives(self.model(), &fields, topology, state, |by| {
                         if let Some(loads) = &mut loads {
@@ -331,7 +337,13 @@ impl<'m> Analysis<'m> {
                 } else {
                     RecordedExtras::default()
                 };
-                Some(RecordedExtras { loads: loads.map_or_else(Vec::new, RecordedLoads::numbers), ..extras })
+                let mut measures = loads.map_or_else(Default::default, RecordedLoads::values);
+                if purpose.slopes {
+                    let (slopes, limits) = Slopes::record(&self.design_map, &mut step, wanted)?;
+                    extras.limits.extend(limits);
+                    measures = measures.and(slopes);
+                }
+                Some(RecordedExtras { measures: measures.numbers(), ..extras })
             };
             StepProgram::record(&one, &self.design_map, purpose, besides, execution)
         })

@@ -188,6 +188,7 @@ impl Analysis<'_> {
                 corrections,
                 sensitivities,
                 margins: false,
+                slopes: false,
                 loads: false,
             };
             self.program(purpose)

@@ -67,7 +67,7 @@ pub(crate) struct Walk<'a> {
 /// Steps that were just solved: one output time, or several by a program, in these of its lanes.
 pub(crate) enum SolvedSteps<'w, 'a> {
     One(&'w mut Stepper<'a>, Option<&'w LoadSolver<'a>>),
-    Abreast(&'w Tape, Range<usize>, Option<&'w LoadSolver<'a>>, Option<&'w TurnCounter<'a>>),
+    Abreast(&'w Tape, Range<usize>, Option<&'w TurnCounter<'a>>),
 }
 
 impl<'a> Walk<'a> {
@@ -95,7 +95,7 @@ impl<'a> Walk<'a> {
         analysis: &'a Analysis<'a>,
         design: &'a PreparedDesign,
         wanted: Vec<bool>,
-        (margins, loads): (bool, bool),
+        (margins, slopes, loads): (bool, bool, bool),
     ) -> Self {
         let mut walk = Self::new(analysis, design, wanted);
         if analysis.programs_pay(design.scope.of_many) {
@@ -103,7 +103,8 @@ impl<'a> Walk<'a> {
                 (walk.solver.is_some(), design.values.iter().any(|v| *v != 0.0));
             let moved: Vec<_> = walk.solver.iter().flat_map(SensitivitySolver::moved).collect();
             let program = move |corrections| {
-                let purpose = Purpose { times: true, any_design, corrections, sensitivities, margins, loads };
+                let purpose =
+                    Purpose { times: true, any_design, corrections, sensitivities, margins, slopes, loads };
                 analysis.program(purpose).filter(|program| program.moved == moved)
             };
             let laws = analysis.laws_program(&design.laws, loads);
@@ -152,12 +153,7 @@ impl<'a> Walk<'a> {
             } else {
                 (count, stop) = self.tell(at_once, progress);
                 let lanes = self.give_abreast(k, count, sink);
-                SolvedSteps::Abreast(
-                    self.abreast.solved(),
-                    lanes,
-                    self.loads.as_ref(),
-                    self.one.turns.as_ref(),
-                )
+                SolvedSteps::Abreast(self.abreast.solved(), lanes, self.one.turns.as_ref())
             };
             then(sink, solved, count, self.solver.as_ref());
             self.done += count;

@@ -101,7 +101,7 @@ impl Analysis<'_> {
         let loads = measures && (self.asks_for_loads() || compliances.is_some());
         let mut walk = match measures && self.needs_kernel().is_some() {
             true => Walk::new(self, design, wanted),
-            false => Walk::by_programs(self, design, wanted, (measures, loads)),
+            false => Walk::by_programs(self, design, wanted, (measures, slopes.is_some(), loads)),
         };
         if loads {
             walk.loads = Some(LoadSolver::new(self.design_map(), topology, &design.values, sensitive));
@@ -147,9 +147,9 @@ impl Analysis<'_> {
                         window.motion.margins.push(margins.at(&one.topology, &one.state));
                     }
                 }
-                SolvedSteps::Abreast(tape, lanes, loads, turns) => {
-                    if let Some(loads) = loads {
-                        loads.enter_recorded(tape.loads(), lanes.clone(), &mut window.slopes);
+                SolvedSteps::Abreast(tape, lanes, turns) => {
+                    if !tape.measures().is_empty() {
+                        window.slopes.take_recorded(tape.measures(), lanes.clone());
                     }
                     tape.coordinates(topology, window.motion.coordinates.block_mut(k));
                     if let Some(turns) = turns {

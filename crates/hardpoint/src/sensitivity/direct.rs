@@ -177,7 +177,9 @@ impl<T: Real> PlanVelocity<T> {
         let kept_rates = field.kept.iter().map(|(_, k)| k.size());
         let laws = field.laws.iter().map(|(.., rate)| rate.abs());
         let shifts = field.shifts.iter().map(|(_, rate)| rate.abs());
-        let scale = markers.chain(kept_rates).chain(laws).chain(shifts).fold(T::zero(), T::larger);
+        // Of a driver it is one number, which is compared with none while pairs are recorded.
+        let scale =
+            markers.chain(kept_rates).chain(laws).chain(shifts).reduce(T::larger).unwrap_or(T::zero());
         let mut drivers: Vec<DriverId> = field.laws.iter().map(|(d, ..)| *d).collect();
         drivers.extend(field.shifts.iter().map(|(d, _)| *d));
         drivers.sort_unstable();

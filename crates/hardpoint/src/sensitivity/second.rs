@@ -13,6 +13,8 @@
 //! | `Seconds::x`, `l` | x^w, l^w | unit twists and wrenches likewise, in place of their rates in time |
 //! | `Pair::w`, `flow.speeds[1]` | W_uw, S_uw | derivative along w of W_u and S_u |
 
+use hardpoint_tape::Number;
+
 use crate::constraint::MarkerPairRates;
 use crate::design::{DesignMap, DesignVelocity};
 use crate::law::Law;
@@ -20,7 +22,7 @@ use crate::model::{DriverId, JointId, Model};
 use crate::motion::kinematics::State;
 use crate::motion::level::turn_twists;
 use crate::motion::stepper::Stepper;
-use crate::number::{Dual, Real};
+use crate::number::{Dual, Real, record as recording};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::{ClosureId, LinkId, RowId, SetBy, Topology};
 
@@ -68,31 +70,31 @@ pub struct BodyCurvature {
 }
 
 /// First-order effect of one direction at one position.
-struct FirstOrder {
-    field: PlanVelocity<f64>,
+struct FirstOrder<T> {
+    field: PlanVelocity<T>,
     /// U = W_u, u = S_u, z = z_u, f = L_u.
     /// Order 0 is the direction; order 1 is how a pair changes that.
-    direct: DirectDifferentiation<f64>,
+    direct: DirectDifferentiation<T>,
     /// Per link, the design twist of its parent's marker; per closure, those of markers i and j.
-    links: Vec<Twist>,
-    closures: Vec<[Twist; 2]>,
+    links: Vec<Twist<T>>,
+    closures: Vec<[Twist<T>; 2]>,
 }
 
-impl FirstOrder {
-    fn new(model: &Model, topology: &Topology, field: PlanVelocity<f64>) -> Self {
+impl<T: Real> FirstOrder<T> {
+    fn new(model: &Model, topology: &Topology, field: PlanVelocity<T>) -> Self {
         let mut direct = DirectDifferentiation::new(model, topology);
         // Along the design even the axes of joints on ground move: x^w = ad(z_w) x.
         direct.flow.ground_stands = false;
         Self {
             field,
             direct,
-            links: vec![Twist::ZERO; topology.links.len()],
-            closures: vec![[Twist::ZERO; 2]; topology.closures.len()],
+            links: vec![Twist::zero(); topology.links.len()],
+            closures: vec![[Twist::zero(); 2]; topology.closures.len()],
         }
     }
 
     /// Solves at a state. Bodies that the direction does not reach stay zero.
-    fn solve(&mut self, topology: &Topology, state: &mut State<f64>) {
+    fn solve(&mut self, topology: &Topology, state: &mut State<T>) {
         // W_u, S_u by (11), and z_u = Ad(X) e_u by (8)
         self.direct.solve_position(topology, state, &self.field);
         for m in self.field.links.iter().filter(|m| m.end == 0) {
@@ -104,18 +106,18 @@ impl FirstOrder {
     }
 
     /// The design twists of the bodies.
-    fn w(&self) -> &[Twist] {
+    fn w(&self) -> &[Twist<T>] {
         &self.direct.flow.twists[0]
     }
 
     /// The twist of the frame that the freedoms of link k start from.
-    fn start(&self, topology: &Topology, k: LinkId) -> Twist {
+    fn start(&self, topology: &Topology, k: LinkId) -> Twist<T> {
         self.w()[topology[k].parent.0] + self.links[k.0]
     }
 
     /// Rates of the markers of a closure.
-    fn ends(&self, topology: &Topology, c: ClosureId) -> MarkerPairRates<f64> {
-        let ([i, j], [z_i, z_j], none) = (topology[c].bodies, self.closures[c.0], Twist::ZERO);
+    fn ends(&self, topology: &Topology, c: ClosureId) -> MarkerPairRates<T> {
+        let ([i, j], [z_i, z_j], none) = (topology[c].bodies, self.closures[c.0], Twist::zero());
         // D_w = W_w + z_w, in place of V; second rates are not requested
         MarkerPairRates { v_i: self.w()[i.0] + z_i, v_j: self.w()[j.0] + z_j, a_i: none, a_j: none }
     }
@@ -123,20 +125,26 @@ impl FirstOrder {
 
 /// Two directions, and how the design changes along the first while it goes along the second.
 #[derive(Clone, Debug)]
-struct Pair {
+struct Pair<T> {
     of: [usize; 2],
-    field: PlanVelocity<Dual>,
+    field: PlanVelocity<Dual<T>>,
     /// Per marker that the field moves at a link, then at a closure: its body-fixed twist, and the derivative of that.
-    links: Vec<[Twist; 2]>,
-    closures: Vec<[Twist; 2]>,
+    links: Vec<[Twist<T>; 2]>,
+    closures: Vec<[Twist<T>; 2]>,
     /// Derivatives of these markers' design twists of the first direction along the second, links first.
-    z: Vec<Twist>,
+    z: Vec<Twist<T>>,
     /// By driver whose law changes along the first direction: its laws a little along the second, and back.
     laws: Vec<(DriverId, [Law; 2])>,
     /// Contribution to the driver's value, at the times set last.
     law_rates: Vec<(DriverId, f64)>,
     /// Derivatives along the second direction of the design twists along the first.
-    w: Vec<Twist>,
+    w: Vec<Twist<T>>,
+}
+
+/// The variables' values, each with its rate along a direction.
+fn along_direction<T: Real>(values: &[T], direction: &PairDirection) -> Vec<Dual<T>> {
+    let speeds = direction.speeds().iter().copied().chain(std::iter::repeat(0.0));
+    values.iter().zip(speeds).map(|(v, d)| Dual { v: *v, d: T::constant(d) }).collect()
 }
 
 /// Laws know their derivatives by a parameter exactly; second derivatives are differences of these over this part of a
@@ -144,12 +152,12 @@ struct Pair {
 const LAW_STEP: f64 = 1e-4;
 
 /// Second derivatives by pairs of directions.
-pub(crate) struct Seconds {
-    firsts: Vec<FirstOrder>,
-    pairs: Vec<Pair>,
+pub(crate) struct Seconds<T = f64> {
+    firsts: Vec<FirstOrder<T>>,
+    pairs: Vec<Pair<T>>,
     /// Per coordinate and row: the derivatives of unit twists and wrenches along a direction.
-    x: Vec<Twist>,
-    l: Vec<Wrench>,
+    x: Vec<Twist<T>>,
+    l: Vec<Wrench<T>>,
 }
 
 impl Seconds {
@@ -161,60 +169,29 @@ impl Seconds {
         directions: &[PairDirection],
         pairs: &[[usize; 2]],
     ) -> Self {
-        let model = design_map.model();
-        let firsts = directions.iter().map(|d| {
-            let field = d.field(design_map, values);
-            FirstOrder::new(model, topology, PlanVelocity::new(topology, &field.with_laws_in_order()))
-        });
+        let field = |d: &PairDirection| d.field(design_map, values).with_laws_in_order();
+        let fields: Vec<DesignVelocity> = directions.iter().map(field).collect();
         let pair = |&[u, w]: &[usize; 2]| {
-            let speeds = directions[w].speeds().iter().copied().chain(std::iter::repeat(0.0));
             // b + eps w with eps^2 = 0: e_u + eps de_u/dw, L_u + eps L_uw, and the same of the laws' parameters
-            let moving: Vec<Dual> = values.iter().zip(speeds).map(|(v, d)| Dual { v: *v, d }).collect();
+            let moving = along_direction(values, &directions[w]);
             let field = directions[u].field(design_map, &moving);
-            let field = PlanVelocity::new(topology, &field);
             let laws = [LAW_STEP, -LAW_STEP].map(|h| {
                 // b + h w and b - h w
                 let moved: Vec<f64> = moving.iter().map(|x| x.v + h * x.d).collect();
                 design_map.laws(&moved)
             });
-            let of_driver = |d: &DriverId| (*d, [laws[0][d.0].clone(), laws[1][d.0].clone()]);
-            let drivers: Vec<DriverId> = field.drivers().collect();
-            Pair {
-                of: [u, w],
-                links: field.links.iter().map(parts).collect(),
-                closures: field.closures.iter().map(parts).collect(),
-                z: Vec::with_capacity(field.links.len() + field.closures.len()),
-                laws: drivers.iter().map(of_driver).collect(),
-                law_rates: drivers.iter().map(|d| (*d, 0.0)).collect(),
-                field,
-                w: vec![Twist::zero(); model.bodies.len()],
-            }
+            Pair::new(design_map.model(), topology, ([u, w], &field), Some(laws))
         };
-        Self {
-            firsts: firsts.collect(),
-            pairs: pairs.iter().map(pair).collect(),
-            x: vec![Twist::ZERO; topology.coordinates.len()],
-            l: vec![Wrench::zero(); topology.rows.len()],
-        }
+        let pairs = pairs.iter().map(pair).collect();
+        Self::of_fields(design_map.model(), topology, &fields, pairs)
     }
 
     /// Solves all pairs where a stepper is, at time t.
     pub fn solve(&mut self, stepper: &mut Stepper<'_>, t: f64) {
         let (topology, state, parts) = (&stepper.topology, &mut stepper.state, &stepper.parts);
-        for first in &mut self.firsts {
-            // Every direction by itself (11); then every pair with what its two directions left (15).
-            first.field.set_time(|d| parts.law_of(d.0), t);
-            first.solve(topology, state);
-        }
-        // Derivatives along a direction, in the place of those along the time.
-        std::mem::swap(&mut self.x, &mut state.x[1]);
-        std::mem::swap(&mut self.l, &mut state.l[1]);
-        for pair in &mut self.pairs {
-            pair.set_time(t);
-            pair.solve(topology, state, &mut self.firsts);
-        }
-        std::mem::swap(&mut self.x, &mut state.x[1]);
-        std::mem::swap(&mut self.l, &mut state.l[1]);
+        self.firsts.iter_mut().for_each(|first| first.field.set_time(|d| parts.law_of(d.0), t));
+        self.pairs.iter_mut().for_each(|pair| pair.set_time(t));
+        self.solve_at(topology, state);
     }
 
     /// Defects of the redundant rows under a direction alone, where [`solve`](Self::solve) was called last; none where
@@ -228,25 +205,6 @@ impl Seconds {
         }
     }
 
-    /// Number of pairs.
-    pub fn len(&self) -> usize {
-        self.pairs.len()
-    }
-
-    /// A body's pose, and its derivatives along the directions of pair p: `v.d` along the second, `d.v` along
-    /// the first, `d.d` along both.
-    pub fn pose(&self, state: &State<f64>, p: usize, body: usize) -> Pose<Dual<Dual>> {
-        let pair = &self.pairs[p];
-        let [u, w] = pair.of.map(|k| self.firsts[k].w()[body]);
-        with_twists(state.pose[body], u, w, pair.w[body])
-    }
-
-    /// The same for one direction alone: `d.v` along it, and nothing along a second.
-    pub fn pose_along(&self, state: &State<f64>, direction: usize, body: usize) -> Pose<Dual<Dual>> {
-        let u = self.firsts[direction].w()[body];
-        with_twists(state.pose[body], u, Twist::ZERO, Twist::ZERO)
-    }
-
     /// Second derivatives of a body's position by pair p.
     pub fn curvature(&self, state: &State<f64>, p: usize, body: usize) -> BodyCurvature {
         let pair = &self.pairs[p];
@@ -257,9 +215,84 @@ impl Seconds {
     }
 }
 
+impl Seconds<Number> {
+    /// For these pairs of directions while a step is recorded; `None` where a law changes, which no program knows.
+    pub fn recorded(
+        design_map: &DesignMap<'_>,
+        topology: &Topology,
+        values: &[Number],
+        directions: &[PairDirection],
+        pairs: &[[usize; 2]],
+    ) -> Option<Self> {
+        let fields: Vec<_> =
+            recording::strictly(|| directions.iter().map(|d| d.field(design_map, values)).collect());
+        let pair = |&[u, w]: &[usize; 2]| {
+            let moving = along_direction(values, &directions[w]);
+            let field = recording::strictly(|| directions[u].field(design_map, &moving));
+            Pair::new(design_map.model(), topology, ([u, w], &field), None)
+        };
+        let pairs = pairs.iter().map(pair).collect();
+        let mut seconds = Self::of_fields(design_map.model(), topology, &fields, pairs);
+        seconds.firsts.iter_mut().for_each(|first| first.field.set_shifts());
+        seconds.firsts.iter().all(|first| first.field.is_constant()).then_some(seconds)
+    }
+}
+
+impl<T: Real> Seconds<T> {
+    fn of_fields(
+        model: &Model,
+        topology: &Topology,
+        fields: &[DesignVelocity<T>],
+        pairs: Vec<Pair<T>>,
+    ) -> Self {
+        let first = |field| FirstOrder::new(model, topology, PlanVelocity::new(topology, field));
+        Self {
+            firsts: fields.iter().map(first).collect(),
+            pairs,
+            x: vec![Twist::zero(); topology.coordinates.len()],
+            l: vec![Wrench::zero(); topology.rows.len()],
+        }
+    }
+
+    /// Solves all pairs at a state, where the times of all laws are set.
+    pub fn solve_at(&mut self, topology: &Topology, state: &mut State<T>) {
+        for first in &mut self.firsts {
+            // Every direction by itself (11); then every pair with what its two directions left (15).
+            first.solve(topology, state);
+        }
+        // Derivatives along a direction, in the place of those along the time.
+        std::mem::swap(&mut self.x, &mut state.x[1]);
+        std::mem::swap(&mut self.l, &mut state.l[1]);
+        for pair in &mut self.pairs {
+            pair.solve(topology, state, &mut self.firsts);
+        }
+        std::mem::swap(&mut self.x, &mut state.x[1]);
+        std::mem::swap(&mut self.l, &mut state.l[1]);
+    }
+
+    /// Number of pairs.
+    pub fn len(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// A body's pose, and its derivatives along the directions of pair p: `v.d` along the second, `d.v` along
+    /// the first, `d.d` along both.
+    pub fn pose(&self, state: &State<T>, p: usize, body: usize) -> Pose<Dual<Dual<T>>> {
+        let pair = &self.pairs[p];
+        let [u, w] = pair.of.map(|k| self.firsts[k].w()[body]);
+        with_twists(state.pose[body], u, w, pair.w[body])
+    }
+
+    /// The same for one direction alone: `d.v` along it, and nothing along a second.
+    pub fn pose_along(&self, state: &State<T>, direction: usize, body: usize) -> Pose<Dual<Dual<T>>> {
+        let u = self.firsts[direction].w()[body];
+        with_twists(state.pose[body], u, Twist::zero(), Twist::zero())
+    }
+}
+
 /// The body-fixed twist of a marker that moves, and the derivative of that.
-fn parts<At>(m: &MovingMarker<Dual, At>) -> [Twist; 2] {
-    let part = |part: fn(Dual) -> f64| Twist { w: m.e.w.map(part), v: m.e.v.map(part) };
+fn parts<T: Real, At>(m: &MovingMarker<Dual<T>, At>) -> [Twist<T>; 2] {
+    let part = |part: fn(Dual<T>) -> T| Twist { w: m.e.w.map(part), v: m.e.v.map(part) };
     [part(|x| x.v), part(|x| x.d)]
 }
 
@@ -270,10 +303,15 @@ pub(crate) fn along(direction: &[f64]) -> Vec<(crate::model::VariableId, f64)> {
 }
 
 /// A pose with its derivatives: by the twists along u, along w, and the derivative along w of that along u.
-fn with_twists(Pose { rot, r }: Pose, u: Twist, w: Twist, uw: Twist) -> Pose<Dual<Dual>> {
+fn with_twists<T: Real>(
+    Pose { rot, r }: Pose<T>,
+    u: Twist<T>,
+    w: Twist<T>,
+    uw: Twist<T>,
+) -> Pose<Dual<Dual<T>>> {
     // e_u = W_u,w x e,    e_w = W_w,w x e,    e_uw = W_uw,w x e + W_u,w x e_w  of an axis e; r_uw by (16)
     let (r_u, r_w) = (u.at(r), w.at(r));
-    let column = |e: Vec3| {
+    let column = |e: Vec3<T>| {
         let (e_u, e_w) = (u.w.cross(e), w.w.cross(e));
         number([e, e_u, e_w, uw.w.cross(e) + u.w.cross(e_w)])
     };
@@ -281,12 +319,37 @@ fn with_twists(Pose { rot, r }: Pose, u: Twist, w: Twist, uw: Twist) -> Pose<Dua
 }
 
 /// A vector with its derivatives along u, along w, and along both.
-fn number([v, u, w, uw]: [Vec3; 4]) -> Vec3<Dual<Dual>> {
+fn number<T: Real>([v, u, w, uw]: [Vec3<T>; 4]) -> Vec3<Dual<Dual<T>>> {
     let component = |v, u, w, uw| Dual { v: Dual { v, d: w }, d: Dual { v: u, d: uw } };
     Vec3::new(component(v.x, u.x, w.x, uw.x), component(v.y, u.y, w.y, uw.y), component(v.z, u.z, w.z, uw.z))
 }
 
-impl Pair {
+impl<T: Real> Pair<T> {
+    /// For these two directions, with the field of the first along the second; `laws` are those of all drivers, a
+    /// little along the second and back, where any may change.
+    fn new(
+        model: &Model,
+        topology: &Topology,
+        (of, field): ([usize; 2], &DesignVelocity<Dual<T>>),
+        laws: Option<[Vec<Law>; 2]>,
+    ) -> Self {
+        let field = PlanVelocity::new(topology, field);
+        let drivers: Vec<DriverId> = field.drivers().collect();
+        Self {
+            of,
+            links: field.links.iter().map(parts).collect(),
+            closures: field.closures.iter().map(parts).collect(),
+            z: Vec::with_capacity(field.links.len() + field.closures.len()),
+            laws: laws.map_or_else(Vec::new, |laws| {
+                let of_driver = |d: &DriverId| (*d, [0, 1].map(|way| laws[way][d.0].clone()));
+                drivers.iter().map(of_driver).collect()
+            }),
+            law_rates: drivers.iter().map(|d| (*d, 0.0)).collect(),
+            field,
+            w: vec![Twist::zero(); model.bodies.len()],
+        }
+    }
+
     /// Differences of the laws' exact derivatives.
     fn set_time(&mut self, t: f64) {
         let Self { field, laws, law_rates, .. } = self;
@@ -297,13 +360,14 @@ impl Pair {
         }
     }
 
-    fn law_rate(&self, driver: DriverId) -> f64 {
-        self.law_rates.iter().find(|(d, _)| *d == driver).map_or(0.0, |(_, rate)| *rate)
+    fn law_rate(&self, driver: DriverId) -> T {
+        let of_driver = self.law_rates.iter().find(|(d, _)| *d == driver);
+        of_driver.map_or(T::zero(), |(_, rate)| T::constant(*rate))
     }
 
     /// (24) of `docs/theory.md` with n = 1, but differentiated along w: what u does is known, and changes by `W_uw` and
     /// `S_uw` (15).
-    fn solve(&mut self, topology: &Topology, state: &mut State<f64>, firsts: &mut [FirstOrder]) {
+    fn solve(&mut self, topology: &Topology, state: &mut State<T>, firsts: &mut [FirstOrder<T>]) {
         let ([u, w], reach) = (self.of, &self.field.reach);
         let first = &firsts[w];
         let in_blocks = reach.blocks.iter().flat_map(|&b| topology[b].link_ids());
@@ -323,7 +387,7 @@ impl Pair {
             }
         }
         // z_u^w = ad(W_w) z_u + Ad(X) de_u/dw
-        let carried = |body: usize, [e, de]: [Twist; 2]| {
+        let carried = |body: usize, [e, de]: [Twist<T>; 2]| {
             let pose = state.pose[body];
             first.w()[body].ad(pose.carry(e)) + pose.carry(de)
         };
@@ -333,7 +397,7 @@ impl Pair {
         let (z_links, z_closures) = self.z.split_at(self.links.len());
         let flow = &mut firsts[u].direct.flow;
         for k in links {
-            flow.moves[1][k.0] = Twist::ZERO;
+            flow.moves[1][k.0] = Twist::zero();
             for c in topology[k].coordinates() {
                 if let SetBy::Driver(d) = topology[c].set_by {
                     // S_uw of a driven coordinate
@@ -346,7 +410,7 @@ impl Pair {
         }
         for &c in &reach.closures {
             // rhs = L_uw - l^w . (D_u,j - D_u,i) - l . (z_u,j^w - z_u,i^w), the middle by `Flow::solve`            (15)
-            flow.ask(topology, c, topology[c].driver.map_or(0.0, |d| self.law_rate(d)));
+            flow.ask(topology, c, topology[c].driver.map_or(T::zero(), |d| self.law_rate(d)));
         }
         for (m, &z) in self.field.closures.iter().zip(z_closures) {
             flow.move_end(topology, (m.at, m.end), z, &state.l[0]);
