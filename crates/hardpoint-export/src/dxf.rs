@@ -1,4 +1,4 @@
-//! DXF: hardpoints as points with their names, bodies as lines between their places.
+//! DXF: hardpoints as points with their names, bodies as lines between their points.
 
 use hardpoint::joint::Quantity;
 use hardpoint::space::Vec3;
@@ -12,13 +12,13 @@ mod drawing;
 
 use drawing::{Drawing, number, point, single_line};
 
-/// See the module.
+/// DXF format.
 pub const FORMAT: Format =
     Format { name: "dxf", about: "skeleton of hardpoints and bodies as DXF", endings: &["dxf"], write };
 
-/// The layer of hardpoints and their names.
+/// Layer of the hardpoints and their names.
 const HARDPOINTS: &str = "hardpoints";
-/// The height of names, as a part of the mechanism's size.
+/// Text height of the names, as a fraction of the mechanism size.
 const TEXT: f64 = 0.015;
 
 fn write(file: &ModelFile, out: &mut ExportedModel) {

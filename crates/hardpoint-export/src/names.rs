@@ -1,4 +1,4 @@
-//! Names without what other formats cannot hold.
+//! Replacement of characters that other formats do not support in names.
 
 use std::collections::HashSet;
 
@@ -6,8 +6,9 @@ use hardpoint_file::ModelFile;
 
 use crate::ExportedModel;
 
-/// The file with names that every format can hold, where some of its own cannot be: control characters, which XML has
-/// no way to write, and which would begin new lines elsewhere. What is written otherwise is named.
+/// Returns a copy of the file with names that every format supports, or `None` if no name has to change. Control
+/// characters are replaced: XML cannot represent them, and elsewhere they would begin new lines. Every changed name is
+/// reported.
 pub fn neutral(file: &ModelFile, out: &mut ExportedModel) -> Option<ModelFile> {
     let model = &file.model;
     let names = model.bodies.iter().map(|b| &b.name).chain(model.joints.iter().map(|j| &j.name));
@@ -25,7 +26,7 @@ pub fn neutral(file: &ModelFile, out: &mut ExportedModel) -> Option<ModelFile> {
     Some(file)
 }
 
-/// Returns whether a character may stand in a name of any format.
+/// Returns true if every format supports the character in names.
 fn fits(c: char) -> bool {
     // XML 1.0 has neither control characters nor these two.
     !c.is_control() && !['\u{fffe}', '\u{ffff}'].contains(&c)
@@ -35,7 +36,7 @@ fn is_held(name: &str) -> bool {
     name.chars().all(fits)
 }
 
-/// Writes names of one kind so that they fit, and stay different.
+/// Replaces unsupported characters in names of one kind, and keeps the names unique.
 fn written<'n>(kind: &'static str, names: impl Iterator<Item = &'n mut String>, out: &mut ExportedModel) {
     let names: Vec<&mut String> = names.collect();
     let mut taken: HashSet<String> = names.iter().filter(|n| is_held(n)).map(|n| (*n).clone()).collect();

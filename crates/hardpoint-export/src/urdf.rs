@@ -1,4 +1,4 @@
-//! URDF: the tree, mimic joints, loops as `loop_joint`.
+//! URDF: tree joints, couplers as mimic joints, loops as `loop_joint`.
 
 use std::fmt::Write;
 
@@ -7,15 +7,15 @@ use hardpoint_file::ModelFile;
 use crate::skeleton::{Carrier, Skeleton, axis, followers, places};
 use crate::{ExportedModel, Format, escaped, numbers};
 
-/// See the module.
+/// URDF format.
 pub const FORMAT: Format =
     Format { name: "urdf", about: "URDF robot description", endings: &["urdf"], write };
 
-/// Types of joints, and what URDF calls them.
+/// Types of tree joints, with their names in URDF.
 const TYPES: [(&str, &str); 4] =
     [("revolute", "continuous"), ("translational", "prismatic"), ("fixed", "fixed"), ("planar", "planar")];
 
-/// Types that can close a loop.
+/// Joint types that can close a loop (cut joints).
 const CLOSE: [&str; 5] = ["spherical", "revolute", "translational", "fixed", "planar"];
 
 fn write(file: &ModelFile, out: &mut ExportedModel) {
@@ -56,7 +56,7 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
             let _ = writeln!(text, "    <axis xyz=\"{}\"/>", numbers(axis.to_array()));
         }
         if kind == "prismatic" {
-            // Required there; without limits of the model's own it says nothing.
+            // URDF requires a limit; this one is not effective.
             text += "    <limit lower=\"-1e9\" upper=\"1e9\" effort=\"1e9\" velocity=\"1e9\"/>\n";
         }
         for (n, f) in follow.iter().filter(|f| f.own == k).enumerate() {

@@ -15,7 +15,7 @@ use crate::report::{ImportLog, SourceSpan};
 use crate::turn::{from_z_and_x, home, sequence};
 use crate::{Format, Input};
 
-/// See the module.
+/// Adams/Solver format.
 pub const FORMAT: Format = Format {
     name: "adams",
     about: "Adams/Solver dataset",
@@ -72,7 +72,7 @@ fn read(source: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     (m.bodies.len() > 1).then_some(m)
 }
 
-/// The factor of lengths, the length unit of the model, and the time of functions.
+/// Returns the factor of lengths, the length unit of the model, and the time of functions in seconds.
 fn units(statements: &[Statement], notes: &mut ImportLog) -> (f64, &'static str, &'static str) {
     let mut out = (1.0, "mm", "t");
     let Some(units) = statements.iter().find(|s| s.name == "UNITS") else {
@@ -122,8 +122,8 @@ fn units(statements: &[Statement], notes: &mut ImportLog) -> (f64, &'static str,
     out
 }
 
-/// Points of time and way over the first second, of a rate of this order: Simpson's rule in steps much shorter than the
-/// points' distance.
+/// Integrates a rate of order 1 or 2 over the first second and returns points `[time, displacement]`. Uses Simpson's
+/// rule with steps much shorter than the distance of the points.
 fn summed(text: &str, order: usize, scale: f64, begin: f64, rate: f64) -> Result<Vec<[f64; 2]>, String> {
     const POINTS: usize = 200;
     const STEPS: usize = 10;
@@ -159,20 +159,20 @@ struct Reader<'n> {
     time: &'static str,
     parts: BTreeMap<String, usize>,
     markers: BTreeMap<String, Marker>,
-    /// Markers that could not be read.
+    /// Identifiers of markers with errors.
     faulty: BTreeSet<String>,
-    /// Joints that no model file can say.
+    /// Identifiers of joints that are not supported.
     refused: BTreeSet<String>,
-    /// Markers whose place is not in the file.
+    /// Identifiers of markers without a position in the file.
     unplaced: BTreeSet<String>,
     joints: BTreeMap<String, MarkerJoint>,
     splines: BTreeMap<String, Vec<[f64; 2]>>,
-    /// Functions of variables.
+    /// Functions of VARIABLE statements, by identifier.
     variables: BTreeMap<String, String>,
 }
 
 impl Reader<'_> {
-    /// A frame by its origin and its orientation: Euler angles, or points on its z and x axes.
+    /// Reads a frame from its origin and its orientation: Euler angles, or points on its z and x axes.
     fn frame(&mut self, s: &Statement, origin: &str, along_z: &str, along_x: &str) -> Pose {
         let r = s.vector(origin, self.notes).unwrap_or_else(|| [0.0; 3].into());
         let angles = s.vector("REULER", self.notes).or_else(|| s.vector("EULER", self.notes));
@@ -186,7 +186,8 @@ impl Reader<'_> {
         Pose { rot, r: r * self.scale }
     }
 
-    /// The orientation by a point on the z axis and one in the xz plane; with `USEXP` the other way round.
+    /// Returns the orientation from a point on the z axis and a point in the xz plane. With `USEXP`, the x axis is
+    /// exact instead.
     fn pointed(&mut self, s: &Statement, z: Option<Vec3>, x: Option<Vec3>) -> Mat3 {
         let found = match (z, x) {
             (None, None) => return home().rot,
@@ -301,7 +302,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The markers of a statement: Adams' J first, against which Adams' I moves.
+    /// Returns the markers of a statement as bodies i and j: Adams' J first, relative to which Adams' I moves.
     fn pair(&mut self, s: &Statement) -> Option<[Marker; 2]> {
         let unplaced = |key: &&str| s.reference(key).is_some_and(|id| self.unplaced.contains(id));
         if let Some(key) = ["I", "J"].into_iter().find(unplaced) {
@@ -317,7 +318,7 @@ impl Reader<'_> {
             let id = s.reference(key);
             match id.and_then(|id| self.markers.get(id)) {
                 Some(marker) => found.push(*marker),
-                // That is reported already.
+                // The marker has been reported.
                 None if id.is_some_and(|id| self.faulty.contains(id)) => {}
                 None => {
                     let what = id.map_or(format!("has no `{key}`"), |id| {
@@ -365,7 +366,7 @@ impl Reader<'_> {
         if s.has("RACKPIN") {
             return;
         }
-        // Words may be cut short as far as they are clear.
+        // Keywords may be abbreviated as long as they are unambiguous.
         let written = s.keys.iter().filter(|(k, v)| v.is_empty() && k.len() >= SHORTEST).map(|(k, _)| k);
         let kind =
             written.into_iter().find_map(|k| KINDS.iter().find(|(name, _)| name.starts_with(k.as_str())));
@@ -375,7 +376,8 @@ impl Reader<'_> {
         };
         let Some(mut markers) = self.pair(s) else { return };
         if *name == "HOOKE" {
-            // The cross turns about x of I and about y of J; what else is drawn square is taken where these are not.
+            // The pins of the cross are x of I and y of J. If these are not perpendicular, another perpendicular pair
+            // is used.
             let [j, i] = markers;
             let pins = [(j.y(), i.x()), (j.x(), i.y()), (j.x(), i.x()), (j.y(), i.y())];
             let square = pins.iter().find(|(a, b)| a.dot(*b).abs() < 1e-6).unwrap_or(&pins[0]);
@@ -422,7 +424,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Couples the slide of the rack's part with the hinge of the pinion's, by rolling where the markers are.
+    /// Couples the slide of the rack with the hinge of the pinion; the contact follows from the positions of the
+    /// markers.
     fn rack_and_pinion(&mut self, s: &Statement) {
         let Some([rack, pinion]) = self.pair(s) else { return };
         let diameter =
@@ -565,14 +568,13 @@ impl Reader<'_> {
         }
     }
 
-    /// A function with those of the variables that it names in their place: `VARVAL(3)`. What names itself stays as it
-    /// is.
+    /// Expands references to variables (`VARVAL(3)`) in a function. Recursive references remain.
     fn written_out(&self, function: &str) -> String {
         const DEEPEST: usize = 8;
         const LONGEST: usize = 100_000;
         let mut text = function.to_owned();
         for _ in 0..DEEPEST {
-            // Letters of other alphabets would move in capitals.
+            // Upper-case forms of non-ASCII letters can differ in length.
             let Some(start) = text.to_ascii_uppercase().find("VARVAL") else { break };
             let inner = text[start..].find('(').zip(text[start..].find(')'));
             let Some((open, close)) = inner.filter(|(open, close)| open < close) else { break };
@@ -584,14 +586,14 @@ impl Reader<'_> {
         text
     }
 
-    /// A function as the law of a coordinate, counted from the drawing.
+    /// Converts a function to the law of a coordinate, relative to the design configuration.
     fn law(&self, function: &str, scale: f64, drawn: f64, turns: bool) -> Result<Law, String> {
         let drawn = if drawn.abs() < 1e-12 { 0.0 } else { drawn };
         let said = |text: &str| {
             let text = text.trim().trim_matches(['\'', '"']);
             law::translate_with(text, Language::Adams, self.time)
         };
-        // A continued function: the comma at the beginning of a line only continues it, or is one of its own.
+        // The comma at the beginning of a continuation line either marks the continuation or is part of the function.
         let readings = [" ", ","].map(|seam| function.replace(SEAM, seam));
         if let Some(points) = readings.iter().find_map(|text| self.through_spline(text)) {
             return Ok(Law::Table(points.iter().map(|[t, x]| [*t, x * scale - drawn]).collect()));
@@ -602,8 +604,8 @@ impl Reader<'_> {
         if law::constant(&text) == Some(0.0) { Ok(Law::Held) } else { Ok(Law::Text(text)) }
     }
 
-    /// Law with a given velocity (order 1) or acceleration (order 2): an expression if that is constant, otherwise a
-    /// table.
+    /// Law of a prescribed velocity (order 1) or acceleration (order 2): an expression if the rate is constant,
+    /// otherwise a table.
     fn integral(
         &mut self,
         s: &Statement,
@@ -617,7 +619,7 @@ impl Reader<'_> {
         let text =
             law::translate_with(function.trim().trim_matches(['\'', '"']), Language::Adams, self.time)?;
         let mut first = |key: &str| s.numbers(key, self.notes).and_then(|list| list.first().copied());
-        // Where it starts: as it is said, or else in the design configuration.
+        // The initial value is that of ICDISP, or otherwise that of the design configuration.
         let [start, rate] = [first("ICDISP"), first("ICVEL")];
         let per_second = self.per_second().powi(order as i32);
         let begin = start.map_or(0.0, |x| x * scale - drawn);
@@ -632,7 +634,7 @@ impl Reader<'_> {
         Ok(if begin == 0.0 { Law::Text(text) } else { Law::Text(counted(&text, -begin, turns)) })
     }
 
-    /// Number of the source's units of time a second has.
+    /// Number of time units of the source per second.
     fn per_second(&self) -> f64 {
         law::translate_with("time", Language::Adams, self.time)
             .ok()
@@ -640,7 +642,7 @@ impl Reader<'_> {
             .map_or(1.0, |law| law.at(1.0).0[0])
     }
 
-    /// `a*AKISPL(TIME, 0, id) + b` and the like: the spline's points.
+    /// Returns the points of a function that is linear in a spline of the time, such as `a*AKISPL(TIME, 0, id) + b`.
     fn through_spline(&self, function: &str) -> Option<Vec<[f64; 2]>> {
         let lower = function.to_ascii_lowercase();
         let start = ["akispl", "cubspl", "intspl"].iter().find_map(|name| lower.find(name))?;
@@ -709,7 +711,7 @@ impl Reader<'_> {
                 );
                 return;
             };
-            // Scales are for the source's lengths; angles are in rad on both sides.
+            // Scales refer to lengths of the source; angles are in rad on both sides.
             let factor = if turns { *scale } else { scale / self.scale };
             terms.push((Coordinate { joint: joint.number, name }, factor));
         }
@@ -717,7 +719,7 @@ impl Reader<'_> {
         self.notes.taken("COUPLER", &s.label, Some(s.at));
     }
 
-    /// Both joints give the common point, of marker CV, the same velocity along its z axis.
+    /// Adds a gear: both joints have the same velocity of the common point (marker CV) along its z axis.
     fn gear(&mut self, s: &Statement) {
         let names: Vec<&str> =
             s.text("JOINTS").unwrap_or_default().split([',', ':', SEAM]).map(str::trim).collect();
@@ -736,7 +738,7 @@ impl Reader<'_> {
             return;
         };
         let speed = |k: &MarkerJoint| {
-            // Of the part that is not the carrier, against the carrier.
+            // Velocity of the gear relative to the carrier.
             let sign = if k.markers[1].body == cv.body { -1.0 } else { 1.0 };
             let z = k.markers[0].z();
             let slides = k.kind == "translational";
@@ -760,9 +762,9 @@ impl Reader<'_> {
         self.notes.taken("GEAR", &s.label, Some(s.at));
     }
 
-    /// Lists the keys of a statement that are not known here: unknown is not irrelevant.
+    /// Reports the keys of a statement that the reader does not know. These may affect the motion.
     fn unknown_keys(&mut self, s: &Statement) {
-        // What a joint's own friction is made of moves nothing that is driven.
+        // Friction of a joint does not affect prescribed motions.
         const FRICTION: &[&str] = &[
             "FRICTION",
             "MU_STATIC",
@@ -797,7 +799,7 @@ impl Reader<'_> {
             "X_PIN",
             "Y_PIN",
         ];
-        // Velocities at the start belong to motions that follow from forces.
+        // Initial velocities belong to dynamic motions.
         const SPEEDS: &[&str] = &["VX", "VY", "VZ", "WX", "WY", "WZ", "VM", "WM"];
         let (known, irrelevant): (&[&str], &[&str]) = match s.name.as_str() {
             "JOINT" => (
@@ -897,7 +899,7 @@ impl Reader<'_> {
         }
     }
 
-    /// All that is neither mechanism nor force.
+    /// Reports all statements that are neither part of the mechanism nor forces.
     fn rest(&mut self, statements: &[Statement], loads: &BTreeSet<(String, String)>) {
         const DONE: [&str; 10] = [
             "PART",
@@ -912,7 +914,7 @@ impl Reader<'_> {
             "UNITS",
         ];
         const HOLD: [&str; 8] = ["PTCV", "CVCV", "PTSF", "CURVE", "UCON", "GCON", "SURFACE", "NFORCE"];
-        // Statements that do not concern how parts move, as far as the motion is driven.
+        // Statements without effect on prescribed motions.
         const IRRELEVANT: &[&str] = &[
             "ACCGRAV",
             "ADAMS",

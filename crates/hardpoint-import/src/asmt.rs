@@ -1,5 +1,5 @@
-//! Assemblies of OndselSolver (`.asmt`), which FreeCAD's Assembly workbench solves with and exports; with the motion
-//! stored in them.
+//! Assemblies of OndselSolver (`.asmt`), the solver and export format of FreeCAD's Assembly workbench, with the stored
+//! motion.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use crate::series::{Series, StoredPose};
 use crate::turn::{home, none, sequence};
 use crate::{Format, Input};
 
-/// See the module.
+/// Ondsel format.
 pub const FORMAT: Format = Format {
     name: "asmt",
     about: "Ondsel assembly",
@@ -29,18 +29,19 @@ pub const FORMAT: Format = Format {
     binary: false,
 };
 
-/// Lines are nested so deep at most.
+/// Maximum depth of nested lines.
 const DEEPEST: usize = 64;
-/// Maximum number of output times; more are requested in no file.
+/// Maximum number of output times.
 const MOST_TIMES: f64 = 100_000.0;
 
-/// Parts that are stored nearer than this to where they are drawn, in the file's unit and rad, are not moved.
+/// Parts whose stored pose differs by less than this from the drawn one, in the unit of the file and rad, are not
+/// moved.
 const OFF: f64 = 1e-12;
 
-/// Lines as they are, and where they stand.
+/// Lines with their positions.
 type Lines<'t> = Vec<(&'t str, SourceSpan)>;
 
-/// A line and what is indented under it.
+/// Line with the lines indented below it.
 #[derive(Debug)]
 struct Node<'t> {
     text: &'t str,
@@ -53,7 +54,7 @@ impl<'t> Node<'t> {
         self.children.iter().find(|c| c.text == name)
     }
 
-    /// The text on the line below a heading.
+    /// Returns the text on the line below a heading.
     fn value(&self, name: &str) -> Option<(&'t str, SourceSpan)> {
         let below = self.child(name)?.children.first()?;
         Some((below.text, below.at))
@@ -63,7 +64,7 @@ impl<'t> Node<'t> {
         self.value("Name").map_or("", |(name, _)| name)
     }
 
-    /// Numbers on the lines below a heading.
+    /// Returns the numbers on the lines below a heading.
     fn numbers<const N: usize>(&self, name: &str, notes: &mut ImportLog) -> Option<[f64; N]> {
         let list = self.child(name)?;
         let words = list.children.iter().flat_map(|c| c.text.split_whitespace());
@@ -84,14 +85,14 @@ impl<'t> Node<'t> {
         exact
     }
 
-    /// A frame by its position and its rotation matrix; home where none is given.
+    /// Returns the frame with its position and rotation matrix; the identity if none is given.
     fn pose(&self, notes: &mut ImportLog) -> Pose {
         let r = self.numbers::<3>("Position3D", notes).unwrap_or_default();
         let rows = self.numbers::<9>("RotationMatrix", notes);
         let rot = rows.map_or_else(none, |[a, b, c, d, e, f, g, h, i]| Mat3 {
             cols: [[a, d, g].into(), [b, e, h].into(), [c, f, i].into()],
         });
-        // What has six digits is no rotation yet.
+        // Matrices with six digits have to be orthonormalised.
         let q = hardpoint::space::Quat::from_rotation(rot).to_array();
         let square = crate::turn::quaternion(q);
         let off = (0..3).map(|k| (rot.cols[k].norm() - 1.0).abs()).fold(0.0, f64::max);
@@ -106,7 +107,7 @@ impl<'t> Node<'t> {
     }
 }
 
-/// A number; C++ may have written `1.0d`, Smalltalk does.
+/// Reads a number; Smalltalk, and some C++ code, writes `1.0d`.
 fn number(word: &str) -> Option<f64> {
     let word = word.strip_suffix(['d', 'D']).unwrap_or(word);
     word.parse().ok().filter(|x: &f64| x.is_finite())
@@ -130,7 +131,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             return None;
         }
     }
-    // What FreeCAD writes is in its millimetres; the solver's own examples say that theirs is in SI.
+    // Files of FreeCAD are in mm; the examples of the solver state that they are in SI.
     let by_freecad = input.text.starts_with("OndselSolver");
     let unit = if by_freecad { "mm" } else { "m" };
     notes.approximated(
@@ -143,7 +144,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         Mechanism::new(if assembly.name().is_empty() { input.stem } else { assembly.name() }, unit, "rad");
     m.times = times(assembly, notes);
     let stored = stored(&lines.unwrap_or_default(), notes);
-    // The solver closes what is drawn open before it moves: its first stored positions are what moves.
+    // The solver assembles open joints before it moves: the first stored poses are the assembled ones.
     let begins = m.times.is_none_or(|t| stored.0.first() == Some(&t.start));
     let first = |t: &StoredPart<'_>| Some((t.path.to_owned(), t.states.as_ref()?.first()?.pose));
     let closed = stored.1.iter().filter(|_| begins).filter_map(first).collect();
@@ -165,7 +166,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     (m.bodies.len() > 1).then_some(m)
 }
 
-/// The lines by their tabs, and where the stored series begin.
+/// Parses the lines by their tabs; returns the stored series separately.
 fn tree<'t>(text: &'t str, notes: &mut ImportLog) -> Option<(Vec<Node<'t>>, Option<Lines<'t>>)> {
     let mut open: Vec<Node<'t>> = vec![Node { text: "", at: SourceSpan::default(), children: Vec::new() }];
     let mut series: Option<Lines<'_>> = None;
@@ -233,13 +234,13 @@ fn times(assembly: &Node<'_>, notes: &mut ImportLog) -> Option<Times> {
 struct Reader<'n> {
     m: Mechanism,
     notes: &'n mut ImportLog,
-    /// By their paths.
+    /// Markers by their paths.
     markers: BTreeMap<String, Marker>,
     joints: BTreeMap<String, MarkerJoint>,
     parts: BTreeMap<String, usize>,
-    /// Poses of the parts at the start of the stored motion.
+    /// Poses of the parts at the start of the stored motion, by their paths.
     closed: BTreeMap<String, Pose>,
-    /// Number of are drawn elsewhere.
+    /// Number of parts whose stored pose differs from the drawn one.
     moved: usize,
 }
 
@@ -295,7 +296,7 @@ impl Reader<'_> {
     }
 
     fn markers_of(&mut self, owner: &Node<'_>, path: &str, body: usize, pose: Pose) {
-        // Motions and forces may be of the centre of mass.
+        // Motions and forces may refer to the centre of mass.
         if let Some(mass) = owner.child("PrincipalMassMarker") {
             let pose = pose.compose(mass.pose(self.notes));
             self.markers.insert(format!("{path}/{}", mass.name()), Marker { body, pose });
@@ -372,10 +373,10 @@ impl Reader<'_> {
         }
     }
 
-    /// Lists what is below a heading and not known here: unknown is not irrelevant.
+    /// Reports unknown lines below a heading. These may affect the motion.
     fn unknown(&mut self, owner: &Node<'_>, known: &[&str]) {
         for part in owner.children.iter().filter(|c| !known.contains(&c.text)) {
-            // Other headings of the format may stand there empty.
+            // Other headings of the format may be empty.
             if part.children.is_empty() {
                 continue;
             }
@@ -465,7 +466,7 @@ impl Reader<'_> {
                 }
             }
             "angle" => join(&mut self.m, self.notes, called, "parallel", [i, j]),
-            // The origin of marker J stays on a plane perpendicular to z of marker I, `offset` from it.
+            // The origin of marker J stays in a plane perpendicular to z of marker I, at the distance `offset`.
             "planar" | "inplane" | "line_in_plane" => {
                 let offset = said(self, "offset").unwrap_or(0.0);
                 let i = Marker { body: i.body, pose: Pose { r: i.pose.r + i.z() * offset, ..i.pose } };
@@ -482,7 +483,7 @@ impl Reader<'_> {
         self.joints.insert(joint.name().to_owned(), MarkerJoint { number, kind, markers: [i, j] });
     }
 
-    /// A joint with a link between its two ends.
+    /// Adds a joint that represents a massless link between two markers.
     fn link(&mut self, joint: &Node<'_>, kinds: [&'static str; 2]) {
         let Some(markers) = self.pair(joint) else { return };
         let called = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
@@ -490,8 +491,8 @@ impl Reader<'_> {
         linked(&mut self.m, self.notes, called, kinds, markers, distance.map(|[d]| d));
     }
 
-    /// A screw holds one coordinate: 2 pi z = pitch * angle, of marker J against marker I. What else holds the parts
-    /// are other joints.
+    /// Adds a screw, a single constraint: 2 pi z = pitch * angle, of marker J relative to marker I. Other joints guide
+    /// the parts.
     fn screw(&mut self, joint: &Node<'_>) {
         let Some([i, j]) = self.pair(joint) else { return };
         let called = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
@@ -511,7 +512,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Gears, and a rack with its pinion: couplers of the joints that carry their parts.
+    /// Adds gears, or a rack and pinion, as couplers of the joints that carry their parts.
     fn gear(&mut self, joint: &Node<'_>) {
         let Some([i, j]) = self.pair(joint) else { return };
         let hinges = ["revolute", "cylindrical"];
@@ -534,7 +535,7 @@ impl Reader<'_> {
             }
         } else {
             let radius = radius(self, "pitchRadius");
-            // The rack moves along the x axis of marker I, s, the pinion turns about the z axis of marker J: s = r
+            // The rack moves by s along the x axis of marker I, the pinion turns about the z axis of marker J: s = r
             // angle.
             let slide = carrying(self.joints.values(), i.body, &["translational", "cylindrical"], i.x());
             let hinge = carrying(self.joints.values(), j.body, &hinges, j.z());
@@ -621,7 +622,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// A motion of all six coordinates of marker J against marker I.
+    /// Adds a motion that prescribes all six coordinates of marker J relative to marker I.
     fn general(&mut self, motion: &Node<'_>) -> Result<(), String> {
         let text = |key: &str| -> Result<String, String> {
             let (function, _) = motion.value(key).ok_or_else(|| format!("it has no `{key}`"))?;
@@ -643,7 +644,7 @@ impl Reader<'_> {
         chain::drive(&mut self.m, self.notes, called, markers, ways, [(a, p), (b, q), (c, r)])
     }
 
-    /// The joint between the markers of a motion that names no joint.
+    /// Returns the joint between the markers of a motion that names no joint.
     fn between(&mut self, motion: &Node<'_>) -> Result<Option<MarkerJoint>, String> {
         let Some([i, j]) = self.pair(motion) else { return Ok(None) };
         let same = |a: &Marker, b: &Marker| a.body == b.body && a.pose == b.pose;
@@ -691,15 +692,16 @@ impl Reader<'_> {
     }
 }
 
-/// Stored data of a part.
+/// Stored motion of a part.
 struct StoredPart<'t> {
     path: &'t str,
     at: SourceSpan,
-    /// One for each of the times, or none where a number is missing.
+    /// Pose at each of the times; `None` if a number is missing.
     states: Option<Vec<StoredPose>>,
 }
 
-/// The stored times, and the series of the parts: the column of the input, and then one for each output time.
+/// Returns the stored times and the series of the parts. Each line has the column of the input, followed by one column
+/// per output time.
 fn stored<'t>(lines: &[(&'t str, SourceSpan)], notes: &mut ImportLog) -> (Vec<f64>, Vec<StoredPart<'t>>) {
     let row = |line: &str| -> Vec<Option<f64>> { line.split_whitespace().skip(1).map(number).collect() };
     let nothing = (Vec::new(), Vec::new());
@@ -746,7 +748,7 @@ fn stored<'t>(lines: &[(&'t str, SourceSpan)], notes: &mut ImportLog) -> (Vec<f6
     (times, told)
 }
 
-/// The stored motion of the bodies.
+/// Returns the stored motion of the bodies.
 fn series(
     (times, told): (Vec<f64>, Vec<StoredPart<'_>>),
     m: &Mechanism,

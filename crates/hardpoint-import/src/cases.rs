@@ -1,18 +1,18 @@
-//! Motions of a vehicle that no source gives: heave, roll and steering, each by itself.
+//! Cases of a vehicle, which no source defines: heave, roll and steering.
 
 use crate::finish;
 use crate::mechanism::{Case, Law, Mechanism};
 use crate::report::ImportLog;
 
-/// Travel of the wheels, mm: in heave or bump, in roll, and of the rack.
+/// Travel of the wheels in heave or bump and in roll, and of the rack, mm.
 const HEAVE: f64 = 60.0;
 const ROLL: f64 = 40.0;
 const RACK: f64 = 30.0;
-/// Parts of these that are tried, one after the other: a mechanism may end before.
+/// Fractions of the travel that are tried in order, since a mechanism may lock before.
 const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 
-/// Adds the motions that a vehicle has: of both wheels up and down together and against each other, and of the
-/// steering. A single motion needs no case.
+/// Adds the cases of a vehicle: both wheels in the same direction (heave), in opposite directions (roll), and steering.
+/// A single motion needs no case.
 pub fn of_vehicle(m: &mut Mechanism, notes: &mut ImportLog) {
     let mut bumps: Vec<usize> = m.wheels.iter().map(|w| w.bump).collect();
     bumps.dedup();
@@ -49,7 +49,7 @@ pub fn of_vehicle(m: &mut Mechanism, notes: &mut ImportLog) {
     }
 }
 
-/// Returns whether the mechanism moves from end to end in a case.
+/// Returns true if the mechanism moves from end to end in a case.
 fn moves(m: &Mechanism, case: &Case) -> bool {
     let mut alone = m.clone();
     alone.cases.clear();

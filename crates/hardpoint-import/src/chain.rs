@@ -1,5 +1,5 @@
-//! A motion that prescribes how one frame is to another, all six coordinates of it: slides and hinges one behind the
-//! other, each driven, with bodies between them.
+//! Motion that prescribes all six coordinates of one frame relative to another: a chain of driven slides and hinges
+//! with bodies between them.
 
 use hardpoint::law::Law as Function;
 use hardpoint::space::{Mat3, Pose, Vec3};
@@ -10,10 +10,10 @@ use crate::mechanism::{Coordinate, Drives, Joint, Law, Mechanism};
 use crate::report::ImportLog;
 use crate::turn::{X, Y, Z};
 
-/// Numbers of the source that differ by less than this from what is drawn, in the file's unit or rad, say the same.
+/// Tolerance for equal values, in the unit of the file or rad.
 const SAME: f64 = 1e-9;
 
-/// One coordinate: a way along an axis of frame I, or a turn about one of the frame as it has turned so far.
+/// One coordinate: a displacement along an axis of frame I, or a rotation about an axis of the frame rotated so far.
 struct Step {
     kind: &'static str,
     axis: Vec3,
@@ -21,11 +21,11 @@ struct Step {
     first: f64,
 }
 
-/// Drives frame J against frame I: along the axes of I by three expressions of the time, and then about the axes of
-/// this order by three.
+/// Drives frame J relative to frame I: three displacements along the axes of I, followed by three rotations about the
+/// given axes, all as expressions of the time.
 ///
 /// # Errors
-/// Why it cannot be.
+/// Returns the reason why the motion is not supported.
 pub fn drive(
     m: &mut Mechanism,
     notes: &mut ImportLog,
@@ -56,7 +56,7 @@ pub fn drive(
         pose.rot = pose.rot * Mat3::about([X, Y, Z][k].into(), first);
         steps.push(Step { kind: "revolute", axis, law, first });
     }
-    // What does not move is as it is drawn.
+    // Constant coordinates need no joint.
     steps.retain(|s| law::constant(&s.law).is_none());
     let note = called.note(notes);
     let at = j.pose.r;

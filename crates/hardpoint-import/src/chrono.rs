@@ -1,5 +1,5 @@
-//! Suspension templates of Project Chrono's vehicle module (JSON): one side, as the file has it, or both with their
-//! mirror image.
+//! Suspension templates of Project Chrono's vehicle module (JSON): one side as in the file, or both sides with the
+//! right one as mirror image.
 
 use hardpoint::space::Vec3;
 
@@ -10,7 +10,7 @@ use crate::report::ImportLog;
 use crate::tree::{self, Tree};
 use crate::{Format, Input, chrono_axle, chrono_generic, robot};
 
-/// See the module.
+/// Chrono format.
 pub const FORMAT: Format = Format {
     name: "chrono",
     about: "Chrono suspension",
@@ -20,7 +20,7 @@ pub const FORMAT: Format = Format {
     binary: false,
 };
 
-/// Templates whose topology is known here.
+/// Templates with a known topology.
 const TEMPLATES: [&str; 8] = [
     "DoubleWishbone",
     "DoubleWishboneReduced",
@@ -31,10 +31,10 @@ const TEMPLATES: [&str; 8] = [
     "ThreeLinkIRS",
     GENERIC,
 ];
-/// The template whose file has its bodies and joints one by one.
+/// Template whose file lists its bodies and joints.
 const GENERIC: &str = "GenericWheeledSuspension";
 
-/// The static angles of the wheel.
+/// Keys of the static wheel angles.
 const ANGLES: [&str; 2] = ["Camber Angle (deg)", "Toe Angle (deg)"];
 
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
@@ -82,7 +82,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
                 [Role::LowerFront, Role::LowerRear, Role::LowerOuter],
                 &["Location Chassis Front", "Location Chassis Back", "Location Upright"],
             );
-            // Chrono's strut slides along its spring.
+            // The strut of Chrono slides along its spring.
             let strut = if root.get("Spring").is_some() { "Spring" } else { "Shock" };
             reader.pair(strut, [Role::StrutTop, Role::StrutBottom], &["Location Upright"]);
             if strut != "Shock" {
@@ -99,7 +99,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             for link in ["Lateral", "Trailing Link"] {
                 reader.link(link);
             }
-            // Spring and shock are on the trailing link.
+            // Spring and shock act on the trailing link.
             let ends = ["Location Link", "Location Upright"];
             reader.pair("Shock", [Role::DamperChassis, Role::DamperMoving], &ends);
             reader.pair("Spring", [Role::SpringChassis, Role::SpringMoving], &ends);
@@ -135,7 +135,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             reader.arm("Upper Control Arm", [Role::UpperFront, Role::UpperRear, Role::UpperOuter], &ends);
             reader.arm("Lower Control Arm", [Role::LowerFront, Role::LowerRear, Role::LowerOuter], &ends);
             let ends = ["Location Arm", "Location Upright"];
-            // One element is both in the reduced template.
+            // In the reduced template, one element is both spring and shock.
             let is_both = root.get("Spring").is_none() && root.get("Shock").is_some();
             let shock = if is_both {
                 [Role::StrutTop, Role::StrutBottom]
@@ -172,7 +172,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     Some(m)
 }
 
-/// Parts of the templates that are read here.
+/// Parts of the templates that are read.
 const PARTS: &[&str] = &[
     "Spindle",
     "Upright",
@@ -191,8 +191,7 @@ const PARTS: &[&str] = &[
     "Shock",
 ];
 
-/// The masses of the parts, on the bodies that they are of, or at the ends of rods, along the axes that Chrono gives
-/// each part.
+/// Adds the masses of the parts to their bodies, or to the ends of rods, along the axes that Chrono uses for each part.
 fn masses(root: &Tree, m: &mut Mechanism, template: &str, corner: &Corner, notes: &mut ImportLog) {
     let point = |part: &str, key: &str| root.get(part).and_then(|p| p.get(key)?.vector()).map(Vec3::from);
     let outer = |part: &str| point(part, "Location Upright").or_else(|| point(part, "Location Arm"));
@@ -223,7 +222,7 @@ fn masses(root: &Tree, m: &mut Mechanism, template: &str, corner: &Corner, notes
         let Some(places) = ends(part) else { continue };
         let body = plain(part);
         if masses.m.bodies.iter().any(|b| b.name == body) {
-            // z along the link, y across its plane with the spring.
+            // z along the link, y perpendicular to its plane with the spring.
             let seat = point("Spring", "Location Link").or_else(|| outer("Spring"));
             let [chassis, upright] = places;
             let axes = seat
@@ -247,7 +246,7 @@ struct Reader<'r> {
 }
 
 impl Reader<'_> {
-    /// A location in a part; the first of the names that is there.
+    /// Returns a location of a part, by the first of some keys that is present.
     fn location(&mut self, part: &str, names: &[&str]) -> Option<Vec3> {
         let Some(tree) = self.root.get(part) else {
             self.notes.problem_with(
@@ -292,7 +291,7 @@ impl Reader<'_> {
         }
     }
 
-    /// From the body to something: a tie rod, spring or shock; a spring or shock may be missing.
+    /// Reads both ends of a tie rod, spring or shock, chassis first; springs and shocks are optional.
     fn pair(&mut self, part: &str, [chassis, moving]: [Role; 2], ends: &[&str]) {
         if self.root.get(part).is_none() && part != "Tierod" {
             return;
@@ -320,7 +319,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The wheel's centre is the spindle's, its axis y but for static angles.
+    /// Reads the wheel centre and the spin axis: that of the spindle, along y except for the static angles.
     fn wheel(&mut self) {
         if let Some(centre) = self.location("Spindle", &["COM", "Location"]) {
             self.m.hardpoints.push(("spindle".into(), centre));

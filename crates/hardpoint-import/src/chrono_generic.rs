@@ -1,5 +1,5 @@
-//! The template of Project Chrono whose file has its bodies and joints one by one (`GenericWheeledSuspension`): the
-//! left side, and the right one, its mirror image, where both hang on a body between them.
+//! Template of Project Chrono whose file lists its bodies and joints (`GenericWheeledSuspension`): the left side, and
+//! the right side as its mirror image if a body connects both.
 
 use std::collections::BTreeMap;
 
@@ -14,15 +14,15 @@ use crate::robot;
 use crate::sides::{SIDES, over};
 use crate::tree::{Tree, Value};
 
-/// Bodies of the vehicle that stand still here.
+/// Bodies of the vehicle that are ground here.
 const CHASSIS: [&str; 2] = ["Chassis", "Subchassis"];
-/// The body of the vehicle that the tie rods are on.
+/// Body of the vehicle that carries the tie rods.
 const STEERING: &str = "Steering";
 
-/// Lists of elements.
+/// Keys of the lists of elements.
 const LISTS: [&str; 4] = ["Bodies", "Joints", "Distance Constraints", "TSDAs"];
 
-/// See the module.
+/// Reads a generic suspension; the angles are the static camber and toe of the wheels, rad.
 pub fn read(
     root: &Tree,
     mut m: Mechanism,
@@ -77,7 +77,7 @@ struct Side<'r> {
     /// 1 on the left, -1 on the right.
     side: f64,
     suffix: &'static str,
-    /// The bodies by their names in the file.
+    /// Bodies by their names in the file.
     names: BTreeMap<String, usize>,
     rack: &'r mut Option<usize>,
     /// Characteristics of springs and dampers by their names in the file.
@@ -85,7 +85,7 @@ struct Side<'r> {
 }
 
 impl Side<'_> {
-    /// True for elements of this side: all that is mirrored, and on the left the elements between both sides.
+    /// Returns true for elements of this side: all mirrored ones, and on the left those between both sides.
     fn is_here(&self, tree: &Tree) -> bool {
         self.side > 0.0 || is_mirrored(tree)
     }
@@ -99,13 +99,13 @@ impl Side<'_> {
         over(v, self.side)
     }
 
-    /// The axes of an element on this side: x and z are mirrored, y follows, as Chrono has it.
+    /// Axes of an element on this side: x and z are mirrored, y follows, as in Chrono.
     fn axes(&self, tree: &Tree, rotation: Mat3) -> Mat3 {
         let [x, _, z] = rotation.cols.map(|axis| if is_mirrored(tree) { self.over(axis) } else { axis });
         Mat3 { cols: [x, z.cross(x), z] }
     }
 
-    /// Three numbers of an element, on this side.
+    /// Returns a location of an element on this side.
     fn place(&mut self, tree: &Tree, key: &str) -> Option<Vec3> {
         let found = tree.get(key);
         let v = found.and_then(Tree::vector);
@@ -144,7 +144,7 @@ impl Side<'_> {
         }
     }
 
-    /// Both bodies that an element is between, and where it is on them if it is a rod's.
+    /// Returns the two bodies of an element; `at` is its location on body i.
     fn pair(&mut self, tree: &Tree, at: Vec3) -> Option<[usize; 2]> {
         let found = ["Body1", "Body2"].map(|key| {
             let name = tree.text_of(key).unwrap_or_default();
@@ -238,7 +238,7 @@ impl Side<'_> {
         }
     }
 
-    /// Springs and dampers hold nothing; their lengths are worth knowing. Returns the ends of the first spring.
+    /// Adds springs and dampers as legs, whose lengths are measured. Returns the ends of the first spring.
     fn springs(&mut self) -> Option<[(usize, Vec3); 2]> {
         let mut first = None;
         for tree in list(self.root, "TSDAs").iter().filter(|t| self.is_here(t)).collect::<Vec<_>>() {

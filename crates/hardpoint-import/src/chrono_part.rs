@@ -1,4 +1,4 @@
-//! Masses, springs and dampers of the parts of Project Chrono's suspension templates.
+//! Masses, springs and dampers of the parts in Project Chrono's suspension templates.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::sides::{over, with_word};
 use crate::tree::{Tree, Value};
 use crate::turn::{Z, from_z_and_x, none};
 
-/// Keys of a part that are read here.
+/// Keys of a part that are read.
 const READ: &[&str] = &[
     "Name",
     "Attachment Body",
@@ -45,49 +45,49 @@ const READ: &[&str] = &[
     "Point1",
     "Point2",
 ];
-/// Keys of a part for its drawing.
+/// Keys of a part for visualisation.
 const DRAWN: [&str; 3] = ["Radius", "Width", "Visualization"];
-/// Ends of the range of a spring between its stops.
+/// Keys of the stops of a spring.
 const STOPS: [&str; 2] = ["Minimum Length", "Maximum Length"];
 
-/// Mass and inertia of a part, about its centre and along its own axes.
+/// Mass and inertia of a part about its centre of mass, along its own axes.
 pub struct Inertial {
-    /// In kg.
+    /// Mass, kg.
     pub mass: f64,
-    /// In kg m^2.
+    /// Inertia matrix, kg m^2.
     pub inertia: Option<Mat3>,
 }
 
 impl Inertial {
-    /// Reads those of a part that has a mass.
+    /// Reads the inertia of a part that has a mass.
     pub fn of(part: &Tree) -> Option<Self> {
         let mass = part.get("Mass")?.number()?;
         let vector = |keys: [&str; 3]| keys.iter().find_map(|key| part.get(key)?.vector());
         let moments = vector(["Inertia", "Moments of Inertia", "Inertia Moments"]);
         let [xy, yz, zx] = vector(["Products of Inertia", "Inertia Products", ""]).unwrap_or_default();
-        // Products are entries of the matrix here.
+        // In Chrono, products of inertia are entries of the matrix.
         let matrix =
             |[x, y, z]: [f64; 3]| Mat3 { cols: [[x, xy, zx], [xy, y, yz], [zx, yz, z]].map(Vec3::from) };
         Some(Self { mass, inertia: moments.map(matrix) })
     }
 }
 
-/// Masses of parts under way to the bodies of a mechanism.
+/// Transfer of the masses of parts to the bodies of a mechanism.
 pub struct Masses<'r> {
-    /// The file.
+    /// File.
     pub root: &'r Tree,
-    /// Mechanism that they go to.
+    /// Mechanism that receives the masses.
     pub m: &'r mut Mechanism,
-    /// Report of what becomes of them.
+    /// Log of the import.
     pub notes: &'r mut ImportLog,
-    /// 1 on the left, where the file has them, and -1 on the right.
+    /// 1 on the left, the side in the file, and -1 on the right.
     pub side: f64,
-    /// Ending of names of that side.
+    /// Suffix of names of that side.
     pub suffix: &'static str,
 }
 
 impl Masses<'_> {
-    /// Reborrows it, for another side.
+    /// Reborrows it for another side.
     pub fn again(&mut self) -> Masses<'_> {
         Masses { root: self.root, m: self.m, notes: self.notes, side: self.side, suffix: self.suffix }
     }
@@ -100,8 +100,8 @@ impl Masses<'_> {
         self.root.get(part).map(|t| t.at)
     }
 
-    /// The mass of a part on a body; its centre on the left, where the part has none of its own; its axes on this side,
-    /// if they are not the global ones.
+    /// Adds the mass of a part to a body. `centre` is the centre on the left if the part has none of its own; `axes`
+    /// are the axes on this side if they are not the global ones.
     pub fn on(&mut self, part: &str, body: &str, centre: Option<Vec3>, axes: Option<Mat3>) {
         let Some(tree) = self.root.get(part) else { return };
         let Some(Inertial { mass, inertia }) = Inertial::of(tree) else { return };
@@ -119,14 +119,15 @@ impl Masses<'_> {
         robot::mass(self.m, self.notes, called, body, frame, mass, inertia);
     }
 
-    /// The mass of an arm in the plane of its places: x from the second to the first, z across the plane.
+    /// Adds the mass of an arm, whose axes are in the plane of three locations: x from the second to the first, z
+    /// perpendicular to the plane.
     pub fn arm(&mut self, part: &str, body: &str, places: [&str; 3]) {
         let place = |key: &str| self.root.get(part).and_then(|p| p.get(key)?.vector()).map(Vec3::from);
         let [Some(f), Some(b), Some(u)] = places.map(place) else { return };
         self.on(part, body, None, from_z_and_x((b - u).cross(f - u), f - b));
     }
 
-    /// The mass of a part that is a rod here, without a body: at its ends, as its centre lies between them.
+    /// Adds the mass of a rod, which has no body, to its ends in proportion to the position of its centre.
     pub fn rod(&mut self, part: &str, carriers: [&str; 2], ends: [Vec3; 2]) {
         let Some(tree) = self.root.get(part) else { return };
         let Some(Inertial { mass, .. }) = Inertial::of(tree).filter(|i| i.mass != 0.0) else { return };
@@ -155,26 +156,26 @@ impl Masses<'_> {
     }
 }
 
-/// The axes of a spindle: y along the wheel's axis, x level.
+/// Axes of a spindle: y along the spin axis, x horizontal.
 pub fn spindle_axes(axis: Vec3) -> Option<Mat3> {
-    // The same way on both sides.
+    // The same direction on both sides.
     let y = if axis.y < 0.0 { -axis } else { axis };
     let x = y.cross(Z.into()).unit()?;
     Some(Mat3 { cols: [x, y, x.cross(y)] })
 }
 
-/// The axes of a link: z along it, y along another direction as nearly as can be.
+/// Axes of a link: z along the link, y as near as possible to another direction.
 pub fn link_axes(along: Vec3, y: Vec3) -> Option<Mat3> {
     from_z_and_x(along, y.cross(along))
 }
 
-/// The axes of an arm along x, its y level.
+/// Axes of an arm along x, with y horizontal.
 pub fn level_axes(along: Vec3) -> Option<Mat3> {
     let z = along.cross(Vec3::from(Z).cross(along));
     from_z_and_x(z, along)
 }
 
-/// Characteristics of the springs and dampers among the parts, by the words of their members, and their places.
+/// Returns the characteristics and positions of the springs and dampers among the parts, by the names of their members.
 pub fn springs(
     root: &Tree,
     parts: &[(&str, &'static str)],
@@ -188,7 +189,7 @@ pub fn springs(
     found
 }
 
-/// The characteristic of a spring or damper, if it has one that the model can have. It pushes its ends apart with
+/// Returns the characteristic of a spring or damper, if the model supports it. The force that separates its ends is
 /// `Preload - Coefficient (length - Free Length)`.
 pub fn spring(part: &Tree, name: &str, notes: &mut ImportLog) -> Option<Spring> {
     let number = |key: &str| part.get(key).and_then(Tree::number);
@@ -255,7 +256,7 @@ pub fn spring(part: &Tree, name: &str, notes: &mut ImportLog) -> Option<Spring> 
     Some(Spring { stiffness, damping, free, preload, extension })
 }
 
-/// Two or more points in increasing order.
+/// Returns two or more points in increasing order.
 fn points(list: &Tree) -> Option<Vec<[f64; 2]>> {
     let Value::List(rows) = &list.value else { return None };
     let point = |row: &Tree| match &row.value {
@@ -268,8 +269,7 @@ fn points(list: &Tree) -> Option<Vec<[f64; 2]>> {
     (points.len() >= 2 && points.windows(2).all(|w| w[0][0] < w[1][0])).then_some(points)
 }
 
-/// Accounts for all keys of the file besides the parts that were read: those that hold something else, and keys that
-/// are not known.
+/// Accounts for all keys of the file besides the parts that were read: those with other content, and unknown keys.
 pub fn account(root: &Tree, read: &[&str], notes: &mut ImportLog) {
     for (key, at, value) in root.entries() {
         match key.as_str() {

@@ -1,5 +1,5 @@
-//! Meshes in COLLADA, as most robots have them: what the scene shows, as triangles in metres. The axis that a file
-//! calls up is left alone, as RViz and Gazebo do: such meshes are already in the frames of their links.
+//! Meshes in COLLADA, the usual format of robots: the displayed scene as triangles in metres. The `up_axis` of a file
+//! is ignored, as by RViz and Gazebo: such meshes are already in the frames of their links.
 
 use std::collections::BTreeMap;
 
@@ -8,14 +8,14 @@ use roxmltree::Node;
 
 use crate::xml::{self, child, children, named};
 
-/// Nodes of a scene are nested so deep at most.
+/// Maximum depth of nested nodes.
 const DEEPEST: usize = 60;
-/// A mesh has at most that many triangles.
+/// Maximum number of triangles of a mesh.
 const MOST: usize = 1_000_000;
 
 type Triangle = [Vec3; 3];
 
-/// Placement of a node's points: `turn s + shift`.
+/// Affine transformation of a node: `turn s + shift`.
 #[derive(Clone, Copy)]
 struct Placed {
     turn: Mat3,
@@ -32,10 +32,10 @@ impl Placed {
     }
 }
 
-/// The triangles of a file.
+/// Returns the triangles of a file, m.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Returns a description of the first error.
 pub fn triangles(text: &str) -> Result<Vec<Triangle>, String> {
     let text = xml::lenient(text);
     let document = xml::parse_quietly(&text)?;
@@ -67,12 +67,12 @@ struct Reader<'a, 'i> {
 }
 
 impl<'a, 'i: 'a> Reader<'a, 'i> {
-    /// The element that an attribute refers to, as `#id`.
+    /// Returns the element that an attribute refers to as `#id`.
     fn named(&self, node: Node<'a, 'i>, key: &str) -> Option<Node<'a, 'i>> {
         self.ids.get(node.attribute(key)?.trim().strip_prefix('#')?).copied()
     }
 
-    /// Adds the shapes of a node of the scene, and of the nodes in it.
+    /// Adds the shapes of a node and of its descendants.
     fn node(&mut self, node: Node<'a, 'i>, outer: Placed, depth: usize) {
         if depth > DEEPEST || self.out.len() > MOST {
             return;
@@ -152,7 +152,7 @@ impl<'a, 'i: 'a> Reader<'a, 'i> {
         }
     }
 
-    /// The points that faces refer to.
+    /// Returns the points that faces refer to.
     fn points(&self, faces: Node<'a, 'i>) -> Option<Vec<Vec3>> {
         let semantic = |node: Node<'a, 'i>, what: &str| {
             named(node, "input")

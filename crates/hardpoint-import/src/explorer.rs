@@ -1,4 +1,4 @@
-//! Geometry files of suspension-explorer (YAML): corners and axles by the names of their hardpoints.
+//! Geometry files of suspension-explorer (YAML): corners and axles recognised by the names of their hardpoints.
 
 use hardpoint::model::{Vehicle, VehicleEnd};
 use hardpoint::space::Vec3;
@@ -10,7 +10,7 @@ use crate::sides::{self, over};
 use crate::tree::{self, Tree};
 use crate::{FEW_DIGITS, Format, Input};
 
-/// See the module.
+/// suspension-explorer format.
 pub const FORMAT: Format = Format {
     name: "suspension-explorer",
     about: "suspension-explorer geometry",
@@ -20,7 +20,7 @@ pub const FORMAT: Format = Format {
     binary: false,
 };
 
-/// Types whose parts follow from the names of their hardpoints.
+/// Suspension types whose parts follow from the names of their hardpoints.
 const TYPES: [&str; 5] = ["double_wishbone", "macpherson", "macpherson_strut", "multi_link", "trailing_arm"];
 
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
@@ -132,12 +132,12 @@ fn units(root: &Tree, notes: &mut ImportLog) -> &'static str {
     }
 }
 
-/// The settings of the corner or axle.
+/// Returns the settings of the corner or axle.
 fn config(root: &Tree) -> Option<&Tree> {
     ["axle_config", "config", "configuration"].into_iter().find_map(|key| root.get(key))
 }
 
-/// Steering, and the wheel.
+/// Reads the settings of steering and wheel.
 fn settings(root: &Tree, per_mm: f64, notes: &mut ImportLog) -> Corner {
     let config = config(root);
     let steering = config.and_then(|c| c.get("steering"));
@@ -145,7 +145,7 @@ fn settings(root: &Tree, per_mm: f64, notes: &mut ImportLog) -> Corner {
     let steered = config.and_then(|c| c.text_of("steered")).is_none_or(|s| s != "false");
     let tire = config.and_then(|c| c.get("wheel")).and_then(|w| w.get("tire").or_else(|| w.get("tyre")));
     let number = |key: &str| tire.and_then(|t| t.get(key)).and_then(Tree::number);
-    // A rim is in inches and a tyre in millimetres, whatever the hardpoints are in.
+    // Rims are in inches and tyres in millimetres, independent of the unit of the hardpoints.
     let radius = match (number("aspect_ratio"), number("section_width"), number("rim_diameter")) {
         (Some(aspect), Some(width), Some(rim)) => Some((aspect * width + rim * 25.4 / 2.0) * per_mm),
         _ => number("nominal_radius").or_else(|| number("radius")),
@@ -178,7 +178,7 @@ fn settings(root: &Tree, per_mm: f64, notes: &mut ImportLog) -> Corner {
     Corner { rack: steered && !kind.eq_ignore_ascii_case("none"), radius, end, ..Corner::default() }
 }
 
-/// Figures of the vehicle: of a corner they are among its settings.
+/// Reads the parameters of the vehicle; those of a corner are among its settings.
 fn vehicle(root: &Tree, m: &mut Mechanism, notes: &mut ImportLog) {
     let found =
         |key: &str| [root.get("vehicle_config"), config(root)].into_iter().flatten().find_map(|c| c.get(key));
@@ -205,7 +205,7 @@ fn vehicle(root: &Tree, m: &mut Mechanism, notes: &mut ImportLog) {
     let road = m.wheels.first().map_or(0.0, |wheel| {
         let down = wheel.spin_axis.unit().map_or(1.0, |n| (1.0 - n.z * n.z).max(0.0).sqrt());
         let road = wheel.centre.z - wheel.radius * down;
-        // Files have few digits: a wheel that is on z = 0 to these does.
+        // Files have few digits: z = 0 is assumed for a wheel that touches it within these.
         if road.abs() <= FEW_DIGITS * wheel.radius { 0.0 } else { road }
     });
     m.vehicle = Vehicle {
@@ -286,7 +286,7 @@ fn mount(root: &Tree, corner: &mut Corner) {
     corner.spring_on = mount;
 }
 
-/// The hardpoints of a corner, also where they are grouped.
+/// Collects the hardpoints of a corner, including grouped ones.
 fn collect(
     list: &Tree,
     before: &str,

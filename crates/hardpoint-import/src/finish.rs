@@ -1,4 +1,4 @@
-//! Completion of what a source leaves open: bodies that nothing holds, motions that nothing drives.
+//! Completion of an imported mechanism: bodies without a connection to ground, and undriven motions.
 
 use std::collections::HashSet;
 
@@ -17,23 +17,24 @@ use crate::straighten::straighten;
 use crate::turn::{X, Y, Z};
 use crate::write;
 
-/// The one degree of freedom of a mechanism swings by this angle, in rad.
+/// Amplitude of the input of a mechanism with one degree of freedom: of an angle, rad.
 const SWING: f64 = 0.2;
-/// Or along this part of the mechanism's size.
+/// Amplitude of a displacement, as a fraction of the mechanism size.
 const STROKE: f64 = 0.05;
 /// Distance from an axis, as a fraction of the mechanism's size, below which a point does not move when the axis turns.
 const OFF: f64 = 1e-6;
-/// Output times at which such a swing is tried.
+/// Number of intervals with which an input law is tried.
 const TRIED: usize = 20;
-/// That many output times show which design variables are followed.
+/// Maximum number of output times at which the design variables are tested.
 const MOST_TIMES: usize = 200;
-/// Mechanisms with more motions left open than this are reported as they are.
+/// Maximum number of undriven motions that are fixed; more are an error.
 const MOST_HELD: usize = 400;
 
-/// Holds what nothing holds, and drives what nothing drives. What remains wrong is handed back: the model is written
-/// all the same, for the user to mend.
+/// Connects loose bodies to ground, and fixes or drives undriven motions. Returns the remaining error, if any: the
+/// model is written all the same, for the user to correct.
 ///
-/// Gaps of up to `closed` parts of its size are taken as closed where they stand, if what is held keeps them open.
+/// Open joints whose gaps are below `closed` times the mechanism size are closed in the design configuration if they
+/// cannot be assembled.
 pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<Diagnostic> {
     ground(m, notes);
     straightened(m, notes);
@@ -70,7 +71,7 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
             m.driver(&format!("{name}_held"), why, drives, Law::Held);
         }
         match freedom(m, notes) {
-            // A body that would only spin idly is none of the freedoms, and one once its spin is held.
+            // The idle spin of a body is not counted as a degree of freedom until it is fixed.
             Ok(now)
                 if now.count < left.count
                     || (now.count == left.count && now.joints.len() < left.joints.len()) =>
@@ -93,7 +94,7 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
     None
 }
 
-/// Says first of all where nothing moves: of a mechanism all of whose motions are held, mostly something is missing.
+/// Adds a remark if nothing moves: in a mechanism with all motions fixed, something is usually missing.
 pub fn remark(m: &Mechanism, notes: &mut ImportLog, closes: bool) {
     let held = m.drivers.iter().filter(|d| d.law == Law::Held).count();
     let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Held | Law::Set(_)));
@@ -111,8 +112,8 @@ pub fn remark(m: &Mechanism, notes: &mut ImportLog, closes: bool) {
     ));
 }
 
-/// Takes as closed what is drawn open where it does not close, since what nothing drives is fixed in the design
-/// configuration.
+/// Closes open joints in the design configuration if the mechanism does not assemble, since undriven motions are fixed
+/// there.
 fn as_drawn(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
     let rods = ["distance", "leg", "revolute_spherical"];
     let is_open = |j: &Joint| j.length.is_some() || (j.at.len() > 1 && !rods.contains(&j.kind));
@@ -150,7 +151,7 @@ fn as_drawn(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
     }
 }
 
-/// True if it assembles at its first time.
+/// Returns true if the mechanism assembles at its first output time.
 fn assembles(m: &Mechanism) -> bool {
     parsed(m).is_ok_and(|mut file| {
         file.model.times.truncate(1);
@@ -158,13 +159,13 @@ fn assembles(m: &Mechanism) -> bool {
     })
 }
 
-/// A point to look at first, where the source names none: of the last body of the longest chain of joints that move, at
-/// its place that is farthest from the joint that carries it.
+/// Adds a point to observe if the source names none: on the last body of the longest chain of moving joints, at the
+/// location farthest from the joint that carries it.
 pub fn end_point(m: &mut Mechanism, notes: &mut ImportLog) {
     if !m.points.is_empty() || !m.wheels.is_empty() {
         return;
     }
-    // Of every body, how many joints that move are between it and the ground at least, and the joint that leads there.
+    // For each body, the minimum number of moving joints between it and ground, and the joint that leads to it.
     let mut chains: Vec<Option<(usize, usize)>> = vec![None; m.bodies.len()];
     chains[GROUND] = Some((0, usize::MAX));
     let mut settled = false;
@@ -196,7 +197,7 @@ pub fn end_point(m: &mut Mechanism, notes: &mut ImportLog) {
     let others = m.joints.iter().filter_map(place).chain(m.bodies[end].pose.map(|p| p.r));
     let at = others
         .fold(carried, |best, at| if (at - carried).norm() > (best - carried).norm() { at } else { best });
-    // What turns about a place of the ground has to be off it, and off its axis.
+    // A point on a body that rotates about ground has to be off the axis.
     let arm = carried_by.axis.map_or(at - carried, |axis| (at - carried).cross(axis));
     let slides = ["translational", "cylindrical", "planar"].contains(&carried_by.kind);
     if length == 1 && !slides && arm.norm() <= OFF * m.size() {
@@ -208,8 +209,7 @@ pub fn end_point(m: &mut Mechanism, notes: &mut ImportLog) {
     notes.approximated("point", &name, None, why);
 }
 
-/// Leaves out the design variables that the mechanism cannot follow: a plane loop, say, whose hinge would leave the
-/// plane.
+/// Removes inadmissible design variables, such as a displacement of a hinge out of the plane of a planar loop.
 fn unfollowed(m: &mut Mechanism, notes: &mut ImportLog) {
     let Ok(mut file) = parsed(m) else { return };
     let times = &mut file.model.times;
@@ -230,9 +230,9 @@ fn unfollowed(m: &mut Mechanism, notes: &mut ImportLog) {
     }
 }
 
-/// Joins to the ground what no joint connects with it.
+/// Fixes to ground the bodies that no joint connects with it.
 fn ground(m: &mut Mechanism, notes: &mut ImportLog) {
-    // `root[b]`: the lowest body that joints connect `b` with.
+    // `root[b]`: the lowest index of the bodies that joints connect with `b`.
     let mut root: Vec<usize> = (0..m.bodies.len()).collect();
     fn find(root: &mut [usize], mut b: usize) -> usize {
         while root[b] != b {
@@ -259,7 +259,7 @@ fn ground(m: &mut Mechanism, notes: &mut ImportLog) {
     }
 }
 
-/// Loops whose axes are nearly parallel, as far as that lets them move.
+/// Makes nearly parallel axes in loops parallel if this lets the loops move.
 fn straightened(m: &mut Mechanism, notes: &mut ImportLog) {
     let mut straight = m.clone();
     let Some(done) = straighten(&mut straight) else { return };
@@ -277,21 +277,21 @@ fn straightened(m: &mut Mechanism, notes: &mut ImportLog) {
     notes.approximated("axes", "", None, why);
 }
 
-/// The motions that nothing drives.
+/// Undriven motions.
 #[derive(Default)]
 struct FreeMotions {
-    /// Number of them.
+    /// Number of undriven motions.
     count: usize,
-    /// The joints that move in them.
+    /// Joints that move.
     joints: Vec<usize>,
-    /// The bodies that move in them.
+    /// Bodies that move.
     bodies: Vec<usize>,
-    /// Note that this may be so in the design configuration only: a driver shows it, since special proportions look
-    /// alike.
+    /// Diagnostic if the motions may exist in the design configuration only. Adding a driver shows whether they do,
+    /// since special proportions look the same.
     singular: Option<Box<Diagnostic>>,
 }
 
-/// Motions that nothing drives.
+/// Returns the undriven motions of a mechanism.
 fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<Diagnostic>> {
     let refused = |message: String| {
         notes.diagnostic("HP0808", None, format!("the imported mechanism does not work: {message}"))
@@ -306,10 +306,10 @@ fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<Diagnost
             let message = refused(format!("{fault}"));
             let message = fault.notes().into_iter().fold(message, |m, n| m.note(n));
             let told = Box::new(Diagnostic { code: fault.code(), ..message }.help(fault.help()));
-            // Drivers that are no joint's coordinate are joints without a name, behind the others.
+            // Drivers of other quantities than joint coordinates are unnamed joints, after the named ones.
             let own =
                 |joints: &[JointId]| joints.iter().map(|j| j.0).filter(|j| *j < m.joints.len()).collect();
-            // The fault quotes its names.
+            // The error quotes the names.
             let named = |names: &[String]| {
                 let is = |b: &usize| names.iter().any(|n| n.trim_matches('`') == m.bodies[*b].name);
                 (1..m.bodies.len()).filter(is).collect()
@@ -333,7 +333,7 @@ fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<Diagnost
     }
 }
 
-/// The model without its meshes, which lie in files.
+/// Parses the model without its meshes, which are separate files.
 fn parsed(m: &Mechanism) -> Result<hardpoint_file::ModelFile, String> {
     let mut bare = m.clone();
     bare.bodies.iter_mut().for_each(|b| b.mesh = None);
@@ -344,29 +344,29 @@ fn parsed(m: &Mechanism) -> Result<hardpoint_file::ModelFile, String> {
     })
 }
 
-/// Motion that a driver could fix, mostly a coordinate by the joint's number.
+/// Motion that drivers can fix; the first number is the index of the joint unless stated.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum FixableMotion {
-    /// A coordinate of it.
+    /// A joint coordinate.
     Coordinate(usize, &'static str),
-    /// Some of the angles between its bodies, these axes, together: to hold one turn of a body that else spins idly
-    /// leaves as much to hold as before.
+    /// Several angles between the bodies of a joint, by their axes, fixed together: fixing one rotation of an idle body
+    /// would leave the same number of degrees of freedom.
     Turns(usize, &'static [usize]),
-    /// One of the angles between its bodies.
+    /// One angle between the bodies of a joint, by its axis.
     Turn(usize, usize),
-    /// The way of its place on its second body along an axis.
+    /// Displacement of the joint location on body j along an axis.
     Way(usize, usize),
-    /// The way of a body's frame along an axis, by the body's number: where rods alone hold it.
+    /// Displacement of a body frame along an axis, by the index of the body, for bodies on rods only.
     BodyWay(usize, usize),
-    /// The turning of a body about an axis.
+    /// Rotation of a body about an axis, by the index of the body.
     BodyTurn(usize, usize),
 }
 
-/// Global axes and their letters.
+/// Names and directions of the global axes.
 const AXES: [(&str, [f64; 3]); 3] = [("x", X), ("y", Y), ("z", Z)];
 
 impl FixableMotion {
-    /// The drivers that hold it.
+    /// Returns the names and quantities of the drivers that fix the motion.
     fn drivers(&self, m: &Mechanism) -> Vec<(String, Drives)> {
         let turn = |joint: usize, (letter, axis): (&str, [f64; 3])| {
             let j = &m.joints[joint];
@@ -401,18 +401,18 @@ impl FixableMotion {
     }
 }
 
-/// The coordinates of a joint's type.
+/// Returns the coordinates of a joint type.
 fn coordinates(joint: &Joint) -> &'static [hardpoint::joint::CoordinateType] {
     ALL.iter().find(|k| k.name == joint.kind).map_or(&[], |k| k.coordinates)
 }
 
-/// All axes, and two of them.
+/// All three axes, and the combinations that are fixed together.
 const ALL_AXES: &[usize] = &[0, 1, 2];
 const TOGETHER: [&[usize]; 4] = [ALL_AXES, &[0, 1], &[0, 2], &[1, 2]];
 
-/// Motions that could be fixed, best first: coordinates of the joints that move, then rotations and translations of
-/// their bodies, then of any body. A ball joint is fixed as a whole if possible: the rotation of a body between two of
-/// them is none of the counted freedoms.
+/// Motions that can be fixed, in order of preference: coordinates of the moving joints, then rotations and translations
+/// of their bodies, then those of any body. A ball joint is fixed as a whole if possible, since the spin of a body
+/// between two ball joints is not counted as a degree of freedom.
 fn candidates<'m>(m: &'m Mechanism, left: &'m FreeMotions) -> impl Iterator<Item = FixableMotion> + 'm {
     let joints = &left.joints;
     let free = joints.iter().flat_map(move |&joint| {
@@ -435,7 +435,7 @@ fn candidates<'m>(m: &'m Mechanism, left: &'m FreeMotions) -> impl Iterator<Item
     free.chain(balls.map(|j| FixableMotion::Turns(*j, ALL_AXES))).chain(of_joints).chain(of_bodies)
 }
 
-/// Returns whether it moves from end to end in the first second.
+/// Returns true if the mechanism moves from end to end in the first second.
 pub fn moves(m: &Mechanism) -> bool {
     parsed(m).is_ok_and(|mut file| {
         file.model.times = (0..=TRIED).map(|k| k as f64 / TRIED as f64).collect();
@@ -443,7 +443,7 @@ pub fn moves(m: &Mechanism) -> bool {
     })
 }
 
-/// The one degree of freedom is plainly the input: it swings, as far as it can.
+/// Makes the only degree of freedom the input: it oscillates as far as possible.
 fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
     let Some(driver) = m.drivers.len().checked_sub(1) else { return };
     let name = m.drivers[driver].name.clone();
@@ -455,7 +455,7 @@ fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
     let per_rad = if m.angle == "deg" { 180.0 / std::f64::consts::PI } else { 1.0 };
     let usual = if is_angle { SWING * per_rad } else { STROKE * m.size() };
     let wanted = match limits.map(|[low, high]| (-low, high)) {
-        // Both directions, or the only one that is possible.
+        // In both directions, or in the only possible one.
         Some((down, up)) if down > 0.0 && up > 0.0 => vec![(usual.min(down).min(up), false)],
         Some((down, up)) if up > 0.0 && down <= 0.0 => vec![(usual.min(up), true)],
         Some((down, _)) if down > 0.0 => vec![(-usual.min(down), true)],
@@ -487,7 +487,7 @@ fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
     );
 }
 
-/// To two digits, for people to read.
+/// Rounds to two digits, for readability.
 pub fn rounded(x: f64) -> f64 {
     if x == 0.0 || !x.is_finite() {
         return x;

@@ -1,5 +1,5 @@
-//! Documents of FreeCAD's Assembly workbench (`.FCStd`): parts where they stand, joints, grounded parts, motions of
-//! simulations.
+//! Documents of FreeCAD's Assembly workbench (`.FCStd`): parts in their current poses, joints, grounded parts, motions
+//! of simulations.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Cursor, Read};
@@ -17,7 +17,7 @@ use crate::turn::home;
 use crate::xml::{child, children, named};
 use crate::{Format, Input, LARGEST, xml};
 
-/// See the module.
+/// FreeCAD format.
 pub const FORMAT: Format = Format {
     name: "freecad",
     about: "FreeCAD Assembly document",
@@ -27,7 +27,7 @@ pub const FORMAT: Format = Format {
     binary: true,
 };
 
-/// The types of joints, as documents that list no names for them count them.
+/// Joint types in the order of their numbers, for documents that list no names.
 const TYPES: [&str; 13] = [
     "Fixed",
     "Revolute",
@@ -43,9 +43,9 @@ const TYPES: [&str; 13] = [
     "Gears",
     "Belt",
 ];
-/// A distance that is drawn to this part of the mechanism's size is the one that is said: documents are saved solved.
+/// Relative tolerance for a distance that holds in the design configuration: documents are saved solved.
 const DRAWN: f64 = 1e-5;
-/// Groups are nested so deep at most.
+/// Maximum depth of nested groups.
 const DEEPEST: usize = 40;
 
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
@@ -88,7 +88,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     (m.bodies.len() > 1).then_some(m)
 }
 
-/// The text of the document in the zip.
+/// Returns the text of the document in the archive.
 fn document(bytes: &[u8]) -> Result<String, String> {
     let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| e.to_string())?;
     let file = archive.by_name("Document.xml").map_err(|_| "there is no `Document.xml` in it".to_owned())?;
@@ -97,7 +97,7 @@ fn document(bytes: &[u8]) -> Result<String, String> {
     Ok(text)
 }
 
-/// An object of the document.
+/// Object of the document.
 struct Object<'a, 'i> {
     name: &'a str,
     node: Node<'a, 'i>,
@@ -111,7 +111,7 @@ impl<'a, 'i> Object<'a, 'i> {
         xml::attribute_at(self.text, self.node, "name")
     }
 
-    /// The element in a property.
+    /// Returns the element of a property.
     fn value(&self, property: &str) -> Option<Node<'a, 'i>> {
         children(*self.properties.get(property)?).next()
     }
@@ -128,7 +128,7 @@ impl<'a, 'i> Object<'a, 'i> {
         self.text_of(property)?.parse().ok().filter(|x: &f64| x.is_finite())
     }
 
-    /// A property that is one of some words.
+    /// Returns the word of an enumeration property.
     fn word(&self, property: &str) -> Option<String> {
         let node = *self.properties.get(property)?;
         let value = child(node, "Integer").and_then(|n| n.attribute("value"));
@@ -168,7 +168,7 @@ impl<'a, 'i> Object<'a, 'i> {
         Some(Pose { rot, r: r.map(Option::unwrap_or_default).into() })
     }
 
-    /// Target of a link: the object, the first path in it, and the file of another document.
+    /// Returns the target of a link: the object, the first path in it, and the file of another document.
     fn link(&self, property: &str) -> Option<(&'a str, String, &'a str)> {
         let node = self.value(property)?;
         let name = node.attribute("name").or_else(|| node.attribute("value"))?;
@@ -179,30 +179,30 @@ impl<'a, 'i> Object<'a, 'i> {
         Some((name, sub.to_owned(), node.attribute("file").unwrap_or_default()))
     }
 
-    /// The object that it is a link to.
+    /// Returns the object that it links to.
     fn linked(&self) -> Option<&'a str> {
         self.link("LinkedObject").map(|(name, ..)| name)
     }
 
-    /// True if it is a link to an object of another document.
+    /// Returns true if it links to an object of another document.
     fn is_elsewhere(&self) -> bool {
         self.link("LinkedObject").is_some_and(|(_, _, file)| !file.is_empty())
     }
 
-    /// True if it has a shape of its own, in whose frame what is in it is drawn.
+    /// Returns true if it has a shape, in whose frame its content is drawn.
     fn is_shape(&self) -> bool {
         self.kind.starts_with("PartDesign::Body")
             || (self.kind.starts_with("Part::") && !self.kind.starts_with("Part::Datum"))
     }
 
-    /// True if it is in a body with a frame of its own: a sketch, a datum.
+    /// Returns true if it is in a body but has its own frame: a sketch or datum.
     fn is_drawn_in_its_frame(&self) -> bool {
         const DATUMS: [&str; 4] = ["Plane", "Line", "Point", "CoordinateSystem"];
         let datum = self.kind.strip_prefix("PartDesign::").is_some_and(|k| DATUMS.contains(&k));
         datum || self.kind.starts_with("Part::Datum") || self.kind.starts_with("Sketcher::")
     }
 
-    /// The objects in a group.
+    /// Returns the objects in a group.
     fn group(&self) -> Vec<&'a str> {
         let list = self.value("Group").into_iter().flat_map(children);
         list.filter_map(|n| n.attribute("value").or_else(|| n.attribute("name"))).collect()
@@ -240,13 +240,13 @@ const OF_JOINTS: [&str; 42] = [
     "AngleMin",
     "AngleMax",
     "ObjectToGround",
-    // Placements contain these.
+    // Contained in the placements.
     "Offset1",
     "Offset2",
     "Detach1",
     "Detach2",
     "AttachmentOffset",
-    // Of every object.
+    // Properties of every object.
     "Visibility",
     "ExpressionEngine",
     "Proxy",
@@ -269,7 +269,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     fn assembly(&mut self) {
         let roots: Vec<&'a str> =
             self.objects.values().filter(|o| o.kind == "Assembly::AssemblyObject").map(|o| o.name).collect();
-        // The one that is in no other.
+        // The assembly that is in no other one.
         let inner: BTreeSet<&'a str> = roots.iter().flat_map(|r| self.objects[r].group()).collect();
         let mut outermost = roots.iter().copied().filter(|r| !inner.contains(r));
         let Some(root) = outermost.next() else {
@@ -340,11 +340,11 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         self.times();
     }
 
-    /// The parts and joints in a group, and in the groups in it.
+    /// Collects the parts and joints of a group and of its nested groups.
     fn sort(&mut self, group: &'a str, parts: &mut Vec<&'a str>, joints: &mut Vec<&'a str>, depth: usize) {
         let Some(object) = self.objects.get(group).filter(|_| depth < DEEPEST) else { return };
         for name in object.group() {
-            // An assembly lists what is in its groups too.
+            // An assembly also lists the content of its groups.
             let known = parts.contains(&name) || joints.contains(&name);
             let Some(inner) = self.objects.get(name).filter(|_| !known) else { continue };
             let is_joint =
@@ -373,7 +373,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// The marker at one end of a joint.
+    /// Returns the marker at one end of a joint.
     fn marker(&mut self, joint: &'a str, k: usize, root: &'a str, outer: Pose) -> Option<Marker> {
         let object = &self.objects[joint];
         let (label, at) = (object.label(), object.at());
@@ -385,7 +385,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             self.notes.problem_with("HP0803", at, message, "choose both ends of the joint in FreeCAD");
             return None;
         };
-        // The path from the assembly down; the last word of it is a face, an edge or a vertex.
+        // The path from the assembly; its last word is a face, an edge or a vertex.
         let mut path: Vec<&str> = sub.split('.').collect();
         path.pop();
         if name != root {
@@ -415,7 +415,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 }
                 break;
             }
-            // What is in a body is drawn in the body's frame, but for sketches and datums, which have their own.
+            // The content of a body is in the body frame, except for sketches and datums.
             let shape = object.linked().and_then(|name| self.objects.get(name)).unwrap_or(object);
             let has_frame = |name: &&str| self.objects.get(name).is_some_and(Object::is_drawn_in_its_frame);
             if shape.is_shape() && !rest.first().is_some_and(has_frame) {
@@ -492,7 +492,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         self.joints.insert(joint, MarkerJoint { number, kind: type_name, markers: [i, j] });
     }
 
-    /// Between which values a hinge or a slide may go, counted from the drawing.
+    /// Returns the limits of a hinge or slide, relative to the design configuration.
     fn limits(&self, joint: &'a str, kind: &str, i: &Marker, j: &Marker) -> Option<[f64; 2]> {
         let object = &self.objects[joint];
         let drawn = offset(i, j);
@@ -510,7 +510,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         (ends != [None, None]).then(|| [0, 1].map(|k| ends[k].unwrap_or(open[k])))
     }
 
-    /// Element that an end of a joint is on: `Face`, `Edge` or `Vertex`; or a whole part.
+    /// Returns the element at an end of a joint: `Face`, `Edge` or `Vertex`, or an empty text for a whole part.
     fn element(&self, joint: &'a str, k: usize) -> &'static str {
         let reference = self.objects[joint].link(&format!("Reference{k}"));
         let sub = reference.map(|(_, sub, _)| sub).unwrap_or_default();
@@ -518,10 +518,10 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         ["Face", "Edge", "Vertex"].into_iter().find(|e| last.starts_with(e)).unwrap_or_default()
     }
 
-    /// A distance between two surfaces, lines or points. The kind of surface of a face is in its shape alone; the
-    /// position of its frame in the design configuration, where the distance holds, mostly indicates it.
+    /// Adds a distance between two surfaces, lines or points. The type of surface of a face is only in its shape. It is
+    /// inferred from the frames in the design configuration, where the distance holds.
     fn distance(&mut self, called: JointSource<'_>, elements: [&str; 2], ends: [Marker; 2], said: f64) {
-        // The face, or else the edge, comes first.
+        // The face, or otherwise the edge, comes first.
         let rank = |e: &str| ["Face", "Edge", "Vertex"].iter().position(|x| *x == e).unwrap_or(3);
         let swapped = rank(elements[1]) < rank(elements[0]);
         let [i, j] = if swapped { [ends[1], ends[0]] } else { ends };
@@ -548,7 +548,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             self.notes.refused(called.kind, called.name, called.at, why);
             return;
         }
-        // What the joints tell of themselves is informed of the distance instead.
+        // The entries of the joints are replaced by one entry for the distance.
         let told = self.notes.report.entries.len();
         let name = match how {
             "spherical" => {
@@ -597,7 +597,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         self.notes.approximated(called.kind, called.name, called.at, why);
     }
 
-    /// Racks, gears, belts and screws: couplers of the joints that carry their parts.
+    /// Adds racks, gears, belts and screws as couplers of the joints that carry their parts.
     fn relation(&mut self, joint: &'a str, root: &'a str, outer: Pose) {
         let object = &self.objects[joint];
         let (label, at) = (object.label(), object.at());
@@ -624,7 +624,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         };
         let angle = |joint: usize| Coordinate { joint, name: "angle" };
         let terms = if kind == "RackPinion" {
-            // Either end may be the rack.
+            // Either end can be the rack.
             let [a, b] =
                 [(i, j), (j, i)].map(|(rack, pinion)| Some((slide(rack)?, hinge(pinion, pinion.z())?)));
             first.zip(a.or(b)).map(|(radius, ((rack, u), (pinion, v)))| {
@@ -654,8 +654,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// As the solver has it, one relation of the slide and the turn; a joint of its own where no others say how its
-    /// parts move.
+    /// Adds a screw as a single relation between slide and rotation, like the solver, or as a joint if no other joints
+    /// guide its parts.
     fn screw(&mut self, joint: &'a str, markers: [Marker; 2], lead: Option<f64>) {
         let object = &self.objects[joint];
         let called = JointSource { kind: "Screw", name: object.label(), at: object.at() };

@@ -1,40 +1,40 @@
-//! Functions of the time in other programs' languages, as expressions of model files.
+//! Translation of functions of the time from other programs to expressions of model files.
 
-/// Whose language it is.
+/// Language of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Language {
     /// Adams/Solver: `30D` is an angle, `**` a power, names in any case.
     Adams,
-    /// OndselSolver: `2.0d` is a number, `<n>` a new line, what is in quotes a comment.
+    /// OndselSolver: `2.0d` is a number, `<n>` a line break, text in quotes a comment.
     Ondsel,
-    /// FreeCAD's formulas of a simulation: as those of Ondsel.
+    /// FreeCAD's formulas of a simulation, similar to those of Ondsel.
     FreeCad,
 }
 
-/// Expressions may be nested so deep.
+/// Maximum depth of nested expressions.
 const DEEPEST: usize = 60;
-/// Number of bytes of a written-out expression at most: functions of other programs repeat their arguments.
+/// Maximum number of bytes of a translated expression: some functions of other programs repeat their arguments.
 const LONGEST: usize = 4 << 20;
-/// No function repeats an argument more often than this, but for the sums over all that follow.
+/// Maximum number of repetitions of an argument by a function, except for the sums over all further arguments.
 const REPEATED: usize = 8;
 
-/// The error of an expression that grows beyond all use.
+/// Error for an expression that exceeds [`LONGEST`].
 fn too_long() -> String {
     format!("written out it would be longer than {} MiB", LONGEST >> 20)
 }
 
-/// The expression of model files that says the same, in SI's radians.
+/// Translates a function to an expression of model files; angles in rad.
 ///
 /// # Errors
-/// Why there is none.
+/// Returns the reason why the function has no equivalent.
 pub fn translate(text: &str, language: Language) -> Result<String, String> {
     translate_with(text, language, "t")
 }
 
-/// The same, where the source's time is another expression of seconds.
+/// Translates a function; `time` is the expression of the source's time in terms of seconds.
 ///
 /// # Errors
-/// As there.
+/// See [`translate`].
 pub fn translate_with(text: &str, language: Language, time: &'static str) -> Result<String, String> {
     let mut parser = Parser { tokens: tokens(text, language)?, at: 0, depth: 0, language, time };
     let out = parser.sum()?;
@@ -44,7 +44,7 @@ pub fn translate_with(text: &str, language: Language, time: &'static str) -> Res
     }
 }
 
-/// The value of a translated expression that does not depend on the time.
+/// Returns the value of a translated expression that does not depend on the time.
 pub fn constant(text: &str) -> Option<f64> {
     let law = hardpoint::law::Law::parse(text).ok()?;
     let [a, b] = [0.0, 0.7311].map(|t| law.at(t).0[0]);
@@ -80,7 +80,7 @@ fn tokens(text: &str, language: Language) -> Result<Vec<Token>, String> {
             let end = bytes[k + 1..].iter().position(|c| *c == '"');
             k += end.map_or(bytes.len() - k, |n| n + 2);
         } else if language == Language::Ondsel && bytes[k..].starts_with(&['<', 'n', '>']) {
-            // A new line.
+            // A line break.
             k += 3;
         } else if c.is_ascii_digit() || (c == '.' && next.is_ascii_digit()) {
             let start = k;
@@ -190,7 +190,7 @@ impl Parser {
         Ok(out)
     }
 
-    /// Text written so far, unless it is too long.
+    /// Checks the length of the translated text.
     fn bounded(&self, out: &str) -> Result<(), String> {
         if out.len() > LONGEST { Err(too_long()) } else { Ok(()) }
     }
@@ -271,7 +271,7 @@ impl Parser {
         }
     }
 
-    /// A function of the source by those of model files.
+    /// Translates a function call.
     fn call(&self, name: &str, x: &[String]) -> Result<String, String> {
         let each: usize = x.iter().map(String::len).sum();
         let first: usize = x.iter().take(3).map(String::len).sum();
@@ -285,7 +285,7 @@ impl Parser {
                 Err(format!("`{name}` takes {n} values, and has {}", x.len()))
             }
         };
-        // How far x has gone from x0 to x1: 0 before, 1 after.
+        // Fraction of the interval from x0 to x1 before x, limited to 0..1.
         let gone =
             |x: &[String]| format!("min(1, max(0, (({}) - ({}))/(({}) - ({}))))", x[0], x[1], x[3], x[1]);
         let degrees = |inner: &str| format!("{inner}(({})*pi/180)", x.first().map_or("0", String::as_str));
@@ -323,7 +323,7 @@ impl Parser {
                     h1 = x[4]
                 ))
             }
-            // Half a sine from h0 to h1.
+            // Half a sine wave from h0 to h1.
             ("havsin", 5) => Ok(format!(
                 "((({h0}) + ({h1}))/2 - (({h1}) - ({h0}))/2*cos(pi*{u}))",
                 h0 = x[2],
@@ -353,7 +353,7 @@ impl Parser {
                 };
                 Ok(format!("({})", x[3..].iter().enumerate().map(term).collect::<Vec<_>>().join(" + ")))
             }
-            // The recurrence of Chebyshev's polynomials, written out as far as it is bearable.
+            // Chebyshev polynomials, expanded up to degree four.
             ("cheby", 3..=7) => {
                 let u = format!("(({}) - ({}))", x[0], x[1]);
                 let t = [
@@ -419,7 +419,7 @@ mod tests {
             let why = translate(text, Language::Adams).unwrap_err();
             assert!(why.contains(word), "{why}");
         }
-        // Functions that repeat their arguments, in each other, grow without bounds.
+        // Nested functions that repeat their arguments grow exponentially.
         let steps = format!("{}time{}", "step5(".repeat(50), ", 0, 0, 1, 1)".repeat(50));
         assert!(translate(&steps, Language::Adams).unwrap_err().contains("longer"));
         let signs = format!("{}time{}", "sign(1, ".repeat(50), ")".repeat(50));

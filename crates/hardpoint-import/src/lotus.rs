@@ -1,4 +1,4 @@
-//! Models of Lotus Suspension Analysis (`.shk`): one corner by the names of its points.
+//! Models of Lotus Suspension Analysis (`.shk`): one corner, recognised by the names of its points.
 
 use hardpoint::space::Vec3;
 
@@ -7,7 +7,7 @@ use crate::mechanism::{Mechanism, end_named};
 use crate::report::{ImportLog, SourceSpan};
 use crate::{Format, Input};
 
-/// See the module.
+/// Lotus format.
 pub const FORMAT: Format = Format {
     name: "lotus",
     about: "Lotus Suspension Analysis model",
@@ -17,12 +17,12 @@ pub const FORMAT: Format = Format {
     binary: false,
 };
 
-/// A point is reported in that many lines: its name, five of words, and three of numbers.
+/// Number of lines of a point in the template: its name, five lines of words, and three of numbers.
 const LINES_OF_A_POINT: usize = 9;
-/// A template has that many parts and points at most.
+/// Maximum number of parts and points of a template.
 const MOST: usize = 500;
 
-/// A line and where it is.
+/// Line with its position.
 #[derive(Clone, Copy)]
 struct Line<'t> {
     text: &'t str,
@@ -30,7 +30,7 @@ struct Line<'t> {
 }
 
 impl Line<'_> {
-    /// Numbers, if it has nothing else.
+    /// Returns the numbers of a line, or none if it contains anything else.
     fn numbers(&self) -> Vec<f64> {
         let words = self.text.split(|c: char| c.is_whitespace() || c == ',').filter(|w| !w.is_empty());
         let list: Option<Vec<f64>> =
@@ -96,7 +96,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         return None;
     }
     let mut m = Mechanism::new(input.stem, "mm", "deg");
-    // Lotus' x points back, y to the right; the arm's pivots tell where somebody has it forward.
+    // Lotus uses x back and y right. The pivots of the arm show if a file has x forward.
     let at = |role| names.iter().position(|name| role_of(name) == Some(role)).map(|k| places[k].0);
     let pivots = [[Role::LowerFront, Role::LowerRear], [Role::UpperFront, Role::UpperRear]];
     let forward =
@@ -141,7 +141,8 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     (!m.hardpoints.is_empty()).then_some(m)
 }
 
-/// The names of the points: behind the template's name, the numbers of parts and points, and the names of the parts.
+/// Returns the names of the points. They follow the name of the template, the numbers of parts and points, and the
+/// names of the parts.
 fn names<'t>(lines: &[Line<'t>], settings: usize, notes: &mut ImportLog) -> Option<Vec<&'t str>> {
     let header = lines.get(settings + 3);
     let counts = header.map(Line::numbers).unwrap_or_default();
@@ -177,14 +178,13 @@ fn names<'t>(lines: &[Line<'t>], settings: usize, notes: &mut ImportLog) -> Opti
     Some(names)
 }
 
-/// From x back, y right to x forward, y left.
+/// Converts from x back, y right to x forward, y left.
 pub fn half_round([x, y, z]: [f64; 3]) -> Vec3 {
     // Zero is written without a sign.
     Vec3::from([0.0 - x, 0.0 - y, z])
 }
 
-/// The ball joint of a strut's arm may have its own name; a spindle point outboard of the centre is the axis all the
-/// same.
+/// Removes a spindle point that coincides with the wheel centre, since it defines no axis.
 fn complete(corner: &mut Corner) {
     let [spindle, centre] = [Role::Spindle, Role::WheelCentre].map(|r| corner.points.get(&r).copied());
     if let (Some(spindle), Some(centre)) = (spindle, centre)

@@ -1,4 +1,4 @@
-//! Joints between two markers, each a frame on a body: as Adams, Ondsel and FreeCAD have them.
+//! Joints between two markers, each a frame on a body, as in Adams, Ondsel and FreeCAD.
 
 use std::collections::BTreeSet;
 
@@ -10,46 +10,46 @@ use crate::report::{ImportLog, SourceSpan};
 use crate::straighten::MEANT;
 use crate::turn::{angle_about, from_z_and_x, none};
 
-/// Markers nearer than this part of the mechanism's size are at one place: files have about seven digits.
+/// Distance below which markers coincide, as a fraction of the mechanism size: files have about seven digits.
 const APART: f64 = 1e-7;
-/// Axes nearer than this, in rad, are one: files have about six digits.
+/// Angle below which axes are parallel, rad: files have about six digits.
 const AWRY: f64 = 1e-5;
 
-/// A frame on a body, in the design configuration.
+/// Frame on a body in the design configuration.
 #[derive(Clone, Copy, Debug)]
 pub struct Marker {
-    /// The body.
+    /// Body.
     pub body: usize,
-    /// The frame, global.
+    /// Pose of the frame, global.
     pub pose: Pose,
 }
 
 impl Marker {
-    /// Z axis.
+    /// Z axis, global.
     pub fn z(&self) -> Vec3 {
         self.pose.rot.cols[2]
     }
 
-    /// X axis.
+    /// X axis, global.
     pub fn x(&self) -> Vec3 {
         self.pose.rot.cols[0]
     }
 
-    /// Y axis.
+    /// Y axis, global.
     pub fn y(&self) -> Vec3 {
         self.pose.rot.cols[1]
     }
 }
 
-/// Offset of the second marker from the first, as the coordinates of joints count.
+/// Joint coordinates of the second marker relative to the first.
 pub struct Offset {
-    /// Turn about the first's z, in rad.
+    /// Rotation about z of the first marker, rad.
     pub angle: f64,
-    /// Way along the first's z.
+    /// Displacement along z of the first marker.
     pub displacement: f64,
 }
 
-/// See [`Offset`].
+/// Returns the offset of marker j from marker i.
 pub fn offset(i: &Marker, j: &Marker) -> Offset {
     Offset { angle: angle_about(i.z(), i.x(), j.x()), displacement: i.z().dot(j.pose.r - i.pose.r) }
 }
@@ -66,7 +66,7 @@ pub struct JointSource<'s> {
 }
 
 impl JointSource<'_> {
-    /// For a comment in the model file.
+    /// Returns a comment for the model file.
     pub fn note(&self, notes: &ImportLog) -> String {
         match self.at.and_then(|at| notes.place(at)) {
             Some(place) => format!("{} {}, {place}", self.kind, self.name),
@@ -75,8 +75,7 @@ impl JointSource<'_> {
     }
 }
 
-/// Adds a joint of a type whose geometry follows from two markers, body i's and body j's; its number. What is drawn
-/// open is reported.
+/// Adds a joint between two markers, of body i and body j, and returns its index. Gaps and misalignments are reported.
 pub fn join(
     m: &mut Mechanism,
     notes: &mut ImportLog,
@@ -141,8 +140,8 @@ pub fn join(
         }
         _ => {}
     }
-    // What is turned by more than digits that are missing is closed: by a frame on body i that turns, with what the
-    // joint has there.
+    // A misalignment beyond missing digits is assembled: a frame on body i rotates, and carries the geometry of the
+    // joint there.
     let turn = if awry { turn_between(kind, [&i, &j]) } else { None };
     if let Some(turn) = turn {
         let holds_point = ["revolute", "universal"].contains(&kind);
@@ -172,12 +171,12 @@ pub fn join(
     Some(m.joint(joint))
 }
 
-/// Rotation of body j that makes the axes of a joint agree and keeps the angle about them; none where no rotation does,
-/// or one that is only digits that are missing.
+/// Returns the rotation of body j that aligns the axes of a joint and preserves the angle about them; `None` if there
+/// is none, or if it is within the missing digits.
 fn turn_between(kind: &str, [i, j]: [&Marker; 2]) -> Option<Mat3> {
     let turn = if ["universal", "dot1"].contains(&kind) {
         let (a, b) = (i.z(), j.z());
-        // About the common normal of both pins, until they are square
+        // Rotation about the common normal of both pins that makes them perpendicular
         let normal = a.cross(b).unit()?;
         let square = normal.cross(a);
         from_z_and_x(square, normal)? * from_z_and_x(b, normal)?.transpose()
@@ -190,18 +189,17 @@ fn turn_between(kind: &str, [i, j]: [&Marker; 2]) -> Option<Mat3> {
     (turn.angle_to(none()) > MEANT).then_some(turn)
 }
 
-/// Numbers of a source that differ by less than this part of the mechanism's size from what is drawn say the same as
-/// that.
+/// Relative tolerance for a specified length that equals the nominal one, as a fraction of the mechanism size.
 const SAID: f64 = 1e-6;
 
-/// True if a length that the source says is the drawn one.
+/// Returns true if a specified length equals that in the design configuration.
 pub fn is_drawn(m: &Mechanism, said: f64, drawn: f64) -> bool {
     (said - drawn).abs() <= SAID * m.size().max(said.abs())
 }
 
-/// Two joints with a link between them, which has a body of its own: the parts keep a distance from axis to axis, or
-/// from an axis to a point. The first joint, of body i, and the link's, are about z of the first marker; of the second
-/// the type is reported.
+/// Adds two joints with a link between them that has its own body: the parts keep a distance between two axes, or
+/// between an axis and a point. The first joint, between body i and the link, is about z of the first marker; the type
+/// of the second joint is given.
 pub fn linked(
     m: &mut Mechanism,
     notes: &mut ImportLog,
@@ -263,8 +261,9 @@ pub fn linked(
     }
 }
 
-/// Coordinates of sliding along an axis and rotation about it of body j relative to body i: coordinates of joints with
-/// their factors. Either of one joint between both, or of those that carry them on a third body.
+/// Returns the displacement along an axis and the rotation about it of body j relative to body i, as sums of joint
+/// coordinates with factors. The coordinates are those of one joint between both bodies, or of joints that carry both
+/// on a third body.
 pub fn relative(
     joints: &[MarkerJoint],
     [i, j]: [usize; 2],
@@ -272,7 +271,7 @@ pub fn relative(
 ) -> Option<[Vec<(Coordinate, f64)>; 2]> {
     let bases = joints.iter().flat_map(|k| k.markers.map(|m| m.body));
     let bases: BTreeSet<usize> = bases.chain([i, j]).collect();
-    // The joint between both, if there is one, is met with body i as the base.
+    // A joint between both bodies is found with body i as the base.
     [i, j].into_iter().chain(bases).find_map(|base| {
         let [mut slides, mut turns] = [Vec::new(), Vec::new()];
         for (body, sign) in [(i, -1.0), (j, 1.0)].into_iter().filter(|(body, _)| *body != base) {
@@ -302,7 +301,8 @@ pub fn relative(
     })
 }
 
-/// Couples what a screw couples, its parts held by other joints; none where no joints say how they slide and turn.
+/// Adds the coupler of a screw whose parts are guided by other joints; `None` if no joints define the sliding and
+/// rotation.
 pub fn screw(
     m: &mut Mechanism,
     notes: &mut ImportLog,
@@ -320,18 +320,18 @@ pub fn screw(
     Some(())
 }
 
-/// A joint that was made of two markers.
+/// Joint between two markers.
 #[derive(Clone, Copy, Debug)]
 pub struct MarkerJoint {
-    /// Number.
+    /// Index of the joint.
     pub number: usize,
-    /// Type.
+    /// Joint type.
     pub kind: &'static str,
-    /// The markers of body i and of body j.
+    /// Markers on body i and body j.
     pub markers: [Marker; 2],
 }
 
-/// The joint of one of these types that carries a body, its axis along this one.
+/// Returns a joint of one of these types that carries a body and has a parallel axis.
 pub fn carrying<'j>(
     mut joints: impl Iterator<Item = &'j MarkerJoint>,
     body: usize,
@@ -344,14 +344,14 @@ pub fn carrying<'j>(
     })
 }
 
-/// Sign of a joint's coordinate for a body and an axis.
+/// Sign of a joint's coordinate for the motion of a body along or about an axis.
 pub fn way(joint: &MarkerJoint, body: usize, axis: Vec3) -> f64 {
     let sign = if joint.markers[1].body == body { 1.0 } else { -1.0 };
     sign * joint.markers[0].z().dot(axis).signum()
 }
 
-/// A law that counts from what it counts from in the source, made to count from the drawing; of angles, by the shorter
-/// way round.
+/// Converts a law of the source to one that is zero in the design configuration, where the source's coordinate is
+/// `drawn`. Angles are reduced by whole turns.
 pub fn counted(text: &str, drawn: f64, turns: bool) -> String {
     use std::f64::consts::TAU;
     let begins = hardpoint::law::Law::parse(text).map_or(0.0_f64, |law| law.at(0.0).0[0]);
@@ -365,7 +365,7 @@ pub fn counted(text: &str, drawn: f64, turns: bool) -> String {
 }
 
 impl Marker {
-    /// A frame at a place, its z along an axis; none where that has no direction.
+    /// Returns a marker with z along an axis; `None` if the axis is null.
     pub fn along(body: usize, at: Vec3, axis: Vec3) -> Option<Self> {
         let rot = from_z_and_x(axis, axis.any_square())?;
         Some(Self { body, pose: Pose { rot, r: at } })

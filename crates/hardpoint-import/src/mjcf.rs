@@ -1,5 +1,5 @@
-//! Models of MuJoCo (MJCF): includes, default classes, frames, bodies with several joints, equality constraints. Read
-//! with `roxmltree`: `mjcf-rs` knows neither classes of defaults nor places in the text.
+//! Models of MuJoCo (MJCF): includes, default classes, frames, bodies with several joints, equality constraints. Parsed
+//! with `roxmltree`, since `mjcf-rs` supports neither default classes nor positions in the text.
 
 mod defaults;
 mod equality;
@@ -17,7 +17,7 @@ use crate::turn::{from_z_and_x, home};
 use crate::xml::{Vocabulary, children, exactly};
 use crate::{Format, Input, robot, xml};
 
-/// See the module.
+/// MJCF format.
 pub const FORMAT: Format = Format {
     name: "mjcf",
     about: "MuJoCo model",
@@ -27,15 +27,15 @@ pub const FORMAT: Format = Format {
     binary: false,
 };
 
-/// Bodies, and classes of defaults, are nested so deep at most.
+/// Maximum depth of nested bodies and default classes.
 const DEEPEST: usize = 100;
-/// Points nearer to each other than this part of the mechanism's size are one.
+/// Distance below which points coincide, as a fraction of the mechanism size.
 const CLOSED: f64 = 1e-7;
-/// Maximum number of files that are included.
+/// Maximum number of included files.
 const MOST_INCLUDED: usize = 100;
-/// Maximum number of times that files are put into each other.
+/// Maximum number of expanded includes.
 const MOST_EXPANDED: usize = 20_000;
-/// Sections that do not concern how bodies and joints move.
+/// Sections without effect on the motion of bodies and joints.
 const IRRELEVANT: [&str; 8] =
     ["size", "visual", "statistic", "contact", "sensor", "actuator", "custom", "option"];
 /// Known content of a joint.
@@ -108,12 +108,12 @@ const EQUALITY: Vocabulary = Vocabulary {
     read: &[],
     irrelevant: &[],
 };
-/// Gravity of MuJoCo where a source names none, m/s^2.
+/// Default gravity of MuJoCo, m/s^2.
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
-/// Density of MuJoCo where a source names none, kg/m^3.
+/// Default density of MuJoCo, kg/m^3.
 const DENSITY: f64 = 1000.0;
 
-/// An element, and the number of the text that it is in.
+/// Element with the index of its text.
 type Element<'d> = (usize, Node<'d, 'd>);
 
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
@@ -169,7 +169,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     (m.bodies.len() > 1).then_some(m)
 }
 
-/// Equalities of MuJoCo in a file of another format, whose bodies and joints are there.
+/// Reads equalities of MuJoCo in a file of another format, with its bodies and joints.
 pub fn extension<'d>(
     m: Mechanism,
     notes: &mut ImportLog,
@@ -194,7 +194,7 @@ pub fn extension<'d>(
     reader.m
 }
 
-/// The text itself and those that it includes, by the paths from the main file's folder.
+/// Returns the text itself and the included texts, by the paths from the main file's folder.
 fn included(input: &Input<'_>, notes: &mut ImportLog) -> Vec<(String, String)> {
     let mut texts = vec![(String::new(), xml::lenient(input.text))];
     let mut k = 0;
@@ -222,13 +222,14 @@ fn included(input: &Input<'_>, notes: &mut ImportLog) -> Vec<(String, String)> {
     texts
 }
 
-/// Possible paths of an included file: from the folder of the main file, or from that of the including file.
+/// Returns the possible paths of an included file: from the folder of the main file, or from that of the including
+/// file.
 fn paths_of(path: &str, from: &str) -> Vec<String> {
     let own = from.rsplit_once('/').map(|(folder, _)| format!("{folder}/{path}"));
     std::iter::once(path.to_owned()).chain(own).collect()
 }
 
-/// Settings of `compiler`, which define the meaning of the rest.
+/// Settings of `compiler`, which affect the meaning of other elements.
 struct Compiler {
     degrees: bool,
     euler: String,
@@ -242,10 +243,10 @@ impl Default for Compiler {
     }
 }
 
-/// Attributes by element, as a class of defaults gives them.
+/// Default class: values by element and attribute.
 type Class = HashMap<(String, String), String>;
 
-/// Position in the tree of bodies.
+/// Position in the body tree.
 #[derive(Clone)]
 struct Inside {
     body: usize,
@@ -254,7 +255,7 @@ struct Inside {
     depth: usize,
 }
 
-/// A joint of a body.
+/// Joint of a body.
 struct JointOnBody<'d> {
     element: Element<'d>,
     /// Frame of its coordinates.
@@ -262,14 +263,14 @@ struct JointOnBody<'d> {
     class: Option<String>,
 }
 
-/// A point in which two bodies meet.
+/// Point at which two bodies are connected.
 struct Meet {
     name: String,
     at: Option<SourceSpan>,
     ends: [Marker; 2],
 }
 
-/// A body that nothing but equalities may hold.
+/// Free body, which equalities may constrain.
 struct Free {
     name: String,
     at: Option<SourceSpan>,
@@ -277,16 +278,16 @@ struct Free {
     place: Vec3,
 }
 
-/// A shape to be shown.
+/// Visible shape.
 struct VisibleShape<'d> {
     element: Element<'d>,
     body: usize,
     link: String,
-    /// In the body.
+    /// Pose in the body frame.
     place: Pose,
     kind: String,
     size: Vec<f64>,
-    /// The two ends, where it is given by them.
+    /// End points of the axis, if the shape is defined by them.
     ends: Option<[f64; 6]>,
     mesh: Option<(String, [f64; 3])>,
 }
@@ -298,7 +299,7 @@ struct Reader<'d, 'n> {
     documents: &'d [Option<Document<'d>>],
     compiler: Compiler,
     classes: BTreeMap<String, Class>,
-    /// Their files and scales.
+    /// Files and scales of the meshes.
     meshes: BTreeMap<String, (String, [f64; 3])>,
     bodies: BTreeMap<String, (usize, Pose)>,
     sites: BTreeMap<String, (usize, Pose)>,
@@ -309,26 +310,26 @@ struct Reader<'d, 'n> {
     meets: Vec<Meet>,
     free: Vec<Free>,
     shapes: Vec<VisibleShape<'d>>,
-    /// The names of all joints.
+    /// Names of all joints.
     names: BTreeSet<String>,
-    /// The places of the includes that have been reported of.
+    /// Positions of the reported includes.
     told: BTreeSet<(usize, usize)>,
-    /// Number of times that files were put into each other.
+    /// Number of expanded includes.
     expanded: usize,
     /// Masses of the geoms.
     solids: Vec<GeomMass>,
-    /// Bodies whose mass is written.
+    /// Bodies with an explicit mass.
     weighed: BTreeSet<usize>,
-    /// Number of geoms that are meshes, whose masses are not computed.
+    /// Number of meshes, whose masses are not computed.
     meshes_without_mass: usize,
 }
 
-/// The mass of a geom.
+/// Mass of a geom.
 struct GeomMass {
     body: usize,
     centre: Vec3,
     mass: f64,
-    /// About the centre, along the global axes.
+    /// Inertia matrix about the centre, along the global axes, kg m^2.
     inertia: Mat3,
 }
 
@@ -364,7 +365,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         }
     }
 
-    /// The children of an element, with what `include` puts in its place.
+    /// Returns the children of an element, with includes expanded.
     fn contents(&mut self, (text, node): Element<'d>, depth: usize) -> Vec<Element<'d>> {
         let mut out = Vec::new();
         for inner in children(node) {
@@ -404,7 +405,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         out
     }
 
-    /// Reads a body, or a frame in it; `inside` is the frame of its coordinates.
+    /// Reads the content of a body or of a frame in it; `inside` is its position in the body tree.
     fn body(&mut self, element: Element<'d>, inside: &Inside, name: &str) {
         if inside.depth > DEEPEST {
             self.notes.problem_with(
@@ -458,7 +459,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         }
     }
 
-    /// A section of the model that is not read.
+    /// Reports a section of the model that is not read.
     fn section(&mut self, kind: &str, (text, node): Element<'d>) {
         let at = xml::at(text, node);
         if IRRELEVANT.contains(&kind) {
@@ -469,7 +470,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         }
     }
 
-    /// Postures that the source has stored.
+    /// Reports the stored configurations of the source.
     fn keys(&mut self, list: Element<'d>) {
         for (text, key) in self.contents(list, 0) {
             let (name, at) = (key.attribute("name").unwrap_or_default(), xml::at(text, key));
@@ -490,7 +491,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         let own = node.attribute("name").unwrap_or_default();
         let name = if own.is_empty() { format!("body_{}", self.m.bodies.len()) } else { own.to_owned() };
         if self.m.bodies.len() > robot::MOST_PARTS {
-            // That is reported when all is read.
+            // The limit is reported after reading.
             return;
         }
         for a in node.attributes().filter(|a| !BODY.contains(&a.name())) {
@@ -504,7 +505,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         let mut joints = Vec::new();
         self.joints_of(element, pose, class.as_deref(), 0, &mut joints);
         let note = JointSource { kind: "body", name: &name, at }.note(self.notes);
-        // Several joints of a body follow each other: bodies without a shape are between them.
+        // Several joints of a body form a chain, with bodies without shapes between them.
         let mut carrier = outer.body;
         let mut done = Vec::new();
         for (k, joint) in joints.iter().enumerate() {
@@ -542,7 +543,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         self.body(element, &Inside { body, pose, class, depth: outer.depth + 1 }, &name);
     }
 
-    /// The joints of a body, also of those in frames in it.
+    /// Collects the joints of a body, including those in frames.
     fn joints_of(
         &mut self,
         element: Element<'d>,
@@ -621,7 +622,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         };
         let limited = self.attribute(element, "limited", class).map_or("auto".into(), |(l, _)| l);
         if limited == "true" || (limited == "auto" && self.compiler.auto_limits) {
-            // Ranges count from `ref`, which is the value in the design configuration.
+            // Ranges are relative to `ref`, the value in the design configuration.
             let [zero] = self.numbers::<1>(element, "ref", class).unwrap_or_default();
             let range = self.range(element, class);
             let scaled = |x: f64| if coordinate == Some("angle") { self.angle(x - zero) } else { x - zero };
@@ -636,7 +637,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         }
     }
 
-    /// The spring and damper of a joint.
+    /// Adds the spring and damper of a joint.
     fn spring(
         &mut self,
         element: Element<'d>,
@@ -667,14 +668,14 @@ impl<'d, 'n> Reader<'d, 'n> {
             ["stiffness", "damping", "springref", "ref", "frictionloss"]
                 .map(|key| number(key).unwrap_or(0.0));
         let turns = coordinate.is_some_and(|c| c.name == "angle");
-        // Coordinates count from the drawing, where the joint's value is `ref`.
+        // Coordinates are relative to the design configuration, where the value is `ref`.
         let free = if turns { self.angle(springref - zero) } else { springref - zero };
         let called = JointSource { kind: "spring", ..called };
         robot::joint_spring(&mut self.m, self.notes, called, coordinate, [stiffness, damping, free]);
         robot::friction(self.notes, called.name, called.at, friction);
     }
 
-    /// The mass of a body that is written.
+    /// Adds the explicit mass of a body.
     fn inertial(&mut self, element: Element<'d>, inside: &Inside, name: &str) {
         let called = JointSource { kind: "inertial", name, at: xml::at(element.0, element.1) };
         let frame = inside.pose.compose(self.pose(element, None));
@@ -690,7 +691,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         robot::mass(&mut self.m, self.notes, called, inside.body, frame, mass, Some(matrix));
     }
 
-    /// The mass of a geom: its volume times its density, as far as it is no mesh.
+    /// Records the mass of a geom: its volume times its density, unless it is a mesh.
     fn weigh(&mut self, element: Element<'d>, inside: &Inside, solid: Option<(Solid, Pose)>) {
         let class = inside.class.as_deref();
         let [mass] = self.numbers::<1>(element, "mass", class).map_or([f64::NAN], |m| m);
@@ -714,7 +715,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         self.solids.push(GeomMass { body: inside.body, centre: inside.pose.point(place.r), mass, inertia });
     }
 
-    /// Masses of bodies by their geoms, where they are not written, and gravity.
+    /// Adds masses from geoms for the bodies without an explicit mass, and gravity.
     fn masses(&mut self, top: &[Element<'d>]) {
         let mut of_body: BTreeMap<usize, Vec<GeomMass>> = BTreeMap::new();
         for solid in std::mem::take(&mut self.solids) {
@@ -760,7 +761,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         }
     }
 
-    /// The range of a joint, if it has an end.
+    /// Returns the range of a joint, if it is bounded.
     fn range(&mut self, element: Element<'d>, class: Option<&str>) -> Option<[f64; 2]> {
         let (value, at) = self.attribute(element, "range", class)?;
         let words: Vec<&str> = value.split_whitespace().collect();
@@ -784,7 +785,7 @@ impl<'d, 'n> Reader<'d, 'n> {
             let own = if ends.is_some() { home() } else { self.pose(element, class) };
             self.weigh(element, inside, solid_of(&kind, &size, ends, own));
         }
-        // Shapes for contact alone stand where the visible ones do.
+        // Shapes for contact only duplicate the visible ones.
         let group = self
             .attribute(element, "group", class)
             .and_then(|(g, _)| g.trim().parse::<i32>().ok())
@@ -816,7 +817,7 @@ impl<'d, 'n> Reader<'d, 'n> {
     }
 }
 
-/// Shows a geom.
+/// Adds the shape of a geom.
 fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) {
     let (text, node) = shape.element;
     let at = xml::at(text, node);
@@ -835,7 +836,7 @@ fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) 
     }
 }
 
-/// The solid that a geom is, and where: by its size, or by its two ends.
+/// Returns the solid of a geom and its pose, from its size or its two ends.
 fn solid_of(kind: &str, size: &[f64], ends: Option<[f64; 6]>, mut place: Pose) -> Option<(Solid, Pose)> {
     let by_ends = ends.is_some();
     let size = |k: usize| size.get(k).copied().unwrap_or(0.0);
@@ -849,7 +850,7 @@ fn solid_of(kind: &str, size: &[f64], ends: Option<[f64; 6]>, mut place: Pose) -
         }
     }
     let solid = match kind {
-        // By its ends a box or ellipsoid is as long as they are apart.
+        // A box or ellipsoid with two ends has their distance as its length.
         "box" if by_ends => Solid::Box([size(0), size(1), half].map(|x| 2.0 * x)),
         "ellipsoid" if by_ends => Solid::Ball([size(0), size(1), half]),
         "box" => Solid::Box([2.0 * size(0), 2.0 * size(1), 2.0 * size(2)]),
@@ -862,7 +863,7 @@ fn solid_of(kind: &str, size: &[f64], ends: Option<[f64; 6]>, mut place: Pose) -
     Some((solid, place))
 }
 
-/// The volume of a solid, and its moments of inertia about its own axes per mass.
+/// Returns the volume of a solid, m^3, and its moments of inertia about its own axes per unit of mass, m^2.
 fn volume_of(solid: Solid) -> (f64, [f64; 3]) {
     use std::f64::consts::PI;
     match solid {
@@ -875,7 +876,7 @@ fn volume_of(solid: Solid) -> (f64, [f64; 3]) {
             (PI * r * r * l, [across, across, r * r / 2.0])
         }
         Solid::Capsule(r, l) => {
-            // A cylinder, and two halves of a ball at its ends.
+            // A cylinder with half a ball at each end.
             let [tube, ball] = [PI * r * r * l, 4.0 / 3.0 * PI * r * r * r];
             let volume = tube + ball;
             let [t, b] = [tube / volume, ball / volume];

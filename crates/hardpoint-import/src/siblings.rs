@@ -1,15 +1,14 @@
-//! Files of programs whose other files are read here, by what is in them: a message names the file to export in place
-//! of them.
+//! Detection of related file types that are not supported: the error names the file to import instead.
 
-/// A kind of file that is not read.
+/// Unsupported kind of file.
 pub struct Sibling {
-    /// The kind, with its article.
+    /// Description of the kind, with its article.
     pub what: &'static str,
-    /// The file to import in place of it, and where it comes from.
+    /// File to import instead, and how to create it.
     pub help: &'static str,
 }
 
-/// Recognises a kind by its text (in small letters) or, where the text says nothing, by the ending of the name.
+/// Kind that is recognised by its text (in lower case) or by its extension.
 struct Kind {
     endings: &'static [&'static str],
     looks: fn(&str) -> bool,
@@ -95,7 +94,7 @@ const KINDS: &[Kind] = &[
     },
 ];
 
-/// The kind of a file that is not read: by its text first, then by its ending.
+/// Returns the unsupported kind of a file, from its text or otherwise from its extension.
 pub fn of(text: &str, name: &str) -> Option<&'static Sibling> {
     let text = text.to_ascii_lowercase();
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();

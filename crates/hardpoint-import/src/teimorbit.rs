@@ -12,7 +12,7 @@ use crate::report::{ImportLog, SourceSpan};
 use crate::sides::SIDES;
 use crate::{Format, Input, teimorbit_blocks};
 
-/// See the module.
+/// TeimOrbit format.
 pub const FORMAT: Format = Format {
     name: "teimorbit",
     about: "TeimOrbit hardpoints",
@@ -22,9 +22,9 @@ pub const FORMAT: Format = Format {
     binary: false,
 };
 
-/// The columns of parameters.
+/// Columns of parameters.
 const PARAMETERS: [&str; 4] = ["parameter_name", "symmetry", "type", "value"];
-/// Default columns of a row.
+/// Default columns of hardpoints.
 const COLUMNS: [&str; 5] = ["hardpoint_name", "symmetry", "x_value", "y_value", "z_value"];
 
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
@@ -55,7 +55,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             }
             continue;
         }
-        // `(COMMENTS)`, or `(VARIANTS)`, whose rows are those of other designs.
+        // `(COMMENTS)`, or `(VARIANTS)`, whose rows belong to other designs.
         if line.starts_with('(') {
             if ["HARDPOINT", "PARAMETER"].contains(&section.as_str()) {
                 notes.ignored(line, Some(at));
@@ -134,7 +134,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         let corner = Corner { at: Some(block), rack: true, radius: parameters.radius, end, ..single };
         known = corner.build(&mut m, notes, &mut rack);
     }
-    // Arms without their ball joints are no links of an axle.
+    // Arms without ball joints are not links of an axle.
     let has_arms = corners.iter().flat_map(|c| c.points.keys()).any(|role| role.is_of_an_arm());
     if !known && !has_arms {
         known = live_axle::build(&mut m, notes, &places, &corners, Some(block));
@@ -150,52 +150,52 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     (!m.hardpoints.is_empty()).then_some(m)
 }
 
-/// A block of values by keys.
+/// Block of keys and values.
 pub struct Block {
     /// Name, in capital letters.
     pub name: String,
-    /// Place of its beginning.
+    /// Position of its heading.
     pub at: SourceSpan,
-    /// Keys in capital letters, and their values.
+    /// Keys in capital letters, with their values.
     pub values: Vec<(String, String)>,
 }
 
 impl Block {
-    /// The value of a key.
+    /// Returns the value of a key.
     pub fn value(&self, key: &str) -> Option<&str> {
         self.values.iter().find(|(k, _)| k == key).map(|(_, value)| value.as_str())
     }
 
-    /// The number of a key.
+    /// Returns the number of a key.
     pub fn number(&self, key: &str) -> Option<f64> {
         number(self.value(key)?)
     }
 }
 
-/// A finite number, whose exponent may begin with D.
+/// Reads a finite number; its exponent may begin with D.
 fn number(word: &str) -> Option<f64> {
     word.to_ascii_lowercase().replace('d', "e").parse().ok().filter(|x: &f64| x.is_finite())
 }
 
-/// Returns whether a line of units gives masses in another unit than kilograms.
+/// Returns true if a line of units defines another unit of mass than kilograms.
 fn is_other_mass(line: &str) -> bool {
     let Some((key, value)) = line.split_once('=') else { return false };
     let unit = value.trim().trim_matches(['\'', '"']).to_ascii_lowercase();
     key.trim().eq_ignore_ascii_case("MASS") && !["kg", "kilogram"].contains(&unit.as_str())
 }
 
-/// The hardpoints of one side, or those without a side.
+/// Hardpoints of one side, or those without a side.
 #[derive(Default)]
 struct Side {
     corner: Corner,
-    /// Ends of rods by their names, inboard first, of names that mean nothing else.
+    /// Ends of rods by their names, inboard first, for names without another role.
     rods: BTreeMap<String, [Option<Vec3>; 2]>,
-    /// All of them, for a live axle.
+    /// All hardpoints, for a live axle.
     places: Places,
 }
 
 impl Side {
-    /// The corner. Pairs of inner and outer points are its rods where it is a multi-link suspension by their number.
+    /// Returns the corner. Pairs of inner and outer points are links if their number makes it a multi-link suspension.
     fn corner(self) -> Corner {
         let mut corner = self.corner;
         let rods: Vec<Link> = (self.rods.into_iter())
@@ -210,15 +210,15 @@ impl Side {
     }
 }
 
-/// Endings of the names of a rod's ends.
+/// Suffixes of the names of a rod's ends.
 const ENDS: [[&str; 3]; 2] = [["_inner", "_inboard", "_chassis"], ["_outer", "_outboard", "_upright"]];
 
-/// Parameters of the subsystem that the model has.
+/// Parameters of the subsystem that are imported.
 #[derive(Debug)]
 struct Parameters {
     /// Static camber and toe of both sides, rad.
     angles: [[f64; 2]; 2],
-    /// From the wheel's centre to the ground.
+    /// Radius of the wheel, from its centre to the road.
     radius: Option<f64>,
     /// True if masses are in kg.
     mass_is_kg: bool,
@@ -230,7 +230,7 @@ impl Default for Parameters {
     }
 }
 
-/// Names of parameters: the static angles, figures of the vehicle and the wheel's radius, the loaded one first.
+/// Names of parameters: static angles, vehicle parameters, and wheel radii with the loaded radius first.
 const ANGLES: [&str; 2] = ["camber_angle", "toe_angle"];
 const WHEELBASE: [&str; 1] = ["wheelbase"];
 const HEIGHT: [&str; 3] = ["cg_height", "cog_height", "centre_of_gravity_height"];
@@ -244,7 +244,7 @@ const RADII: [&str; 6] = [
 ];
 
 impl Parameters {
-    /// A row: static camber and toe, which the wheel's axis follows, and figures of the vehicle.
+    /// Reads a row: static camber and toe, which define the spin axis, or parameters of the vehicle.
     fn row(
         &mut self,
         m: &mut Mechanism,
@@ -292,7 +292,7 @@ impl Parameters {
     }
 }
 
-/// True if the line says the unit of length.
+/// Reads the unit of length. Returns true if the line defines it.
 fn unit(m: &mut Mechanism, line: &str, at: SourceSpan, notes: &mut ImportLog) -> bool {
     let Some((key, value)) = line.split_once('=') else { return false };
     if !key.trim().eq_ignore_ascii_case("LENGTH") {
@@ -314,7 +314,7 @@ fn unit(m: &mut Mechanism, line: &str, at: SourceSpan, notes: &mut ImportLog) ->
     true
 }
 
-/// The words of a row; those in quotes may have blanks in them.
+/// Returns the words of a row; quoted words may contain blanks.
 fn words(line: &str) -> Vec<String> {
     let (mut out, mut quote, mut word) = (Vec::new(), None, String::new());
     for c in line.chars() {
@@ -366,7 +366,7 @@ fn row(
             Some((short, prefix)) => (short, prefix),
             None => (name.as_str(), ""),
         };
-    // A side that is the first or last word of the name is not named once more.
+    // The side is not appended if it is already the first or last word of the name.
     let mut put = |k: usize, suffix: &str, place: Vec3| {
         let word = suffix.trim_start_matches('_');
         let in_front = short.strip_prefix(word).and_then(|s| s.strip_prefix('_'));
@@ -387,7 +387,7 @@ fn row(
     };
     match (symmetry.as_str(), prefix) {
         ("left/right" | "symmetric", _) => {
-            // Written is the left one, in Adams/Car at negative y.
+            // The row defines the left point, at negative y in Adams/Car.
             put(0, "_left", place);
             put(1, "_right", mirrored);
         }

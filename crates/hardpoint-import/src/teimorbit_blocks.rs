@@ -1,5 +1,4 @@
-//! Blocks of Adams/Car subsystems besides their hardpoints and parameters: masses of parts, and elements whose property
-//! files hold what they do.
+//! Further blocks of Adams/Car subsystems: masses of parts, and elements whose characteristics are in property files.
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 
@@ -12,7 +11,7 @@ use crate::sides::{SIDES, over};
 use crate::teimorbit::Block;
 use crate::turn::none;
 
-/// Words in the names of parts, by the bodies that they are here. The first that fits is taken.
+/// Words in the names of parts, by their body. The first match is used.
 const PARTS: [(&str, &[&str]); 6] = [
     ("lower_arm", &["lower_control_arm", "lower_arm", "lca", "control_arm"]),
     ("upper_arm", &["upper_control_arm", "upper_arm", "uca"]),
@@ -22,7 +21,7 @@ const PARTS: [(&str, &[&str]); 6] = [
     ("axle", &["axle"]),
 ];
 
-/// Takes the masses of parts, and names what else there is.
+/// Reads the masses of parts, and reports the other blocks.
 pub fn take(blocks: &[Block], m: &mut Mechanism, is_kg: bool, notes: &mut ImportLog) {
     for block in blocks {
         let usage = block.value("USAGE").unwrap_or_default();
@@ -48,7 +47,7 @@ pub fn take(blocks: &[Block], m: &mut Mechanism, is_kg: bool, notes: &mut Import
     robot::standard_gravity(m, notes, "an Adams/Car subsystem");
 }
 
-/// The mass of a part on each side that has its body.
+/// Adds the mass of a part on each side that has its body.
 fn part(block: &Block, usage: &str, m: &mut Mechanism, notes: &mut ImportLog) {
     let Some(mass) = block.number("MASS").filter(|mass| *mass != 0.0) else {
         notes.ignored(&block.name, Some(block.at));
@@ -61,12 +60,13 @@ fn part(block: &Block, usage: &str, m: &mut Mechanism, notes: &mut ImportLog) {
         notes.refused("mass", usage, Some(block.at), "it has no body here, or no place in the file");
         return;
     };
-    // Square millimetres, say, to square metres.
+    // From the square of the length unit to m^2.
     let unit = (1e-3 / m.per_mm()).powi(2);
     let numbers =
         ["IXX", "IYY", "IZZ", "IXY", "IYZ", "IZX"].map(|key| unit * block.number(key).unwrap_or(0.0));
     let [xx, yy, zz, xy, yz, zx] = numbers;
-    // Half round about z: x and y change their signs. Products are integrals, the opposite of the matrix's entries.
+    // Half a turn about z: x and y change sign. Products of inertia are integrals: the entries of the matrix have the
+    // opposite sign.
     let rows = [[xx, -xy, zx], [-xy, yy, yz], [zx, yz, zz]];
     let has_side = |suffix: &str| m.bodies.iter().position(|b| b.name == format!("{body}{suffix}"));
     let symmetry = block.value("SYMMETRY").unwrap_or_default().to_ascii_lowercase();

@@ -1,5 +1,5 @@
-//! Robots in URDF: the tree, mimic joints, loops by the usual extensions. Read with `roxmltree`: `urdf-rs` gives no
-//! places in the text and leaves out what it does not know.
+//! Robots in URDF: tree joints, mimic joints, loops by common extensions. Parsed with `roxmltree`, since `urdf-rs`
+//! provides no positions in the text and drops unknown content.
 
 mod loops;
 
@@ -16,7 +16,7 @@ use crate::turn::{X, Y, home, roll_pitch_yaw};
 use crate::xml::{Vocabulary, attribute, attribute_at, child, children, local, named};
 use crate::{Format, Input, robot, xml};
 
-/// See the module.
+/// URDF format.
 pub const FORMAT: Format = Format {
     name: "urdf",
     about: "URDF robot description",
@@ -26,7 +26,7 @@ pub const FORMAT: Format = Format {
     binary: false,
 };
 
-/// Types of joints without an axis.
+/// Joint types without an axis.
 const WITHOUT_AXIS: [&str; 5] = ["fixed", "floating", "ball", "spherical", "universal"];
 /// Known content of a joint.
 const JOINT: Vocabulary = Vocabulary {
@@ -34,7 +34,7 @@ const JOINT: Vocabulary = Vocabulary {
     read: &["parent", "child", "origin", "axis", "limit", "mimic", "screw_thread_pitch", "dynamics"],
     irrelevant: &["safety_controller", "calibration", "hardwareInterface", "visual", "material"],
 };
-/// Known content of the parts of a joint.
+/// Known content of the elements of a joint.
 const PARTS_OF_JOINTS: [(&str, &[&str]); 8] = [
     ("parent", &["link"]),
     ("child", &["link"]),
@@ -71,7 +71,7 @@ const LINK: Vocabulary = Vocabulary {
         "origin",
     ],
 };
-/// Elements of a robot that do not concern how it moves.
+/// Elements of a robot without effect on its motion.
 const IRRELEVANT: [&str; 8] = [
     "material",
     "transmission",
@@ -82,7 +82,7 @@ const IRRELEVANT: [&str; 8] = [
     "disable_collisions",
     "light",
 ];
-/// Elements for Gazebo that do not concern how links and joints move.
+/// Elements for Gazebo without effect on the motion of links and joints.
 const IRRELEVANT_IN_GAZEBO: [&str; 36] = [
     "material",
     "mu1",
@@ -121,10 +121,10 @@ const IRRELEVANT_IN_GAZEBO: [&str; 36] = [
     "maxSpeed",
     "springReference",
 ];
-/// Mimic joints follow each other so deep at most.
+/// Maximum length of a chain of mimic joints.
 const DEEPEST: usize = 100;
 
-/// A joint as it is written.
+/// Declaration of a joint.
 struct JointDeclaration<'a, 'i> {
     node: Node<'a, 'i>,
     name: String,
@@ -134,14 +134,14 @@ struct JointDeclaration<'a, 'i> {
     origin: Pose,
     axis: Vec3,
     limits: Option<[f64; 2]>,
-    /// The advance of a screw per turn.
+    /// Lead of a screw, m per turn.
     pitch: Option<f64>,
     mimic: Option<Mimic<'a, 'i>>,
-    /// Stiffness, damping, and the value at which the spring has no force.
+    /// Stiffness, damping, and coordinate at which the spring has no force.
     spring: [f64; 3],
 }
 
-/// The joint that a joint follows, by what factor and offset.
+/// Independent joint of a mimic joint, with factor and offset.
 struct Mimic<'a, 'i> {
     node: Node<'a, 'i>,
     joint: String,
@@ -217,11 +217,11 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     (m.bodies.len() > 1).then_some(m)
 }
 
-/// True if the file has yet to be expanded by xacro.
+/// Reports a file with unexpanded xacro macros. Returns true for such a file.
 fn xml_macros(robot: Node<'_, '_>, notes: &mut ImportLog) -> bool {
     let is_macro = |n: &Node<'_, '_>| {
         let declared = n.tag_name().namespace().is_some_and(|s| s.contains("xacro"));
-        // Without a declaration the prefix is part of the name.
+        // Without a declaration, the prefix is part of the name.
         declared || n.tag_name().name().starts_with("xacro_")
     };
     let Some(first) = robot.descendants().find(is_macro) else { return false };
@@ -234,13 +234,13 @@ struct Reader<'a, 'i, 'n> {
     m: Mechanism,
     notes: &'n mut ImportLog,
     links: BTreeMap<String, Node<'a, 'i>>,
-    /// Bodies and poses of the links in the design configuration.
+    /// Bodies of the links, and their poses in the design configuration.
     poses: BTreeMap<String, (usize, Pose)>,
-    /// The numbers of joints with one coordinate, and which.
+    /// Coordinates of the joints with a single coordinate.
     joints: BTreeMap<String, Coordinate>,
-    /// Joints that hold nothing: name, element, bodies, place.
+    /// Floating joints: name, element, bodies, location.
     floating: Vec<(String, Node<'a, 'i>, [usize; 2], Vec3)>,
-    /// The names of all joints.
+    /// Names of all joints.
     names: BTreeSet<String>,
 }
 
@@ -258,7 +258,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         child(node, "origin").map_or_else(home, |origin| pose(origin, self.notes))
     }
 
-    /// The axis of a joint of that type; exporters write one of zero for those that have none.
+    /// Returns the axis of a joint; exporters write a null axis for types without one.
     fn axis(&mut self, node: Node<'a, 'i>, kind: &str) -> Vec3 {
         if WITHOUT_AXIS.contains(&kind) {
             return [0.0, 0.0, 1.0].into();
@@ -316,7 +316,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 xml::bound(text, &format!("`{key}` of `limit`"), attribute_at(0, l, key), self.notes)
             };
             let ends = ["lower", "upper"].map(bound);
-            // One that is not written is 0.
+            // A missing limit is 0.
             if ends == [None, None] {
                 None
             } else {
@@ -364,7 +364,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         })
     }
 
-    /// Bodies and joints, from the roots outward.
+    /// Adds bodies and joints, from the roots outward.
     fn tree(&mut self, joints: &[JointDeclaration<'a, 'i>]) {
         let is_child = |name: &str| joints.iter().any(|j| j.child == name);
         let names: Vec<String> = self.links.keys().cloned().collect();
@@ -376,7 +376,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let body = self.body(name, home());
             self.poses.insert(name.clone(), (body, home()));
         }
-        // The first joint to a link carries it; any further one closes a loop.
+        // The first joint to a link carries it; further ones close loops.
         let mut carrier: BTreeMap<&str, usize> = BTreeMap::new();
         for (k, joint) in joints.iter().enumerate() {
             carrier.entry(&joint.child).or_insert(k);
@@ -418,7 +418,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         self.m.body(name, note, Some(pose))
     }
 
-    /// A joint of the tree, which is drawn where its coordinate has the value `drawn`.
+    /// Adds a tree joint whose coordinate has the value `drawn` in the design configuration.
     fn joint(&mut self, j: &JointDeclaration<'a, 'i>, drawn: f64) {
         let (Some(&(parent, outer)), Some(&(body, inner))) =
             (self.poses.get(&j.parent), self.poses.get(&j.child))
@@ -441,8 +441,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// A joint of a type of URDF between two frames, whose axis is the same in both; its number, if it is more than a
-    /// hold.
+    /// Adds a joint of a URDF type between two frames; the axis has the same components in both. Returns the index of
+    /// the joint, unless it is floating or unknown.
     fn connect(
         &mut self,
         node: Node<'a, 'i>,
@@ -457,7 +457,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             "prismatic" => ("translational", Some("displacement")),
             "fixed" => ("fixed", None),
             "planar" => ("planar", None),
-            // These are Drake's.
+            // Drake's extensions.
             "ball" | "spherical" => ("spherical", None),
             "universal" => ("universal", None),
             "screw" => ("screw", Some("angle")),
@@ -483,7 +483,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 ends,
             );
         }
-        // A universal joint turns about x of the first frame and y of the second.
+        // The axes of a universal joint are x of the first frame and y of the second.
         let axes = if kind == "universal" { [X, Y].map(Vec3::from) } else { [axis; 2] };
         let end = |body, pose: Pose, axis| Marker::along(body, pose.r, pose.rot * axis);
         let ends = [end(i, at_i, axes[0])?, end(j, at_j, axes[1])?];
@@ -495,14 +495,14 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     }
 }
 
-/// Coordinate of a joint in the design configuration: zero, or the value given by the joint that it follows.
+/// Coordinate of a joint in the design configuration: zero, or the value of a mimic joint.
 fn value_as_drawn(joints: &[JointDeclaration<'_, '_>], k: usize, depth: usize) -> f64 {
     let Some(mimic) = &joints[k].mimic else { return 0.0 };
     let master = joints.iter().position(|j| j.name == mimic.joint).filter(|_| depth < DEEPEST);
     mimic.offset + mimic.factor * master.map_or(0.0, |m| value_as_drawn(joints, m, depth + 1))
 }
 
-/// A frame moved by a joint's coordinate.
+/// Returns a frame displaced by a joint coordinate.
 fn moved(frame: Pose, kind: &str, axis: Vec3, by: f64) -> Pose {
     let Some(axis) = axis.unit().filter(|_| by != 0.0) else { return frame };
     match kind {
@@ -527,7 +527,7 @@ fn pose(origin: Node<'_, '_>, notes: &mut ImportLog) -> Pose {
     Pose { rot, r: r.into() }
 }
 
-/// The shapes of a link.
+/// Adds the shapes of a link.
 fn shapes(input: &mut Input<'_>, notes: &mut ImportLog, link: Node<'_, '_>, body: usize, name: &str) {
     xml::unknown(0, link, name, LINK, notes);
     for part in named(link, "visual") {
@@ -537,7 +537,7 @@ fn shapes(input: &mut Input<'_>, notes: &mut ImportLog, link: Node<'_, '_>, body
             notes.refused("visual", name, at, "it has no shape");
             continue;
         };
-        // What is only looked at does not keep a robot from being imported.
+        // Errors in shapes do not prevent the import.
         let numbers = |key: &str| shape.attribute(key).and_then(xml::numbers).unwrap_or_default();
         let three = |key: &str| <[f64; 3]>::try_from(numbers(key)).ok();
         let one = |key: &str| numbers(key).first().copied();

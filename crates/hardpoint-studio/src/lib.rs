@@ -1,12 +1,13 @@
-//! The engine as a page asks it: requests in, answers out, no files and no clock.
+//! Engine of the page: requests in, replies out, without files or a clock.
 //!
-//! An [`Engine`] keeps one model open and solves the designs of it that the reader makes: with a variable for every
-//! coordinate of its hardpoints, so that each can be taken hold of. What takes long - the whole page of a model, a
-//! search, tolerances - needs nothing that is open, and goes in an engine of its own while the first stays free.
+//! An [`Engine`] holds one open model and solves its designs as the reader changes them. Every coordinate of a
+//! hardpoint has a variable, so that every hardpoint can be dragged. Long tasks (the whole page of a model, an
+//! optimisation, a tolerance study) do not use the open model, and run in a second engine while the first one stays
+//! responsive.
 //!
-//! An answer is a block of bytes: the length of its JSON as four bytes, the JSON, zeros up to a multiple of four, then
-//! the numbers of its curves, `f32`, all little-endian. A curve is in the JSON as the place of its first number and how
-//! many it has.
+//! A reply is a block of bytes: the length of its JSON (four bytes), the JSON, zeros up to a multiple of four, and the
+//! values of its curves as `f32`, all little-endian. In the JSON, a curve is the index of its first value and the
+//! number of its values.
 
 mod offer;
 mod open;
@@ -28,20 +29,20 @@ pub use protocol::{
 
 use open::Open;
 
-/// Is reported how far a study is, and may end it.
+/// Callback that receives the progress of a study, and may end the study.
 pub type ProgressListener<'t> = dyn FnMut(&ProgressReply) -> ControlFlow<()> + Send + 't;
 
-/// Answers what a page asks.
+/// Replies to the requests of a page.
 #[derive(Debug, Default)]
 pub struct Engine {
     open: Option<Open>,
 }
 
-/// Reason why there is no answer.
+/// Diagnostics in place of a reply; never empty.
 type Refusal = Vec<DiagnosticMessage>;
 
 impl Engine {
-    /// The answer to a request, which is JSON.
+    /// Returns the reply to a JSON request.
     ///
     /// ```
     /// let mut engine = hardpoint_studio::Engine::default();
@@ -102,7 +103,7 @@ impl Engine {
     }
 }
 
-/// The model of a text, in its case.
+/// Parses a model in the requested case, or in its first case if there is no such case.
 fn read(model: &ModelText) -> Result<ModelFile, Refusal> {
     let file = whole(model)?;
     let Some(name) = &model.case else { return Ok(first_case(file)) };
@@ -112,18 +113,18 @@ fn read(model: &ModelText) -> Result<ModelFile, Refusal> {
     }
 }
 
-/// The model with all its cases.
+/// Parses a model with all its cases.
 fn whole(model: &ModelText) -> Result<ModelFile, Refusal> {
     parse_with(&model.text, &model.file, &model.files)
         .map_err(|all| all.list().iter().map(|d| DiagnosticMessage::of(&model.text, d)).collect())
 }
 
-/// For a file with cases, the model of the first case.
+/// Returns the model in its first case, or unchanged if it has no cases.
 fn first_case(file: ModelFile) -> ModelFile {
     if file.model.cases.is_empty() { file } else { file.in_case(hardpoint::model::CaseId(0)) }
 }
 
-/// Diagnostics of a text, including those of its motion.
+/// Returns the diagnostics of a text, including those of its topology.
 fn checked(model: &ModelText) -> CheckReply {
     let file = match read(model) {
         Ok(file) => file,
@@ -139,12 +140,12 @@ fn checked(model: &ModelText) -> CheckReply {
     CheckReply { messages }
 }
 
-/// An answer without curves.
+/// Encodes a reply without curves.
 fn json(answer: &impl Serialize) -> Vec<u8> {
     bytes(answer, &[])
 }
 
-/// An answer with curves.
+/// Encodes a reply with curves.
 fn block(answer: &mut impl Plain) -> Vec<u8> {
     let mut numbers = Vec::new();
     answer.lay_out(&mut numbers);

@@ -1,4 +1,4 @@
-//! Options of a study, with their values in the text.
+//! Options of a study, with their values in the model text.
 
 use hardpoint::model::{
     Dimension, Goal, Limit, LimitTarget, Model, OptimizationSettings, ToleranceSettings, VariableId,
@@ -15,11 +15,11 @@ use crate::protocol::{
     ToleranceOffer,
 };
 
-/// A search has that many starts and iterations where the text does not say.
+/// Default numbers of starts and iterations of an optimisation.
 const STARTS: usize = 1;
 const ITERATIONS: usize = 100;
 
-/// Options of an optimisation.
+/// Returns the options of an optimisation.
 pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, Refusal> {
     let (model, units, asked) = (&file.model, file.units, file.model.optimization.as_ref());
     let values = values(file);
@@ -54,7 +54,7 @@ pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, Refusal> {
     })
 }
 
-/// Per metric its value, in SI, in the first motion that it is taken in.
+/// Value of each metric, SI, in the first motion in which it is evaluated.
 fn values(file: &ModelFile) -> Vec<Option<f64>> {
     let models = file.model.motions();
     let Ok(motions) = Motions::of(&models, Formulation::Relative) else { return Vec::new() };
@@ -95,7 +95,8 @@ fn sentence(model: &Model, units: Units, limit: &Limit) -> String {
     }
 }
 
-/// Request on top of the settings in the text; the model has the requested bounds.
+/// Returns the settings of the model text with those of the request in their place, and sets the requested bounds in
+/// the model.
 pub(crate) fn asked(
     file: &mut ModelFile,
     request: &OptimizeRequest,
@@ -151,7 +152,7 @@ pub(crate) fn asked(
     Ok(asked)
 }
 
-/// Options of a tolerance study.
+/// Returns the options of a tolerance study.
 pub(crate) fn tolerance(file: &ModelFile) -> Result<ToleranceOffer, Refusal> {
     let (model, units) = (&file.model, file.units);
     let asked = model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(model));

@@ -1,4 +1,4 @@
-//! A model that is kept open: its designs, solved as the reader makes them.
+//! Open model, with its designs solved as the reader changes them.
 
 use std::sync::Arc;
 
@@ -19,29 +19,30 @@ use crate::protocol::{
 };
 use crate::{Refusal, first_case, read, whole};
 
-/// Maximum number of halvings of the path to a design that cannot be reached: the last step is a thousandth of it.
+/// Maximum number of bisections of the path to a design that cannot be reached; the last step is a thousandth of the
+/// path.
 const HALVINGS: usize = 10;
 
-/// A model that is open.
+/// Open model.
 #[derive(Debug)]
 pub(crate) struct Open {
-    /// The file with all its cases, and a variable for every coordinate.
+    /// The file with all its cases, and a variable for every hardpoint coordinate.
     whole: ModelFile,
-    /// The file in the case that is shown, with the same variables.
+    /// The file in the displayed case, with the same variables.
     file: ModelFile,
     analysis: Analysis<'static>,
-    /// The design as it is in the text.
+    /// Motion of the nominal design, as in the text.
     today: Course,
-    /// As the page shows it, without variables.
+    /// The file as displayed, without variables.
     bare: ModelFile,
     summary: Summary,
     shown: Detail,
-    /// Memory of the last design.
+    /// Solution of the last design, whose memory is reused.
     memory: Solution,
 }
 
 impl Open {
-    /// Opens a model, and says what can be done with it.
+    /// Opens a model, and returns its cases, hardpoints and frames.
     pub fn new(model: &ModelText) -> Result<(Self, OpenReply), Refusal> {
         let mut whole = whole(model)?;
         add_coordinates(&mut whole.model);
@@ -85,7 +86,8 @@ impl Open {
         Ok((Self { whole, file, analysis, today, bare, summary, shown, memory: Solution::default() }, opened))
     }
 
-    /// The design with these changes, or as near to it as can be on the way from a solved one.
+    /// Solves the design with some changes. If it cannot be reached from the solved design `from`, returns the last
+    /// design on the path between both that can be solved.
     pub fn design(
         &mut self,
         change: &[VariableSetting],
@@ -97,7 +99,7 @@ impl Open {
         let mut part = 1.0;
         let mut design = wanted.clone();
         if let (Some(start), Some(_)) = (start, &why) {
-            // The way is halved towards where it ends.
+            // Bisects the path for the last admissible design.
             let (mut low, mut high) = (0.0, 1.0);
             let on_the_way = |part: f64| -> Vec<f64> {
                 start.iter().zip(&wanted).map(|(a, b)| a + part * (b - a)).collect()
@@ -127,7 +129,7 @@ impl Open {
         Ok(DesignReply { part, design: shown, why })
     }
 
-    /// Another model's motion beside this one's, where the two have the same bodies and measures.
+    /// Solves another model for comparison. Both models must have the same bodies, measures, metrics and output times.
     pub fn beside(&mut self, model: &ModelText) -> Result<DesignReply, Refusal> {
         let other = read(model)?;
         let same = |a: &Model, b: &Model| {
@@ -154,7 +156,7 @@ impl Open {
         Ok(DesignReply { part: 1.0, design: self.shown(&solution, &[]), why })
     }
 
-    /// The text with these changes.
+    /// Returns the model text with some changes.
     pub fn text(&self, change: &[VariableSetting]) -> Result<String, Refusal> {
         let values = self.values(change)?;
         self.whole
@@ -162,7 +164,7 @@ impl Open {
             .map_err(|all| all.list().iter().map(|d| DiagnosticMessage::of(self.whole.text(), d)).collect())
     }
 
-    /// The values of all variables, SI.
+    /// Returns the values of all variables, SI.
     fn values(&self, change: &[VariableSetting]) -> Result<Vec<f64>, Refusal> {
         let model = &self.file.model;
         let mut values = vec![0.0; model.variables.len()];
@@ -184,7 +186,7 @@ impl Open {
         Ok(values)
     }
 
-    /// A design's motion, and why it ends before that of the design as it is does.
+    /// Solves a design. The diagnostic reports why its motion ends earlier than that of the nominal design.
     fn solved(&mut self, values: &[f64]) -> (Solution, Option<DiagnosticMessage>) {
         let memory = std::mem::take(&mut self.memory);
         let run = Run::new().at(values).without_sensitivities().reusing(memory);
@@ -195,7 +197,7 @@ impl Open {
         (solution, stop)
     }
 
-    /// A design as the page shows it; `None` where nothing of it could be solved.
+    /// Returns a design for the page; `None` if its motion is empty.
     fn shown(&self, exact: &Solution, values: &[f64]) -> Option<Design> {
         if exact.motion.is_empty() {
             return None;
@@ -213,14 +215,14 @@ impl Open {
     }
 }
 
-/// The plan of a model that outlives the call.
+/// Creates an analysis that owns its model.
 fn planned(file: &ModelFile, model: &ModelText) -> Result<Analysis<'static>, Refusal> {
     Analysis::new(Arc::new(file.model.clone())).map_err(|fault: TopologyError| {
         vec![DiagnosticMessage::of(&model.text, &diagnose::topology_fault(file, &fault))]
     })
 }
 
-/// The hardpoints that have a name, with what their coordinates are varied by.
+/// Returns the named hardpoints, with the variables of their coordinates.
 fn grips(file: &ModelFile) -> Vec<MovableHardpoint> {
     let (model, units) = (&file.model, file.units);
     let grip = |(h, hardpoint): (usize, &hardpoint::model::Hardpoint)| {

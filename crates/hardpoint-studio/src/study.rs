@@ -1,4 +1,4 @@
-//! Studies that take time: the whole page of a model, optimisations, tolerances.
+//! Long tasks: the whole page of a model, optimisations, tolerance studies.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -25,7 +25,7 @@ use crate::protocol::{
 };
 use crate::{ProgressListener, Refusal, offer, read, whole};
 
-/// Everything that the page of a model shows.
+/// Returns the whole page of a model.
 pub(crate) fn page(model: &ModelText) -> Result<Payload, Refusal> {
     let file = read(model)?;
     let fault = |fault: TopologyError| {
@@ -45,7 +45,7 @@ pub(crate) fn page(model: &ModelText) -> Result<Payload, Refusal> {
     Ok(payload(&Request::of(&file, &analysis, &course, &summary)))
 }
 
-/// The plans of all motions of a file.
+/// Creates the analyses of all motions of a file.
 fn motions<'m>(file: &ModelFile, models: &'m [Model], model: &ModelText) -> Result<Motions<'m>, Refusal> {
     Motions::of(models, Formulation::Relative).map_err(|(_, fault)| {
         vec![DiagnosticMessage::of(&model.text, &diagnose::topology_fault(file, &fault))]
@@ -59,7 +59,7 @@ fn changes(file: &ModelFile, design: &[f64]) -> Vec<VariableSetting> {
         .collect()
 }
 
-/// A search for the best design.
+/// Runs the optimisation of a model.
 pub(crate) fn optimized(
     model: &ModelText,
     request: &OptimizeRequest,

@@ -1,4 +1,4 @@
-//! Settings of MJCF for many elements at once (compiler, classes of defaults, meshes), and their values for an element.
+//! Shared settings of MJCF (compiler, default classes, meshes), and attributes of elements with their defaults.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use crate::turn::{from_z_and_x, none, sequence};
 use crate::xml;
 use crate::xml::exactly;
 
-/// Maximum number of attributes in all classes of defaults.
+/// Maximum number of attributes in all default classes.
 const MOST_DEFAULTS: usize = 100_000;
 
 impl<'d> Reader<'d, '_> {
@@ -72,9 +72,9 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// A class of defaults and those in it.
+    /// Reads a default class and its nested classes.
     fn class(&mut self, (text, node): Element<'d>, outer: Option<&str>, depth: usize) {
-        // What classes hold in all, with what they take from those around them.
+        // Total number of attributes, including inherited ones.
         let held: usize = self.classes.values().map(HashMap::len).sum();
         if held > MOST_DEFAULTS {
             let help = "leave out classes that nothing names";
@@ -108,7 +108,7 @@ impl<'d> Reader<'d, '_> {
             }
         }
         if outer.is_none() && name != "main" {
-            // Older files name the class of all.
+            // Older files rename the top-level class.
             self.classes.insert("main".to_owned(), class.clone());
         }
         self.classes.insert(name.to_owned(), class);
@@ -118,7 +118,7 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// An attribute of an element, or what its class gives it, and where that is written.
+    /// Returns an attribute of an element or its default, with its position.
     pub(super) fn attribute(
         &self,
         (text, node): Element<'d>,
@@ -153,7 +153,7 @@ impl<'d> Reader<'d, '_> {
         if self.compiler.degrees { x.to_radians() } else { x }
     }
 
-    /// The orientation of an element by any of the ways to write it.
+    /// Returns the orientation of an element in any of the notations of MJCF.
     pub(super) fn orientation(&mut self, element: Element<'d>, class: Option<&str>) -> Mat3 {
         let (text, node) = element;
         let fault = |reader: &mut Self, key| {
@@ -166,7 +166,7 @@ impl<'d> Reader<'d, '_> {
             );
             none()
         };
-        // The element's own way of writing it counts, whichever way its class has.
+        // The notation of the element takes precedence over that of its class.
         const WAYS: [&str; 5] = ["axisangle", "xyaxes", "zaxis", "euler", "quat"];
         let own = WAYS.into_iter().find(|key| node.has_attribute(*key));
         let way = own.or_else(|| WAYS.into_iter().find(|key| self.attribute(element, key, class).is_some()));
@@ -187,7 +187,7 @@ impl<'d> Reader<'d, '_> {
             }
             Some("zaxis") => {
                 let Some(z) = self.numbers::<3>(element, "zaxis", class) else { return none() };
-                // The least turn that brings z there.
+                // The smallest rotation that takes z into the direction.
                 let up = Vec3::from([0.0, 0.0, 1.0]);
                 match Vec3::from(z).unit() {
                     Some(z) if (z + up).norm() < 1e-12 => {
@@ -214,13 +214,13 @@ impl<'d> Reader<'d, '_> {
         Pose { rot: self.orientation(element, class), r: r.into() }
     }
 
-    /// True if the classes that an element names are there.
+    /// Reports unknown default classes of an element.
     pub(super) fn classes_of(&mut self, (text, node): Element<'d>) {
         for key in ["class", "childclass"] {
             let Some(class) = node.attribute(key).filter(|c| !self.classes.contains_key(*c)) else {
                 continue;
             };
-            // Without any defaults the one of all is there too.
+            // The class `main` always exists.
             if class == "main" {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! Equality constraints of MJCF: what closes loops, couples joints, holds free bodies.
+//! Equality constraints of MJCF, which close loops, couple joints and constrain free bodies.
 
 use hardpoint::space::{Pose, Quat, Vec3};
 
@@ -66,7 +66,7 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// Two bodies that meet: at a point, or altogether.
+    /// Reads a constraint between two bodies: at a point (`connect`), or of frames (`weld`).
     fn closure(&mut self, element: Element<'d>, kind: &str, name: &str) {
         let (text, node) = element;
         let at = xml::at(text, node);
@@ -89,7 +89,7 @@ impl<'d> Reader<'d, '_> {
             let [first, second] = ["body1", "body2"].map(|key| self.end(element, key));
             let anchor = self.numbers::<3>(element, "anchor", None).unwrap_or_default();
             let place = |(_, pose): (usize, Pose)| pose.point(anchor.into());
-            // The anchor of a weld is of the second body.
+            // The anchor of a weld is in the frame of the second body.
             let place = if kind == "weld" { second.map(place) } else { first.map(place) };
             let put = |end: Option<(usize, Pose)>| Some((end?.0, Pose { rot: none(), r: place? }));
             [put(first), put(second)]
@@ -110,7 +110,7 @@ impl<'d> Reader<'d, '_> {
         robot::weld(&mut self.m, self.notes, called, "fixed", [i, j]);
     }
 
-    /// Places a body that nothing but a weld holds: its frame `own` is moved to the other one.
+    /// Places a free body that only this weld constrains: its frame `own` is moved to the other one.
     fn place_free(&mut self, other: &Marker, own: &mut Marker) {
         let body = own.body;
         let is_free = self.free.iter().any(|f| f.bodies[1] == body);
@@ -130,7 +130,8 @@ impl<'d> Reader<'d, '_> {
         own.pose = other.pose;
     }
 
-    /// Points in which two bodies meet. Where two bodies meet in two points, they turn about the line through both.
+    /// Adds joints for connected points. Two bodies that are connected at two points rotate about the line through
+    /// both.
     pub(super) fn meet(&mut self) {
         let meets = std::mem::take(&mut self.meets);
         let apart = |a: Vec3, b: Vec3| (a - b).norm() > CLOSED * self.m.size();
@@ -170,7 +171,7 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// Free bodies: those that equalities hold are left to them, the others stand where they are drawn.
+    /// Handles free bodies: those with equalities remain free, the others are fixed in the design configuration.
     pub(super) fn free_bodies(&mut self) {
         for free in std::mem::take(&mut self.free) {
             let [i, j] = free.bodies;
@@ -186,17 +187,18 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// The two frames that a weld with a pose of its own brings together: where it puts the second body, and that body.
+    /// Returns the two frames of a weld with a relative pose: the target frame of the second body, and its current
+    /// frame.
     fn relative_pose(&mut self, element: Element<'d>) -> Option<(Pose, Pose)> {
         let [x, y, z, q @ ..] = self.numbers::<7>(element, "relpose", None)?;
-        // Without an orientation it represents the pose in the design configuration.
+        // A null quaternion means the relative pose in the design configuration.
         let rot = Quat::from_array(q)?.rotation();
         let (_, first) = self.end(element, "body1")?;
         let (_, second) = self.end(element, "body2")?;
         Some((first.compose(Pose { rot, r: [x, y, z].into() }), second))
     }
 
-    /// A polynomial between two joints, or two tendons that are sums of joints.
+    /// Reads a polynomial relation between two joints, or between two tendons that are sums of joints.
     fn relation(&mut self, element: Element<'d>, kind: &str, name: &str) {
         let (text, node) = element;
         let at = xml::at(text, node);
@@ -235,7 +237,7 @@ impl<'d> Reader<'d, '_> {
         if let Some(second) = second {
             terms.extend(second.iter().map(|(c, k)| (*c, -a[1] * k)));
         }
-        // The constant counts from the reference, as coordinates of the model do.
+        // The constant is relative to the reference, like the coordinates of the model.
         match terms[..] {
             [(only, factor)] => {
                 let value = if factor == 0.0 { 0.0 } else { a[0] / factor };
@@ -247,7 +249,7 @@ impl<'d> Reader<'d, '_> {
         self.notes.taken(kind, name, at);
     }
 
-    /// A tendon of constant length between two sites: a rod.
+    /// Adds a tendon of constant length between two sites as a rod.
     fn rod(&mut self, element: Element<'d>, name: &str, [from, to]: &[String; 2]) {
         let at = xml::at(element.0, element.1);
         let mut end = |site: &String| {
@@ -276,7 +278,7 @@ impl<'d> Reader<'d, '_> {
         self.m.joint(Joint { length: (constant != 0.0).then_some(length), ..rod });
     }
 
-    /// Tendons: fixed ones are sums of joints, those between two sites can be rods.
+    /// Reads tendons: fixed ones are sums of joints, those between two sites can be rods.
     pub(super) fn tendons(&mut self, top: &[Element<'d>]) {
         for list in top.iter().filter(|(_, n)| n.has_tag_name("tendon")) {
             for element in self.contents(*list, 0) {
@@ -302,13 +304,13 @@ impl<'d> Reader<'d, '_> {
                 {
                     self.rods.insert(name.to_owned(), [from.clone(), to.clone()]);
                 }
-                // It holds nothing of its own; an equality may.
+                // A tendon constrains nothing by itself; an equality may.
                 self.tendon_spring(element, name);
             }
         }
     }
 
-    /// The spring and damper of a tendon between two sites, and what else it has.
+    /// Adds the spring and damper of a tendon between two sites, and reports its other properties.
     fn tendon_spring(&mut self, element: Element<'d>, name: &str) {
         let (text, node) = element;
         let (kind, at) = (node.tag_name().name(), xml::at(text, node));
@@ -336,7 +338,7 @@ impl<'d> Reader<'d, '_> {
             return;
         }
         let called = JointSource { kind, name, at };
-        // A length below zero represents that of the drawing.
+        // A negative length means the length in the design configuration.
         let free = lengths.first().copied().filter(|l| *l > 0.0 && stiffness > 0.0);
         self.m.force(Force {
             name: name.to_owned(),
@@ -348,7 +350,7 @@ impl<'d> Reader<'d, '_> {
     }
 }
 
-/// Returns whether the two ends of a tendon are on two bodies.
+/// Returns true if the two ends of a tendon are on two bodies.
 fn are_two(ends: Option<[Option<(usize, Pose)>; 2]>) -> bool {
     matches!(ends, Some([Some((i, _)), Some((j, _))]) if i != j)
 }

@@ -1,4 +1,4 @@
-//! Joints of SDFormat: their axes, what ties them to each other, and what Drake adds.
+//! Joints of SDFormat: their axes, their relations, and Drake's extensions.
 
 use std::collections::BTreeMap;
 
@@ -42,7 +42,7 @@ const AXIS: Vocabulary = Vocabulary {
     ],
     irrelevant: &[],
 };
-/// Known content of the parts of an axis.
+/// Known content of the elements of an axis.
 const OF_AXES: [(&str, Vocabulary); 4] = [
     ("xyz", Vocabulary { attributes: &["expressed_in"], read: &[], irrelevant: &[] }),
     (
@@ -88,7 +88,7 @@ impl<'d> Reader<'d, '_> {
         frame
     }
 
-    /// The axis of a joint, global.
+    /// Returns the axis of a joint, global.
     fn axis(&mut self, joint: Node<'d, 'd>, model: &Model<'d>, frame: Pose, key: &'static str) -> Vec3 {
         let text = model.text;
         let axis = child(joint, key);
@@ -97,7 +97,7 @@ impl<'d> Reader<'d, '_> {
             .and_then(|x| exactly::<3>(x.text().unwrap_or_default(), "`xyz`", xml::at(text, x), self.notes));
         let v = Vec3::from(given.unwrap_or([0.0, 0.0, 1.0]));
         let of_model = axis.and_then(|a| child(a, "use_parent_model_frame")).and_then(|n| n.text());
-        // Up to version 1.4 axes are those of the model.
+        // Up to version 1.4, axes are in the model frame.
         let older = version(joint.document().root_element()).is_some_and(|v| v < (1, 5));
         let of_model = of_model.map_or(older, |t| ["1", "true"].contains(&t.trim()));
         let expressed = xyz.and_then(|x| x.attribute("expressed_in")).filter(|e| !e.is_empty());
@@ -160,7 +160,7 @@ impl<'d> Reader<'d, '_> {
             "fixed" => "fixed",
             "screw" => "screw",
             "universal" | "revolute2" => "universal",
-            // Drake's.
+            // Drake's extension.
             "planar" => "planar",
             "gearbox" => return,
             _ => {
@@ -198,7 +198,7 @@ impl<'d> Reader<'d, '_> {
                 exactly::<1>(n.text().unwrap_or_default(), key, xml::at(text, n), reader.notes).map(|[x]| x)
             };
             let own = number_of(self, "screw_thread_pitch");
-            // The older key is in rad per length, and counts the other way.
+            // The older key is in rad per length, with the opposite sign.
             let older =
                 number_of(self, "thread_pitch").filter(|p| *p != 0.0).map(|p| -std::f64::consts::TAU / p);
             match own.or(older).filter(|p| *p != 0.0) {
@@ -216,7 +216,7 @@ impl<'d> Reader<'d, '_> {
         self.joints.insert(full, joined);
     }
 
-    /// Springs and dampers of a joint.
+    /// Adds springs and dampers of a joint.
     fn dynamics(&mut self, joint: Node<'d, 'd>, text: usize, name: &str, coordinate: Option<Coordinate>) {
         for dynamics in children(joint).flat_map(|axis| named(axis, "dynamics")) {
             let at = xml::at(text, dynamics);
@@ -234,14 +234,14 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// Reads the relations of a joint to others: `mimic`, and gearboxes.
+    /// Reads the relations of a joint to others: `mimic` and gearboxes.
     pub(super) fn relation(&mut self, joint: Node<'d, 'd>, model: &Model<'d>) {
         let (text, scope) = (model.text, &model.scope);
         let name = joint.attribute("name").unwrap_or_default().trim();
         let full = format!("{scope}{name}");
         let number = |reader: &mut Self, node: Node<'d, 'd>, key: &'static str| {
             if node.has_attribute(key) {
-                // As Drake has it.
+                // Drake's notation.
                 return xml::attribute::<1>(text, node, key, reader.notes).map(|[x]| x);
             }
             let n = child(node, key)?;
@@ -316,8 +316,7 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// Reads extensions of models by other programs: joints that follow others by plugins, equalities of MuJoCo, joints
-    /// that close loops.
+    /// Reads extensions by other programs: mimic plugins, equalities of MuJoCo, loop joints.
     pub(super) fn extensions(&mut self, model: &Model<'d>) {
         let (text, scope) = (model.text, &model.scope);
         for node in named(model.node, "plugin") {
@@ -327,7 +326,7 @@ impl<'d> Reader<'d, '_> {
                 .map(|n| self.joints.get(&format!("{scope}{n}")).and_then(only_coordinate));
             match ends {
                 [Some(own), Some(master)] if own != master => {
-                    // Most models say it twice, for those that draw them and for those that simulate them.
+                    // Most models define it twice, for visualisation and for simulation.
                     let coupled = |c: &crate::mechanism::Coupler| {
                         c.terms.len() == 2 && [own, master].iter().all(|x| c.terms.iter().any(|t| t.0 == *x))
                     };
@@ -377,7 +376,7 @@ impl<'d> Reader<'d, '_> {
         self.m = crate::mjcf::extension(m, self.notes, &blocks, text, &bodies, &joints);
     }
 
-    /// Reads Drake's additions to models.
+    /// Reads Drake's constraints.
     pub(super) fn constraints(&mut self, model: &Model<'d>) {
         for (k, node) in named(model.node, "ball_constraint").enumerate() {
             let at = xml::at(model.text, node);

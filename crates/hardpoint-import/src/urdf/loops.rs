@@ -1,4 +1,4 @@
-//! Features without an element of their own in URDF: joints that follow others, loops, floating links.
+//! Features without an element in URDF: extensions for mimic joints, loops, floating links.
 
 use std::collections::BTreeSet;
 
@@ -19,11 +19,11 @@ const LOOP: Vocabulary = Vocabulary {
     read: &["link1", "link2", "parent", "child", "origin", "parent_origin", "child_origin", "pose", "axis"],
     irrelevant: &["limit", "dynamics", "physics", "sensor"],
 };
-/// Links lighter than this, kg, are there for their frames.
+/// Mass below which a link is a mere frame, kg.
 const LIGHT: f64 = 1e-6;
 
 impl<'a, 'i> Reader<'a, 'i, '_> {
-    /// Reads joints that follow others by plugins of Gazebo and `ros2_control`.
+    /// Reads mimic joints of Gazebo plugins and `ros2_control`.
     pub(super) fn followers(&mut self, robot: Node<'a, 'i>, joints: &mut [JointDeclaration<'a, 'i>]) {
         let mut found = Vec::new();
         for node in named(robot, "gazebo").flat_map(|g| named(g, "plugin")).chain(named(robot, "plugin")) {
@@ -36,7 +36,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let is_there = joints.iter().any(|j| j.name == master);
             match joints.iter_mut().find(|j| j.name == own) {
                 Some(j) if is_there => {
-                    // Most robots say it twice, for those that draw them and for those that simulate them.
+                    // Most robots define it twice, for visualisation and for simulation.
                     j.mimic.get_or_insert(Mimic { node, joint: master, factor, offset });
                 }
                 _ => {
@@ -49,7 +49,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// Springs and dampers of joints, their own and those of extensions for Gazebo.
+    /// Adds springs and dampers of joints, including those of Gazebo extensions.
     pub(super) fn springs(&mut self, robot: Node<'a, 'i>, joints: &[JointDeclaration<'a, 'i>]) {
         for (k, j) in joints.iter().enumerate() {
             let [mut stiffness, damping, mut free] = j.spring;
@@ -64,7 +64,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                     }
                 }
             }
-            // Coordinates count from the drawing.
+            // Coordinates are relative to the design configuration.
             let free = free - value_as_drawn(joints, k, 0);
             let called = JointSource { kind: "spring", name: &j.name, at };
             let coordinate = self.joints.get(&j.name).copied();
@@ -72,7 +72,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// The masses of links.
+    /// Adds the masses of links.
     pub(super) fn masses(&mut self) {
         let links: Vec<(String, Node<'a, 'i>)> = self.links.iter().map(|(n, l)| (n.clone(), *l)).collect();
         for (name, link) in links {
@@ -97,7 +97,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         robot::standard_gravity(&mut self.m, self.notes, "URDF");
     }
 
-    /// Equalities of MuJoCo in a URDF file.
+    /// Reads equalities of MuJoCo in a URDF file.
     pub(super) fn mujoco(&mut self, robot: Node<'a, 'i>) {
         let blocks: Vec<Node<'a, 'i>> = named(robot, "mujoco").collect();
         if blocks.is_empty() {
@@ -135,7 +135,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// An element of the robot that is not known: perhaps the way in which another program closes loops.
+    /// Reports an unknown element of the robot, which may be a loop closure of another program.
     pub(super) fn unknown(&mut self, kind: &str, node: Node<'a, 'i>) {
         let mut named: Vec<&str> = Vec::new();
         for n in node.descendants() {
@@ -161,7 +161,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         self.notes.not_understood(kind, node.attribute("name").unwrap_or_default(), at, why);
     }
 
-    /// The frames of all links.
+    /// Adds the frames of all links.
     pub(super) fn frames(&mut self, joints: &[JointDeclaration<'a, 'i>]) {
         let parents: BTreeSet<&str> = joints.iter().map(|j| j.parent.as_str()).collect();
         for (name, (body, pose)) in &self.poses {
@@ -206,14 +206,14 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// Joints that close loops: `loop_joint`, with the places on both links as in Drake and Isaac Sim, or like a joint;
-    /// ball constraints of Drake; joints of SDF in a `gazebo` element.
+    /// Reads joints that close loops: `loop_joint`, with the points on both links as in Drake and Isaac Sim, or like a
+    /// joint; ball constraints of Drake; joints of SDF in a `gazebo` element.
     pub(super) fn loops(&mut self, robot: Node<'a, 'i>) {
         for node in named(robot, "loop_joint") {
             let Some(name) = self.name(node) else { continue };
             let kind = node.attribute("type").unwrap_or("continuous").trim().to_ascii_lowercase();
             let axis = self.axis(node, &kind);
-            // Isaac Sim's documentation calls both of them `link1`.
+            // The documentation of Isaac Sim names both of them `link1`.
             let links: Vec<_> =
                 children(node).filter(|n| ["link1", "link2"].contains(&n.tag_name().name())).collect();
             let ends = match links[..] {
@@ -225,7 +225,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             };
             xml::unknown(0, node, &name, LOOP, self.notes);
             if let [Some(i), Some(j)] = ends {
-                // Directions are those of the first link, but where frames are held together and both are written.
+                // Directions are those of the first link, except for fixed joints with both orientations.
                 let both = links.len() == 2 && links.iter().all(|end| end.has_attribute("rpy"));
                 let rot = if kind == "fixed" && both { j.1.rot } else { i.1.rot };
                 let j = (j.0, Pose { rot, r: j.1.r });
@@ -270,7 +270,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// Floating links: those that loops hold are left to them, the others stand where they are drawn.
+    /// Handles floating links: those in loops remain free, the others are fixed in the design configuration.
     pub(super) fn floating(&mut self) {
         for (name, node, bodies, place) in std::mem::take(&mut self.floating) {
             let at = xml::at(0, node);
@@ -286,7 +286,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// The link that an attribute names, where it is.
+    /// Returns the body and pose of the link that an attribute names.
     fn standing(&mut self, node: Node<'a, 'i>, key: &str) -> Option<(usize, Pose)> {
         let link = node.attribute(key).unwrap_or_default().trim();
         let found = self.poses.get(link).copied();
@@ -298,7 +298,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         found
     }
 
-    /// The two ends of a joint that is written like others: on the child, or on the parent where `origin` is given.
+    /// Returns the two ends of a joint with `parent` and `child`: the frame is that of the child, or relative to the
+    /// parent if `origin` is given.
     fn ends(&mut self, node: Node<'a, 'i>) -> [Option<(usize, Pose)>; 2] {
         let [parent, body] = ["parent", "child"]
             .map(|end| self.linked(node, end).and_then(|link| self.poses.get(&link).copied()));
