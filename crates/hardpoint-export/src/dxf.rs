@@ -44,7 +44,7 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
         let body = &model.bodies[b];
         let links = lines(places);
         if links.is_empty() {
-            out.unsaid("body", &body.name, "it has a single place, and no line");
+            out.unsaid("body", &body.name, "it has a single point, and no line");
             continue;
         }
         let layer = drawing.add_layer(&body.name);
@@ -61,10 +61,10 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
     let rods = rods(model).count();
     let joints = model.named_joints().count() - rods;
     if joints > 0 {
-        out.unsaid("joints", &joints.to_string(), "DXF has no joints: only their places are written");
+        out.unsaid("joints", &joints.to_string(), "DXF has no joints: only their points are written");
     }
     if model.hardpoints.iter().any(|h| h.unnamed) {
-        out.unsaid("places", "coordinates", "places without a hardpoint's name have no point of their own");
+        out.unsaid("places", "coordinates", "points without the name of a hardpoint are not written");
     }
     out.without_motions(file, "DXF");
 }

@@ -106,7 +106,7 @@ impl ExportedModel {
     /// Reports the drivers, design variables, measures, wheels and meshes, which no format for mechanisms supports.
     fn without_motions(&mut self, file: &ModelFile, format: &str) {
         for driver in &file.model.drivers {
-            self.unsaid("driver", &driver.name, format!("{format} has no motions"));
+            self.unsaid("driver", &driver.name, format!("{format} does not support motions"));
         }
         let rest = [
             ("design variables", file.model.variables.len()),
@@ -115,7 +115,7 @@ impl ExportedModel {
             ("meshes", file.drawing.bodies.len()),
         ];
         for (kind, count) in rest.into_iter().filter(|(_, count)| *count > 0) {
-            self.unsaid(kind, &count.to_string(), "they are not written");
+            self.unsaid(kind, &count.to_string(), "not written");
         }
     }
 }

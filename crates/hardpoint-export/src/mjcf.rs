@@ -118,7 +118,7 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut ExportedModel) ->
                 let _ = writeln!(equalities, "    <tendon name=\"{name}\" tendon1=\"{name}\"{constant}/>");
             }
             other => {
-                let why = format!("MJCF has nothing like a joint of type {other} that closes a loop");
+                let why = format!("MJCF has no equivalent of a joint of type {other} that closes a loop");
                 out.unsaid("joint", &joint.name, why);
             }
         }
@@ -138,7 +138,7 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut ExportedModel) ->
         out.unsaid(
             "coupler",
             &name,
-            "an equality of MJCF is between two joints of the tree with one coordinate each",
+            "an equality of MJCF couples two tree joints with a single coordinate each",
         );
     }
     (equalities, tendons)
@@ -195,7 +195,7 @@ fn joints(joint: &Joint, backward: bool, indent: &str, out: &mut ExportedModel) 
         let _ = writeln!(out.text, "{indent}  <joint name=\"{name}{ending}\" type=\"{kind}\"{axis}/>");
     }
     if parts.len() > 1 {
-        let why = format!("written as {} joints in a row, which move alike", parts.len());
+        let why = format!("written as a chain of {} equivalent joints", parts.len());
         out.unsaid("joint", &joint.name, why);
     }
 }

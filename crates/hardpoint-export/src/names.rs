@@ -45,7 +45,7 @@ fn written<'n>(kind: &'static str, names: impl Iterator<Item = &'n mut String>, 
         let numbered = std::iter::once(clean.clone()).chain((2..).map(|k| format!("{clean}_{k}")));
         let free = numbered.into_iter().find(|n| !taken.contains(n)).unwrap_or(clean);
         taken.insert(free.clone());
-        let why = format!("the format has no control characters: written as `{free}`");
+        let why = format!("the format does not support control characters: written as `{free}`");
         out.unsaid(kind, &name.escape_debug().to_string(), why);
         *name = free;
     }

@@ -76,14 +76,14 @@ impl<'m> Skeleton<'m> {
             out.unsaid(
                 "body",
                 &model.bodies[body].name,
-                "no joint that the format has leads to it from a body that is",
+                "no joint that the format supports connects it to a body that is written",
             );
         }
         for &k in &named {
             let is_carrier =
                 tree.carrier.iter().any(|c| matches!(c, Some(Carrier::Joint(own, _)) if *own == k));
             if !bodies(k).iter().all(|b| tree.has(*b)) {
-                out.unsaid("joint", &model.joints[k].name, "a body that it connects is not written");
+                out.unsaid("joint", &model.joints[k].name, "one of its bodies is not written");
             } else if !is_carrier {
                 tree.loops.push(k);
             }

@@ -83,13 +83,13 @@ fn teimorbit(file: &ModelFile, out: &mut ExportedModel) {
         let (short, side) = side_of(name);
         // `$` and `!` begin comments.
         if name.contains(['\'', '$', '!']) || name.contains(char::is_control) {
-            out.unsaid("hardpoint", name, "names with `'`, `$`, `!` or control characters cannot be written");
+            out.unsaid("hardpoint", name, "names must not contain `'`, `$`, `!` or control characters");
             continue;
         }
         let place = [-x, -y, z].map(number);
         let _ = writeln!(out.text, " '{short}'  '{side}'  {}", place.join("  "));
     }
     if file.model.hardpoints.iter().any(|h| h.unnamed) {
-        out.unsaid("places", "coordinates", "places without a hardpoint's name are not written");
+        out.unsaid("places", "coordinates", "points without the name of a hardpoint are not written");
     }
 }

@@ -81,7 +81,7 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
             out.unsaid(
                 "joint",
                 &joint.name,
-                format!("URDF has nothing like a joint of type {}", joint.kind.name),
+                format!("URDF has no equivalent of a joint of type {}", joint.kind.name),
             );
             continue;
         }
@@ -101,11 +101,11 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
         out.unsaid(
             "joint",
             &joint.name,
-            "it closes a loop: written as `loop_joint`, which not every program reads",
+            "it closes a loop: written as `loop_joint`, which some programs do not read",
         );
     }
     for coupler in &others {
-        out.unsaid("coupler", coupler, "a mimic joint follows one other joint of the tree");
+        out.unsaid("coupler", coupler, "a mimic joint depends on one other tree joint");
     }
     out.text = text + "</robot>\n";
     out.without_motions(file, "URDF");

@@ -65,7 +65,7 @@ fn read(source: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             "END",
             "",
             Some(at),
-            "there is no such statement: the file may be cut short",
+            "the statement is missing: the file may be truncated",
         );
     }
     let m = reader.m;
@@ -80,7 +80,7 @@ fn units(statements: &[Statement], notes: &mut ImportLog) -> (f64, &'static str,
             "UNITS",
             "",
             None,
-            "there is no such statement: lengths are taken for millimetres",
+            "the statement is missing: lengths are assumed to be in millimetres",
         );
         return out;
     };
@@ -107,7 +107,7 @@ fn units(statements: &[Statement], notes: &mut ImportLog) -> (f64, &'static str,
         };
         match known {
             Some((scale, unit)) => (out.0, out.1) = (scale, unit),
-            None => notes.problem("HP0804", at, format!("`{word}` is no unit of length")),
+            None => notes.problem("HP0804", at, format!("`{word}` is not a known unit of length")),
         }
     }
     match units.text("TIME").unwrap_or("SECOND").to_ascii_uppercase().as_str() {
@@ -116,7 +116,7 @@ fn units(statements: &[Statement], notes: &mut ImportLog) -> (f64, &'static str,
         "MICROSECOND" => out.2 = "(1000000*t)",
         "MINUTE" | "MIN" => out.2 = "(t/60)",
         "HOUR" => out.2 = "(t/3600)",
-        word => notes.problem("HP0804", at, format!("`{word}` is no unit of time")),
+        word => notes.problem("HP0804", at, format!("`{word}` is not a known unit of time")),
     }
     notes.taken("UNITS", "", at);
     out
@@ -148,7 +148,7 @@ fn summed(text: &str, order: usize, scale: f64, begin: f64, rate: f64) -> Result
     if points.iter().all(|p| p[1].is_finite()) {
         Ok(points)
     } else {
-        Err("its rate is no number at some time".into())
+        Err("its rate is not finite at some time".into())
     }
 }
 
@@ -208,7 +208,7 @@ impl Reader<'_> {
             self.notes.problem(
                 "HP0804",
                 Some(s.at),
-                format!("the points of {}/{} give it no orientation: they lie on one line", s.name, s.id),
+                format!("the points of {}/{} define no orientation: they are collinear", s.name, s.id),
             );
             home().rot
         })
@@ -233,18 +233,18 @@ impl Reader<'_> {
                     kind,
                     &s.label,
                     Some(s.at),
-                    "taken as a rigid body in its undeformed shape",
+                    "imported as a rigid body in its undeformed shape",
                 ),
                 "POINT_MASS" => {
                     self.notes.approximated(
                         kind,
                         &s.label,
                         Some(s.at),
-                        "taken as a rigid body that does not turn",
+                        "imported as a rigid body that does not rotate",
                     );
                     let never = crate::mechanism::Joint::new(
                         &format!("{}_upright", s.label),
-                        "a point mass does not turn".into(),
+                        "a point mass does not rotate".into(),
                         "orientation",
                         [GROUND, body],
                         pose.r,
@@ -254,7 +254,7 @@ impl Reader<'_> {
                 _ => self.notes.taken(kind, &s.label, Some(s.at)),
             }
             if self.parts.insert(id.clone(), body).is_some() {
-                self.notes.problem("HP0803", Some(s.at), format!("{id} is there twice"));
+                self.notes.problem("HP0803", Some(s.at), format!("{id} is defined twice"));
             }
         }
     }
@@ -273,7 +273,7 @@ impl Reader<'_> {
                 let why = if s.has("FE_PART") {
                     "it is on an elastic part"
                 } else {
-                    "its place is not in the file"
+                    "its position is not in the file"
                 };
                 self.notes.refused("MARKER", &s.label, Some(s.at), why);
                 self.unplaced.insert(s.id.clone());
@@ -286,12 +286,12 @@ impl Reader<'_> {
                 None => part,
             };
             let Some(body) = body else {
-                let what = named.map_or("no part before it".into(), |(kind, id)| format!("no {kind}/{id}"));
+                let what = named.map_or("no part precedes it".into(), |(kind, id)| format!("no {kind}/{id}"));
                 self.faulty.insert(s.id.clone());
                 self.notes.problem(
                     "HP0803",
                     Some(s.at),
-                    format!("MARKER/{} is on a part that is not there: {what}", s.id),
+                    format!("MARKER/{} is on an unknown part: {what}", s.id),
                 );
                 continue;
             };
@@ -307,7 +307,7 @@ impl Reader<'_> {
         let unplaced = |key: &&str| s.reference(key).is_some_and(|id| self.unplaced.contains(id));
         if let Some(key) = ["I", "J"].into_iter().find(unplaced) {
             let why = format!(
-                "its marker {key}, MARKER/{}, has no place here",
+                "its marker {key}, MARKER/{}, has no position here",
                 s.reference(key).unwrap_or_default()
             );
             self.notes.refused(&s.name, &s.label, Some(s.at), why);
@@ -322,7 +322,7 @@ impl Reader<'_> {
                 None if id.is_some_and(|id| self.faulty.contains(id)) => {}
                 None => {
                     let what = id.map_or(format!("has no `{key}`"), |id| {
-                        format!("names MARKER/{id} as `{key}`, which is not there")
+                        format!("names MARKER/{id} as `{key}`, which does not exist")
                     });
                     self.notes.problem("HP0803", Some(s.at), format!("{}/{} {what}", s.name, s.id));
                 }
@@ -371,7 +371,7 @@ impl Reader<'_> {
         let kind =
             written.into_iter().find_map(|k| KINDS.iter().find(|(name, _)| name.starts_with(k.as_str())));
         let Some((name, kind)) = kind else {
-            self.notes.refused("JOINT", &s.label, Some(s.at), "its type is none that is known");
+            self.notes.refused("JOINT", &s.label, Some(s.at), "its type is unknown");
             return;
         };
         let Some(mut markers) = self.pair(s) else { return };
@@ -395,7 +395,7 @@ impl Reader<'_> {
                 _ => self.notes.problem(
                     "HP0804",
                     Some(s.at),
-                    format!("JOINT/{} is a screw without a PITCH", s.id),
+                    format!("JOINT/{} is a screw without `PITCH`", s.id),
                 ),
             }
         }
@@ -420,7 +420,7 @@ impl Reader<'_> {
                     join(&mut self.m, self.notes, s.called(), kind, markers);
                 }
             }
-            None => self.notes.refused("JPRIM", &s.label, Some(s.at), "its type is none that is known"),
+            None => self.notes.refused("JPRIM", &s.label, Some(s.at), "its type is unknown"),
         }
     }
 
@@ -433,7 +433,7 @@ impl Reader<'_> {
         let hinge = carrying(self.joints.values(), pinion.body, &["revolute", "cylindrical"], pinion.z());
         let slide = carrying(self.joints.values(), rack.body, &["translational", "cylindrical"], rack.z());
         let (Some(hinge), Some(slide)) = (hinge, slide) else {
-            self.notes.refused("JOINT", &s.label, Some(s.at), "a rack and pinion needs a hinge of the pinion and a slide of the rack, along the markers' z axes");
+            self.notes.refused("JOINT", &s.label, Some(s.at), "a rack and pinion requires a hinge of the pinion and a slide of the rack, along the z axes of the markers");
             return;
         };
         let arm = rack.pose.r - pinion.pose.r;
@@ -457,7 +457,7 @@ impl Reader<'_> {
             "JOINT",
             &s.label,
             Some(s.at),
-            "a coupler of the rack's slide and the pinion's hinge; it rolls as its markers lie",
+            "imported as a coupler of the rack's slide and the pinion's hinge; the markers define the contact",
         );
     }
 
@@ -490,7 +490,7 @@ impl Reader<'_> {
                 "MOTION",
                 &s.label,
                 Some(s.at),
-                format!("{why}; what it drives is fixed in the design configuration"),
+                format!("{why}; its coordinate is fixed in the design configuration"),
             );
         };
         let order = if s.flag("VELOCITY") { 1 } else { 2 * usize::from(s.flag("ACCELERATION")) };
@@ -499,12 +499,12 @@ impl Reader<'_> {
         if let Some(id) = s.reference("JOINT") {
             let Some(joint) = self.joints.get(id) else {
                 if self.refused.contains(id) {
-                    return refuse(self, &format!("JOINT/{id} is refused"));
+                    return refuse(self, &format!("JOINT/{id} is not supported"));
                 }
                 self.notes.problem(
                     "HP0803",
                     Some(s.at),
-                    format!("MOTION/{} drives JOINT/{id}, which is not there", s.id),
+                    format!("MOTION/{} drives JOINT/{id}, which does not exist", s.id),
                 );
                 return;
             };
@@ -533,7 +533,7 @@ impl Reader<'_> {
             match law {
                 Ok(law) => {
                     self.m.driver(&s.label, s.called().note(self.notes), Drives::Coordinate(coordinate), law);
-                    let why = "its rate is summed up over the first second, and a spline goes through that";
+                    let why = "its rate is integrated over the first second and interpolated by a spline";
                     if order > 0 && matches!(self.m.drivers.last().map(|d| &d.law), Some(Law::Table(_))) {
                         self.notes.approximated("MOTION", &s.label, Some(s.at), why);
                     } else {
@@ -563,7 +563,7 @@ impl Reader<'_> {
             }
             _ => refuse(
                 self,
-                "it drives an angle between two markers, or a way that is not against the ground, or by its rate",
+                "only displacements of a marker relative to ground, prescribed by position, are supported between markers",
             ),
         }
     }
@@ -673,7 +673,7 @@ impl Reader<'_> {
 
     fn coupler(&mut self, s: &Statement) {
         if s.has("FUNCTION") || s.has("ROUTINE") {
-            let why = "a relation by a subroutine is not in the file";
+            let why = "its subroutine is not in the file";
             self.notes.refused("COUPLER", &s.label, Some(s.at), why);
             return;
         }
@@ -687,14 +687,14 @@ impl Reader<'_> {
         for (k, id) in names.iter().enumerate() {
             let Some(joint) = self.joints.get(*id) else {
                 if self.refused.contains(*id) {
-                    let why = format!("JOINT/{id} is refused");
+                    let why = format!("JOINT/{id} is not supported");
                     self.notes.refused("COUPLER", &s.label, Some(s.at), why);
                     return;
                 }
                 self.notes.problem(
                     "HP0803",
                     Some(s.at),
-                    format!("COUPLER/{} names JOINT/{id}, which is not there", s.id),
+                    format!("COUPLER/{} names JOINT/{id}, which does not exist", s.id),
                 );
                 return;
             };
@@ -727,13 +727,13 @@ impl Reader<'_> {
         let joints: Vec<&MarkerJoint> = names.iter().filter_map(|id| self.joints.get(*id)).collect();
         let (Some(cv), [a, b]) = (cv, &joints[..]) else {
             if names.iter().any(|id| self.refused.contains(*id)) {
-                self.notes.refused("GEAR", &s.label, Some(s.at), "one of its joints is refused");
+                self.notes.refused("GEAR", &s.label, Some(s.at), "one of its joints is not supported");
                 return;
             }
             self.notes.problem(
                 "HP0803",
                 Some(s.at),
-                format!("GEAR/{} needs two JOINTS and a marker CV that are there", s.id),
+                format!("GEAR/{} requires two existing JOINTS and an existing marker CV", s.id),
             );
             return;
         };
@@ -889,12 +889,12 @@ impl Reader<'_> {
             if ["ICTRAN", "ICROT", "IC"].contains(&key) {
                 if !zero {
                     let why =
-                        "where the joint starts is left out: the model begins in the design configuration";
+                        "the initial condition is not imported: the model begins in the design configuration";
                     self.notes.refused(key, &s.label, Some(s.at), why);
                 }
                 continue;
             }
-            let why = format!("`{}` has a key `{key}` that is not known here", s.name);
+            let why = format!("`{}` has an unknown key `{key}`", s.name);
             self.notes.not_understood(key, &s.label, Some(s.at), why);
         }
     }
@@ -986,14 +986,14 @@ impl Reader<'_> {
         };
         for s in statements.iter().filter(|s| !is_read(s)) {
             if s.name == "FE_PART" {
-                let why = "an elastic part: what is on it is refused";
+                let why = "elastic parts are not supported, nor are joints on them";
                 self.notes.refused(&s.name, &s.label, Some(s.at), why);
             } else if HOLD[..6].contains(&s.name.as_str()) && s.name != "CURVE" {
                 self.notes.refused(
                     &s.name,
                     &s.label,
                     Some(s.at),
-                    "a constraint that has no equivalent: what it holds is held by a driver",
+                    "the constraint has no equivalent: a driver fixes the motion instead",
                 );
             } else if IRRELEVANT
                 .iter()
@@ -1001,7 +1001,7 @@ impl Reader<'_> {
             {
                 self.notes.ignored(&s.name, Some(s.at));
             } else {
-                let why = "a statement that is not known here";
+                let why = "unknown statement";
                 self.notes.not_understood(&s.name, &s.label, Some(s.at), why);
             }
         }

@@ -63,7 +63,7 @@ impl Statement {
             notes.problem(
                 "HP0804",
                 Some(self.at),
-                format!("`{key}` of {}/{} is no list of numbers: `{}`", self.name, self.id, text.trim()),
+                format!("`{key}` of {}/{} is not a list of numbers: `{}`", self.name, self.id, text.trim()),
             );
         }
         list
@@ -78,7 +78,7 @@ impl Statement {
                 notes.problem(
                     "HP0804",
                     Some(self.at),
-                    format!("`{key}` of {}/{} is three numbers, not {}", self.name, self.id, list.len()),
+                    format!("`{key}` of {}/{} must be three numbers, not {}", self.name, self.id, list.len()),
                 );
                 None
             }

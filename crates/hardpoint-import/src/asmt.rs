@@ -73,13 +73,13 @@ impl<'t> Node<'t> {
         if exact.is_none() {
             let s = if N == 1 { "number" } else { "numbers" };
             let found: Vec<&str> = list.children.iter().map(|c| c.text).collect();
-            let message = format!("`{name}` is {N} {s}, not `{}`", found.join(" "));
+            let message = format!("`{name}` must be {N} {s}, not `{}`", found.join(" "));
             let at = list.children.first().map_or(list.at, |c| c.at);
             notes.problem_with(
                 "HP0804",
                 Some(at),
                 message,
-                "export the assembly again, or correct the lines below it",
+                "export the assembly again, or correct the lines below the heading",
             );
         }
         exact
@@ -100,7 +100,7 @@ impl<'t> Node<'t> {
             Some(rot) if off < 1e-3 => Pose { rot, r: r.into() },
             _ => {
                 let at = self.child("RotationMatrix").map(|c| c.at);
-                notes.problem("HP0804", at, "the rotation matrix is none: its columns are not of length one");
+                notes.problem("HP0804", at, "the matrix is not a rotation matrix: its columns are not of length one");
                 home()
             }
         }
@@ -116,15 +116,15 @@ fn number(word: &str) -> Option<f64> {
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let (nodes, lines) = tree(input.text, notes)?;
     let Some(assembly) = nodes.iter().find(|n| n.text == "Assembly") else {
-        let help = "export the assembly as .asmt again";
-        notes.problem_with("HP0803", None, "there is no `Assembly` in the file", help);
+        let help = "export the assembly as `.asmt` again";
+        notes.problem_with("HP0803", None, "the file has no `Assembly`", help);
         return None;
     };
     for section in ["ConstraintSets", "SimulationParameters"] {
         if assembly.child(section).is_none() {
             let at = assembly.children.last().map_or(assembly.at, |c| c.at);
             let message = format!(
-                "the assembly has no `{section}`: the file is cut short, `{}` is the last that it has",
+                "the assembly has no `{section}`: the file is truncated, `{}` is its last section",
                 assembly.children.last().map_or("", |c| c.text)
             );
             notes.problem_with("HP0802", Some(at), message, "export the assembly again");
@@ -138,7 +138,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         "Assembly",
         assembly.name(),
         Some(assembly.at),
-        format!("the file names no unit: lengths are taken for {unit}"),
+        format!("the file defines no unit of length: {unit} is assumed"),
     );
     let mut m =
         Mechanism::new(if assembly.name().is_empty() { input.stem } else { assembly.name() }, unit, "rad");
@@ -192,7 +192,7 @@ fn tree<'t>(text: &'t str, notes: &mut ImportLog) -> Option<(Vec<Node<'t>>, Opti
             notes.problem_with(
                 "HP0802",
                 Some(at),
-                "the line is indented more than what it could stand below",
+                "the line is indented too deep",
                 "indent it by one tab more than its heading",
             );
             return None;
@@ -223,7 +223,7 @@ fn times(assembly: &Node<'_>, notes: &mut ImportLog) -> Option<Times> {
             "SimulationParameters",
             "",
             Some(s.at),
-            "`hout` does not divide the time into that many intervals: one second in a hundred is taken",
+            "`hout` does not divide the time into 1 to 100,000 equal intervals: one second in 100 intervals is used",
         );
         return None;
     }
@@ -252,7 +252,7 @@ impl Reader<'_> {
         let parts = assembly.child("Parts").map_or(&[][..], |p| &p.children);
         for part in parts {
             if part.text != "Part" {
-                self.notes.refused(part.text, part.name(), Some(part.at), "only parts are known here");
+                self.notes.refused(part.text, part.name(), Some(part.at), "only elements of type `Part` are supported");
                 continue;
             }
             let path = format!("{path}/{}", part.name());
@@ -280,7 +280,7 @@ impl Reader<'_> {
         }
         if self.moved > 0 {
             let why = format!(
-                "{} of them are drawn where no joint holds them: they stand where the stored motion begins",
+                "{} of them are drawn where their joints do not close: they are placed at the start of the stored motion",
                 self.moved
             );
             self.notes.approximated("Parts", "", assembly.child("Parts").map(|p| p.at), why);
@@ -290,7 +290,7 @@ impl Reader<'_> {
                 "Assemblies",
                 "",
                 Some(list.at),
-                "assemblies in assemblies are not read: export them as parts of one",
+                "nested assemblies are not supported: export their parts in one assembly",
             );
         }
     }
@@ -331,7 +331,7 @@ impl Reader<'_> {
                 let message = if path.is_empty() {
                     format!("`{}` has no `{key}`", joint.name())
                 } else {
-                    format!("`{}` names the marker `{path}`, which is not there", joint.name())
+                    format!("`{}` names the marker `{path}`, which does not exist", joint.name())
                 };
                 self.notes.problem_with(
                     "HP0803",
@@ -380,7 +380,7 @@ impl Reader<'_> {
             if part.children.is_empty() {
                 continue;
             }
-            let why = format!("`{}` has `{}`, which is not known here", owner.text, part.text);
+            let why = format!("`{}` has `{}`, which is unknown", owner.text, part.text);
             self.notes.not_understood(part.text, owner.name(), Some(part.at), why);
         }
     }
@@ -409,12 +409,12 @@ impl Reader<'_> {
             "CylSphJoint" => return self.link(joint, ["cylindrical", "spherical"]),
             "GearJoint" | "RackPinionJoint" | "ScrewJoint" => return,
             contact if contact.ends_with("Contact") => {
-                let why = "contacts have no equivalent: what it holds is held by a driver";
+                let why = "contacts have no equivalent: a driver fixes the motion instead";
                 self.notes.refused(contact, joint.name(), Some(joint.at), why);
                 return;
             }
             _ => {
-                let why = "its type is none that is known";
+                let why = "its type is unknown";
                 self.notes.refused(joint.text, joint.name(), Some(joint.at), why);
                 return;
             }
@@ -435,9 +435,9 @@ impl Reader<'_> {
                 let drawn = (j.pose.r - i.pose.r).norm();
                 let length = said(self, "distanceIJ").unwrap_or(drawn);
                 let why = if drawn == 0.0 || i.body == j.body {
-                    "both its markers are at one place, or on one body"
+                    "its markers coincide, or are on the same body"
                 } else if length <= 0.0 {
-                    "its length is zero, which says less than a ball joint"
+                    "its length is zero: use a ball joint"
                 } else {
                     ""
                 };
@@ -457,7 +457,7 @@ impl Reader<'_> {
                 match said(self, "theIzJz").filter(|a| (a.cos() - drawn.cos()).abs() > 1e-6) {
                     Some(said) => {
                         let why = format!(
-                            "drawn at {drawn} rad where {said} rad are said: it is taken in the design configuration"
+                            "specified as {said} rad, but {drawn} rad in the design configuration, which is used"
                         );
                         self.notes.approximated(joint.text, joint.name(), Some(joint.at), why);
                         Some(self.m.joint(angle))
@@ -498,7 +498,7 @@ impl Reader<'_> {
         let called = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
         let Some(pitch) = joint.numbers::<1>("pitch", self.notes).map(|[p]| p).filter(|p| *p != 0.0) else {
             let message = format!("the screw `{}` has no pitch", joint.name());
-            let help = "give it a `pitch` other than zero";
+            let help = "give it a non-zero `pitch`";
             self.notes.problem_with("HP0804", Some(joint.at), message, help);
             return;
         };
@@ -550,11 +550,11 @@ impl Reader<'_> {
         match terms {
             Some(terms) => {
                 self.m.coupler(joint.name(), note, terms);
-                let why = "a coupler of the joints that carry its two parts";
+                let why = "imported as a coupler of the joints that carry its two parts";
                 self.notes.approximated(joint.text, joint.name(), Some(joint.at), why);
             }
             None => {
-                let why = "no joints that carry its two parts along its markers' axes, or no radii";
+                let why = "it has no radii, or no joints along the axes of its markers carry its parts";
                 self.notes.refused(joint.text, joint.name(), Some(joint.at), why);
             }
         }
@@ -569,7 +569,7 @@ impl Reader<'_> {
                     motion.text,
                     motion.name(),
                     Some(motion.at),
-                    format!("{why}; what it drives is fixed in the design configuration"),
+                    format!("{why}; its coordinate is fixed in the design configuration"),
                 );
             }
         }
@@ -580,7 +580,7 @@ impl Reader<'_> {
             "RotationalMotion" => ("RotationZ", "angle"),
             "TranslationalMotion" => ("TranslationZ", "displacement"),
             "GeneralMotion" => return self.general(motion),
-            _ => return Err("its type is none that is known".into()),
+            _ => return Err("its type is unknown".into()),
         };
         let (path, at) = motion.value("MotionJoint").unwrap_or(("", motion.at));
         let wanted = path.rsplit('/').next().unwrap_or_default();
@@ -590,9 +590,9 @@ impl Reader<'_> {
                 return Ok(());
             }
             if self.notes.report.of(crate::ElementOutcome::Refused).any(|e| e.name == wanted) {
-                return Err(format!("the joint `{wanted}` is refused"));
+                return Err(format!("the joint `{wanted}` is not supported"));
             }
-            let message = format!("`{}` drives the joint `{path}`, which is not there", motion.name());
+            let message = format!("`{}` drives the joint `{path}`, which does not exist", motion.name());
             self.notes.problem_with(
                 "HP0803",
                 Some(at),
@@ -636,7 +636,7 @@ impl Reader<'_> {
         };
         let axis = order.map(|x| [1.0, 2.0, 3.0].iter().position(|k| *k == x));
         let [Some(a), Some(b), Some(c)] = axis else {
-            return Err("its `RotationOrder` is none of axes 1 to 3".into());
+            return Err("its `RotationOrder` is not a sequence of axes 1 to 3".into());
         };
         let Some(markers) = self.pair(motion) else { return Ok(()) };
         let [p, q, r] = angles;
@@ -649,7 +649,7 @@ impl Reader<'_> {
         let Some([i, j]) = self.pair(motion) else { return Ok(None) };
         let same = |a: &Marker, b: &Marker| a.body == b.body && a.pose == b.pose;
         let found = self.joints.values().find(|k| same(&k.markers[0], &i) && same(&k.markers[1], &j));
-        found.copied().map(Some).ok_or_else(|| "no joint is between its two markers".into())
+        found.copied().map(Some).ok_or_else(|| "no joint connects its two markers".into())
     }
 
     fn rest(&mut self, assembly: &Node<'_>) {
@@ -659,11 +659,11 @@ impl Reader<'_> {
                 limit.text,
                 limit.name(),
                 Some(limit.at),
-                "drivers prescribe what moves: nothing stops at a limit",
+                "limits are not supported: drivers prescribe the motion",
             );
         }
         for set in sets.and_then(|c| c.child("GeneralConstraintSets")).map_or(&[][..], |p| &p.children) {
-            self.notes.refused(set.text, set.name(), Some(set.at), "a general constraint has no equivalent");
+            self.notes.refused(set.text, set.name(), Some(set.at), "general constraints have no equivalent");
         }
         if let Some(sets) = sets {
             self.unknown(sets, &["Joints", "Motions", "Limits", "GeneralConstraintSets"]);
@@ -711,7 +711,7 @@ fn stored<'t>(lines: &[(&'t str, SourceSpan)], notes: &mut ImportLog) -> (Vec<f6
     let skipped = times.iter().take_while(|t| t.is_none()).count();
     let times: Option<Vec<f64>> = times[skipped..].iter().copied().collect();
     let Some(times) = times.filter(|t| !t.is_empty()) else {
-        notes.refused("TimeSeries", "", Some(*at), "its times are no numbers");
+        notes.refused("TimeSeries", "", Some(*at), "its times are not numbers");
         return nothing;
     };
     let mut told = Vec::new();
@@ -762,7 +762,7 @@ fn series(
                 series.bodies.push((m.bodies[*body].name.clone(), states));
                 notes.taken("PartSeries", path, Some(at));
             }
-            (Some(_), None) => notes.refused("PartSeries", path, Some(at), "a number is missing in it"),
+            (Some(_), None) => notes.refused("PartSeries", path, Some(at), "it has a missing number"),
             (None, _) => notes.ignored("PartSeries", Some(at)),
         }
     }

@@ -27,7 +27,7 @@ pub fn rod(
     at: Option<SourceSpan>,
 ) {
     if i == j {
-        let message = format!("both ends of `{name}` are at one place");
+        let message = format!("both ends of `{name}` coincide");
         notes.problem_with("HP0804", at, message, "correct one of them");
         return;
     }

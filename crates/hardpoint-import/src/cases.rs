@@ -37,12 +37,12 @@ pub fn of_vehicle(m: &mut Mechanism, notes: &mut ImportLog) {
                 let laws: Vec<String> =
                     case.laws.iter().map(|(k, law)| format!("`{}` {law}", m.drivers[*k].name)).collect();
                 let why =
-                    format!("nothing drives it in the source: a motion of its own, {}", laws.join(", "));
+                    format!("nothing drives it in the source: added with {}", laws.join(", "));
                 notes.approximated("case", name, None, why);
                 m.cases.push(case);
             }
             None => {
-                let why = "the mechanism does not move so far: there is no such case";
+                let why = "the mechanism does not reach the travel: the case is not added";
                 notes.approximated("case", name, None, why);
             }
         }

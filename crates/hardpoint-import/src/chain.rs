@@ -35,14 +35,14 @@ pub fn drive(
     turns: [(usize, String); 3],
 ) -> Result<(), String> {
     if i.body == j.body {
-        return Err("both its markers are on the same body".into());
+        return Err("its markers are on the same body".into());
     }
     let start = m.times.map_or(0.0, |t| t.start);
     let value = |text: &str| {
         let law = Function::parse(text).map_err(|_| format!("`{text}` cannot be evaluated"))?;
         Some(law.at(start).0[0])
             .filter(|x| x.is_finite())
-            .ok_or_else(|| format!("`{text}` is no number at {start} s"))
+            .ok_or_else(|| format!("`{text}` is not finite at {start} s"))
     };
     let (mut steps, mut pose) = (Vec::new(), i.pose);
     for (k, law) in ways.into_iter().enumerate() {
@@ -89,7 +89,7 @@ pub fn drive(
     }
     let off = (pose.r - at).norm() > SAME * (1.0 + at.norm()) || pose.rot.angle_to(j.pose.rot) > SAME;
     if off {
-        let why = "its markers are drawn elsewhere than where it begins: it moves them from there";
+        let why = "the drawn positions of its markers differ from its initial values: it moves them from their drawn positions";
         notes.approximated(called.kind, called.name, called.at, why);
     } else {
         notes.taken(called.kind, called.name, called.at);

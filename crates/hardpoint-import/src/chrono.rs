@@ -48,15 +48,15 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         notes.problem_with(
             "HP0805",
             Some(at),
-            format!("the file is of type `{kind}`, not a `Suspension`"),
+            format!("the file is of type `{kind}`, not `Suspension`"),
             "import the file of the suspension",
         );
         return None;
     }
     let all = || TEMPLATES.iter().chain(&chrono_axle::TEMPLATES);
     let Some(known) = all().find(|t| t.eq_ignore_ascii_case(name)) else {
-        let help = format!("known are {}", all().copied().collect::<Vec<_>>().join(", "));
-        notes.problem_with("HP0805", at, format!("the template `{name}` is not known here"), &help);
+        let help = format!("the known templates are {}", all().copied().collect::<Vec<_>>().join(", "));
+        notes.problem_with("HP0805", at, format!("the template `{name}` is unknown"), &help);
         return None;
     };
     let title = root.text_of("Name").filter(|n| !n.trim().is_empty()).unwrap_or(input.stem);
@@ -163,8 +163,8 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     chrono_part::account(&root, PARTS, notes);
     let mut rack = None;
     if notes.problem_count() == 0 && !corner.build(&mut m, notes, &mut rack) {
-        let message = format!("points are missing of what a `{name}` consists of");
-        notes.problem_with("HP0803", at, message, "give the locations of its arms and links");
+        let message = format!("points of the template `{name}` are missing");
+        notes.problem_with("HP0803", at, message, "add the locations of its arms and links");
     }
     if notes.problem_count() == 0 {
         masses(&root, &mut m, known, &corner, notes);
@@ -252,24 +252,24 @@ impl Reader<'_> {
             self.notes.problem_with(
                 "HP0803",
                 Some(self.root.at),
-                format!("there is no `{part}`"),
-                "a template has all its parts",
+                format!("the part `{part}` is missing"),
+                "add the part, or export the template again",
             );
             return None;
         };
         let Some(found) = names.iter().find_map(|n| tree.get(n)) else {
             let message = format!("`{part}` has no `{}`", names[0]);
-            self.notes.problem_with("HP0803", Some(tree.at), message, "give it as a list of three numbers");
+            self.notes.problem_with("HP0803", Some(tree.at), message, "add it as a list of three numbers");
             return None;
         };
         let v = found.vector();
         if v.is_none() {
-            let message = format!("`{}` of `{part}` is three numbers", names[0]);
+            let message = format!("`{}` of `{part}` must be three numbers", names[0]);
             self.notes.problem_with(
                 "HP0804",
                 Some(found.at),
                 message,
-                "give it as a list like `[0, 0.7, 0.2]`",
+                "write it as a list like `[0, 0.7, 0.2]`",
             );
         }
         v.map(Vec3::from)

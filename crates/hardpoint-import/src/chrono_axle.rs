@@ -53,20 +53,20 @@ impl Axle<'_> {
     fn place(&mut self, parts: &[&'static str], names: &[&str]) -> Option<Vec3> {
         let found = parts.iter().find_map(|p| Some((*p, self.root.get(p)?)));
         let Some((part, tree)) = found else {
-            let message = format!("there is no `{}`", parts[0]);
-            self.notes.problem_with("HP0803", Some(self.root.at), message, "a template has all its parts");
+            let message = format!("the part `{}` is missing", parts[0]);
+            self.notes.problem_with("HP0803", Some(self.root.at), message, "add the part, or export the template again");
             return None;
         };
         self.read.push(part);
         let Some(place) = names.iter().find_map(|n| tree.get(n)) else {
             let message = format!("`{part}` has no `{}`", names[0]);
-            self.notes.problem_with("HP0803", Some(tree.at), message, "give it as a list of three numbers");
+            self.notes.problem_with("HP0803", Some(tree.at), message, "add it as a list of three numbers");
             return None;
         };
         let v = place.vector();
         if v.is_none() {
-            let message = format!("`{}` of `{part}` is three numbers", names[0]);
-            let help = "give it as a list like `[0, 0.7, 0.2]`";
+            let message = format!("`{}` of `{part}` must be three numbers", names[0]);
+            let help = "write it as a list like `[0, 0.7, 0.2]`";
             self.notes.problem_with("HP0804", Some(place.at), message, help);
         }
         v.map(Vec3::from)
@@ -146,7 +146,7 @@ impl Axle<'_> {
         let upper = self.place(&[part], &["Location Upper"]);
         let (Some(l), Some(u)) = (lower, upper) else { return None };
         if l == u {
-            let message = "both points of the kingpin are at one place";
+            let message = "both points of the kingpin coincide";
             self.notes.problem_with("HP0804", self.at(part), message, "correct one of them");
             return None;
         }
@@ -184,7 +184,7 @@ impl Axle<'_> {
             Law::Held,
         );
         self.m.steering = Some(steering);
-        let why = "the steering is a file of its own: its link slides along the drag link, and a driver holds it in the design configuration";
+        let why = "the steering is in another file: its link slides along the drag link, and a driver fixes it in the design configuration";
         self.notes.approximated("motion", "steering_slide", self.at(part), why);
         self.rod("drag_link", [rack, crank], [from, to], ["steering", "crank"], self.at(part));
         Some(())
@@ -203,7 +203,7 @@ impl Axle<'_> {
         let z = Vec3::from([0.0, 0.0, 1.0]);
         let axis = if is_solid { (drag - pivot).cross(tie - pivot) } else { z };
         let Some(axis) = axis.unit() else {
-            let message = "the points of the bell crank lie on one line: its axis is perpendicular to them";
+            let message = "the points of the bell crank are collinear and define no axis";
             self.notes.problem_with("HP0804", at, message, "correct one of them");
             return None;
         };
@@ -214,8 +214,8 @@ impl Axle<'_> {
             let ends = self.place(&["Tierod"], &["Location Knuckle"])?;
             let [left, right] = [over(ends, 1.0), over(ends, -1.0)];
             if left == right {
-                let message = "both ends of the tie rod are at one place";
-                self.notes.problem_with("HP0804", self.at("Tierod"), message, "correct its y");
+                let message = "both ends of the tie rod coincide";
+                self.notes.problem_with("HP0804", self.at("Tierod"), message, "correct its y coordinate");
                 return None;
             }
             let rod = self.body("tie_rod", (left + right) * 0.5);
@@ -282,7 +282,7 @@ impl Axle<'_> {
                     Joint::new("axle_guide", String::new(), "inplane", [GROUND, axle], middle)
                         .with_axes(y, x),
                 );
-                let why = "a plane holds its middle sideways, in place of a Watt linkage: the file has no points of it";
+                let why = "the Watt linkage is replaced by a lateral plane for its midpoint: the file has no points of the linkage";
                 self.notes.approximated("joint", "axle_guide", self.at(part), why);
             }
             _ => {

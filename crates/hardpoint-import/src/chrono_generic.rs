@@ -61,7 +61,7 @@ pub fn read(
         chrono_part::part(tree.text_of("Name").unwrap_or_default(), tree, notes);
     }
     for tree in list(root, "RSDAs") {
-        let why = "a spring about an axis of its own has no equivalent: it is left out";
+        let why = "rotational springs between bodies have no equivalent";
         notes.refused("RSDA", tree.text_of("Name").unwrap_or_default(), Some(tree.at), why);
     }
     let read: Vec<&str> = LISTS.into_iter().chain(["RSDAs", "Spindle"]).collect();
@@ -112,8 +112,8 @@ impl Side<'_> {
         if v.is_none() {
             let at = found.map_or(tree.at, |t| t.at);
             let message =
-                format!("`{key}` of `{}` is three numbers", tree.text_of("Name").unwrap_or_default());
-            self.notes.problem_with("HP0804", Some(at), message, "give it as a list like `[0, 0.7, 0.2]`");
+                format!("`{key}` of `{}` must be three numbers", tree.text_of("Name").unwrap_or_default());
+            self.notes.problem_with("HP0804", Some(at), message, "write it as a list like `[0, 0.7, 0.2]`");
         }
         v.map(|v| if is_mirrored(tree) { self.over(v.into()) } else { v.into() })
     }
@@ -131,7 +131,7 @@ impl Side<'_> {
             let frame = hardpoint::space::Pose { rot: crate::turn::none(), r };
             let body = self.m.body(&name, note("body", &own, tree.at, self.notes), Some(frame));
             if self.names.insert(own.clone(), body).is_some() {
-                let message = format!("there are two bodies `{own}`");
+                let message = format!("the body `{own}` is defined twice");
                 self.notes.problem_with("HP0803", Some(tree.at), message, "rename one of them");
             }
             self.notes.taken("body", &name, Some(tree.at));
@@ -158,10 +158,10 @@ impl Side<'_> {
             let body = self.names.get(name).copied();
             if body.is_none() {
                 let message = format!(
-                    "`{key}` of `{}` is `{name}`, which is no body here",
+                    "`{key}` of `{}` is `{name}`, which is not a body",
                     tree.text_of("Name").unwrap_or_default()
                 );
-                let help = "name one of the `Bodies`, or `Chassis`, `Subchassis`, `Steering`";
+                let help = "use one of the `Bodies`, or `Chassis`, `Subchassis`, `Steering`";
                 self.notes.problem_with(
                     "HP0803",
                     Some(tree.get(key).map_or(tree.at, |t| t.at)),
@@ -188,7 +188,7 @@ impl Side<'_> {
                 "pointplane" => "inplane",
                 _ => {
                     let why =
-                        format!("its type `{written}` has no equivalent: what it holds is held by a driver");
+                        format!("its type `{written}` has no equivalent: a driver fixes the motion instead");
                     self.notes.refused("joint", &name, Some(tree.at), why);
                     continue;
                 }
@@ -205,7 +205,7 @@ impl Side<'_> {
             };
             let rotation = frame.get("Rotation").map_or(Some(crate::turn::none()), quaternion);
             let (Some(at), Some(rotation)) = (frame.get("Position").and_then(Tree::vector), rotation) else {
-                let message = format!("the `Coordinate System` of `{name}` is no place with a quaternion");
+                let message = format!("the `Coordinate System` of `{name}` is not a position with a quaternion");
                 self.notes.problem_with(
                     "HP0804",
                     Some(frame.at),
@@ -274,7 +274,7 @@ impl Side<'_> {
         let [Some(i), Some(j)] = ends else { return None };
         let bodies = self.pair(tree, i)?;
         if i == j {
-            let message = format!("both ends of `{name}` are at one place");
+            let message = format!("both ends of `{name}` coincide");
             self.notes.problem_with("HP0804", Some(tree.at), message, "correct one of them");
             return None;
         }
@@ -288,8 +288,8 @@ impl Side<'_> {
 
     fn wheel(&mut self, axis: Vec3, spring: Option<[(usize, Vec3); 2]>) {
         let Some(spindle) = self.root.get("Spindle") else {
-            let help = "give its `Attachment Body` and `COM`";
-            self.notes.problem_with("HP0803", Some(self.root.at), "there is no `Spindle`", help);
+            let help = "add it with `Attachment Body` and `COM`";
+            self.notes.problem_with("HP0803", Some(self.root.at), "the part `Spindle` is missing", help);
             return;
         };
         let centre = spindle.get("COM").or_else(|| spindle.get("Location")).and_then(Tree::vector);
@@ -299,7 +299,7 @@ impl Side<'_> {
             self.notes.problem_with(
                 "HP0804",
                 Some(spindle.at),
-                "the `Spindle` is on no body, or has no place",
+                "the `Spindle` has no attachment body, or no position",
                 help,
             );
             return;

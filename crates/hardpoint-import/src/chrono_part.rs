@@ -108,7 +108,7 @@ impl Masses<'_> {
         let name = format!("{}{}", plain(part), self.suffix);
         let own = tree.get("COM").and_then(Tree::vector).map(Vec3::from);
         let (Some(centre), Some(body)) = (own.or(centre), self.body(body)) else {
-            let why = "it has no centre in the file, or no body here: its mass is left out";
+            let why = "the part has no centre in the file, or no body in the model: its mass is not imported";
             self.notes.refused("mass", &name, Some(tree.at), why);
             return;
         };
@@ -133,7 +133,7 @@ impl Masses<'_> {
         let Some(Inertial { mass, .. }) = Inertial::of(tree).filter(|i| i.mass != 0.0) else { return };
         let name = format!("{}{}", plain(part), self.suffix);
         if !(mass > 0.0 && mass.is_finite()) {
-            self.notes.refused("mass", &name, Some(tree.at), format!("no body has a mass of {mass} kg"));
+            self.notes.refused("mass", &name, Some(tree.at), format!("invalid mass of {mass} kg"));
             return;
         }
         let along = ends[1] - ends[0];
@@ -151,7 +151,7 @@ impl Masses<'_> {
                 });
             }
         }
-        let why = "it is a rod without a body here: its mass is at its ends, as its centre lies between them, its inertia is left out";
+        let why = "the rod has no body in the model: its mass is divided between its ends to preserve the centre, its inertia is not imported";
         self.notes.approximated("mass", &name, self.at(part), why);
     }
 }
@@ -197,18 +197,18 @@ pub fn spring(part: &Tree, name: &str, notes: &mut ImportLog) -> Option<Spring> 
     let [stiffness, damping, preload] =
         ["Spring Coefficient", "Damping Coefficient", "Preload"].map(|key| number(key).unwrap_or(0.0));
     if !(stiffness >= 0.0 && damping >= 0.0) {
-        let why = format!("no spring has a stiffness of {stiffness} and a damping of {damping}");
+        let why = format!("invalid stiffness {stiffness} or damping {damping}");
         notes.refused("force", name, Some(part.at), why);
         return None;
     }
     for key in STOPS.into_iter().filter(|key| part.get(key).is_some()) {
-        notes.refused(key, name, at(key), "the force of its stop is not in the file, and not made");
+        notes.refused(key, name, at(key), "its stop is not imported: the force is not in the file");
     }
     let length = number("Free Length");
     let is_spring = length.is_some();
     for (key, is_damping) in [("Damping Curve Data", true), ("Curve Data", !is_spring), ("Map Data", true)] {
         if is_damping && part.get(key).is_some() {
-            let why = "a damping that is not in proportion to the speed has no equivalent: it is left out";
+            let why = "nonlinear damping has no equivalent";
             notes.refused(key, name, at(key), why);
         }
     }
@@ -219,7 +219,7 @@ pub fn spring(part: &Tree, name: &str, notes: &mut ImportLog) -> Option<Spring> 
             key,
             name,
             at(key),
-            "its damping is taken as in proportion to the speed, as it is at low speeds",
+            "its damping is linear in the model, with the coefficient at low speeds",
         );
     }
     let curve =
@@ -227,12 +227,12 @@ pub fn spring(part: &Tree, name: &str, notes: &mut ImportLog) -> Option<Spring> 
     let points = curve.and_then(|key| Some((key, points(part.get(key)?))));
     let extension: Vec<[f64; 2]> = match points {
         Some((key, Some(points))) => {
-            let why = "straight between its points there, a smooth curve through them here";
+            let why = "piecewise linear in the source, a smooth curve through the points in the model";
             notes.approximated(key, name, at(key), why);
             points.into_iter().map(|[x, force]| [x, force - preload]).collect()
         }
         Some((key, None)) => {
-            notes.refused(key, name, at(key), "it is no list of two or more points in increasing order");
+            notes.refused(key, name, at(key), "it is not a list of two or more points in increasing order");
             Vec::new()
         }
         None => Vec::new(),
@@ -245,7 +245,7 @@ pub fn spring(part: &Tree, name: &str, notes: &mut ImportLog) -> Option<Spring> 
             "force",
             name,
             Some(part.at),
-            "it has no `Free Length`: that of the drawing is taken",
+            "it has no `Free Length`: the length in the design configuration is used",
         );
     }
     let is_curve = !extension.is_empty();
@@ -278,11 +278,11 @@ pub fn account(root: &Tree, read: &[&str], notes: &mut ImportLog) {
                 notes.taken(key, value.text().unwrap_or_default(), Some(*at))
             }
             "Axle" => {
-                let why = "the wheel does not spin here: the inertia of its shaft is left out";
+                let why = "the wheel does not spin in the model: the inertia of its shaft is not imported";
                 notes.refused(key, "", Some(*at), why);
             }
             "Anti Roll Bar" => {
-                let why = "its two halves, their masses and the spring between them are not made";
+                let why = "anti-roll bars are not imported";
                 notes.refused(key, "", Some(*at), why);
             }
             "Antiroll Body" => notes.ignored(key, Some(*at)),
@@ -291,7 +291,7 @@ pub fn account(root: &Tree, read: &[&str], notes: &mut ImportLog) {
                 key,
                 "",
                 Some(*at),
-                "a part that is not known in this template: it is left out",
+                "unknown part of this template",
             ),
         }
     }
@@ -311,9 +311,9 @@ pub fn part(name: &str, part: &Tree, notes: &mut ImportLog) {
         if known(&DRAWN) {
             notes.ignored(key, Some(*at));
         } else if key.starts_with("Bushing") {
-            notes.refused(key, name, Some(*at), "bushings are forces: its joint is rigid here");
+            notes.refused(key, name, Some(*at), "bushings are not imported: the joint is rigid in the model");
         } else {
-            notes.not_understood(key, name, Some(*at), "a key of the part that is not known here");
+            notes.not_understood(key, name, Some(*at), "unknown key of the part");
         }
     }
 }

@@ -64,8 +64,8 @@ impl FromStr for Closing {
         let ends = rest.split_once('=').map(|(a, b)| [a, b].map(end));
         let (Some([Some(a), Some(b)]), true) = (ends, axis.is_none() || kind.is_some()) else {
             return Err(format!(
-                "`{text}` names no two frames: write `A=B`, `A=B:TYPE` with a type of {}, or `A=B:TYPE:AXIS` with x, y or z of frame A; \
-                 a place in a frame is written behind it, as `A@0.2,0,0=B`",
+                "`{text}` does not name two frames: write `A=B`, `A=B:TYPE` with a type of {}, or `A=B:TYPE:AXIS` with x, y or z of frame A; \
+                 a point in a frame follows its name, as in `A@0.2,0,0=B`",
                 TYPES.join(", ")
             ));
         };
@@ -95,7 +95,7 @@ pub fn close(m: &mut Mechanism, notes: &mut ImportLog, closings: &[Closing]) {
                 let near = hardpoint::draft::did_you_mean(name, m.frames.iter().map(|f| f.name.as_str()));
                 let help = near.map_or_else(
                     || {
-                        "name links of URDF, links and frames of SDFormat, or bodies and sites of MJCF"
+                        "use links of URDF, links and frames of SDFormat, or bodies and sites of MJCF"
                             .to_owned()
                     },
                     |near| format!("did you mean `{near}`?"),
@@ -103,7 +103,7 @@ pub fn close(m: &mut Mechanism, notes: &mut ImportLog, closings: &[Closing]) {
                 notes.problem_with(
                     "HP0803",
                     None,
-                    format!("there is no frame `{name}` to close a loop at"),
+                    format!("the frame `{name}` for closing a loop does not exist"),
                     &help,
                 );
             }
@@ -158,7 +158,7 @@ pub fn of_exporters(m: &mut Mechanism, notes: &mut ImportLog) {
             continue;
         }
         let name = format!("closing_{name}");
-        let why = "a loop that onshape-to-robot has cut: its two frames are taken to meet in a ball joint";
+        let why = "loop cut by onshape-to-robot: its two frames are connected by a ball joint";
         notes.approximated("loop", &name, None, why);
         connect(m, notes, &name, "spherical", 2, [&i, &j]);
     }
@@ -184,9 +184,9 @@ pub fn pairs(m: &Mechanism, notes: &mut ImportLog) {
             if named.len() > MOST_NAMED {
                 return;
             }
-            let why = if meet { "are at one place on two bodies" } else { "have names that go together" };
+            let why = if meet { "coincide on two bodies" } else { "have matching names" };
             notes.remark(format!(
-                "the frames `{0}` and `{1}` {why}: if a loop is cut there, `--close {0}={1}` closes it with a ball joint, \
+                "the frames `{0}` and `{1}` {why}: if a loop is cut here, `--close {0}={1}` closes it with a ball joint, \
                  `--close {0}={1}:revolute` with a hinge about z of `{0}`",
                 a.name, b.name
             ));

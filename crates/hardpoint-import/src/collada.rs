@@ -53,7 +53,7 @@ pub fn triangles(text: &str) -> Result<Vec<Triangle>, String> {
         Some(scene) => reader.node(scene, scaled, 0),
         None => named(root, "library_geometries").flat_map(children).for_each(|g| reader.geometry(g, scaled)),
     }
-    if reader.out.is_empty() { Err("it shows no triangles".into()) } else { Ok(reader.out) }
+    if reader.out.is_empty() { Err("it has no triangles".into()) } else { Ok(reader.out) }
 }
 
 fn scale(by: [f64; 3]) -> Mat3 {

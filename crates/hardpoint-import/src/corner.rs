@@ -434,10 +434,10 @@ pub fn bump(
     centre: Vec3,
 ) -> usize {
     let text = format!("{}*sin(2*pi*t)", BUMP * m.per_mm());
-    let why = format!("nothing drives it in the source: it goes up and down, law `{text}`");
+    let why = format!("nothing drives it in the source: a vertical bump motion is added, law `{text}`");
     notes.approximated("motion", &format!("wheel{suffix}"), at, why);
     let drives = Drives::Way { body, at: centre, along: [0.0, 0.0, 1.0].into() };
-    let note = "no law in the source: the wheel goes up and down".into();
+    let note = "no law in the source: vertical bump motion of the wheel".into();
     m.driver(&format!("bump{suffix}"), note, drives, Law::Text(text))
 }
 
@@ -502,7 +502,7 @@ impl Corner {
             notes.problem_with(
                 "HP0804",
                 self.at,
-                format!("both points of the {what} are at one place"),
+                format!("both points of the {what} coincide"),
                 "correct one of them",
             );
         }
@@ -533,7 +533,7 @@ impl Corner {
                 notes.problem_with(
                     "HP0804",
                     self.at,
-                    format!("both pivots of the {} are at one place", arm.replace('_', " ")),
+                    format!("both pivots of the {} coincide", arm.replace('_', " ")),
                     "correct one of them",
                 );
             }
@@ -593,7 +593,7 @@ impl Corner {
                 ));
                 bodies.insert(&link.name, body);
                 if link.pins.is_none() {
-                    let why = "something is on it: how it turns about itself is not in the file, a cross at its inner end holds it";
+                    let why = "it carries another part: its rotation about itself is not in the file, and a cross at its inner end fixes it";
                     notes.approximated("link", &own, link.at, why);
                     continue;
                 }
@@ -630,7 +630,7 @@ impl Corner {
                 "wheel",
                 &name("wheel"),
                 self.at,
-                "its centre is not in the file: what moves is held, or swings if it is the only freedom",
+                "its centre is not in the file: motions are fixed, or oscillate if there is only one",
             );
         }
         true
@@ -650,7 +650,7 @@ impl Corner {
         let at = Vec3::from([at.x, 0.0, at.z]);
         let body = m.body(
             "rack",
-            "what the tie rods are on".into(),
+            "carrier of the tie rods".into(),
             Some(hardpoint::space::Pose { rot: crate::turn::none(), r: at }),
         );
         let slide = m.joint(
@@ -669,7 +669,7 @@ impl Corner {
             "motion",
             "rack_slide",
             self.at,
-            "nothing drives it in the source: a driver holds it in the design configuration",
+            "nothing drives it in the source: a driver fixes it in the design configuration",
         );
         *rack = Some(body);
         body
@@ -695,7 +695,7 @@ impl Corner {
         };
         let mount = self.rod_on.clone().unwrap_or_else(nearest);
         if self.rod_on.is_none() {
-            let why = "what its outer end is on is not in the file: the arm whose ball joint is nearest";
+            let why = "the part at its outer end is not in the file: the arm with the nearest ball joint is used";
             notes.approximated("push rod", &name("push_rod"), self.at, why);
         }
         let Some(carrier) = on(&mount) else {
@@ -703,7 +703,7 @@ impl Corner {
                 "push rod",
                 &name("push_rod"),
                 self.at,
-                "what its outer end is on has no body here",
+                "the part at its outer end has no body in the model",
             );
             return None;
         };
@@ -748,7 +748,7 @@ impl Corner {
             let mount = own.or_else(|| self.spring_on.clone()).unwrap_or(guess);
             let carrier = rocker.or_else(|| on(&mount));
             let Some(carrier) = carrier else {
-                notes.refused(base, &name, self.at, "what its lower end is on has no body here");
+                notes.refused(base, &name, self.at, "the part at its lower end has no body in the model");
                 continue;
             };
             let mut leg =
@@ -796,7 +796,7 @@ impl Corner {
                 "wheel",
                 &name,
                 self.at,
-                format!("its radius is not in the file: taken for {radius} {}", m.length),
+                format!("its radius is not in the file: {radius} {} is assumed", m.length),
             );
             radius
         });

@@ -45,8 +45,8 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
     };
     let only_one = left.count == 1 && !moves;
     if left.count > MOST_HELD {
-        let message = format!("{} motions of it are driven by nothing", left.count);
-        let help = "leave out of the source what need not move, or give the model drivers";
+        let message = format!("{} motions are undriven", left.count);
+        let help = "remove parts that need not move from the source, or add drivers to the model";
         return Some(notes.diagnostic("HP0808", None, message).help(help));
     }
     let mut tried = HashSet::new();
@@ -56,12 +56,12 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
                 return Some(*fault);
             }
             let names: Vec<String> = left.joints.iter().map(|j| format!("`{}`", m.joints[*j].name)).collect();
-            let message = format!("{} motions remain that no driver could be found for", left.count);
+            let message = format!("{} motions remain undriven: no driver was found for them", left.count);
             return Some(
                 notes
                     .diagnostic("HP0808", None, message)
-                    .note(format!("joints that still move: {}", names.join(", ")))
-                    .help("give the model drivers for these, or joints that hold them"),
+                    .note(format!("undriven joints: {}", names.join(", ")))
+                    .help("add drivers for these joints to the model, or joints that constrain them"),
             );
         };
         tried.insert(held.clone());
@@ -79,7 +79,7 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
                 left = now;
                 for driver in m.drivers[before..].iter().filter(|_| !only_one) {
                     let why =
-                        "nothing drives it in the source: a driver holds it in the design configuration";
+                        "nothing drives it in the source: a driver fixes it in the design configuration";
                     notes.approximated("motion", driver.name.trim_end_matches("_held"), None, why);
                 }
             }
@@ -102,9 +102,9 @@ pub fn remark(m: &Mechanism, notes: &mut ImportLog, closes: bool) {
         return;
     }
     let is_tree = m.joints.len() < m.bodies.len();
-    let how = if closes { ": name the frames that meet, as `--close A=B`, if it has loops" } else { "" };
+    let how = if closes { ": if it has loops, close them with `--close A=B`" } else { "" };
     let loops =
-        if is_tree { format!("; it is a tree, in which no loop is closed{how}") } else { String::new() };
+        if is_tree { format!("; the mechanism is a tree, without a closed loop{how}") } else { String::new() };
     let motions =
         if held == 1 { "its one motion is".to_owned() } else { format!("all of its {held} motions are") };
     notes.remark(format!(
@@ -144,7 +144,7 @@ fn as_drawn(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
     if assembles(&closed) {
         *m = closed;
         let why = format!(
-            "what is fixed in the design configuration keeps them from closing: they are taken as they are drawn: {}",
+            "they cannot be closed with the other motions fixed: they are closed as drawn in the design configuration: {}",
             names.join(", ")
         );
         notes.approximated("joints", "", None, why);
@@ -204,7 +204,7 @@ pub fn end_point(m: &mut Mechanism, notes: &mut ImportLog) {
         return;
     }
     m.point(&format!("{}_end", m.bodies[end].name), end, at);
-    let why = "added: a point of the last body of the longest chain, so that there is a motion to look at";
+    let why = "added: a point on the last body of the longest chain, to observe the motion";
     let name = m.points.last().map_or(String::new(), |p| p.name.clone());
     notes.approximated("point", &name, None, why);
 }
@@ -225,7 +225,7 @@ fn unfollowed(m: &mut Mechanism, notes: &mut ImportLog) {
     m.unfollowed = names.collect();
     if !m.unfollowed.is_empty() {
         let names: Vec<String> = m.unfollowed.iter().map(|n| format!("`{n}`")).collect();
-        let why = format!("the mechanism cannot follow them, so they are left out: {}", names.join(", "));
+        let why = format!("the mechanism cannot follow them, and they are not added: {}", names.join(", "));
         notes.approximated("design variables", "", None, why);
     }
 }
@@ -253,7 +253,7 @@ fn ground(m: &mut Mechanism, notes: &mut ImportLog) {
         let first = m.joints.iter().find(|j| j.bodies.contains(&b)).and_then(|j| j.at.first().copied());
         let at = body.pose.map(|p| p.r).or(first).unwrap_or_else(|| Vec3::from([0.0; 3]));
         let name = body.name.clone();
-        let why = "nothing connects it with the ground in the source: it is fixed there";
+        let why = "nothing connects it to ground in the source: it is fixed to ground";
         m.joint(Joint::new(&format!("{name}_fixed"), why.into(), "fixed", [GROUND, b], at));
         notes.approximated("body", &name, None, why);
     }
@@ -270,7 +270,7 @@ fn straightened(m: &mut Mechanism, notes: &mut ImportLog) {
     *m = straight;
     let names: Vec<String> = done.joints.iter().map(|n| format!("`{n}`")).collect();
     let why = format!(
-        "turned by up to {:.1e} rad, to be parallel to others or to a global axis, since their loops could not move as written: {}",
+        "rotated by up to {:.1e} rad to be parallel to other axes, since their loops could not move as written: {}",
         done.by,
         names.join(", ")
     );
@@ -466,10 +466,10 @@ fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
         let text = if one_way { format!("{a}*(1 - cos(2*pi*t))/2") } else { format!("{a}*sin(2*pi*t)") };
         let d = &mut m.drivers[driver];
         d.law = Law::Text(text.clone());
-        d.note = "nothing drives it in the source: as the only freedom it is the input".into();
+        d.note = "nothing drives it in the source: as the only degree of freedom it is the input".into();
         if moves(m) {
             let why =
-                format!("nothing drives it in the source: as the only freedom it is the input, law `{text}`");
+                format!("nothing drives it in the source: as the only degree of freedom it is the input, law `{text}`");
             notes.approximated("motion", &name, None, why);
             let short = name.strip_suffix("_held").unwrap_or(&name).to_owned();
             m.drivers[driver].name = format!("{short}_input");
@@ -483,7 +483,7 @@ fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
         "motion",
         &name,
         None,
-        "nothing drives it in the source, and it does not swing freely: a driver holds it in the design configuration",
+        "nothing drives it in the source, and it cannot oscillate: a driver fixes it in the design configuration",
     );
 }
 

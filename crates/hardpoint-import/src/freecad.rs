@@ -53,7 +53,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         Ok(text) => text,
         Err(why) => {
             let help = "save the document in FreeCAD again";
-            notes.problem_with("HP0802", None, format!("the file is no FreeCAD document: {why}"), help);
+            notes.problem_with("HP0802", None, format!("the file is not a FreeCAD document: {why}"), help);
             return None;
         }
     };
@@ -91,7 +91,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
 /// Returns the text of the document in the archive.
 fn document(bytes: &[u8]) -> Result<String, String> {
     let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| e.to_string())?;
-    let file = archive.by_name("Document.xml").map_err(|_| "there is no `Document.xml` in it".to_owned())?;
+    let file = archive.by_name("Document.xml").map_err(|_| "it has no `Document.xml`".to_owned())?;
     let mut text = String::new();
     file.take(LARGEST as u64).read_to_string(&mut text).map_err(|e| format!("`Document.xml`: {e}"))?;
     Ok(text)
@@ -154,7 +154,7 @@ impl<'a, 'i> Object<'a, 'i> {
         let r = [number("Px"), number("Py"), number("Pz")];
         let q = [number("Q3"), number("Q0"), number("Q1"), number("Q2")];
         let (true, true) = (r.iter().all(Option::is_some), q.iter().all(Option::is_some)) else {
-            let message = format!("`{property}` of `{}` is no placement", self.label());
+            let message = format!("`{property}` of `{}` is not a placement", self.label());
             notes.problem_with(
                 "HP0804",
                 xml::at(self.text, node),
@@ -276,14 +276,14 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             self.notes.problem_with(
                 "HP0803",
                 None,
-                "there is no assembly in the document",
-                "make one with FreeCAD's Assembly workbench",
+                "the document has no assembly",
+                "create one with FreeCAD's Assembly workbench",
             );
             return;
         };
         for other in outermost {
             let object = &self.objects[other];
-            let why = "a document becomes one mechanism: its first assembly is taken, this is another";
+            let why = "only the first assembly of a document is imported";
             self.notes.refused("assembly", object.label(), object.at(), why);
         }
         self.m.name = self.objects[root].label().to_owned();
@@ -307,7 +307,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 self.m.body(object.label(), called.note(self.notes), Some(pose))
             };
             if object.kind == "Assembly::AssemblyLink" && object.text_of("Rigid") == Some("false") {
-                let why = "an assembly whose parts may move: taken as one rigid part";
+                let why = "flexible assembly: imported as one rigid part";
                 self.notes.approximated("part", called.name, called.at, why);
             } else {
                 self.notes.taken("part", called.name, called.at);
@@ -333,7 +333,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                     "motion",
                     label,
                     at,
-                    format!("{why}; what it drives is fixed in the design configuration"),
+                    format!("{why}; its coordinate is fixed in the design configuration"),
                 );
             }
         }
@@ -382,7 +382,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let reference = object.link(&format!("Reference{k}")).or_else(|| object.link(&format!("Object{k}")));
         let Some((name, sub, _)) = reference else {
             let message = format!("`{label}` has no `Reference{k}`");
-            self.notes.problem_with("HP0803", at, message, "choose both ends of the joint in FreeCAD");
+            self.notes.problem_with("HP0803", at, message, "select both ends of the joint in FreeCAD");
             return None;
         };
         // The path from the assembly; its last word is a face, an edge or a vertex.
@@ -394,8 +394,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let first = path.iter().position(|p| self.bodies.contains_key(*p));
         let Some(first) = first else {
             let place = if sub.is_empty() { name } else { sub.as_str() };
-            let message = format!("`{label}` refers to `{place}`, which is no part of the assembly");
-            self.notes.problem_with("HP0803", at, message, "choose both ends of the joint in FreeCAD");
+            let message = format!("`{label}` refers to `{place}`, which is not a part of the assembly");
+            self.notes.problem_with("HP0803", at, message, "select both ends of the joint in FreeCAD");
             return None;
         };
         let body = self.bodies[path[first]];
@@ -408,7 +408,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             if object.is_elsewhere() {
                 if !rest.is_empty() {
                     let why = format!(
-                        "`{}` is in another document: its places in there are taken for none",
+                        "`{}` is in another document: positions within it are ignored",
                         rest.join(".")
                     );
                     self.notes.approximated("reference", label, at, why);
@@ -440,7 +440,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         for (property, node) in &object.properties {
             if !OF_JOINTS.contains(property) {
                 let at = xml::at(object.text, *node);
-                let why = format!("the joint has a property `{property}` that is not known here");
+                let why = format!("the joint has an unknown property `{property}`");
                 self.notes.not_understood("property", label, at, why);
             }
         }
@@ -487,7 +487,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let Some(number) = number else { return };
         self.m.joints[number].limits = self.limits(joint, type_name, &i, &j);
         if has_limits {
-            self.notes.refused("limits", label, at, "drivers prescribe what moves: nothing stops at a limit");
+            self.notes.refused("limits", label, at, "limits are not supported: drivers prescribe the motion");
         }
         self.joints.insert(joint, MarkerJoint { number, kind: type_name, markers: [i, j] });
     }
@@ -544,7 +544,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             _ => "",
         };
         if i.body == j.body {
-            let why = "both its markers are on the same body";
+            let why = "its markers are on the same body";
             self.notes.refused(called.kind, called.name, called.at, why);
             return;
         }
@@ -585,14 +585,14 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 "two axes"
             }
             _ => {
-                let why = "which surfaces it is between is not in the file, nor does it show: what it holds is held by a driver";
+                let why = "its types of surfaces are not in the file and cannot be inferred: a driver fixes the motion instead";
                 self.notes.refused(called.kind, called.name, called.at, why);
                 return;
             }
         };
         self.notes.report.entries.truncate(told);
         let why = format!(
-            "between {name}, of {said} mm, as it is drawn; which surfaces were meant is not in the file"
+            "imported as a distance of {said} mm between {name}, inferred from the design configuration; the types of surfaces are not in the file"
         );
         self.notes.approximated(called.kind, called.name, called.at, why);
     }
@@ -643,13 +643,13 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             Some(terms) => {
                 let note = JointSource { kind: &kind, name: label, at }.note(self.notes);
                 self.m.coupler(label, note, terms);
-                self.notes.approximated(&kind, label, at, "a coupler of the joints that carry its two parts");
+                self.notes.approximated(&kind, label, at, "imported as a coupler of the joints that carry its two parts");
             }
             None => self.notes.refused(
                 &kind,
                 label,
                 at,
-                "no joints that carry its two parts along its axes, or no radii",
+                "it has no radii, or no joints along its axes carry its parts",
             ),
         }
     }
@@ -661,7 +661,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let called = JointSource { kind: "Screw", name: object.label(), at: object.at() };
         let Some(lead) = lead else {
             let message = format!("the screw `{}` has no pitch", called.name);
-            self.notes.problem_with("HP0804", called.at, message, "give it a distance other than zero");
+            self.notes.problem_with("HP0804", called.at, message, "give it a non-zero distance");
             return;
         };
         let joints: Vec<MarkerJoint> = self.joints.values().copied().collect();
@@ -681,7 +681,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let joint = object.link("Joint").map(|(name, ..)| name).unwrap_or_default();
         let function = object.text_of("Formula").unwrap_or_default();
         let Some(joint) = self.joints.get(joint).copied() else {
-            return Err(format!("there is no joint `{joint}` that it could drive"));
+            return Err(format!("it drives the joint `{joint}`, which does not exist or is not supported"));
         };
         let kind = hardpoint::joint::ALL.iter().find(|k| k.name == joint.kind);
         if !kind.is_some_and(|k| k.coordinates.iter().any(|c| c.name == name)) {

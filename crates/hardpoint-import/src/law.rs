@@ -20,7 +20,7 @@ const REPEATED: usize = 8;
 
 /// Error for an expression that exceeds [`LONGEST`].
 fn too_long() -> String {
-    format!("written out it would be longer than {} MiB", LONGEST >> 20)
+    format!("its translation would be longer than {} MiB", LONGEST >> 20)
 }
 
 /// Translates a function to an expression of model files; angles in rad.
@@ -40,7 +40,7 @@ pub fn translate_with(text: &str, language: Language, time: &'static str) -> Res
     let out = parser.sum()?;
     match parser.tokens.get(parser.at) {
         None => Ok(out),
-        Some(extra) => Err(format!("`{}` is not expected there", extra.shown())),
+        Some(extra) => Err(format!("`{}` is not expected here", extra.shown())),
     }
 }
 
@@ -101,9 +101,9 @@ fn tokens(text: &str, language: Language) -> Result<Vec<Token>, String> {
                 number.push('e');
                 number.extend(&bytes[from..k]);
             }
-            let value: f64 = number.parse().map_err(|_| format!("`{number}` is no number"))?;
+            let value: f64 = number.parse().map_err(|_| format!("`{number}` is not a number"))?;
             if !value.is_finite() {
-                return Err(format!("`{number}` is too large a number"));
+                return Err(format!("`{number}` is too large"));
             }
             let after = bytes.get(k + 1).is_some_and(|c| c.is_alphanumeric() || *c == '_');
             if mark_is(&bytes, k, 'd') && !after {
@@ -134,7 +134,7 @@ fn tokens(text: &str, language: Language) -> Result<Vec<Token>, String> {
                 (')' | '}' | ']', _) => ")",
                 (',' | ';', _) => ",",
                 (':', _) => ":",
-                _ => return Err(format!("`{c}` is not expected there")),
+                _ => return Err(format!("`{c}` is not expected here")),
             };
             k += 1;
             out.push(Token::Sign(sign));
@@ -169,7 +169,7 @@ impl Parser {
             return Ok(());
         }
         Err(match self.tokens.get(self.at) {
-            Some(found) => format!("`{sign}` is expected where `{}` is", found.shown()),
+            Some(found) => format!("`{sign}` is expected instead of `{}`", found.shown()),
             None => format!("`{sign}` is missing at the end"),
         })
     }
@@ -233,7 +233,7 @@ impl Parser {
 
     fn atom(&mut self) -> Result<String, String> {
         let Some(token) = self.tokens.get(self.at).cloned() else {
-            return Err("a value is missing at its end".into());
+            return Err("a value is missing at the end".into());
         };
         self.at += 1;
         match token {
@@ -243,7 +243,7 @@ impl Parser {
                 self.take(")")?;
                 Ok(format!("({inner})"))
             }
-            Token::Sign(s) => Err(format!("`{s}` is where a value is expected")),
+            Token::Sign(s) => Err(format!("`{s}` is found where a value is expected")),
             Token::Name(name) if self.sign() == Some("(") => {
                 self.at += 1;
                 let mut arguments = Vec::new();
@@ -266,7 +266,7 @@ impl Parser {
                 "dtor" => Ok("(pi/180)".into()),
                 "rtod" => Ok("(180/pi)".into()),
                 "e" if self.language != Language::Adams => Ok("exp(1)".into()),
-                other => Err(format!("`{other}` depends on more than the time, or is not known")),
+                other => Err(format!("`{other}` is unknown, or depends on more than the time")),
             },
         }
     }
@@ -282,7 +282,7 @@ impl Parser {
             if x.len() == n {
                 Ok(format!("{to}({})", x.join(", ")))
             } else {
-                Err(format!("`{name}` takes {n} values, and has {}", x.len()))
+                Err(format!("`{name}` requires {n} arguments, not {}", x.len()))
             }
         };
         // Fraction of the interval from x0 to x1 before x, limited to 0..1.
@@ -366,7 +366,7 @@ impl Parser {
                 let terms: Vec<String> = x[2..].iter().zip(&t).map(|(a, t)| format!("({a})*{t}")).collect();
                 Ok(format!("({})", terms.join(" + ")))
             }
-            _ => Err(format!("the function `{name}` with {} values has no equivalent", x.len())),
+            _ => Err(format!("the function `{name}` with {} arguments has no equivalent", x.len())),
         }
     }
 }

@@ -199,11 +199,11 @@ pub fn import_with(
                 return Err(is_sibling(&notes, sibling));
             }
             let message = notes.diagnostic("HP0801", None, "the format of the file is not recognised");
-            let message = message.note(format!("known are {}", known()));
-            let message = message.help("if it is one of these, name it, like `--format adams`");
+            let message = message.note(format!("the known formats are {}", known()));
+            let message = message.help("if it is one of these, specify it, like `--format adams`");
             let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
             let table = TABLES.contains(&ending.as_str());
-            let help = "a table of hardpoints begins a model from a template: \
+            let help = "to create a model from a template with a table of hardpoints, run \
                         `hardpoint new NAME --template TEMPLATE --hardpoints FILE`";
             Err(notes.only(if table { message.help(help) } else { message }))
         }
@@ -218,7 +218,7 @@ fn known() -> String {
 
 /// HP0801 for a file of a related but unsupported kind, with the file to export instead.
 fn is_sibling(notes: &ImportLog, sibling: &siblings::Sibling) -> ImportErrors {
-    let message = format!("the file is {}: that is not read", sibling.what);
+    let message = format!("unsupported file: {}", sibling.what);
     notes.only(notes.diagnostic("HP0801", None, message).help(sibling.help))
 }
 
@@ -284,12 +284,12 @@ fn read_as(
         return Err(problems);
     }
     let Some(mut m) = mechanism else {
-        let message = format!("there is no mechanism in the file; it was read as {}", format.about);
+        let message = format!("the file has no mechanism; it was read as {}", format.about);
         let head = head();
         let other = FORMATS.iter().find(|f| f.name != format.name && !f.binary && (f.looks)(&head));
         return match other {
             Some(other) => {
-                let help = format!("import it with `--format {}`: it looks like {}", other.name, other.about);
+                let help = format!("import it with `--format {}`: it resembles {}", other.name, other.about);
                 whole(&notes, "HP0806", message, &help)
             }
             None if is_like_it => {
@@ -297,7 +297,7 @@ fn read_as(
             }
             None => {
                 let d = notes.diagnostic("HP0806", None, message);
-                let d = d.note(format!("it looks like none of the formats that are read: {}", known()));
+                let d = d.note(format!("it resembles none of the known formats: {}", known()));
                 Err(notes.only(d.help("export the mechanism in one of these formats")))
             }
         };
@@ -306,14 +306,14 @@ fn read_as(
     if count > robot::MOST_PARTS {
         let message = format!("the mechanism has {} bodies and {} joints", m.bodies.len(), m.joints.len());
         let help = format!(
-            "at most {} bodies are read: leave out of the source what need not move",
+            "reduce it to at most {} bodies by removing parts that need not move",
             robot::MOST_PARTS
         );
         return whole(&notes, "HP0802", message, &help);
     }
     let numbers = m.joints.iter().flat_map(|j| j.at.iter().chain(&j.axis).chain(&j.axis2));
     if !numbers.chain(m.hardpoints.iter().map(|h| &h.1)).all(|v| v.is_finite()) {
-        let message = "places of joints are beyond all numbers".to_owned();
+        let message = "positions of joints are not finite".to_owned();
         return whole(&notes, "HP0804", message, "correct the coordinates in the source");
     }
     let about = report::printable(&format!("Imported from {base} ({})", format.about));
@@ -331,14 +331,14 @@ fn read_as(
         fault
     } else {
         let message = "the topology is not recognised: only the hardpoints are written";
-        let help = "write bodies and joints between them, as in docs/file-format.md";
+        let help = "add bodies and joints as described in docs/file-format.md";
         let message = notes.diagnostic("HP0807", None, message);
         let unplaced: Vec<String> = m.unplaced.iter().flatten().map(|name| format!("`{name}`")).collect();
         let message = match &m.unplaced {
             Some(names) if names.is_empty() => {
-                message.note("all their names are known, and a member or the wheel's centre is missing")
+                message.note("all names are known, but a member or the wheel centre is missing")
             }
-            Some(_) => message.note(format!("their names tell of no member: {}", unplaced.join(", "))),
+            Some(_) => message.note(format!("names without a known member: {}", unplaced.join(", "))),
             None => message,
         };
         Some(message.help(help))
@@ -400,7 +400,7 @@ impl Input<'_> {
     ) {
         let shown = match self.file(path) {
             Some(bytes) => self.shapes.file(body, place, scale, path, &bytes),
-            None => Err("there is no such file beside the source".into()),
+            None => Err("the file does not exist next to the source".into()),
         };
         match shown {
             Ok(()) => notes.taken("mesh", name, at),

@@ -144,7 +144,7 @@ pub fn build(
     }
     // Five rods leave one degree of freedom: both wheels move vertically together.
     let shared = (held == 5).then(|| {
-        let why = "its five rods leave it one freedom: it goes up and down, and rolls in its bushings alone, which are not in the file";
+        let why = "its five rods leave one degree of freedom: it heaves, but does not roll, since its bushings are not in the file";
         notes.approximated("axle", "axle", at, why);
         bump(m, notes, "", at, axle, middle)
     });

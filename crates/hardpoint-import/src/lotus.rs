@@ -55,7 +55,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         notes.problem_with(
             "HP0803",
             None,
-            "there is no block `TEMP_SETTINGS`, which names the points",
+            "the block `TEMP_SETTINGS` with the names of the points is missing",
             "save the model from Lotus again",
         );
         return None;
@@ -66,7 +66,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         .collect();
     let Some(block) = blocks.first() else {
         let help = "save the model from Lotus again";
-        notes.problem_with("HP0803", None, "there is no block `FRONT SUSPENSION` or `REAR SUSPENSION`", help);
+        notes.problem_with("HP0803", None, "the block `FRONT SUSPENSION` or `REAR SUSPENSION` is missing", help);
         return None;
     };
     for other in &blocks[1..] {
@@ -74,7 +74,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             "block",
             lines[*other].text,
             Some(lines[*other].at),
-            "the points are named for one suspension: the first is taken",
+            "the names of the points apply to one suspension: only the first is imported",
         );
     }
     let (mut places, mut scalars) = (Vec::new(), Vec::new());
@@ -86,12 +86,12 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         }
     }
     if places.len() < names.len() {
-        let message = format!("there are {} names of points and {} places", names.len(), places.len());
+        let message = format!("the file has {} names of points, but {} positions", names.len(), places.len());
         notes.problem_with(
             "HP0803",
             Some(lines[*block].at),
             message,
-            "each place is a line of three numbers below the block's second line",
+            "write each position as a line of three numbers below the second line of the block",
         );
         return None;
     }
@@ -102,9 +102,9 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let forward =
         pivots.iter().find_map(|[front, rear]| Some(at(*front)?[0] > at(*rear)?[0])).unwrap_or(false);
     let why = if forward {
-        "taken as they are: x points forward, as the front pivots lie"
+        "not rotated: according to the front pivots, x points forward"
     } else {
-        "turned half round about z, so that x points forward and y left"
+        "rotated by 180 deg about z, so that x points forward and y left"
     };
     notes.approximated("axes", "", Some(lines[*block].at), why);
     let radius = scalars.first().map(|(x, _)| *x).filter(|r| *r > 0.0);
@@ -113,18 +113,18 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             "radius",
             &format!("{radius}"),
             Some(*at),
-            "the first number behind the points is taken for the wheel's loaded radius",
+            "the first number after the points is assumed to be the loaded radius of the wheel",
         );
     }
     for (number, at) in scalars.iter().skip(1) {
-        let why = "the file does not name what it is";
+        let why = "the file does not name its meaning";
         notes.refused("number", &format!("{number}"), Some(*at), why);
     }
     let end = lines[*block].text.split_whitespace().next().and_then(end_named);
     let mut corner = Corner { at: Some(lines[*block].at), rack: true, radius, end, ..Corner::default() };
     for (name, (place, at)) in names.iter().zip(&places) {
         if name.contains("C of G") {
-            let why = "a centre of gravity without a mass in the file";
+            let why = "the centre of gravity has no mass in the file";
             notes.refused("point", name, Some(*at), why);
             continue;
         }
@@ -154,8 +154,8 @@ fn names<'t>(lines: &[Line<'t>], settings: usize, notes: &mut ImportLog) -> Opti
         }
         _ => {
             let at = header.map(|h| h.at);
-            let help = "three lines below `TEMP_SETTINGS` stand how many parts and points there are";
-            notes.problem_with("HP0804", at, "the numbers of parts and points cannot be read", help);
+            let help = "write the numbers of parts and points three lines below `TEMP_SETTINGS`";
+            notes.problem_with("HP0804", at, "the numbers of parts and points are not readable", help);
             return None;
         }
     };
@@ -170,7 +170,7 @@ fn names<'t>(lines: &[Line<'t>], settings: usize, notes: &mut ImportLog) -> Opti
         notes.problem_with(
             "HP0802",
             at,
-            "the names of the points are not where they should be",
+            "the names of the points are not at their expected lines",
             "save the model from Lotus again",
         );
         return None;

@@ -84,7 +84,7 @@ pub fn join(
     [i, j]: [Marker; 2],
 ) -> Option<usize> {
     if i.body == j.body {
-        notes.refused(called.kind, called.name, called.at, "both its markers are on the same body");
+        notes.refused(called.kind, called.name, called.at, "its markers are on the same body");
         return None;
     }
     if ["fixed", "orientation"].contains(&kind) {
@@ -125,7 +125,7 @@ pub fn join(
                     called.kind,
                     called.name,
                     called.at,
-                    "its two axes are parallel where they should be square",
+                    "its two axes are parallel, but must be perpendicular",
                 );
                 return None;
             };
@@ -154,16 +154,16 @@ pub fn join(
     }
     if open && ["revolute", "spherical", "universal", "constant_velocity"].contains(&kind) {
         joint = joint.between(i.pose.r, j.pose.r);
-        let why = "its markers lie apart in the design configuration: the mechanism is assembled there before it moves";
+        let why = "its markers are apart in the design configuration: the mechanism is assembled before it moves";
         notes.approximated(called.kind, called.name, called.at, why);
     } else if open {
-        let why = "its markers do not meet in the design configuration: it is taken as closed where the bodies stand";
+        let why = "its markers do not coincide in the design configuration: the joint is closed as drawn";
         notes.approximated(called.kind, called.name, called.at, why);
     } else if turn.is_some() {
-        let why = "its markers' axes are turned against each other in the file: the mechanism is assembled there before it moves";
+        let why = "the axes of its markers are misaligned in the file: the mechanism is assembled before it moves";
         notes.approximated(called.kind, called.name, called.at, why);
     } else if awry {
-        let why = "its markers' axes are turned against each other in the file: the first marker's axis is taken for both";
+        let why = "the axes of its markers are misaligned in the file: the axis of the first marker is used for both";
         notes.approximated(called.kind, called.name, called.at, why);
     } else {
         notes.taken(called.kind, called.name, called.at);
@@ -223,7 +223,7 @@ pub fn linked(
         return;
     }
     if i.body == j.body {
-        notes.refused(called.kind, called.name, called.at, "both its markers are on the same body");
+        notes.refused(called.kind, called.name, called.at, "its markers are on the same body");
         return;
     }
     let along = across.unit().unwrap_or_else(|| axis.any_square());
@@ -249,11 +249,11 @@ pub fn linked(
     m.joint(if same { second } else { second.between(end, j.pose.r) });
     if skew || !same {
         let how = if turn.is_some() {
-            "its axes are turned against each other in the file: the mechanism is assembled there before it moves"
+            "its axes are misaligned in the file: the mechanism is assembled before it moves"
         } else if skew {
-            "its axes are turned against each other in the file: the first is taken for both"
+            "its axes are misaligned in the file: the first axis is used for both"
         } else {
-            "it is drawn at another distance: the mechanism is assembled to the one that is said"
+            "its distance differs in the design configuration: the mechanism is assembled to the specified distance"
         };
         notes.approximated(called.kind, called.name, called.at, how);
     } else {

@@ -125,7 +125,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let root = documents.first()?.as_ref()?.root_element();
     if !["mujoco", "mujocoinclude"].contains(&root.tag_name().name()) {
         let message = format!("the first element is `{}`, not `mujoco`", root.tag_name().name());
-        notes.problem_with("HP0803", xml::at(0, root), message, "name the format, like `--format sdf`");
+        notes.problem_with("HP0803", xml::at(0, root), message, "specify the format, like `--format sdf`");
         return None;
     }
     let paths: Vec<String> = texts.iter().map(|(path, _)| path.clone()).collect();
@@ -158,7 +158,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     }
     if reader.m.bodies.len() > robot::MOST_PARTS {
         let message = format!("it has more than {} bodies", robot::MOST_PARTS);
-        let help = "look for files that include each other more than once, or leave out what need not move";
+        let help = "remove repeated includes, or parts that need not move";
         reader.notes.problem_with("HP0802", None, message, help);
         return None;
     }
@@ -380,14 +380,14 @@ impl<'d, 'n> Reader<'d, 'n> {
             let at = xml::attribute_at(text, inner, "file").or_else(|| xml::at(text, inner));
             match root {
                 Some(_) if depth > DEEPEST => {
-                    let help = "look for a file that includes itself";
-                    self.notes.problem_with("HP0805", at, "files include each other in a circle", help);
+                    let help = "remove the recursive include";
+                    self.notes.problem_with("HP0805", at, "files include each other recursively", help);
                 }
                 Some(_) if self.expanded > MOST_EXPANDED => {}
                 Some(root) => {
                     self.expanded += 1;
                     if self.expanded > MOST_EXPANDED {
-                        let help = "look for files that include each other more than once";
+                        let help = "remove repeated includes";
                         self.notes.problem_with("HP0802", at, "files are included too often", help);
                     }
                     if self.told.insert((text, inner.range().start)) {
@@ -398,7 +398,7 @@ impl<'d, 'n> Reader<'d, 'n> {
                 }
                 None => {
                     let message = format!("the included file `{file}` cannot be read");
-                    self.notes.problem_with("HP0803", at, message, "put it beside the file that includes it");
+                    self.notes.problem_with("HP0803", at, message, "place it next to the file that includes it");
                 }
             }
         }
@@ -412,7 +412,7 @@ impl<'d, 'n> Reader<'d, 'n> {
                 "HP0805",
                 xml::at(element.0, element.1),
                 "bodies are nested too deep",
-                "bodies that deep belong to no mechanism",
+                "reduce the depth of the bodies",
             );
             return;
         }
@@ -443,7 +443,7 @@ impl<'d, 'n> Reader<'d, 'n> {
                 "joint" | "freejoint" => {}
                 "camera" | "light" => self.notes.ignored(node.tag_name().name(), at),
                 "composite" | "flexcomp" | "replicate" | "attach" => {
-                    let why = "it makes bodies by rules: save the model from MuJoCo, which writes them out";
+                    let why = "it generates bodies: save the model from MuJoCo, which expands it";
                     self.notes.refused(
                         node.tag_name().name(),
                         node.attribute("name").unwrap_or_default(),
@@ -452,7 +452,7 @@ impl<'d, 'n> Reader<'d, 'n> {
                     );
                 }
                 other => {
-                    let why = "an element of a body that is not known here";
+                    let why = "unknown element of a body";
                     self.notes.not_understood(other, name, at, why);
                 }
             }
@@ -466,7 +466,7 @@ impl<'d, 'n> Reader<'d, 'n> {
             self.notes.ignored(kind, at);
         } else {
             let name = node.attribute("name").unwrap_or_default();
-            self.notes.not_understood(kind, name, at, "a section of the model that is not known here");
+            self.notes.not_understood(kind, name, at, "unknown section of the model");
         }
     }
 
@@ -475,7 +475,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         for (text, key) in self.contents(list, 0) {
             let (name, at) = (key.attribute("name").unwrap_or_default(), xml::at(text, key));
             if key.has_attribute("qpos") || key.has_attribute("mpos") || key.has_attribute("mquat") {
-                let why = "its posture is left out: the model begins where the source draws it, with joints at their reference (`qpos0`)";
+                let why = "its configuration is not imported: the model begins in the design configuration, with joints at their reference (`qpos0`)";
                 self.notes.refused("key", name, at, why);
             } else {
                 self.notes.ignored("key", at);
@@ -495,11 +495,11 @@ impl<'d, 'n> Reader<'d, 'n> {
             return;
         }
         for a in node.attributes().filter(|a| !BODY.contains(&a.name())) {
-            let why = format!("`body` has an attribute `{}` that is not known here", a.name());
+            let why = format!("`body` has an unknown attribute `{}`", a.name());
             self.notes.not_understood(a.name(), &name, xml::attribute_at(text, node, a.name()), why);
         }
         if node.attribute("mocap") == Some("true") {
-            let why = "a body that a program moves while it runs: it is in the design configuration";
+            let why = "mocap bodies are moved by a program: it is fixed in the design configuration";
             self.notes.approximated("mocap", &name, at, why);
         }
         let mut joints = Vec::new();
@@ -526,7 +526,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         if joints.is_empty() {
             self.m.joint(Joint::new(
                 &format!("{name}_fixed"),
-                "a body without joints is on the one that it is in".into(),
+                "a body without joints is fixed to its parent".into(),
                 "fixed",
                 [outer.body, body],
                 pose.r,
@@ -536,7 +536,7 @@ impl<'d, 'n> Reader<'d, 'n> {
             self.notes.problem_with(
                 "HP0803",
                 at,
-                format!("there are two bodies `{name}`"),
+                format!("the body `{name}` is defined twice"),
                 "rename one of them",
             );
         }
@@ -578,7 +578,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         let own = node.attribute("name").unwrap_or_default();
         let name = if own.is_empty() { format!("{of}_joint") } else { own.to_owned() };
         if !own.is_empty() && !self.names.insert(name.clone()) {
-            let message = format!("there are two joints `{name}`");
+            let message = format!("the joint `{name}` is defined twice");
             self.notes.problem_with("HP0803", at, message, "rename one of them");
         }
         xml::unknown(text, node, &name, JOINT, self.notes);
@@ -597,7 +597,7 @@ impl<'d, 'n> Reader<'d, 'n> {
                     "HP0805",
                     at,
                     format!("`{name}` is of the unknown type `{kind}`"),
-                    "MJCF knows hinge, slide, ball and free",
+                    "use hinge, slide, ball or free",
                 );
                 return;
             }
@@ -611,7 +611,7 @@ impl<'d, 'n> Reader<'d, 'n> {
                 "HP0804",
                 at,
                 "the axis has no direction",
-                "give a vector other than zero",
+                "give a non-zero vector",
             );
             return;
         };
@@ -651,14 +651,14 @@ impl<'d, 'n> Reader<'d, 'n> {
             match list.as_deref() {
                 Some([x]) => Some(*x),
                 Some([_, rest @ ..]) if rest.iter().any(|x| *x != 0.0) => {
-                    let why = format!("`{key}` that changes with the coordinate is left out");
+                    let why = format!("`{key}` that depends on the coordinate is not supported");
                     self.notes.refused(key, called.name, at, why);
                     None
                 }
                 Some([x, ..]) => Some(*x),
                 _ => {
-                    let help = "write it with a point in fractions";
-                    let message = format!("`{key}` is a number, not `{}`", value.trim());
+                    let help = "write it with a decimal point";
+                    let message = format!("`{key}` must be a number, not `{}`", value.trim());
                     self.notes.problem_with("HP0804", at, message, help);
                     None
                 }
@@ -745,7 +745,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         }
         if self.meshes_without_mass > 0 {
             let why =
-                format!("{} of them are meshes, whose masses are not worked out", self.meshes_without_mass);
+                format!("{} of them are meshes, whose masses are not computed", self.meshes_without_mass);
             self.notes.refused("mass of geoms", "", None, why);
         }
         if self.m.masses.is_empty() {
@@ -799,7 +799,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         let mesh = mesh.and_then(|name| {
             let found = self.meshes.get(&name).cloned();
             if found.is_none() {
-                self.notes.refused("geom", link, at, format!("there is no mesh `{name}`"));
+                self.notes.refused("geom", link, at, format!("the mesh `{name}` does not exist"));
             }
             found
         });
@@ -831,7 +831,7 @@ fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) 
                 input.shapes.solid(shape.body, place, solid);
                 notes.taken("geom", &shape.link, at);
             }
-            None => notes.refused("geom", &shape.link, at, format!("a shape `{kind}` is not shown")),
+            None => notes.refused("geom", &shape.link, at, format!("shapes of type `{kind}` are not supported")),
         },
     }
 }

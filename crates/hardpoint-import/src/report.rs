@@ -23,7 +23,7 @@ pub enum ElementOutcome {
     Taken,
     /// Imported approximately, or added.
     Approximated,
-    /// Ignored: no effect on the motion.
+    /// Not imported: no effect on the motion.
     Ignored,
     /// Not imported: the model does not support it.
     Refused,
@@ -96,10 +96,10 @@ impl fmt::Display for Report {
         self.listed(
             f,
             ElementOutcome::NotUnderstood,
-            "not understood, and left out; it may concern the motion",
+            "not understood and not imported; may affect the motion",
         )?;
         for (fate, title) in
-            [(ElementOutcome::Taken, "taken"), (ElementOutcome::Ignored, "does not concern the motion")]
+            [(ElementOutcome::Taken, "taken"), (ElementOutcome::Ignored, "no effect on the motion")]
         {
             let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
             for e in self.of(fate) {
@@ -348,7 +348,7 @@ impl ImportLog {
         self.report.entries.push(Entry { fate, kind, name, place, why });
     }
 
-    /// Imported exactly.
+    /// Records an element that is imported exactly.
     pub fn taken(&mut self, kind: &str, name: &str, at: Option<SourceSpan>) {
         self.entry(ElementOutcome::Taken, kind, name, at, "");
     }
@@ -358,7 +358,7 @@ impl ImportLog {
         self.entry(ElementOutcome::Approximated, kind, name, at, why.as_ref());
     }
 
-    /// Ignored: no effect on the motion.
+    /// Records an element without effect on the motion.
     pub fn ignored(&mut self, kind: &str, at: Option<SourceSpan>) {
         self.entry(ElementOutcome::Ignored, kind, "", at, "");
     }
@@ -375,7 +375,7 @@ impl ImportLog {
         self.entry(ElementOutcome::NotUnderstood, kind, name, at, why.as_ref());
     }
 
-    /// Not imported: the model does not support it.
+    /// Records an element that the model does not support.
     pub fn refused(&mut self, kind: &str, name: &str, at: Option<SourceSpan>, why: impl AsRef<str>) {
         self.entry(ElementOutcome::Refused, kind, name, at, why.as_ref());
     }

@@ -220,7 +220,7 @@ pub fn plugin(text: usize, node: Node<'_, '_>, notes: &mut ImportLog) {
     if IRRELEVANT_PLUGINS.iter().any(|known| words.contains(known)) {
         notes.ignored("plugin", at);
     } else {
-        notes.not_understood("plugin", name, at, format!("a plugin `{file}` that is not known here"));
+        notes.not_understood("plugin", name, at, format!("unknown plugin `{file}`"));
     }
 }
 
@@ -248,7 +248,7 @@ pub fn weld(
     [i, j]: [Marker; 2],
 ) -> Option<usize> {
     if i.body == j.body {
-        notes.refused(called.kind, called.name, called.at, "both its frames are on the same body");
+        notes.refused(called.kind, called.name, called.at, "its frames are on the same body");
         return None;
     }
     let note = called.note(notes);
@@ -264,7 +264,7 @@ pub fn weld(
     let held = Joint::new(called.name, note, kind, [body, j.body], j.pose.r);
     let number = m.joint(if apart { held.between(i.pose.r, j.pose.r) } else { held });
     if apart || turned {
-        let why = "its frames lie apart in the design configuration: the mechanism is assembled to it before it moves";
+        let why = "its frames do not coincide in the design configuration: the mechanism is assembled before it moves";
         notes.approximated(called.kind, called.name, called.at, why);
     } else {
         notes.taken(called.kind, called.name, called.at);
@@ -330,7 +330,7 @@ pub fn mass(
         return;
     }
     if !(mass > 0.0 && mass.is_finite()) {
-        notes.refused(called.kind, called.name, called.at, format!("no body has a mass of {mass} kg"));
+        notes.refused(called.kind, called.name, called.at, format!("invalid mass of {mass} kg"));
         return;
     }
     let matrix = inertia.map(|i| frame.rot * i * frame.rot.transpose());
@@ -346,7 +346,7 @@ pub fn mass(
     if possible {
         notes.taken(called.kind, called.name, called.at);
     } else {
-        let why = "no body can have its moments of inertia, of which none is above the sum of the other two: it is taken as a point mass";
+        let why = "its moments of inertia are impossible, since one exceeds the sum of the other two: it is imported as a point mass";
         notes.approximated(called.kind, called.name, called.at, why);
     }
 }
@@ -370,7 +370,7 @@ fn is_possible(i: Mat3) -> bool {
 pub fn standard_gravity(m: &mut Mechanism, notes: &mut ImportLog, format: &str) {
     if !m.masses.is_empty() {
         m.gravity = Some([0.0, 0.0, -STANDARD_GRAVITY].into());
-        let why = format!("{format} has none: {STANDARD_GRAVITY} m/s^2 along -z");
+        let why = format!("{format} defines no gravity: {STANDARD_GRAVITY} m/s^2 along -z is used");
         notes.approximated("gravity", "", None, why);
     }
 }
@@ -387,7 +387,7 @@ pub fn joint_spring(
         return;
     }
     let Some(coordinate) = coordinate else {
-        let why = "a spring or damper of a joint without a single coordinate is left out";
+        let why = "springs and dampers require a joint with a single coordinate";
         notes.refused(called.kind, called.name, called.at, why);
         return;
     };
@@ -397,7 +397,7 @@ pub fn joint_spring(
         && damping.is_finite()
         && free.is_finite())
     {
-        let why = format!("no spring has a stiffness of {stiffness} and a damping of {damping}");
+        let why = format!("invalid stiffness {stiffness} or damping {damping}");
         notes.refused(called.kind, called.name, called.at, why);
         return;
     }
@@ -414,7 +414,7 @@ pub fn joint_spring(
 pub fn friction(notes: &mut ImportLog, name: &str, at: Option<SourceSpan>, friction: f64) {
     if friction != 0.0 {
         let why = format!(
-            "a constant friction of {friction}: friction of the model follows what presses, see docs/loads.md"
+            "constant friction of {friction} is not supported: friction of the model depends on the normal force, see docs/loads.md"
         );
         notes.refused("friction", name, at, why);
     }

@@ -94,7 +94,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let root = documents.first()?.as_ref()?.root_element();
     if root.tag_name().name() != "sdf" {
         let message = format!("the first element is `{}`, not `sdf`", root.tag_name().name());
-        notes.problem_with("HP0803", xml::at(0, root), message, "name the format, like `--format urdf`");
+        notes.problem_with("HP0803", xml::at(0, root), message, "specify the format, like `--format urdf`");
         return None;
     }
     let mut reader = Reader {
@@ -118,7 +118,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let world = worlds.next();
     for other in worlds {
         let name = other.attribute("name").unwrap_or_default();
-        reader.notes.refused("world", name, xml::at(0, other), "only the first world of a file is read");
+        reader.notes.refused("world", name, xml::at(0, other), "only the first world of a file is imported");
     }
     let outer: Vec<Node<'_, '_>> = world.into_iter().chain([root]).collect();
     // Elements of the world refer to its models by their names.
@@ -268,9 +268,9 @@ impl<'d> Reader<'d, '_> {
     /// Adds the bodies of a model and of the models in it. Returns the index of the model.
     fn declare(&mut self, mut model: Model<'d>, depth: usize) -> usize {
         if depth > DEEPEST {
-            let help = "look for a model that includes itself";
+            let help = "remove the recursive include";
             let at = xml::at(model.text, model.node);
-            self.notes.problem_with("HP0805", at, "models include each other too deep", help);
+            self.notes.problem_with("HP0805", at, "models are nested too deep", help);
             self.models.push(model);
             return self.models.len() - 1;
         }
@@ -279,7 +279,7 @@ impl<'d> Reader<'d, '_> {
         if self.declared > robot::MOST_PARTS {
             let message = format!("it has more than {} models, links, frames and joints", robot::MOST_PARTS);
             let help =
-                "look for models that include each other more than once, or leave out what need not move";
+                "remove repeated includes, or parts that need not move";
             self.notes.problem_with("HP0802", None, message, help);
             self.models.push(model);
             return self.models.len() - 1;
@@ -305,7 +305,7 @@ impl<'d> Reader<'d, '_> {
             let body = self.m.body(&full, note, None);
             self.notes.taken("link", &name, at);
             if self.bodies.insert(full, body).is_some() {
-                let message = format!("there are two links `{name}`");
+                let message = format!("the link `{name}` is defined twice");
                 self.notes.problem_with("HP0803", at, message, "rename one of them");
             }
             xml::unknown(model.text, link, &name, LINK, self.notes);
@@ -325,7 +325,7 @@ impl<'d> Reader<'d, '_> {
                 "plugin" => robot::plugin(model.text, node, self.notes),
                 name if IRRELEVANT.contains(&name) => self.notes.ignored(name, at),
                 name => {
-                    let why = "an element of a model or world that is not known here";
+                    let why = "unknown element of a model or world";
                     self.notes.not_understood(name, node.attribute("name").unwrap_or_default(), at, why);
                 }
             }
@@ -384,7 +384,7 @@ impl<'d> Reader<'d, '_> {
         let at = xml::at(text, include);
         match found {
             Some(_) => self.notes.taken("include", uri, at),
-            None => self.notes.refused("include", uri, at, "there is no such model beside the file"),
+            None => self.notes.refused("include", uri, at, "the model does not exist next to the file"),
         }
         found
     }
@@ -393,7 +393,7 @@ impl<'d> Reader<'d, '_> {
         let name = node.attribute("name").map(str::trim).filter(|n| !n.is_empty());
         if name.is_none() {
             let message = format!("`{}` has no name", node.tag_name().name());
-            self.notes.problem_with("HP0803", xml::at(text, node), message, "give it an attribute `name`");
+            self.notes.problem_with("HP0803", xml::at(text, node), message, "add an attribute `name`");
         }
         name.unwrap_or_default().to_owned()
     }
@@ -403,8 +403,8 @@ impl<'d> Reader<'d, '_> {
     fn place(&mut self, k: usize, place: Pose) {
         self.placed += 1;
         if self.placed > MOST_PLACED {
-            let help = "look for models with a `placement_frame` in each other";
-            self.notes.problem_with("HP0802", None, "its models are placed by each other too often", help);
+            let help = "remove `placement_frame` from nested models";
+            self.notes.problem_with("HP0802", None, "its models depend on each other's placement too often", help);
             return;
         }
         self.models[k].place = place;
@@ -443,8 +443,8 @@ impl<'d> Reader<'d, '_> {
                 continue;
             }
             let name = node.attribute("name").unwrap_or_default();
-            let message = format!("the pose of `{name}` refers to a frame that is not there, or in a circle");
-            let help = "name a link, joint, frame or model of the file";
+            let message = format!("the pose of `{name}` refers to a frame that does not exist, or to itself");
+            let help = "use a link, joint, frame or model of the file";
             self.notes.problem_with("HP0803", xml::at(text, node), message, help);
         }
     }
@@ -513,7 +513,7 @@ impl<'d> Reader<'d, '_> {
             }
             _ => {
                 if self.bodies.contains_key(&full) {
-                    let message = format!("there are a link and a frame `{name}`");
+                    let message = format!("a link and a frame are named `{name}`");
                     self.notes.problem_with("HP0803", xml::at(text, node), message, "rename one of them");
                 }
                 self.bare.insert(full.clone());
@@ -548,7 +548,7 @@ impl<'d> Reader<'d, '_> {
                     "HP0804",
                     at,
                     "the quaternion of the pose is null",
-                    "give it a length other than zero",
+                    "give a non-zero quaternion",
                 );
                 return home();
             };
@@ -657,7 +657,7 @@ impl<'d> Reader<'d, '_> {
                     "gravity",
                     "",
                     None,
-                    "none is written: that of SDFormat, 9.8 m/s^2 along -z",
+                    "no gravity is defined: the default of SDFormat, 9.8 m/s^2 along -z, is used",
                 );
             }
         }
@@ -718,12 +718,12 @@ fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) 
             return;
         }
         other => {
-            notes.refused("visual", &link, at, format!("a shape `{other}` is not shown"));
+            notes.refused("visual", &link, at, format!("shapes of type `{other}` are not supported"));
             return;
         }
     };
     let Some(solid) = solid else {
-        notes.refused("visual", &link, xml::at(text, shape), "its size is not written in numbers");
+        notes.refused("visual", &link, xml::at(text, shape), "its size is not numeric");
         return;
     };
     input.shapes.solid(body, place, solid);

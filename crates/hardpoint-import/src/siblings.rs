@@ -43,7 +43,7 @@ const KINDS: &[Kind] = &[
         endings: &["acf"],
         looks: |text| text.contains("simulate/"),
         sibling: Sibling {
-            what: "a command file of Adams/Solver (.acf), which has no mechanism",
+            what: "a command file of Adams/Solver (.acf), which contains no mechanism",
             help: "import the dataset (.adm) that its first line names",
         },
     },
@@ -52,7 +52,7 @@ const KINDS: &[Kind] = &[
         looks: |text| text.contains("file_type") && ["'asy'", "'tpl'"].iter().any(|t| text.contains(t)),
         sibling: Sibling {
             what: "an assembly or a template of Adams/Car (.asy, .tpl)",
-            help: "import one of its subsystems (.sub), which hold the hardpoints",
+            help: "import one of its subsystems (.sub), which contain the hardpoints",
         },
     },
     Kind {
@@ -65,7 +65,7 @@ const KINDS: &[Kind] = &[
         },
         sibling: Sibling {
             what: "an input file of MBDyn (.mbd)",
-            help: "MBDyn exports no other format: write bodies and joints as in docs/file-format.md",
+            help: "MBDyn exports no other format: write bodies and joints as described in docs/file-format.md",
         },
     },
     Kind {

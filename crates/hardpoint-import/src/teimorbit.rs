@@ -90,19 +90,19 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         notes.problem_with(
             "HP0803",
             None,
-            "there is no block `[HARDPOINT]`",
-            "import the subsystem file (.sub) that holds the hardpoints; an assembly (.asy) names its subsystems",
+            "the block `[HARDPOINT]` is missing",
+            "import the subsystem file (.sub) with the hardpoints; an assembly (.asy) names its subsystems",
         );
         return None;
     };
     if !has_units {
-        notes.approximated("UNITS", "", None, "the file names no unit of length: millimetres are taken");
+        notes.approximated("UNITS", "", None, "the file defines no unit of length: millimetres are assumed");
     }
     notes.approximated(
         "axes",
         "",
         Some(block),
-        "turned half round about z, so that x points forward and y left",
+        "rotated by 180 deg about z, so that x points forward and y left",
     );
     let end = blocks.iter().find_map(|b| end_named(b.value("MINOR_ROLE")?));
     let places = sides.each_ref().map(|side| side.places.clone());
@@ -142,7 +142,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     if !known {
         m.unplaced = Some(live_axle::unplaced(&places, |name| role_of(name).is_some()));
         if live_axle::has_leaf_springs(&places) {
-            let why = "leaf springs guide the axle by bending: the model has no such member";
+            let why = "leaf springs guide the axle by bending, which the model does not support";
             notes.refused("hardpoint", "leaf spring", Some(block), why);
         }
     }
@@ -260,15 +260,15 @@ impl Parameters {
         let is = |list: &[&str]| list.contains(&short);
         if !(is(&ANGLES) || is(&WHEELBASE) || is(&HEIGHT) || is(&RADII)) {
             if column("type").is_some_and(|kind| kind.eq_ignore_ascii_case("real")) {
-                notes.not_understood("PARAMETER", name, Some(at), "a parameter that is not known here");
+                notes.not_understood("PARAMETER", name, Some(at), "unknown parameter");
             } else {
                 notes.ignored("PARAMETER", Some(at));
             }
             return;
         }
         let Some(value) = column("value").and_then(|v| number(v)) else {
-            let help = format!("its columns are {}", columns.join(", "));
-            notes.problem_with("HP0804", Some(at), format!("`{name}` is no number"), &help);
+            let help = format!("write a value for each of the columns {}", columns.join(", "));
+            notes.problem_with("HP0804", Some(at), format!("`{name}` is not a number"), &help);
             return;
         };
         if let Some(k) = ANGLES.iter().position(|angle| *angle == short) {
@@ -279,7 +279,7 @@ impl Parameters {
                 }
             }
         } else if !(value > 0.0) {
-            notes.refused("PARAMETER", name, Some(at), format!("{value} is no length of a vehicle"));
+            notes.refused("PARAMETER", name, Some(at), format!("{value} is not a valid length"));
             return;
         } else if is(&WHEELBASE) {
             m.vehicle.wheelbase = Some(value);
@@ -306,7 +306,7 @@ fn unit(m: &mut Mechanism, line: &str, at: SourceSpan, notes: &mut ImportLog) ->
         "inch" | "in" => "in",
         _ => {
             let help = "write 'mm', 'cm', 'meter' or 'inch'";
-            notes.problem_with("HP0804", Some(at), format!("`{word}` is no unit of length"), help);
+            notes.problem_with("HP0804", Some(at), format!("`{word}` is not a known unit of length"), help);
             "mm"
         }
     };
@@ -354,8 +354,8 @@ fn row(
     let value = |axis: [&str; 2]| column(axis).and_then(|w| number(w));
     let place = [value(["x_value", "x"]), value(["y_value", "y"]), value(["z_value", "z"])];
     let (Some(name), [Some(x), Some(y), Some(z)]) = (name, place) else {
-        let help = format!("its columns are {}", columns.join(", "));
-        notes.problem_with("HP0804", Some(at), "the row is no hardpoint: a name and three numbers", &help);
+        let help = format!("write a value for each of the columns {}", columns.join(", "));
+        notes.problem_with("HP0804", Some(at), "the row is not a hardpoint with a name and three numbers", &help);
         return;
     };
     let symmetry = column(["symmetry", "symmetry"]).map_or("", String::as_str).to_ascii_lowercase();

@@ -28,14 +28,14 @@ pub fn take(blocks: &[Block], m: &mut Mechanism, is_kg: bool, notes: &mut Import
         match block.name.as_str() {
             "PART_ASSEMBLY" if is_kg => part(block, usage, m, notes),
             "PART_ASSEMBLY" => {
-                notes.refused("mass", usage, Some(block.at), "masses are read in kilograms alone");
+                notes.refused("mass", usage, Some(block.at), "masses are supported in kilograms only");
             }
             name if name.ends_with("_ASSEMBLY") => {
                 let file =
                     ["PROPERTY_FILE", "PROPERTY_FILE_LIST"].into_iter().find_map(|key| block.value(key));
                 let why = match file {
                     Some(file) => {
-                        format!("its characteristic is in the property file `{file}`, which is not read")
+                        format!("its characteristic is in the property file `{file}`, which is not imported")
                     }
                     None => "its characteristic is not in the file".into(),
                 };
@@ -57,7 +57,7 @@ fn part(block: &Block, usage: &str, m: &mut Mechanism, notes: &mut ImportLog) {
     let found = PARTS.iter().find(|(_, words)| words.iter().any(|word| name.contains(word)));
     let place = ["X", "Y", "Z"].map(|axis| block.number(&format!("PART_LOC_{axis}")));
     let (Some((body, _)), [Some(x), Some(y), Some(z)]) = (found, place) else {
-        notes.refused("mass", usage, Some(block.at), "it has no body here, or no place in the file");
+        notes.refused("mass", usage, Some(block.at), "it has no body in the model, or no position in the file");
         return;
     };
     // From the square of the length unit to m^2.
@@ -77,7 +77,7 @@ fn part(block: &Block, usage: &str, m: &mut Mechanism, notes: &mut ImportLog) {
         _ => has_side("").map(|b| (1.0, "", b)).into_iter().collect(),
     };
     if carriers.is_empty() {
-        notes.refused("mass", usage, Some(block.at), "it has no body here");
+        notes.refused("mass", usage, Some(block.at), "it has no body in the model");
         return;
     }
     for (side, suffix, carrier) in carriers {
@@ -92,7 +92,7 @@ fn part(block: &Block, usage: &str, m: &mut Mechanism, notes: &mut ImportLog) {
         robot::mass(m, notes, called, carrier, frame, mass, Some(Mat3 { cols }));
     }
     if numbers.iter().any(|x| *x != 0.0) {
-        let why = "the axes of its moments of inertia are taken for those of the vehicle";
+        let why = "its moments of inertia are assumed to refer to the axes of the vehicle";
         notes.approximated("inertia", usage, Some(block.at), why);
     }
 }

@@ -133,11 +133,11 @@ fn parse(original: &str, text: &str, language: &str, notes: &mut ImportLog) -> O
                 let start = byte(e.marker().index());
                 let at = SourceSpan { text: 0, start, end: start };
                 let help =
-                    "mostly a bracket, a quote or a comma, or the depth of a line, at or before this place";
+                    "check the brackets, quotes, commas and the indentation at or before this position";
                 notes.problem_with(
                     "HP0802",
                     Some(at),
-                    format!("this is not valid {language}: {}", e.info()),
+                    format!("invalid {language}: {}", e.info()),
                     help,
                 );
                 return None;
@@ -163,8 +163,8 @@ fn parse(original: &str, text: &str, language: &str, notes: &mut ImportLog) -> O
                 Some(Tree { at, value })
             }
             Event::Alias(_) => {
-                let help = "write the value out where the alias is";
-                notes.problem_with("HP0805", Some(at), "aliases are not read here", help);
+                let help = "write the value in place of the alias";
+                notes.problem_with("HP0805", Some(at), "aliases are not supported", help);
                 return None;
             }
             _ => None,
@@ -174,7 +174,7 @@ fn parse(original: &str, text: &str, language: &str, notes: &mut ImportLog) -> O
                 "HP0802",
                 Some(at),
                 "it is nested too deep",
-                "no such file has that many levels",
+                "reduce its levels to 60",
             );
             return None;
         }
@@ -186,8 +186,8 @@ fn parse(original: &str, text: &str, language: &str, notes: &mut ImportLog) -> O
                         notes.problem_with(
                             "HP0803",
                             Some(at),
-                            format!("`{name}` is there twice"),
-                            "remove one of the two",
+                            format!("`{name}` is defined twice"),
+                            "remove one of them",
                         );
                     }
                     entries.push((name, at, tree));

@@ -155,7 +155,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let robot = document.root_element();
     if robot.tag_name().name() != "robot" {
         let message = format!("the first element is `{}`, not `robot`", robot.tag_name().name());
-        notes.problem_with("HP0803", xml::at(0, robot), message, "name the format, like `--format sdf`");
+        notes.problem_with("HP0803", xml::at(0, robot), message, "specify the format, like `--format sdf`");
         return None;
     }
     if xml_macros(robot, notes) {
@@ -174,15 +174,15 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     for link in named(robot, "link") {
         let Some(name) = reader.name(link) else { continue };
         if reader.links.insert(name.clone(), link).is_some() {
-            let message = format!("there are two links `{name}`");
+            let message = format!("the link `{name}` is defined twice");
             reader.notes.problem_with("HP0803", xml::at(0, link), message, "rename one of them");
         }
     }
     let count = reader.links.len().max(named(robot, "joint").count());
     if count > robot::MOST_PARTS {
         let message =
-            format!("the robot has {count} links or joints; at most {} are read", robot::MOST_PARTS);
-        reader.notes.problem_with("HP0802", None, message, "leave out of the source what need not move");
+            format!("the robot has {count} links or joints; the maximum is {}", robot::MOST_PARTS);
+        reader.notes.problem_with("HP0802", None, message, "remove parts that need not move from the source");
         return None;
     }
     let mut joints: Vec<JointDeclaration<'_, '_>> =
@@ -200,7 +200,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             "link" | "joint" | "loop_joint" | "ball_constraint" | "mujoco" => {}
             "gazebo" => reader.gazebo(node),
             "linear_bushing_rpy" => {
-                let why = "a bushing is a force: where it closes a loop, write a `loop_joint` instead";
+                let why = "bushings are forces: if it closes a loop, use a `loop_joint` instead";
                 reader.notes.refused("linear_bushing_rpy", "", xml::at(0, node), why);
             }
             other if IRRELEVANT.contains(&other) => reader.notes.ignored(other, xml::at(0, node)),
@@ -225,7 +225,7 @@ fn xml_macros(robot: Node<'_, '_>, notes: &mut ImportLog) -> bool {
         declared || n.tag_name().name().starts_with("xacro_")
     };
     let Some(first) = robot.descendants().find(is_macro) else { return false };
-    let message = "the file is a xacro, whose macros have yet to be expanded";
+    let message = "the file is a xacro with unexpanded macros";
     notes.problem_with("HP0805", xml::at(0, first), message, "run `xacro FILE > robot.urdf` and import that");
     true
 }
@@ -249,7 +249,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let name = node.attribute("name").map(str::trim).filter(|n| !n.is_empty());
         if name.is_none() {
             let message = format!("`{}` has no name", node.tag_name().name());
-            self.notes.problem_with("HP0803", xml::at(0, node), message, "give it an attribute `name`");
+            self.notes.problem_with("HP0803", xml::at(0, node), message, "add an attribute `name`");
         }
         name.map(str::to_owned)
     }
@@ -272,7 +272,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 "HP0804",
                 at,
                 "the axis has no direction",
-                "give a vector other than zero",
+                "give a non-zero vector",
             );
         }
         v
@@ -287,7 +287,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 "HP0803",
                 xml::at(0, node),
                 message,
-                "name a link in it, as in `<parent link=\"base\"/>`",
+                "add it with the name of a link, as in `<parent link=\"base\"/>`",
             );
             return None;
         };
@@ -295,8 +295,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let at = element.and_then(|e| attribute_at(0, e, "link").or_else(|| xml::at(0, e)));
             let known = self.links.keys().map(String::as_str);
             let near = hardpoint::draft::did_you_mean(name, known);
-            let help = near.map_or("declare the link".into(), |n| format!("did you mean `{n}`?"));
-            self.notes.problem_with("HP0803", at, format!("there is no link `{name}`"), &help);
+            let help = near.map_or("define the link".into(), |n| format!("did you mean `{n}`?"));
+            self.notes.problem_with("HP0803", at, format!("the link `{name}` does not exist"), &help);
             return None;
         }
         Some(name.to_owned())
@@ -346,7 +346,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             robot::friction(self.notes, &name, dynamics.and_then(|d| xml::at(0, d)), friction);
         }
         if !self.names.insert(name.clone()) {
-            let message = format!("there are two joints `{name}`");
+            let message = format!("the joint `{name}` is defined twice");
             self.notes.problem_with("HP0803", xml::at(0, node), message, "rename one of them");
         }
         Some(JointDeclaration {
@@ -401,8 +401,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             }
         }
         if let Some(j) = waiting.first().map(|k| &joints[*k]) {
-            let message = format!("the links `{}` and `{}` carry each other in a circle", j.parent, j.child);
-            let help = "one of them has to be carried by a link that is; loops are closed by `loop_joint`";
+            let message = format!("the links `{}` and `{}` are parents of each other", j.parent, j.child);
+            let help = "connect one of them to the tree; close loops with `loop_joint`";
             self.notes.problem_with("HP0803", xml::at(0, j.node), message, help);
             return;
         }
@@ -434,7 +434,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         if j.kind == "screw" {
             self.m.joints[number].lead = j.pitch.filter(|p| *p != 0.0);
             if self.m.joints[number].lead.is_none() {
-                let help = "give it a `screw_thread_pitch` other than zero";
+                let help = "give it a non-zero `screw_thread_pitch`";
                 let message = format!("the screw `{}` has no pitch", j.name);
                 self.notes.problem_with("HP0804", xml::at(0, j.node), message, help);
             }
@@ -467,7 +467,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             }
             _ => {
                 let at = attribute_at(0, node, "type").or(at);
-                let help = "URDF knows revolute, continuous, prismatic, fixed, planar and floating";
+                let help = "use revolute, continuous, prismatic, fixed, planar or floating";
                 let message = format!("`{name}` is of the unknown type `{kind}`");
                 self.notes.problem_with("HP0805", at, message, help);
                 return None;
@@ -519,7 +519,7 @@ fn pose(origin: Node<'_, '_>, notes: &mut ImportLog) -> Pose {
     let rot = match attribute::<4>(0, origin, "quat_xyzw", notes) {
         Some([x, y, z, w]) => crate::turn::quaternion([w, x, y, z]).unwrap_or_else(|| {
             let at = attribute_at(0, origin, "quat_xyzw");
-            notes.problem_with("HP0804", at, "the quaternion is null", "give it a length other than zero");
+            notes.problem_with("HP0804", at, "the quaternion is null", "give a non-zero quaternion");
             home().rot
         }),
         None => roll_pitch_yaw(angles),
@@ -549,7 +549,7 @@ fn shapes(input: &mut Input<'_>, notes: &mut ImportLog, link: Node<'_, '_>, body
                         "mesh",
                         name,
                         attribute_at(0, shape, "scale"),
-                        "its scale is not three numbers",
+                        "its scale must be three numbers",
                     );
                     continue;
                 };
@@ -562,12 +562,12 @@ fn shapes(input: &mut Input<'_>, notes: &mut ImportLog, link: Node<'_, '_>, body
             "capsule" => one("radius").zip(one("length")).map(|(r, l)| Solid::Capsule(r, l)),
             "sphere" => one("radius").map(|r| Solid::Ball([r; 3])),
             other => {
-                notes.refused("visual", name, xml::at(0, shape), format!("a shape `{other}` is not shown"));
+                notes.refused("visual", name, xml::at(0, shape), format!("shapes of type `{other}` are not supported"));
                 continue;
             }
         };
         let Some(solid) = solid else {
-            notes.refused("visual", name, xml::at(0, shape), "its size is not written in numbers");
+            notes.refused("visual", name, xml::at(0, shape), "its size is not numeric");
             continue;
         };
         input.shapes.solid(body, place, solid);

@@ -78,7 +78,7 @@ impl<'m> Writer<'m> {
             table["across"] = value("y");
             table
                 .decor_mut()
-                .set_prefix(format!("\n{}", comment("the right side is the mirror image of the left one")));
+                .set_prefix(format!("\n{}", comment("the right side is the mirror image of the left side")));
             doc["mirror"] = Item::Table(table);
         }
         put(&mut doc, "vehicle", self.vehicle());

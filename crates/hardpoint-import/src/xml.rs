@@ -33,12 +33,12 @@ impl Unfit {
             Self::Wide(at) => (
                 at,
                 "an element has more than a thousand attributes",
-                "no element of such a file has that many",
+                "reduce them to 1000",
             ),
             Self::Entities(at) => (
                 at,
-                "the file declares entities of its own, which are not expanded",
-                "write out what they stand for, as `xmllint --noent FILE` does",
+                "the file declares entities, which are not supported",
+                "expand them, for example with `xmllint --noent FILE`",
             ),
         }
     }
@@ -64,8 +64,8 @@ pub fn parse<'t>(text: &'t str, number: usize, notes: &mut ImportLog) -> Option<
             let what = e.to_string();
             // The position is reported separately.
             let what = what.rsplit_once(" at ").map_or(what.as_str(), |(what, _)| what);
-            let help = "mostly a tag that is not closed, or a `<` or `&` in a text, at or before this place";
-            notes.problem_with("HP0802", at, format!("this is not valid XML: {what}"), help);
+            let help = "check for an unclosed tag, or a `<` or `&` in a text, at or before this position";
+            notes.problem_with("HP0802", at, format!("invalid XML: {what}"), help);
             None
         }
     }
@@ -79,7 +79,7 @@ pub fn parse_quietly(text: &str) -> Result<Document<'_>, String> {
     if let Some(unfit) = unfit(text) {
         return Err(unfit.message().1.into());
     }
-    Document::parse_with_options(text, options()).map_err(|e| format!("it is not valid XML: {e}"))
+    Document::parse_with_options(text, options()).map_err(|e| format!("invalid XML: {e}"))
 }
 
 /// Returns the text as tolerant readers of robot formats see it, with all byte positions preserved. Comments, which may
@@ -261,7 +261,7 @@ pub fn unknown(text: usize, node: Node<'_, '_>, owner: &str, words: Vocabulary, 
     for a in node.attributes().filter(|a| !words.attributes.contains(&a.name())) {
         let range = a.range();
         let at = Some(SourceSpan { text, start: range.start, end: range.end });
-        let why = format!("`{}` has an attribute `{}` that is not known here", kind, a.name());
+        let why = format!("`{}` has an unknown attribute `{}`", kind, a.name());
         notes.not_understood(a.name(), owner, at, why);
     }
     for part in children(node) {
@@ -269,7 +269,7 @@ pub fn unknown(text: usize, node: Node<'_, '_>, owner: &str, words: Vocabulary, 
         if words.irrelevant.contains(&name) {
             notes.ignored(name, at(text, part));
         } else if !words.read.contains(&name) {
-            let why = format!("`{kind}` has an element `{name}` that is not known here");
+            let why = format!("`{kind}` has an unknown element `{name}`");
             notes.not_understood(name, owner, at(text, part), why);
         }
     }
@@ -306,8 +306,8 @@ pub fn exactly<const N: usize>(
     let list = numbers(text).and_then(|list| <[f64; N]>::try_from(list).ok());
     if list.is_none() {
         let s = if N == 1 { "number" } else { "numbers" };
-        let help = "write them with blanks between, and a point in fractions";
-        notes.problem_with("HP0804", at, format!("{what} is {N} {s}, not `{}`", text.trim()), help);
+        let help = "separate them with blanks, and use decimal points";
+        notes.problem_with("HP0804", at, format!("{what} must be {N} {s}, not `{}`", text.trim()), help);
     }
     list
 }
@@ -316,8 +316,8 @@ pub fn exactly<const N: usize>(
 pub fn bound(text: &str, what: &str, at: Option<SourceSpan>, notes: &mut ImportLog) -> Option<f64> {
     let value = text.trim().parse().ok().filter(|x: &f64| !x.is_nan());
     if value.is_none() {
-        let help = "write it with a point in fractions, or `inf` where there is no bound";
-        notes.problem_with("HP0804", at, format!("{what} is a number, not `{}`", text.trim()), help);
+        let help = "use a decimal point, or `inf` if there is no bound";
+        notes.problem_with("HP0804", at, format!("{what} must be a number, not `{}`", text.trim()), help);
     }
     value
 }

@@ -59,7 +59,7 @@ impl Engine {
                 Err(vec![DiagnosticMessage::plain(
                     "HP0701",
                     message,
-                    "make the page anew with this version of Hardpoint",
+                    "create the page again with this version of Hardpoint",
                 )])
             }
         };

@@ -79,7 +79,7 @@ fn sentence(model: &Model, units: Units, limit: &Limit) -> String {
         }
         LimitTarget::Distance(a, b) => {
             let [a, b] = [a, b].map(|h| &model.hardpoints[h.0].name);
-            (Dimension::LENGTH, format!("distance of {a} and {b}"))
+            (Dimension::LENGTH, format!("distance between {a} and {b}"))
         }
         LimitTarget::Length(j) => (Dimension::LENGTH, format!("length of {}", model.joints[j.0].name)),
     };
@@ -140,11 +140,11 @@ pub(crate) fn asked(
         });
     }
     if asked.variables.is_empty() || asked.goals.is_empty() {
-        let message = "a search needs a variable that may change and a goal".into();
+        let message = "an optimisation requires at least one variable and one goal".into();
         return Err(vec![DiagnosticMessage::plain(
             "HP0602",
             message,
-            "choose them in the pane, or add `[optimize.goals]` and `bounds`",
+            "select them in the pane, or add `[optimize.goals]` and `bounds`",
         )]);
     }
     asked.starts = request.starts.max(1);

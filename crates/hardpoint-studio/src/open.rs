@@ -170,11 +170,11 @@ impl Open {
         let mut values = vec![0.0; model.variables.len()];
         for VariableSetting { name, by } in change {
             let Some(v) = model.variable(name).or_else(|| variable_named(&mut model.clone(), name)) else {
-                let message = format!("`{name}` is no design variable or hardpoint coordinate of the model");
+                let message = format!("`{name}` is not a design variable or hardpoint coordinate of the model");
                 return Err(vec![DiagnosticMessage::plain("HP0704", message, "open the model again")]);
             };
             let Some(value) = values.get_mut(v.0) else {
-                let message = format!("`{name}` is a joint's tilt, which the page does not vary");
+                let message = format!("`{name}` is the tilt of a joint, which the page does not vary");
                 return Err(vec![DiagnosticMessage::plain(
                     "HP0704",
                     message,

@@ -123,8 +123,8 @@ pub(crate) fn toleranced(
     let file = whole(model)?;
     let asked = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
     let Some(mut asked) = asked else {
-        let message = "the model does not say how far its design variables may be off".into();
-        let help = "add `tolerance = 0.1` to those in `[design]` or `[parameters]` that may";
+        let message = "the design variables have no tolerances".into();
+        let help = "add `tolerance = 0.1` to variables in `[design]` or `[parameters]`";
         return Err(vec![DiagnosticMessage::plain("HP0602", message, help)]);
     };
     asked.samples = request.samples;
@@ -145,11 +145,11 @@ pub(crate) fn toleranced(
             vec![DiagnosticMessage::of(&model.text, &diagnose::stop(&file, &rejection.stop, 0, None))]
         }
         ToleranceError::NothingVaries => {
-            let message = "the mechanism can follow none of the variables with a tolerance".into();
+            let message = "none of the variables with a tolerance is admissible".into();
             vec![DiagnosticMessage::plain(
                 "HP0602",
                 message,
-                "give tolerances to variables that it can follow",
+                "give tolerances to variables that the mechanism can follow",
             )]
         }
     })?;

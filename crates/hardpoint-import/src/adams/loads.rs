@@ -96,7 +96,7 @@ impl Reader<'_> {
         let unknown =
             statements.iter().find(|s| s.name == "PART" && s.has("MASS")).filter(|_| mass.is_none());
         if let Some(s) = unknown {
-            let why = "masses are left out: the file names no unit of mass that is known";
+            let why = "masses are not imported: the file defines no known unit of mass";
             self.notes.refused("MASS", "", Some(s.at), why);
         }
         done
@@ -122,7 +122,7 @@ impl Reader<'_> {
                     "mass",
                     &s.label,
                     Some(s.at),
-                    "a mass without a marker CM of its centre is left out",
+                    "the mass has no marker CM for its centre and is not imported",
                 );
                 return;
             }
@@ -157,14 +157,14 @@ impl Reader<'_> {
         let damping = c * per_length / self.per_second();
         let fits = [k, c, length, force].iter().all(|x| x.is_finite()) && k >= 0.0 && c >= 0.0;
         if !fits || i.body == j.body {
-            let why = "no spring has a stiffness or damping below zero, or both ends on one part";
+            let why = "a spring requires non-negative stiffness and damping, and ends on two parts";
             self.notes.refused("SPRINGDAMPER", &s.label, Some(s.at), why);
             return;
         }
         // Without stiffness the force is constant. Tension is positive in the model.
         let free = (k > 0.0).then(|| (length + force / k) * scale);
         if free.is_some_and(|l| l <= 0.0) {
-            let why = "a spring whose free length is zero or less is left out";
+            let why = "a spring with a free length of zero or less is not imported";
             self.notes.refused("SPRINGDAMPER", &s.label, Some(s.at), why);
             return;
         }

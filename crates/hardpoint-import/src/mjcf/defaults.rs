@@ -29,8 +29,8 @@ impl<'d> Reader<'d, '_> {
                     self.notes.problem_with(
                         "HP0804",
                         at,
-                        format!("`{sequence}` is no sequence of axes"),
-                        "three of x, y, z, X, Y, Z",
+                        format!("`{sequence}` is not a sequence of axes"),
+                        "use three of x, y, z, X, Y, Z",
                     );
                 }
             }
@@ -45,8 +45,8 @@ impl<'d> Reader<'d, '_> {
                 self.notes.problem_with(
                     "HP0805",
                     at,
-                    "global coordinates are no part of MJCF any more",
-                    "save the model with MuJoCo 2.3.2 in local ones",
+                    "global coordinates are no longer part of MJCF",
+                    "convert the model to local coordinates with MuJoCo 2.3.2",
                 );
             }
             self.notes.taken("compiler", "", xml::at(*text, *node));
@@ -77,11 +77,11 @@ impl<'d> Reader<'d, '_> {
         // Total number of attributes, including inherited ones.
         let held: usize = self.classes.values().map(HashMap::len).sum();
         if held > MOST_DEFAULTS {
-            let help = "leave out classes that nothing names";
+            let help = "remove unused classes";
             self.notes.problem_with(
                 "HP0802",
                 xml::at(text, node),
-                "its classes of defaults are too many",
+                "the file has too many default classes",
                 help,
             );
         }
@@ -161,8 +161,8 @@ impl<'d> Reader<'d, '_> {
             reader.notes.problem_with(
                 "HP0804",
                 at,
-                format!("`{key}` gives no orientation"),
-                "give vectors that are neither null nor parallel",
+                format!("`{key}` defines no orientation"),
+                "give non-zero vectors that are not parallel",
             );
             none()
         };
@@ -225,8 +225,8 @@ impl<'d> Reader<'d, '_> {
                 continue;
             }
             let near = hardpoint::draft::did_you_mean(class, self.classes.keys().map(String::as_str));
-            let help = near.map_or("declare it in `default`".into(), |n| format!("did you mean `{n}`?"));
-            let message = format!("there is no class of defaults `{class}`");
+            let help = near.map_or("define it in `default`".into(), |n| format!("did you mean `{n}`?"));
+            let message = format!("the default class `{class}` does not exist");
             self.notes.problem_with("HP0803", xml::attribute_at(text, node, key), message, &help);
         }
     }

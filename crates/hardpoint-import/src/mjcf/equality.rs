@@ -20,9 +20,9 @@ impl<'d> Reader<'d, '_> {
             let name = name.unwrap_or_default();
             let known = self.bodies.keys().map(String::as_str);
             let near = hardpoint::draft::did_you_mean(name, known);
-            let help = near.map_or("name a body of the model".into(), |n| format!("did you mean `{n}`?"));
+            let help = near.map_or("use a body of the model".into(), |n| format!("did you mean `{n}`?"));
             let at = xml::attribute_at(text, node, key);
-            self.notes.problem_with("HP0803", at, format!("there is no body `{name}`"), &help);
+            self.notes.problem_with("HP0803", at, format!("the body `{name}` does not exist"), &help);
         }
         found
     }
@@ -35,12 +35,12 @@ impl<'d> Reader<'d, '_> {
             let known = self.joints.keys().map(String::as_str);
             let near = hardpoint::draft::did_you_mean(name, known);
             let help =
-                near.map_or("name a hinge or slide of the model".into(), |n| format!("did you mean `{n}`?"));
+                near.map_or("use a hinge or slide of the model".into(), |n| format!("did you mean `{n}`?"));
             let at = xml::attribute_at(text, node, key);
             self.notes.problem_with(
                 "HP0803",
                 at,
-                format!("there is no joint `{name}` with one coordinate"),
+                format!("no joint `{name}` with a single coordinate exists"),
                 &help,
             );
         }
@@ -61,7 +61,7 @@ impl<'d> Reader<'d, '_> {
             match kind {
                 "connect" | "weld" => self.closure(element, kind, &name),
                 "joint" | "tendon" => self.relation(element, kind, &name),
-                other => self.notes.refused(other, &name, at, "a constraint of this kind has no equivalent"),
+                other => self.notes.refused(other, &name, at, "constraints of this type have no equivalent"),
             }
         }
     }
@@ -79,8 +79,8 @@ impl<'d> Reader<'d, '_> {
                     self.notes.problem_with(
                         "HP0803",
                         at,
-                        format!("there is no site `{site}`"),
-                        "name a site of the model",
+                        format!("the site `{site}` does not exist"),
+                        "use a site of the model",
                     );
                 }
             }
@@ -176,11 +176,11 @@ impl<'d> Reader<'d, '_> {
         for free in std::mem::take(&mut self.free) {
             let [i, j] = free.bodies;
             if self.m.are_connected([i, j]) {
-                let why = "no joint: the equalities of the body hold it, and drivers what these leave free";
+                let why = "no joint: equalities constrain the body, and drivers fix its remaining degrees of freedom";
                 self.notes.approximated("joint", &free.name, free.at, why);
                 continue;
             }
-            let why = "nothing holds its six freedoms in the source: it is fixed in the design configuration";
+            let why = "nothing constrains it in the source: it is fixed in the design configuration";
             self.notes.approximated("joint", &free.name, free.at, why);
             let note = JointSource { kind: "joint", name: &free.name, at: free.at }.note(self.notes);
             self.m.joint(Joint::new(&free.name, note, "fixed", [i, j], free.place));
@@ -217,7 +217,7 @@ impl<'d> Reader<'d, '_> {
         }
         let Some(first) = first else {
             if kind == "tendon" {
-                self.notes.refused(kind, name, at, "only fixed tendons, sums of joints, have an equivalent");
+                self.notes.refused(kind, name, at, "only fixed tendons (sums of joints) have an equivalent");
             }
             return;
         };
@@ -228,7 +228,7 @@ impl<'d> Reader<'d, '_> {
         let mut a = coefficients.unwrap_or_else(|| vec![0.0, 1.0]);
         a.resize(5, 0.0);
         if has_second && a[2..].iter().any(|x| *x != 0.0) {
-            self.notes.refused(kind, name, at, "a relation that is not linear has no equivalent");
+            self.notes.refused(kind, name, at, "nonlinear relations have no equivalent");
             return;
         }
         let called = JointSource { kind, name, at };
@@ -255,21 +255,21 @@ impl<'d> Reader<'d, '_> {
         let mut end = |site: &String| {
             let found = self.sites.get(site).copied();
             if found.is_none() {
-                let message = format!("there is no site `{site}`");
-                self.notes.problem_with("HP0803", at, message, "name a site of the model");
+                let message = format!("the site `{site}` does not exist");
+                self.notes.problem_with("HP0803", at, message, "use a site of the model");
             }
             found
         };
         let (Some((i, from)), Some((j, to))) = (end(from), end(to)) else { return };
         if i == j {
-            self.notes.refused("tendon", name, at, "both its sites are on the same body");
+            self.notes.refused("tendon", name, at, "its sites are on the same body");
             return;
         }
         let constant = self.attribute(element, "polycoef", None).and_then(|(p, _)| xml::numbers(&p));
         let constant = constant.and_then(|c| c.first().copied()).unwrap_or(0.0);
         let length = (to.r - from.r).norm() + constant;
         if !(length > 0.0) {
-            self.notes.refused("tendon", name, at, format!("it would be {length} m long"));
+            self.notes.refused("tendon", name, at, format!("its length would be {length} m"));
             return;
         }
         self.notes.taken("tendon", name, at);
@@ -317,7 +317,7 @@ impl<'d> Reader<'d, '_> {
         let list = |key: &str| node.attribute(key).and_then(xml::numbers).unwrap_or_default();
         let first = |key: &str| list(key).first().copied().unwrap_or(0.0);
         if node.has_attribute("range") && node.attribute("limited") != Some("false") {
-            self.notes.refused(kind, name, at, "its limits are not held: drivers prescribe what moves");
+            self.notes.refused(kind, name, at, "its limits are not supported: drivers prescribe the motion");
         }
         robot::friction(self.notes, name, at, first("frictionloss"));
         let [stiffness, damping] = ["stiffness", "damping"].map(first);
@@ -329,12 +329,12 @@ impl<'d> Reader<'d, '_> {
         let ends = self.rods.get(name).map(|ends| ends.each_ref().map(|site| self.sites.get(site).copied()));
         let (Some([Some((i, from)), Some((j, to))]), true) = (ends, lengths.len() < 2 && are_two(ends))
         else {
-            let why = "only springs of tendons between two sites on two bodies, with one length, have an equivalent";
+            let why = "only springs of tendons with one length between two sites on two bodies have an equivalent";
             self.notes.refused(kind, name, at, why);
             return;
         };
         if !(stiffness >= 0.0 && damping >= 0.0) {
-            self.notes.refused(kind, name, at, "no spring has a stiffness or damping below zero");
+            self.notes.refused(kind, name, at, "stiffness and damping must not be negative");
             return;
         }
         let called = JointSource { kind, name, at };

@@ -81,9 +81,9 @@ impl<'d> Reader<'d, '_> {
             let at = element.map_or_else(|| xml::at(text, joint), |e| xml::at(text, e));
             let message = match name {
                 "" => format!("the joint has no `{end}`"),
-                name => format!("there is no link or frame `{name}`"),
+                name => format!("the link or frame `{name}` does not exist"),
             };
-            self.notes.problem_with("HP0803", at, message, "name a link, a frame, or `world`");
+            self.notes.problem_with("HP0803", at, message, "use a link, a frame, or `world`");
         }
         frame
     }
@@ -109,8 +109,8 @@ impl<'d> Reader<'d, '_> {
                     self.notes.problem_with(
                         "HP0803",
                         at,
-                        format!("there is no frame `{name}`"),
-                        "name a link, joint, frame or model of the file",
+                        format!("the frame `{name}` does not exist"),
+                        "use a link, joint, frame or model of the file",
                     );
                     frame.rot
                 }
@@ -124,7 +124,7 @@ impl<'d> Reader<'d, '_> {
                 "HP0804",
                 at,
                 "the axis has no direction",
-                "give a vector other than zero",
+                "give a non-zero vector",
             );
             return [0.0, 0.0, 1.0].into();
         }
@@ -137,7 +137,7 @@ impl<'d> Reader<'d, '_> {
         let at = xml::at(text, joint);
         let full = format!("{scope}{name}");
         if !self.names.insert(full.clone()) {
-            let message = format!("there are two joints `{name}`");
+            let message = format!("the joint `{name}` is defined twice");
             self.notes.problem_with("HP0803", at, message, "rename one of them");
         }
         xml::unknown(text, joint, &name, JOINT, self.notes);
@@ -165,7 +165,7 @@ impl<'d> Reader<'d, '_> {
             "gearbox" => return,
             _ => {
                 let at = xml::attribute_at(text, joint, "type").or(at);
-                let help = "SDF knows revolute, continuous, prismatic, ball, universal, revolute2, screw, gearbox and fixed";
+                let help = "use revolute, continuous, prismatic, ball, universal, revolute2, screw, gearbox or fixed";
                 self.notes.problem_with(
                     "HP0805",
                     at,
@@ -207,7 +207,7 @@ impl<'d> Reader<'d, '_> {
                     "HP0804",
                     at,
                     format!("the screw `{name}` has no pitch"),
-                    "give it a `screw_thread_pitch` other than zero",
+                    "give it a non-zero `screw_thread_pitch`",
                 ),
             }
         }
@@ -265,9 +265,9 @@ impl<'d> Reader<'d, '_> {
                     continue;
                 }
                 let message = format!(
-                    "`{name}` follows the joint `{other}`, which is not there or has no single coordinate"
+                    "`{name}` follows the joint `{other}`, which does not exist or has no single coordinate"
                 );
-                self.notes.problem_with("HP0803", at, message, "name a joint that turns or slides");
+                self.notes.problem_with("HP0803", at, message, "use a revolute or prismatic joint");
                 continue;
             };
             robot::follow(&mut self.m, self.notes, [name, other], at, [own, master], [factor, drawn]);
@@ -285,7 +285,7 @@ impl<'d> Reader<'d, '_> {
         let [parent, driven] = ["parent", "child"].map(|end| self.end(joint, model, end));
         let (Some(parent), Some(driven), Some(carrier)) = (parent, driven, self.frame(scope, &reference))
         else {
-            self.notes.refused("joint", &full, at, "a gearbox whose reference body is not there");
+            self.notes.refused("joint", &full, at, "the reference body of the gearbox does not exist");
             return;
         };
         let Some(frame) = self.frames.get(&format!("{scope}joint {name}")).map(|f| f.pose) else { return };
@@ -311,7 +311,7 @@ impl<'d> Reader<'d, '_> {
                 "joint",
                 &full,
                 at,
-                "a gearbox needs hinges of both bodies on the reference body, along its axes",
+                "a gearbox requires hinges of both bodies on the reference body, along its axes",
             ),
         }
     }
@@ -344,7 +344,7 @@ impl<'d> Reader<'d, '_> {
                 }
                 _ => {
                     let why = format!(
-                        "there are no joints `{}` and `{}`, of which one follows the other",
+                        "it couples the joints `{}` and `{}`, which do not both exist",
                         f.own, f.master
                     );
                     self.notes.refused("plugin", node.attribute("name").unwrap_or_default(), at, why);
@@ -352,7 +352,7 @@ impl<'d> Reader<'d, '_> {
             }
         }
         for node in named(model.node, "loop_joint") {
-            let why = "an extension of URDF: write a `joint` of this model instead, which may close a loop";
+            let why = "`loop_joint` is an extension of URDF: use a `joint` of this model instead, which may close a loop";
             self.notes.refused(
                 "loop_joint",
                 node.attribute("name").unwrap_or_default(),
@@ -400,7 +400,7 @@ impl<'d> Reader<'d, '_> {
             join(&mut self.m, self.notes, called, "spherical", [i, j]);
         }
         for node in named(model.node, "linear_bushing_rpy") {
-            let why = "a bushing is a force: where it closes a loop, write a joint instead";
+            let why = "bushings are forces: if it closes a loop, use a joint instead";
             self.notes.refused("linear_bushing_rpy", "", xml::at(model.text, node), why);
         }
     }

@@ -41,7 +41,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 }
                 _ => {
                     let why =
-                        format!("there are no joints `{own}` and `{master}`, of which one follows the other");
+                        format!("it couples the joints `{own}` and `{master}`, which do not both exist");
                     let (kind, name) = (node.tag_name().name(), node.attribute("name").unwrap_or_default());
                     self.notes.refused(kind, name, xml::at(0, node), why);
                 }
@@ -125,7 +125,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 }
                 name => {
                     told = true;
-                    let why = "an element for Gazebo that is not known here";
+                    let why = "unknown element for Gazebo";
                     self.notes.not_understood(name, owner, xml::at(0, part), why);
                 }
             }
@@ -151,12 +151,12 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             [a, b] => {
                 let why = format!(
                     "it names the links `{a}` and `{b}`: if it closes a loop, `--close {a}={b}` does so at their origins, \
-                     `--close {a}@X,Y,Z={b}@X,Y,Z` at places in them"
+                     `--close {a}@X,Y,Z={b}@X,Y,Z` at points in them"
                 );
-                self.notes.remark(format!("`{kind}` is not understood, and may close a loop: {why}"));
+                self.notes.remark(format!("`{kind}` is not understood and may close a loop: {why}"));
                 why
             }
-            _ => "an element of the robot that is not known here".to_owned(),
+            _ => "unknown element of the robot".to_owned(),
         };
         self.notes.not_understood(kind, node.attribute("name").unwrap_or_default(), at, why);
     }
@@ -197,9 +197,9 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                     let near =
                         hardpoint::draft::did_you_mean(&mimic.joint, self.names.iter().map(String::as_str));
                     let help = near
-                        .map_or("name another joint of the robot".into(), |n| format!("did you mean `{n}`?"));
+                        .map_or("use another joint of the robot".into(), |n| format!("did you mean `{n}`?"));
                     let message =
-                        format!("`{}` follows the joint `{}`, which is not there", j.name, mimic.joint);
+                        format!("`{}` follows the joint `{}`, which does not exist", j.name, mimic.joint);
                     self.notes.problem_with("HP0803", at, message, &help);
                 }
             }
@@ -237,7 +237,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let ends = robot::BALL_ENDS.map(|(body, place)| {
                 let Some(named) = child(node, body) else {
                     let message = format!("the ball constraint has no `{body}`");
-                    self.notes.problem_with("HP0803", xml::at(0, node), message, "name a link in it");
+                    self.notes.problem_with("HP0803", xml::at(0, node), message, "add it with the name of a link");
                     return None;
                 };
                 let (body, outer) = self.standing(named, "name")?;
@@ -262,7 +262,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 axis.and_then(|a| xml::exactly::<3>(a.text().unwrap_or_default(), "`xyz`", at, self.notes));
             let axis = Vec3::from(given.unwrap_or(Z));
             if axis.unit().is_none() && !WITHOUT_AXIS.contains(&kind.as_str()) {
-                let help = "give a vector other than zero";
+                let help = "give a non-zero vector";
                 self.notes.problem_with("HP0804", at, "the axis has no direction", help);
                 continue;
             }
@@ -275,11 +275,11 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         for (name, node, bodies, place) in std::mem::take(&mut self.floating) {
             let at = xml::at(0, node);
             if self.m.are_connected(bodies) {
-                let why = "no joint: the loops of the link hold it, and drivers what these leave free";
+                let why = "no joint: loops constrain the link, and drivers fix its remaining degrees of freedom";
                 self.notes.approximated("joint", &name, at, why);
                 continue;
             }
-            let why = "nothing holds its six freedoms in the source: it is fixed in the design configuration";
+            let why = "nothing constrains it in the source: it is fixed in the design configuration";
             self.notes.approximated("joint", &name, at, why);
             let note = JointSource { kind: "joint", name: &name, at }.note(self.notes);
             self.m.joint(crate::mechanism::Joint::new(&name, note, "fixed", bodies, place));
@@ -292,8 +292,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let found = self.poses.get(link).copied();
         if found.is_none() {
             let at = attribute_at(0, node, key).or_else(|| xml::at(0, node));
-            let message = format!("there is no link `{link}`");
-            self.notes.problem_with("HP0803", at, message, "name a link of the robot");
+            let message = format!("the link `{link}` does not exist");
+            self.notes.problem_with("HP0803", at, message, "use a link of the robot");
         }
         found
     }

@@ -133,7 +133,7 @@ fn files_that_include_each_other_twice_end() {
     let classes: String = (0..3000).map(|k| format!("<default class=\"c{k}\"/>")).collect();
     let text =
         format!("<mujoco><default><geom{wide}/>{classes}</default><worldbody><body/></worldbody></mujoco>");
-    refused("mjcf", &text, "classes of defaults");
+    refused("mjcf", &text, "default classes");
 }
 
 #[test]

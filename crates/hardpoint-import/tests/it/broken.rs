@@ -78,7 +78,7 @@ broken! {
         ("a velocity", "ROTATIONAL, JOINT", "ROTATIONAL, VELOCITY, JOINT")
         ("both ends on a part", "I = 6, J = 4", "I = 6, J = 7")
         ("a marker on an elastic part", "MARKER/6, PART = 3", "MARKER/6, FE_PART = 3")
-        ("a motion of a joint that is refused", "JOINT/1, REVOLUTE", "JOINT/1, MAGIC")
+        ("a motion of a joint that is not supported", "JOINT/1, REVOLUTE", "JOINT/1, MAGIC")
         ("a velocity that is constant", "JOINT = 1, FUNCTION = 60D\n, + 360.0D*time", "JOINT = 1, VELOCITY, FUNCTION = 360.0D")
         ("no end", "\nEND\n", "\n")
     broken_urdf "urdf" "urdf/four_bar.urdf":

@@ -340,7 +340,7 @@ fn what_is_to_be_closed_is_read() {
     let options = Options { format: None, closings: vec!["tip=nowhere".parse().unwrap()] };
     let text = FOUR_BAR.replace("FRAMES", "").replace("CLOSED", "");
     let problems = hardpoint_import::import_with(&options, text.as_bytes(), "r.urdf", &|_| None).unwrap_err();
-    assert!(problems.to_string().contains("there is no frame `nowhere`"), "{problems}");
+    assert!(problems.to_string().contains("the frame `nowhere` does not exist"), "{problems}");
 }
 
 /// The single mass of a model: its centre and its moments of inertia as written.

@@ -146,7 +146,7 @@ fn parts_that_are_drawn_open_stand_where_their_stored_motion_begins() {
     let imported = hardpoint_import::import(changed.as_bytes(), "four_bar.asmt", &|_| None)
         .unwrap_or_else(|e| panic!("{e}"));
     assert!(
-        imported.report.to_string().contains("1 of them are drawn where no joint holds them"),
+        imported.report.to_string().contains("1 of them are drawn where their joints do not close"),
         "{}",
         imported.report
     );

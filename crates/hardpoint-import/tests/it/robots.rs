@@ -107,7 +107,7 @@ fn texts_are_read_however_exporters_write_them() {
     assert!(refused("arm.urdf", &format!("{remark}\n{wrong}")).contains("arm.urdf:5:"), "{wrong}");
     // Numbers that are none stay a fault.
     assert!(refused("arm.urdf", &ARM.replace("xyz=\"0 0 1\"", "xyz=\"0 0 nan\"")).contains("HP0804"));
-    assert!(refused("arm.urdf", &ARM.replace("name=\"flange\"", "name=\"shoulder\"")).contains("two joints"));
+    assert!(refused("arm.urdf", &ARM.replace("name=\"flange\"", "name=\"shoulder\"")).contains("is defined twice"));
 }
 
 /// A plate of 2 by 1 mm as two triangles, and another turned upright and shifted by 3 mm, as a square; the file is in
@@ -147,7 +147,7 @@ fn meshes_in_collada_are_shown_in_metres_in_the_frame_of_the_link() {
     }
     let (imported, _) = read_with("arm.urdf", text.as_bytes(), &[("meshes/plates.dae", "<COLLADA/>")]);
     let why = told(&imported, ElementOutcome::Refused, "mesh");
-    assert!(why.len() == 1 && why[0].contains("it shows no triangles"), "{why:?}");
+    assert!(why.len() == 1 && why[0].contains("it has no triangles"), "{why:?}");
 }
 
 /// A four-bar whose last joint is yet to be closed: a crank of 0.1, a coupler of 0.3, a rocker of 0.2 upright at x =
@@ -342,7 +342,7 @@ fn joints_of_mjcf_in_frames_and_classes_and_includes_are_found() {
         .contains("did you mean `slider`?")
     );
     let twice = text.replace("name=\"k\"", "name=\"j\"").replace("<include file=\"parts/all.xml\"/>", "");
-    assert!(refused("m.xml", &twice).contains("two joints `j`"));
+    assert!(refused("m.xml", &twice).contains("the joint `j` is defined twice"));
 }
 
 #[test]
