@@ -16,7 +16,7 @@ use hardpoint::motion::Motion;
 use hardpoint::space::{Pose, Vec3};
 use hardpoint_file::{MeshFrame, ModelFile};
 
-use crate::links::{lines, places, rods};
+use crate::links::{body_points, lines, rods};
 
 const GENERATOR: &str = concat!("hardpoint ", env!("CARGO_PKG_VERSION"));
 /// Half diagonal of the section of links, and radius of joints, as fractions of the mechanism size.
@@ -61,15 +61,15 @@ const COLOURS: [[f32; 3]; 8] = [
 /// Returns an error if the file exceeds the limit of the format, 4 GiB.
 pub fn animation(file: &ModelFile, motion: &Motion) -> io::Result<Vec<u8>> {
     let model = &file.model;
-    let steps = moments(motion);
+    let steps = distinct_times(motion);
     let mut scene = Writer::new();
     let start = steps.first().map_or(0.0, |k| motion.times[*k]);
     let times: Vec<f32> = steps.iter().map(|k| (motion.times[*k] - start) as f32).collect();
     let times = scene.accessor(Type::Scalar, &times, None);
     let mut tracks = Vec::new();
     let mut nodes = Vec::new();
-    for (b, places) in places(model).iter().enumerate() {
-        let mesh = shape(file, b).unwrap_or_else(|| linked(places, b > 0, model.size()));
+    for (b, places) in body_points(model).iter().enumerate() {
+        let mesh = shape(file, b).unwrap_or_else(|| link_triangles(places, b > 0, model.size()));
         let colour = if b == 0 { GROUND } else { COLOURS[(b - 1) % COLOURS.len()] };
         let poses: Vec<Pose> = steps
             .iter()
@@ -80,7 +80,7 @@ pub fn animation(file: &ModelFile, motion: &Motion) -> io::Result<Vec<u8>> {
             .collect();
         let turns = poses.iter().map(|p| quaternion(*p));
         let track = Track::new(poses.iter().map(|p| p.r), turns, None);
-        nodes.push(scene.moving(&model.bodies[b].name, &mesh, colour, &track, &mut tracks));
+        nodes.push(scene.add_node(&model.bodies[b].name, &mesh, colour, &track, &mut tracks));
     }
     for (joint, ends) in rods(model) {
         let [i, j] = joint.bodies.map(|b| b.0);
@@ -96,13 +96,13 @@ pub fn animation(file: &ModelFile, motion: &Motion) -> io::Result<Vec<u8>> {
         let lengths = spans.iter().map(|[a, b]| (*b - *a).norm()).collect();
         let turns = spans.iter().map(|[a, b]| from_z(*b - *a));
         let track = Track::new(spans.iter().map(|[a, _]| *a), turns, Some(lengths));
-        nodes.push(scene.moving(&joint.name, &mesh, GROUND, &track, &mut tracks));
+        nodes.push(scene.add_node(&joint.name, &mesh, GROUND, &track, &mut tracks));
     }
     scene.end(model, nodes, times, tracks)
 }
 
 /// Indices of the output times that remain distinct in single precision.
-fn moments(motion: &Motion) -> Vec<usize> {
+fn distinct_times(motion: &Motion) -> Vec<usize> {
     let Some(start) = motion.times.first() else { return Vec::new() };
     let mut last = None;
     let later = |k: &usize| {
@@ -144,7 +144,7 @@ fn shape(file: &ModelFile, body: usize) -> Option<Triangles> {
 }
 
 /// Triangles of the joints at the points of a body and, if `links`, of the links between them.
-fn linked(places: &[Vec3], links: bool, size: f64) -> Triangles {
+fn link_triangles(places: &[Vec3], links: bool, size: f64) -> Triangles {
     let mut mesh = Triangles::default();
     for line in lines(places).into_iter().filter(|_| links) {
         mesh.prism(line, LINK * size);
@@ -225,7 +225,7 @@ impl Track {
 }
 
 /// Animated property of a node, with the accessor of its values.
-type Changing = (Index<Node>, Property, Index<Accessor>);
+type AnimatedProperty = (Index<Node>, Property, Index<Accessor>);
 
 struct Writer {
     root: Root,
@@ -250,13 +250,13 @@ impl Writer {
     }
 
     /// Adds an animated node; its varying properties are appended to `tracks`.
-    fn moving(
+    fn add_node(
         &mut self,
         name: &str,
         shape: &Triangles,
         colour: [f32; 3],
         track: &Track,
-        tracks: &mut Vec<Changing>,
+        tracks: &mut Vec<AnimatedProperty>,
     ) -> Index<Node> {
         let mesh = self.mesh(name, shape, colour);
         let node = self.root.push(Node {
@@ -268,14 +268,14 @@ impl Writer {
             ..Node::default()
         });
         // Constant properties need no track.
-        let mut add = |property, kind, changes: bool, numbers: &[f32]| {
-            if changes {
+        let mut add = |property, kind, varies: bool, numbers: &[f32]| {
+            if varies {
                 tracks.push((node, property, self.accessor(kind, numbers, None)));
             }
         };
-        add(Property::Translation, Type::Vec3, changes(&track.places), track.places.as_flattened());
-        add(Property::Rotation, Type::Vec4, changes(&track.turns), track.turns.as_flattened());
-        add(Property::Scale, Type::Vec3, changes(&track.scales), track.scales.as_flattened());
+        add(Property::Translation, Type::Vec3, varies(&track.places), track.places.as_flattened());
+        add(Property::Rotation, Type::Vec4, varies(&track.turns), track.turns.as_flattened());
+        add(Property::Scale, Type::Vec3, varies(&track.scales), track.scales.as_flattened());
         node
     }
 
@@ -349,7 +349,7 @@ impl Writer {
         model: &Model,
         children: Vec<Index<Node>>,
         times: Index<Accessor>,
-        tracks: Vec<Changing>,
+        tracks: Vec<AnimatedProperty>,
     ) -> io::Result<Vec<u8>> {
         let top = self.root.push(Node {
             name: Some(model.name.clone()),
@@ -364,14 +364,14 @@ impl Writer {
             extras: Default::default(),
         };
         self.root.scene = Some(self.root.push(scene));
-        let sampler = |(_, _, output): &Changing| Sampler {
+        let sampler = |(_, _, output): &AnimatedProperty| Sampler {
             input: times,
             interpolation: Checked::Valid(Interpolation::Linear),
             output: *output,
             extensions: None,
             extras: Default::default(),
         };
-        let channel = |(k, (node, property, _)): (usize, &Changing)| Channel {
+        let channel = |(k, (node, property, _)): (usize, &AnimatedProperty)| Channel {
             sampler: Index::new(k as u32),
             target: Target {
                 node: *node,
@@ -426,6 +426,6 @@ fn accessor(
     }
 }
 
-fn changes<const N: usize>(list: &[[f32; N]]) -> bool {
+fn varies<const N: usize>(list: &[[f32; N]]) -> bool {
     list.iter().any(|x| *x != list[0])
 }

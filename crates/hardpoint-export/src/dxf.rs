@@ -4,7 +4,7 @@ use hardpoint::joint::Quantity;
 use hardpoint::space::Vec3;
 use hardpoint_file::{LengthUnit, ModelFile};
 
-use crate::links::{lines, places, rods};
+use crate::links::{body_points, lines, rods};
 use crate::tables::hardpoints;
 use crate::{ExportedModel, Format};
 
@@ -40,11 +40,11 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
     }
     let in_units = |at: Vec3| at.to_array().map(|x| units.from_si(Quantity::Length, x));
     let line = |[a, b]: [Vec3; 2]| point(10, in_units(a)) + &point(11, in_units(b));
-    for (b, places) in places(model).iter().enumerate().skip(1) {
+    for (b, places) in body_points(model).iter().enumerate().skip(1) {
         let body = &model.bodies[b];
         let links = lines(places);
         if links.is_empty() {
-            out.unsaid("body", &body.name, "it has a single point, and no line");
+            out.report_unsupported("body", &body.name, "it has a single point, and no line");
             continue;
         }
         let layer = drawing.add_layer(&body.name);
@@ -61,10 +61,18 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
     let rods = rods(model).count();
     let joints = model.named_joints().count() - rods;
     if joints > 0 {
-        out.unsaid("joints", &joints.to_string(), "DXF has no joints: only their points are written");
+        out.report_unsupported(
+            "joints",
+            &joints.to_string(),
+            "DXF has no joints: only their points are written",
+        );
     }
     if model.hardpoints.iter().any(|h| h.unnamed) {
-        out.unsaid("places", "coordinates", "points without the name of a hardpoint are not written");
+        out.report_unsupported(
+            "places",
+            "coordinates",
+            "points without the name of a hardpoint are not written",
+        );
     }
     out.without_motions(file, "DXF");
 }

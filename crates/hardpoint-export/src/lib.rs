@@ -15,7 +15,7 @@
 //! let urdf = hardpoint_export::Format::named("urdf").unwrap();
 //! let exported = urdf.export(&file);
 //! assert!(exported.text.contains(r#"<origin xyz="0 0 0.5"/>"#));
-//! assert!(exported.unsaid.iter().any(|u| u.name == "swing")); // URDF has no motions
+//! assert!(exported.unsupported.iter().any(|u| u.name == "swing")); // URDF has no motions
 //! ```
 
 mod animation;
@@ -39,7 +39,7 @@ pub struct ExportedModel {
     /// Text of the file.
     pub text: String,
     /// Features that the format does not support, or supports only approximately.
-    pub unsaid: Vec<UnsupportedFeature>,
+    pub unsupported: Vec<UnsupportedFeature>,
 }
 
 /// Feature of a model that a format does not support.
@@ -92,21 +92,25 @@ impl Format {
     /// Exports a model to this format.
     pub fn export(&self, file: &ModelFile) -> ExportedModel {
         let mut out = ExportedModel::default();
-        let neutral = if QUOTES_NAMES.contains(&self.name) { None } else { names::neutral(file, &mut out) };
-        (self.write)(neutral.as_ref().unwrap_or(file), &mut out);
+        let renamed = if QUOTES_NAMES.contains(&self.name) {
+            None
+        } else {
+            names::with_supported_names(file, &mut out)
+        };
+        (self.write)(renamed.as_ref().unwrap_or(file), &mut out);
         out
     }
 }
 
 impl ExportedModel {
-    fn unsaid(&mut self, kind: &'static str, name: &str, why: impl Into<String>) {
-        self.unsaid.push(UnsupportedFeature { kind, name: name.to_owned(), why: why.into() });
+    fn report_unsupported(&mut self, kind: &'static str, name: &str, why: impl Into<String>) {
+        self.unsupported.push(UnsupportedFeature { kind, name: name.to_owned(), why: why.into() });
     }
 
     /// Reports the drivers, design variables, measures, wheels and meshes, which no format for mechanisms supports.
     fn without_motions(&mut self, file: &ModelFile, format: &str) {
         for driver in &file.model.drivers {
-            self.unsaid("driver", &driver.name, format!("{format} does not support motions"));
+            self.report_unsupported("driver", &driver.name, format!("{format} does not support motions"));
         }
         let rest = [
             ("design variables", file.model.variables.len()),
@@ -115,7 +119,7 @@ impl ExportedModel {
             ("meshes", file.drawing.bodies.len()),
         ];
         for (kind, count) in rest.into_iter().filter(|(_, count)| *count > 0) {
-            self.unsaid(kind, &count.to_string(), "not written");
+            self.report_unsupported(kind, &count.to_string(), "not written");
         }
     }
 }

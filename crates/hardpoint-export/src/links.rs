@@ -11,7 +11,7 @@ const HINGES: [&str; 2] = ["revolute", "cylindrical"];
 const RODS: [&str; 3] = ["distance", "leg", "revolute_spherical"];
 
 /// Points of every body in its frame, m: joint locations, bearings of hinges, and named points.
-pub fn places(model: &Model) -> Vec<Vec<Vec3>> {
+pub fn body_points(model: &Model) -> Vec<Vec<Vec3>> {
     let geometry = model.geometry(&[]);
     let same = SAME_PLACE * model.size();
     let mut places = vec![Vec::<Vec3>::new(); model.bodies.len()];

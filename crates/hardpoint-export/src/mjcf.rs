@@ -6,17 +6,17 @@ use hardpoint::model::Joint;
 use hardpoint::space::Vec3;
 use hardpoint_file::ModelFile;
 
-use crate::skeleton::{Carrier, Skeleton, axis, followers, is_closed, places};
+use crate::skeleton::{Carrier, Skeleton, axis, followers, is_closed, joint_points};
 use crate::{ExportedModel, Format, escaped, number, numbers};
 
 /// MJCF format.
 pub const FORMAT: Format = Format { name: "mjcf", about: "MuJoCo model", endings: &["xml", "mjcf"], write };
 
 /// Joint of MJCF: its type, the axis of the joint frame that it uses, and the suffix of its name.
-type Part = (&'static str, Along, &'static str);
+type MjcfJoint = (&'static str, Along, &'static str);
 
 /// Joint types that can carry a body (tree joints), each with its equivalent sequence of MJCF joints.
-const TYPES: [(&str, &[Part]); 8] = [
+const TYPES: [(&str, &[MjcfJoint]); 8] = [
     ("revolute", &[("hinge", Along::Z, "")]),
     ("translational", &[("slide", Along::Z, "")]),
     ("spherical", &[("ball", Along::Z, "")]),
@@ -92,7 +92,7 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut ExportedModel) ->
             };
             let _ = writeln!(equalities, "    <{element} name=\"{name}\" {ends}/>");
         };
-        let at = places(model, joint);
+        let at = joint_points(model, joint);
         match joint.kind.name {
             "spherical" => meet("connect", &name, at),
             "fixed" => meet("weld", &name, at),
@@ -108,8 +108,8 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut ExportedModel) ->
                     "    <spatial name=\"{name}\"><site site=\"{a}\"/><site site=\"{b}\"/></spatial>"
                 );
                 // The constant is the difference of the rod length from the distance in the design configuration.
-                let drawn = (places(model, joint)[1] - places(model, joint)[0]).norm();
-                let constant = joint.length.map_or(0.0, |length| length - drawn);
+                let nominal = (joint_points(model, joint)[1] - joint_points(model, joint)[0]).norm();
+                let constant = joint.length.map_or(0.0, |length| length - nominal);
                 let constant = if constant == 0.0 {
                     String::new()
                 } else {
@@ -119,7 +119,7 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut ExportedModel) ->
             }
             other => {
                 let why = format!("MJCF has no equivalent of a joint of type {other} that closes a loop");
-                out.unsaid("joint", &joint.name, why);
+                out.report_unsupported("joint", &joint.name, why);
             }
         }
     }
@@ -135,7 +135,7 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut ExportedModel) ->
         );
     }
     for name in others {
-        out.unsaid(
+        out.report_unsupported(
             "coupler",
             &name,
             "an equality of MJCF couples two tree joints with a single coordinate each",
@@ -196,6 +196,6 @@ fn joints(joint: &Joint, backward: bool, indent: &str, out: &mut ExportedModel) 
     }
     if parts.len() > 1 {
         let why = format!("written as a chain of {} equivalent joints", parts.len());
-        out.unsaid("joint", &joint.name, why);
+        out.report_unsupported("joint", &joint.name, why);
     }
 }

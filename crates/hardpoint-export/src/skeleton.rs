@@ -28,7 +28,7 @@ pub enum Carrier {
 }
 
 /// Points of a joint on bodies i and j in the design configuration, m, global.
-pub fn places(model: &Model, joint: &Joint) -> [Vec3; 2] {
+pub fn joint_points(model: &Model, joint: &Joint) -> [Vec3; 2] {
     joint.at.map(|h| model.hardpoints[h.0].position)
 }
 
@@ -73,7 +73,7 @@ impl<'m> Skeleton<'m> {
             }
         }
         for (body, _) in model.bodies.iter().enumerate().filter(|(b, _)| !tree.has(*b)) {
-            out.unsaid(
+            out.report_unsupported(
                 "body",
                 &model.bodies[body].name,
                 "no joint that the format supports connects it to a body that is written",
@@ -83,7 +83,7 @@ impl<'m> Skeleton<'m> {
             let is_carrier =
                 tree.carrier.iter().any(|c| matches!(c, Some(Carrier::Joint(own, _)) if *own == k));
             if !bodies(k).iter().all(|b| tree.has(*b)) {
-                out.unsaid("joint", &model.joints[k].name, "one of its bodies is not written");
+                out.report_unsupported("joint", &model.joints[k].name, "one of its bodies is not written");
             } else if !is_carrier {
                 tree.loops.push(k);
             }
@@ -118,7 +118,7 @@ impl<'m> Skeleton<'m> {
     pub fn origin(&self, body: usize) -> Vec3 {
         let on = |k: usize| {
             let joint = &self.model.joints[k];
-            joint.bodies.iter().position(|b| b.0 == body).map(|end| places(self.model, joint)[end])
+            joint.bodies.iter().position(|b| b.0 == body).map(|end| joint_points(self.model, joint)[end])
         };
         match self.carrier[body] {
             Some(Carrier::Joint(k, _)) => on(k),
@@ -131,7 +131,7 @@ impl<'m> Skeleton<'m> {
 
 /// Returns true if the points of a joint on both bodies coincide in the design configuration.
 pub fn is_closed(model: &Model, joint: &Joint) -> bool {
-    let [i, j] = places(model, joint);
+    let [i, j] = joint_points(model, joint);
     i == j
 }
 

@@ -43,7 +43,7 @@ fn csv(file: &ModelFile, out: &mut ExportedModel) {
     }
     match written.map_err(io::Error::from).and_then(|()| table.end()) {
         Ok(bytes) => out.text = String::from_utf8_lossy(&bytes).into_owned(),
-        Err(error) => out.unsaid("table", &file.model.name, error.to_string()),
+        Err(error) => out.report_unsupported("table", &file.model.name, error.to_string()),
     }
 }
 
@@ -83,13 +83,21 @@ fn teimorbit(file: &ModelFile, out: &mut ExportedModel) {
         let (short, side) = side_of(name);
         // `$` and `!` begin comments.
         if name.contains(['\'', '$', '!']) || name.contains(char::is_control) {
-            out.unsaid("hardpoint", name, "names must not contain `'`, `$`, `!` or control characters");
+            out.report_unsupported(
+                "hardpoint",
+                name,
+                "names must not contain `'`, `$`, `!` or control characters",
+            );
             continue;
         }
         let place = [-x, -y, z].map(number);
         let _ = writeln!(out.text, " '{short}'  '{side}'  {}", place.join("  "));
     }
     if file.model.hardpoints.iter().any(|h| h.unnamed) {
-        out.unsaid("places", "coordinates", "points without the name of a hardpoint are not written");
+        out.report_unsupported(
+            "places",
+            "coordinates",
+            "points without the name of a hardpoint are not written",
+        );
     }
 }

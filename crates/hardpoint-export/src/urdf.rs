@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use hardpoint_file::ModelFile;
 
-use crate::skeleton::{Carrier, Skeleton, axis, followers, places};
+use crate::skeleton::{Carrier, Skeleton, axis, followers, joint_points};
 use crate::{ExportedModel, Format, escaped, numbers};
 
 /// URDF format.
@@ -78,7 +78,7 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
             other => TYPES.iter().find(|(own, _)| *own == other).map_or("", |(_, theirs)| *theirs),
         };
         if kind.is_empty() {
-            out.unsaid(
+            out.report_unsupported(
                 "joint",
                 &joint.name,
                 format!("URDF has no equivalent of a joint of type {}", joint.kind.name),
@@ -86,7 +86,7 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
             continue;
         }
         let _ = writeln!(text, "  <loop_joint name=\"{}\" type=\"{kind}\">", escaped(&joint.name));
-        for (e, at) in places(model, joint).into_iter().enumerate() {
+        for (e, at) in joint_points(model, joint).into_iter().enumerate() {
             let body = joint.bodies[e].0;
             let place = at - tree.origin(body);
             let _ = writeln!(
@@ -98,14 +98,14 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
             );
         }
         let _ = writeln!(text, "    <axis xyz=\"{}\"/>\n  </loop_joint>", numbers(axis(joint).to_array()));
-        out.unsaid(
+        out.report_unsupported(
             "joint",
             &joint.name,
             "it closes a loop: written as `loop_joint`, which some programs do not read",
         );
     }
     for coupler in &others {
-        out.unsaid("coupler", coupler, "a mimic joint depends on one other tree joint");
+        out.report_unsupported("coupler", coupler, "a mimic joint depends on one other tree joint");
     }
     out.text = text + "</robot>\n";
     out.without_motions(file, "URDF");

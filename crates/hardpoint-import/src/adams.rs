@@ -9,7 +9,9 @@ use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::adams_statement::{SEAM, SHORTEST, Statement, number, statements};
 use crate::law::{self, Language};
-use crate::markers::{Marker, MarkerJoint, carrying, counted, join, offset, way};
+use crate::markers::{
+    Marker, MarkerJoint, carrying_joint, coordinate_sign, join, offset, relative_to_nominal,
+};
 use crate::mechanism::{Coordinate, Drives, GROUND, Law, Mechanism};
 use crate::report::{ImportLog, SourceSpan};
 use crate::turn::{from_z_and_x, home, sequence};
@@ -20,7 +22,7 @@ pub const FORMAT: Format = Format {
     name: "adams",
     about: "Adams/Solver dataset",
     endings: &["adm"],
-    looks: |text| {
+    recognises: |text| {
         let statement = |l: &str, word: &str| {
             l.len() > word.len()
                 && l.is_char_boundary(word.len())
@@ -61,12 +63,7 @@ fn read(source: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     reader.rest(&statements, &loads);
     if !source.text.lines().rev().any(|l| l.trim().eq_ignore_ascii_case("END")) {
         let at = SourceSpan { text: 0, start: source.text.len(), end: source.text.len() };
-        reader.notes.approximated(
-            "END",
-            "",
-            Some(at),
-            "the statement is missing: the file may be truncated",
-        );
+        reader.notes.approximated("END", "", Some(at), "the statement is missing: the file may be truncated");
     }
     let m = reader.m;
     (m.bodies.len() > 1).then_some(m)
@@ -124,7 +121,13 @@ fn units(statements: &[Statement], notes: &mut ImportLog) -> (f64, &'static str,
 
 /// Integrates a rate of order 1 or 2 over the first second and returns points `[time, displacement]`. Uses Simpson's
 /// rule with steps much shorter than the distance of the points.
-fn summed(text: &str, order: usize, scale: f64, begin: f64, rate: f64) -> Result<Vec<[f64; 2]>, String> {
+fn integrate_rate(
+    text: &str,
+    order: usize,
+    scale: f64,
+    begin: f64,
+    rate: f64,
+) -> Result<Vec<[f64; 2]>, String> {
     const POINTS: usize = 200;
     const STEPS: usize = 10;
     let law = hardpoint::law::Law::parse(text).map_err(|_| format!("`{text}` cannot be evaluated"))?;
@@ -227,7 +230,7 @@ impl Reader<'_> {
                 continue;
             }
             let pose = self.frame(s, "QG", "ZG", "XG");
-            let body = self.m.body(&s.label, s.called().note(self.notes), Some(pose));
+            let body = self.m.body(&s.label, s.source().note(self.notes), Some(pose));
             match kind {
                 "FLEX_BODY" => self.notes.approximated(
                     kind,
@@ -388,7 +391,7 @@ impl Reader<'_> {
                 Marker { body: i.body, pose: turned(&i, square.1) },
             ];
         }
-        let Some(number) = join(&mut self.m, self.notes, s.called(), kind, markers) else { return };
+        let Some(number) = join(&mut self.m, self.notes, s.source(), kind, markers) else { return };
         if *kind == "screw" {
             match s.numbers("PITCH", self.notes).and_then(|p| p.first().copied()) {
                 Some(pitch) if pitch != 0.0 => self.m.joints[number].lead = Some(pitch * self.scale),
@@ -417,7 +420,7 @@ impl Reader<'_> {
         match kind {
             Some((_, kind)) => {
                 if let Some(markers) = self.pair(s) {
-                    join(&mut self.m, self.notes, s.called(), kind, markers);
+                    join(&mut self.m, self.notes, s.source(), kind, markers);
                 }
             }
             None => self.notes.refused("JPRIM", &s.label, Some(s.at), "its type is unknown"),
@@ -430,8 +433,10 @@ impl Reader<'_> {
         let Some([rack, pinion]) = self.pair(s) else { return };
         let diameter =
             s.numbers("PD", self.notes).and_then(|d| d.first().copied()).unwrap_or(0.0) * self.scale;
-        let hinge = carrying(self.joints.values(), pinion.body, &["revolute", "cylindrical"], pinion.z());
-        let slide = carrying(self.joints.values(), rack.body, &["translational", "cylindrical"], rack.z());
+        let hinge =
+            carrying_joint(self.joints.values(), pinion.body, &["revolute", "cylindrical"], pinion.z());
+        let slide =
+            carrying_joint(self.joints.values(), rack.body, &["translational", "cylindrical"], rack.z());
         let (Some(hinge), Some(slide)) = (hinge, slide) else {
             self.notes.refused("JOINT", &s.label, Some(s.at), "a rack and pinion requires a hinge of the pinion and a slide of the rack, along the z axes of the markers");
             return;
@@ -439,8 +444,11 @@ impl Reader<'_> {
         let arm = rack.pose.r - pinion.pose.r;
         let rolls = pinion.z().cross(arm).dot(rack.z());
         let turn = if rolls.abs() > 1e-9 * arm.norm() { rolls.signum() } else { 1.0 };
-        let factor =
-            turn * way(hinge, pinion.body, pinion.z()) * way(slide, rack.body, rack.z()) * diameter / 2.0;
+        let factor = turn
+            * coordinate_sign(hinge, pinion.body, pinion.z())
+            * coordinate_sign(slide, rack.body, rack.z())
+            * diameter
+            / 2.0;
         let terms = vec![
             (Coordinate { joint: slide.number, name: "displacement" }, 1.0),
             (Coordinate { joint: hinge.number, name: "angle" }, -factor),
@@ -452,7 +460,7 @@ impl Reader<'_> {
                 format!("JOINT/{} is a rack and pinion without a pitch diameter `PD`", s.id),
             );
         }
-        self.m.coupler(&s.label, s.called().note(self.notes), terms);
+        self.m.coupler(&s.label, s.source().note(self.notes), terms);
         self.notes.approximated(
             "JOINT",
             &s.label,
@@ -495,7 +503,7 @@ impl Reader<'_> {
         };
         let order = if s.flag("VELOCITY") { 1 } else { 2 * usize::from(s.flag("ACCELERATION")) };
         let Some(function) = s.text("FUNCTION") else { return refuse(self, "it has no FUNCTION") };
-        let function = self.written_out(function);
+        let function = self.expand_variables(function);
         if let Some(id) = s.reference("JOINT") {
             let Some(joint) = self.joints.get(id) else {
                 if self.refused.contains(id) {
@@ -508,12 +516,12 @@ impl Reader<'_> {
                 );
                 return;
             };
-            let drawn = offset(&joint.markers[0], &joint.markers[1]);
+            let nominal = offset(&joint.markers[0], &joint.markers[1]);
             let turns = s.flag("ROTATIONAL") || (joint.kind == "revolute" && !s.flag("TRANSLATIONAL"));
-            let (name, drawn, scale) = if turns {
-                ("angle", drawn.angle, 1.0)
+            let (name, nominal, scale) = if turns {
+                ("angle", nominal.angle, 1.0)
             } else {
-                ("displacement", drawn.displacement, self.scale)
+                ("displacement", nominal.displacement, self.scale)
             };
             let has = hardpoint::joint::ALL
                 .iter()
@@ -527,12 +535,12 @@ impl Reader<'_> {
                 return refuse(self, "the joint is driven already");
             }
             let law = match order {
-                0 => self.law(&function, scale, drawn, turns),
-                _ => self.integral(s, &function, order, scale, drawn, turns),
+                0 => self.law(&function, scale, nominal, turns),
+                _ => self.integral(s, &function, order, scale, nominal, turns),
             };
             match law {
                 Ok(law) => {
-                    self.m.driver(&s.label, s.called().note(self.notes), Drives::Coordinate(coordinate), law);
+                    self.m.driver(&s.label, s.source().note(self.notes), Drives::Coordinate(coordinate), law);
                     let why = "its rate is integrated over the first second and interpolated by a spline";
                     if order > 0 && matches!(self.m.drivers.last().map(|d| &d.law), Some(Law::Table(_))) {
                         self.notes.approximated("MOTION", &s.label, Some(s.at), why);
@@ -552,8 +560,8 @@ impl Reader<'_> {
                     Ok(law) => {
                         self.m.driver(
                             &s.label,
-                            s.called().note(self.notes),
-                            Drives::Way { body: i.body, at: i.pose.r, along },
+                            s.source().note(self.notes),
+                            Drives::Translation { body: i.body, at: i.pose.r, along },
                             law,
                         );
                         self.notes.taken("MOTION", &s.label, Some(s.at));
@@ -569,7 +577,7 @@ impl Reader<'_> {
     }
 
     /// Expands references to variables (`VARVAL(3)`) in a function. Recursive references remain.
-    fn written_out(&self, function: &str) -> String {
+    fn expand_variables(&self, function: &str) -> String {
         const DEEPEST: usize = 8;
         const LONGEST: usize = 100_000;
         let mut text = function.to_owned();
@@ -587,21 +595,21 @@ impl Reader<'_> {
     }
 
     /// Converts a function to the law of a coordinate, relative to the design configuration.
-    fn law(&self, function: &str, scale: f64, drawn: f64, turns: bool) -> Result<Law, String> {
-        let drawn = if drawn.abs() < 1e-12 { 0.0 } else { drawn };
-        let said = |text: &str| {
+    fn law(&self, function: &str, scale: f64, nominal: f64, turns: bool) -> Result<Law, String> {
+        let nominal = if nominal.abs() < 1e-12 { 0.0 } else { nominal };
+        let translated = |text: &str| {
             let text = text.trim().trim_matches(['\'', '"']);
             law::translate_with(text, Language::Adams, self.time)
         };
         // The comma at the beginning of a continuation line either marks the continuation or is part of the function.
         let readings = [" ", ","].map(|seam| function.replace(SEAM, seam));
         if let Some(points) = readings.iter().find_map(|text| self.through_spline(text)) {
-            return Ok(Law::Table(points.iter().map(|[t, x]| [*t, x * scale - drawn]).collect()));
+            return Ok(Law::Table(points.iter().map(|[t, x]| [*t, x * scale - nominal]).collect()));
         }
-        let text = said(&readings[0]).or_else(|why| said(&readings[1]).map_err(|_| why))?;
+        let text = translated(&readings[0]).or_else(|why| translated(&readings[1]).map_err(|_| why))?;
         let text = if scale == 1.0 { text } else { format!("{scale}*({text})") };
-        let text = counted(&text, drawn, turns);
-        if law::constant(&text) == Some(0.0) { Ok(Law::Held) } else { Ok(Law::Text(text)) }
+        let text = relative_to_nominal(&text, nominal, turns);
+        if law::constant(&text) == Some(0.0) { Ok(Law::Fixed) } else { Ok(Law::Text(text)) }
     }
 
     /// Law of a prescribed velocity (order 1) or acceleration (order 2): an expression if the rate is constant,
@@ -612,7 +620,7 @@ impl Reader<'_> {
         function: &str,
         order: usize,
         scale: f64,
-        drawn: f64,
+        nominal: f64,
         turns: bool,
     ) -> Result<Law, String> {
         let function = function.replace(SEAM, " ");
@@ -622,16 +630,16 @@ impl Reader<'_> {
         // The initial value is that of ICDISP, or otherwise that of the design configuration.
         let [start, rate] = [first("ICDISP"), first("ICVEL")];
         let per_second = self.per_second().powi(order as i32);
-        let begin = start.map_or(0.0, |x| x * scale - drawn);
+        let begin = start.map_or(0.0, |x| x * scale - nominal);
         let rate = if order == 2 { rate.unwrap_or(0.0) * scale * self.per_second() } else { 0.0 };
         let Some(constant) = law::constant(&text).map(|x| x * scale * per_second) else {
             let begin = if turns { begin - (begin / TAU).round() * TAU } else { begin };
-            return summed(&text, order, scale * per_second, begin, rate).map(Law::Table);
+            return integrate_rate(&text, order, scale * per_second, begin, rate).map(Law::Table);
         };
         // x = x0 + v t, or x0 + v t + a/2 t^2
         let text =
             if order == 1 { format!("{constant}*t") } else { format!("{rate}*t + {}*t^2", constant / 2.0) };
-        Ok(if begin == 0.0 { Law::Text(text) } else { Law::Text(counted(&text, -begin, turns)) })
+        Ok(if begin == 0.0 { Law::Text(text) } else { Law::Text(relative_to_nominal(&text, -begin, turns)) })
     }
 
     /// Number of time units of the source per second.
@@ -715,7 +723,7 @@ impl Reader<'_> {
             let factor = if turns { *scale } else { scale / self.scale };
             terms.push((Coordinate { joint: joint.number, name }, factor));
         }
-        self.m.coupler(&s.label, s.called().note(self.notes), terms);
+        self.m.coupler(&s.label, s.source().note(self.notes), terms);
         self.notes.taken("COUPLER", &s.label, Some(s.at));
     }
 
@@ -758,7 +766,7 @@ impl Reader<'_> {
             );
             return;
         }
-        self.m.coupler(&s.label, s.called().note(self.notes), vec![(first, u), (second, -v)]);
+        self.m.coupler(&s.label, s.source().note(self.notes), vec![(first, u), (second, -v)]);
         self.notes.taken("GEAR", &s.label, Some(s.at));
     }
 

@@ -2,7 +2,7 @@
 
 use hardpoint::space::Vec3;
 
-use crate::markers::JointSource;
+use crate::markers::ElementSource;
 use crate::report::{ImportLog, SourceSpan};
 
 /// Minimum length of an abbreviated keyword.
@@ -48,8 +48,8 @@ impl Statement {
     }
 
     /// Name and position for reports.
-    pub fn called(&self) -> JointSource<'_> {
-        JointSource { kind: &self.name, name: &self.label, at: Some(self.at) }
+    pub fn source(&self) -> ElementSource<'_> {
+        ElementSource { kind: &self.name, name: &self.label, at: Some(self.at) }
     }
 
     /// Returns the numbers of a key; angles in rad. Errors are reported.

@@ -8,7 +8,8 @@ use hardpoint::space::{Mat3, Pose, Vec3};
 use crate::chain;
 use crate::law::{self, Language};
 use crate::markers::{
-    JointSource, Marker, MarkerJoint, carrying, counted, is_drawn, join, linked, offset, screw, way,
+    ElementSource, Marker, MarkerJoint, carrying_joint, coordinate_sign, couple_screw, equals_nominal, join,
+    join_by_link, offset, relative_to_nominal,
 };
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Times};
 use crate::report::{ImportLog, SourceSpan};
@@ -21,7 +22,7 @@ pub const FORMAT: Format = Format {
     name: "asmt",
     about: "Ondsel assembly",
     endings: &["asmt"],
-    looks: |text| {
+    recognises: |text| {
         let mut lines = text.lines().map(str::trim_end);
         lines.any(|l| l == "Assembly") && lines.any(|l| l.trim() == "RefPoints" || l.trim() == "Parts")
     },
@@ -100,7 +101,11 @@ impl<'t> Node<'t> {
             Some(rot) if off < 1e-3 => Pose { rot, r: r.into() },
             _ => {
                 let at = self.child("RotationMatrix").map(|c| c.at);
-                notes.problem("HP0804", at, "the matrix is not a rotation matrix: its columns are not of length one");
+                notes.problem(
+                    "HP0804",
+                    at,
+                    "the matrix is not a rotation matrix: its columns are not of length one",
+                );
                 home()
             }
         }
@@ -252,21 +257,26 @@ impl Reader<'_> {
         let parts = assembly.child("Parts").map_or(&[][..], |p| &p.children);
         for part in parts {
             if part.text != "Part" {
-                self.notes.refused(part.text, part.name(), Some(part.at), "only elements of type `Part` are supported");
+                self.notes.refused(
+                    part.text,
+                    part.name(),
+                    Some(part.at),
+                    "only elements of type `Part` are supported",
+                );
                 continue;
             }
             let path = format!("{path}/{}", part.name());
-            let drawn = whole.compose(part.pose(self.notes));
+            let nominal = whole.compose(part.pose(self.notes));
             let is_fixed = part.value("isFixed").is_some_and(|(v, _)| v == "true");
             let off = |p: &&Pose| {
-                (p.r - drawn.r).norm() > OFF * p.r.norm().max(1.0) || p.rot.angle_to(drawn.rot) > OFF
+                (p.r - nominal.r).norm() > OFF * p.r.norm().max(1.0) || p.rot.angle_to(nominal.rot) > OFF
             };
             let closed = self.closed.get(&path).filter(off).filter(|_| !is_fixed).copied();
             self.moved += usize::from(closed.is_some());
-            let pose = closed.unwrap_or(drawn);
-            let called = JointSource { kind: "Part", name: part.name(), at: Some(part.at) };
+            let pose = closed.unwrap_or(nominal);
+            let source = ElementSource { kind: "Part", name: part.name(), at: Some(part.at) };
             let body =
-                if is_fixed { GROUND } else { self.m.body(part.name(), called.note(self.notes), Some(pose)) };
+                if is_fixed { GROUND } else { self.m.body(part.name(), source.note(self.notes), Some(pose)) };
             if self.parts.insert(path.clone(), body).is_some() {
                 self.notes.problem_with(
                     "HP0803",
@@ -386,7 +396,7 @@ impl Reader<'_> {
     }
 
     fn joint(&mut self, joint: &Node<'_>) {
-        let called = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
+        let source = ElementSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
         let kind = match joint.text {
             "FixedJoint" => "fixed",
             "RevoluteJoint" => "revolute",
@@ -424,17 +434,17 @@ impl Reader<'_> {
             notes.taken(joint.text, joint.name(), Some(joint.at));
             m.joint(made)
         };
-        let note = called.note(self.notes);
-        let said = |reader: &mut Self, key: &str| {
+        let note = source.note(self.notes);
+        let specified = |reader: &mut Self, key: &str| {
             joint.child(key).and_then(|_| joint.numbers::<1>(key, reader.notes)).map(|[x]| x)
         };
         let number = match kind {
             "distance" => {
                 let mut rod = Joint::new(joint.name(), note, "distance", [i.body, j.body], i.pose.r)
                     .between(i.pose.r, j.pose.r);
-                let drawn = (j.pose.r - i.pose.r).norm();
-                let length = said(self, "distanceIJ").unwrap_or(drawn);
-                let why = if drawn == 0.0 || i.body == j.body {
+                let nominal = (j.pose.r - i.pose.r).norm();
+                let length = specified(self, "distanceIJ").unwrap_or(nominal);
+                let why = if nominal == 0.0 || i.body == j.body {
                     "its markers coincide, or are on the same body"
                 } else if length <= 0.0 {
                     "its length is zero: use a ball joint"
@@ -445,19 +455,19 @@ impl Reader<'_> {
                     self.notes.refused(joint.text, joint.name(), Some(joint.at), why);
                     return;
                 }
-                if !is_drawn(&self.m, length, drawn) {
+                if !equals_nominal(&self.m, length, nominal) {
                     rod.length = Some(length);
                 }
                 Some(place(&mut self.m, self.notes, rod))
             }
             "angle" if i.z().cross(j.z()).norm() > 1e-6 && i.body != j.body => {
-                let drawn = i.z().dot(j.z()).clamp(-1.0, 1.0).acos();
+                let nominal = i.z().dot(j.z()).clamp(-1.0, 1.0).acos();
                 let angle = Joint::new(joint.name(), note, "angle", [i.body, j.body], i.pose.r)
                     .with_axes(i.z(), j.z());
-                match said(self, "theIzJz").filter(|a| (a.cos() - drawn.cos()).abs() > 1e-6) {
-                    Some(said) => {
+                match specified(self, "theIzJz").filter(|a| (a.cos() - nominal.cos()).abs() > 1e-6) {
+                    Some(specified) => {
                         let why = format!(
-                            "specified as {said} rad, but {drawn} rad in the design configuration, which is used"
+                            "specified as {specified} rad, but {nominal} rad in the design configuration, which is used"
                         );
                         self.notes.approximated(joint.text, joint.name(), Some(joint.at), why);
                         Some(self.m.joint(angle))
@@ -465,19 +475,19 @@ impl Reader<'_> {
                     None => Some(place(&mut self.m, self.notes, angle)),
                 }
             }
-            "angle" => join(&mut self.m, self.notes, called, "parallel", [i, j]),
+            "angle" => join(&mut self.m, self.notes, source, "parallel", [i, j]),
             // The origin of marker J stays in a plane perpendicular to z of marker I, at the distance `offset`.
             "planar" | "inplane" | "line_in_plane" => {
-                let offset = said(self, "offset").unwrap_or(0.0);
+                let offset = specified(self, "offset").unwrap_or(0.0);
                 let i = Marker { body: i.body, pose: Pose { r: i.pose.r + i.z() * offset, ..i.pose } };
                 if kind == "line_in_plane" {
-                    join(&mut self.m, self.notes, called, "dot1", [i, j]);
-                    join(&mut self.m, self.notes, called, "inplane", [i, j])
+                    join(&mut self.m, self.notes, source, "dot1", [i, j]);
+                    join(&mut self.m, self.notes, source, "inplane", [i, j])
                 } else {
-                    join(&mut self.m, self.notes, called, kind, [i, j])
+                    join(&mut self.m, self.notes, source, kind, [i, j])
                 }
             }
-            _ => join(&mut self.m, self.notes, called, kind, [i, j]),
+            _ => join(&mut self.m, self.notes, source, kind, [i, j]),
         };
         let Some(number) = number else { return };
         self.joints.insert(joint.name().to_owned(), MarkerJoint { number, kind, markers: [i, j] });
@@ -486,16 +496,16 @@ impl Reader<'_> {
     /// Adds a joint that represents a massless link between two markers.
     fn link(&mut self, joint: &Node<'_>, kinds: [&'static str; 2]) {
         let Some(markers) = self.pair(joint) else { return };
-        let called = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
+        let source = ElementSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
         let distance = joint.child("distanceIJ").and_then(|_| joint.numbers::<1>("distanceIJ", self.notes));
-        linked(&mut self.m, self.notes, called, kinds, markers, distance.map(|[d]| d));
+        join_by_link(&mut self.m, self.notes, source, kinds, markers, distance.map(|[d]| d));
     }
 
     /// Adds a screw, a single constraint: 2 pi z = pitch * angle, of marker J relative to marker I. Other joints guide
     /// the parts.
     fn screw(&mut self, joint: &Node<'_>) {
         let Some([i, j]) = self.pair(joint) else { return };
-        let called = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
+        let source = ElementSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
         let Some(pitch) = joint.numbers::<1>("pitch", self.notes).map(|[p]| p).filter(|p| *p != 0.0) else {
             let message = format!("the screw `{}` has no pitch", joint.name());
             let help = "give it a non-zero `pitch`";
@@ -503,8 +513,8 @@ impl Reader<'_> {
             return;
         };
         let joints: Vec<MarkerJoint> = self.joints.values().copied().collect();
-        if screw(&mut self.m, self.notes, called, &joints, [i, j], pitch).is_none()
-            && let Some(number) = join(&mut self.m, self.notes, called, "screw", [i, j])
+        if couple_screw(&mut self.m, self.notes, source, &joints, [i, j], pitch).is_none()
+            && let Some(number) = join(&mut self.m, self.notes, source, "screw", [i, j])
         {
             self.m.joints[number].lead = Some(pitch);
             self.joints
@@ -516,15 +526,16 @@ impl Reader<'_> {
     fn gear(&mut self, joint: &Node<'_>) {
         let Some([i, j]) = self.pair(joint) else { return };
         let hinges = ["revolute", "cylindrical"];
-        let note = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) }.note(self.notes);
+        let note =
+            ElementSource { kind: joint.text, name: joint.name(), at: Some(joint.at) }.note(self.notes);
         let radius = |reader: &mut Self, key: &str| {
             joint.numbers::<1>(key, reader.notes).map(|[r]| r).filter(|r| *r != 0.0)
         };
         let terms = if joint.text == "GearJoint" {
             let radii = [radius(self, "radiusI"), radius(self, "radiusJ")];
             let [a, b] = [i, j].map(|m| {
-                carrying(self.joints.values(), m.body, &hinges, m.z())
-                    .map(|k| (k.number, way(k, m.body, i.z())))
+                carrying_joint(self.joints.values(), m.body, &hinges, m.z())
+                    .map(|k| (k.number, coordinate_sign(k, m.body, i.z())))
             });
             match (radii, a, b) {
                 ([Some(ri), Some(rj)], Some((a, u)), Some((b, v))) if a != b => Some(vec![
@@ -537,12 +548,19 @@ impl Reader<'_> {
             let radius = radius(self, "pitchRadius");
             // The rack moves by s along the x axis of marker I, the pinion turns about the z axis of marker J: s = r
             // angle.
-            let slide = carrying(self.joints.values(), i.body, &["translational", "cylindrical"], i.x());
-            let hinge = carrying(self.joints.values(), j.body, &hinges, j.z());
+            let slide =
+                carrying_joint(self.joints.values(), i.body, &["translational", "cylindrical"], i.x());
+            let hinge = carrying_joint(self.joints.values(), j.body, &hinges, j.z());
             match (radius, slide, hinge) {
                 (Some(r), Some(slide), Some(hinge)) => Some(vec![
-                    (Coordinate { joint: slide.number, name: "displacement" }, way(slide, i.body, i.x())),
-                    (Coordinate { joint: hinge.number, name: "angle" }, -r * way(hinge, j.body, j.z())),
+                    (
+                        Coordinate { joint: slide.number, name: "displacement" },
+                        coordinate_sign(slide, i.body, i.x()),
+                    ),
+                    (
+                        Coordinate { joint: hinge.number, name: "angle" },
+                        -r * coordinate_sign(hinge, j.body, j.z()),
+                    ),
                 ]),
                 _ => None,
             }
@@ -611,12 +629,12 @@ impl Reader<'_> {
             return Err("the joint is driven already".into());
         }
         let turns = name == "angle";
-        let drawn = offset(&joint.markers[0], &joint.markers[1]);
-        let drawn = if turns { drawn.angle } else { drawn.displacement };
-        let text = counted(&law::translate(function, Language::Ondsel)?, drawn, turns);
-        let law = if law::constant(&text) == Some(0.0) { Law::Held } else { Law::Text(text) };
+        let nominal = offset(&joint.markers[0], &joint.markers[1]);
+        let nominal = if turns { nominal.angle } else { nominal.displacement };
+        let text = relative_to_nominal(&law::translate(function, Language::Ondsel)?, nominal, turns);
+        let law = if law::constant(&text) == Some(0.0) { Law::Fixed } else { Law::Text(text) };
         let note =
-            JointSource { kind: motion.text, name: motion.name(), at: Some(motion.at) }.note(self.notes);
+            ElementSource { kind: motion.text, name: motion.name(), at: Some(motion.at) }.note(self.notes);
         self.m.driver(motion.name(), note, Drives::Coordinate(coordinate), law);
         self.notes.taken(motion.text, motion.name(), Some(motion.at));
         Ok(())
@@ -628,7 +646,7 @@ impl Reader<'_> {
             let (function, _) = motion.value(key).ok_or_else(|| format!("it has no `{key}`"))?;
             law::translate(function, Language::Ondsel)
         };
-        let ways = [text("rIJI1")?, text("rIJI2")?, text("rIJI3")?];
+        let displacements = [text("rIJI1")?, text("rIJI2")?, text("rIJI3")?];
         let angles = [text("angIJJ1")?, text("angIJJ2")?, text("angIJJ3")?];
         let order = match motion.child("RotationOrder") {
             Some(_) => motion.numbers::<3>("RotationOrder", self.notes).unwrap_or([1.0, 2.0, 3.0]),
@@ -640,8 +658,8 @@ impl Reader<'_> {
         };
         let Some(markers) = self.pair(motion) else { return Ok(()) };
         let [p, q, r] = angles;
-        let called = JointSource { kind: motion.text, name: motion.name(), at: Some(motion.at) };
-        chain::drive(&mut self.m, self.notes, called, markers, ways, [(a, p), (b, q), (c, r)])
+        let source = ElementSource { kind: motion.text, name: motion.name(), at: Some(motion.at) };
+        chain::drive(&mut self.m, self.notes, source, markers, displacements, [(a, p), (b, q), (c, r)])
     }
 
     /// Returns the joint between the markers of a motion that names no joint.
@@ -714,7 +732,7 @@ fn stored<'t>(lines: &[(&'t str, SourceSpan)], notes: &mut ImportLog) -> (Vec<f6
         notes.refused("TimeSeries", "", Some(*at), "its times are not numbers");
         return nothing;
     };
-    let mut told = Vec::new();
+    let mut stored_parts = Vec::new();
     let mut k = 0;
     while k < lines.len() {
         let (head, at) = lines[k];
@@ -743,20 +761,24 @@ fn stored<'t>(lines: &[(&'t str, SourceSpan)], notes: &mut ImportLog) -> (Vec<f6
                 rates: rates.map(|names| vector(names, step)),
             })
         };
-        told.push(StoredPart { path: path.trim(), at, states: (0..times.len()).map(state).collect() });
+        stored_parts.push(StoredPart {
+            path: path.trim(),
+            at,
+            states: (0..times.len()).map(state).collect(),
+        });
     }
-    (times, told)
+    (times, stored_parts)
 }
 
 /// Returns the stored motion of the bodies.
 fn series(
-    (times, told): (Vec<f64>, Vec<StoredPart<'_>>),
+    (times, parts_stored): (Vec<f64>, Vec<StoredPart<'_>>),
     m: &Mechanism,
     parts: &BTreeMap<String, usize>,
     notes: &mut ImportLog,
 ) -> Option<Series> {
     let mut series = Series { times, bodies: Vec::new() };
-    for StoredPart { path, at, states } in told {
+    for StoredPart { path, at, states } in parts_stored {
         match (parts.get(path).filter(|b| **b != GROUND), states) {
             (Some(body), Some(states)) => {
                 series.bodies.push((m.bodies[*body].name.clone(), states));

@@ -13,7 +13,7 @@ const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 
 /// Adds the cases of a vehicle: both wheels in the same direction (heave), in opposite directions (roll), and steering.
 /// A single motion needs no case.
-pub fn of_vehicle(m: &mut Mechanism, notes: &mut ImportLog) {
+pub fn add_vehicle_cases(m: &mut Mechanism, notes: &mut ImportLog) {
     let mut bumps: Vec<usize> = m.wheels.iter().map(|w| w.bump).collect();
     bumps.dedup();
     let mut wanted: Vec<(&'static str, Vec<(usize, f64)>)> = match bumps[..] {
@@ -36,8 +36,7 @@ pub fn of_vehicle(m: &mut Mechanism, notes: &mut ImportLog) {
             Some(case) => {
                 let laws: Vec<String> =
                     case.laws.iter().map(|(k, law)| format!("`{}` {law}", m.drivers[*k].name)).collect();
-                let why =
-                    format!("nothing drives it in the source: added with {}", laws.join(", "));
+                let why = format!("nothing drives it in the source: added with {}", laws.join(", "));
                 notes.approximated("case", name, None, why);
                 m.cases.push(case);
             }
@@ -55,8 +54,8 @@ fn moves(m: &Mechanism, case: &Case) -> bool {
     alone.cases.clear();
     for driver in &mut alone.drivers {
         match driver.law {
-            Law::Text(_) | Law::Table(_) => driver.law = Law::Held,
-            Law::Held | Law::Set(_) => {}
+            Law::Text(_) | Law::Table(_) => driver.law = Law::Fixed,
+            Law::Fixed | Law::Constant(_) => {}
         }
     }
     for (driver, law) in &case.laws {

@@ -5,7 +5,7 @@ use hardpoint::law::Law as Function;
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::law;
-use crate::markers::{JointSource, Marker};
+use crate::markers::{ElementSource, Marker};
 use crate::mechanism::{Coordinate, Drives, Joint, Law, Mechanism};
 use crate::report::ImportLog;
 use crate::turn::{X, Y, Z};
@@ -29,9 +29,9 @@ struct Step {
 pub fn drive(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: JointSource<'_>,
+    source: ElementSource<'_>,
     [i, j]: [Marker; 2],
-    ways: [String; 3],
+    displacements: [String; 3],
     turns: [(usize, String); 3],
 ) -> Result<(), String> {
     if i.body == j.body {
@@ -45,7 +45,7 @@ pub fn drive(
             .ok_or_else(|| format!("`{text}` is not finite at {start} s"))
     };
     let (mut steps, mut pose) = (Vec::new(), i.pose);
-    for (k, law) in ways.into_iter().enumerate() {
+    for (k, law) in displacements.into_iter().enumerate() {
         let (axis, first) = (i.pose.rot.cols[k], value(&law)?);
         pose.r += axis * first;
         steps.push(Step { kind: "translational", axis, law, first });
@@ -58,7 +58,7 @@ pub fn drive(
     }
     // Constant coordinates need no joint.
     steps.retain(|s| law::constant(&s.law).is_none());
-    let note = called.note(notes);
+    let note = source.note(notes);
     let at = j.pose.r;
     let count = steps.len();
     let mut carrier = i.body;
@@ -67,9 +67,9 @@ pub fn drive(
             j.body
         } else {
             let frame = Pose { rot: i.pose.rot, r: at };
-            m.body(&format!("{}_{}", called.name, k + 1), note.clone(), Some(frame))
+            m.body(&format!("{}_{}", source.name, k + 1), note.clone(), Some(frame))
         };
-        let name = format!("{}_{}", called.name, k + 1);
+        let name = format!("{}_{}", source.name, k + 1);
         let joint = m.joint(Joint::new(&name, note.clone(), step.kind, [carrier, body], at).along(step.axis));
         let coordinate = if step.kind == "revolute" { "angle" } else { "displacement" };
         let text = match step.first {
@@ -85,14 +85,14 @@ pub fn drive(
         carrier = body;
     }
     if count == 0 {
-        m.joint(Joint::new(called.name, note, "fixed", [i.body, j.body], at));
+        m.joint(Joint::new(source.name, note, "fixed", [i.body, j.body], at));
     }
     let off = (pose.r - at).norm() > SAME * (1.0 + at.norm()) || pose.rot.angle_to(j.pose.rot) > SAME;
     if off {
         let why = "the drawn positions of its markers differ from its initial values: it moves them from their drawn positions";
-        notes.approximated(called.kind, called.name, called.at, why);
+        notes.approximated(source.kind, source.name, source.at, why);
     } else {
-        notes.taken(called.kind, called.name, called.at);
+        notes.taken(source.kind, source.name, source.at);
     }
     Ok(())
 }

@@ -15,7 +15,7 @@ pub const FORMAT: Format = Format {
     name: "chrono",
     about: "Chrono suspension",
     endings: &["json"],
-    looks: |text| text.contains("\"Template\"") && text.contains("\"Type\""),
+    recognises: |text| text.contains("\"Template\"") && text.contains("\"Type\""),
     read,
     binary: false,
 };

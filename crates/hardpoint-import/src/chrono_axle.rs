@@ -54,7 +54,12 @@ impl Axle<'_> {
         let found = parts.iter().find_map(|p| Some((*p, self.root.get(p)?)));
         let Some((part, tree)) = found else {
             let message = format!("the part `{}` is missing", parts[0]);
-            self.notes.problem_with("HP0803", Some(self.root.at), message, "add the part, or export the template again");
+            self.notes.problem_with(
+                "HP0803",
+                Some(self.root.at),
+                message,
+                "add the part, or export the template again",
+            );
             return None;
         };
         self.read.push(part);
@@ -181,7 +186,7 @@ impl Axle<'_> {
             "steering",
             "no law in the source: fixed in the design configuration".into(),
             drives,
-            Law::Held,
+            Law::Fixed,
         );
         self.m.steering = Some(steering);
         let why = "the steering is in another file: its link slides along the drag link, and a driver fixes it in the design configuration";

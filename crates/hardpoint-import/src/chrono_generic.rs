@@ -7,7 +7,7 @@ use hardpoint::space::{Mat3, Vec3};
 
 use crate::chrono_part::{self, Inertial, Masses};
 use crate::corner::{Corner, spin_axis};
-use crate::markers::JointSource;
+use crate::markers::ElementSource;
 use crate::mechanism::{Force, ForceOn, GROUND, Joint, Mechanism, Spring};
 use crate::report::{ImportLog, SourceSpan};
 use crate::robot;
@@ -138,8 +138,8 @@ impl Side<'_> {
             if let Some(Inertial { mass, inertia }) = Inertial::of(tree) {
                 let rotation = tree.get("Rotation").and_then(quaternion).unwrap_or_else(crate::turn::none);
                 let frame = hardpoint::space::Pose { rot: self.axes(tree, rotation), r };
-                let called = JointSource { kind: "mass", name: &name, at: Some(tree.at) };
-                robot::mass(self.m, self.notes, called, body, frame, mass, inertia);
+                let source = ElementSource { kind: "mass", name: &name, at: Some(tree.at) };
+                robot::mass(self.m, self.notes, source, body, frame, mass, inertia);
             }
         }
     }
@@ -205,7 +205,8 @@ impl Side<'_> {
             };
             let rotation = frame.get("Rotation").map_or(Some(crate::turn::none()), quaternion);
             let (Some(at), Some(rotation)) = (frame.get("Position").and_then(Tree::vector), rotation) else {
-                let message = format!("the `Coordinate System` of `{name}` is not a position with a quaternion");
+                let message =
+                    format!("the `Coordinate System` of `{name}` is not a position with a quaternion");
                 self.notes.problem_with(
                     "HP0804",
                     Some(frame.at),
@@ -339,5 +340,5 @@ fn quaternion(tree: &Tree) -> Option<Mat3> {
 }
 
 fn note(kind: &str, name: &str, at: SourceSpan, notes: &ImportLog) -> String {
-    JointSource { kind, name, at: Some(at) }.note(notes)
+    ElementSource { kind, name, at: Some(at) }.note(notes)
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::corner::plain;
-use crate::markers::JointSource;
+use crate::markers::ElementSource;
 use crate::mechanism::{GROUND, Mechanism, Spring};
 use crate::report::{ImportLog, SourceSpan};
 use crate::robot;
@@ -115,8 +115,8 @@ impl Masses<'_> {
         let is_global = self.root.text_of("Vehicle-Frame Inertia") == Some("true");
         let rot = axes.filter(|_| !is_global).unwrap_or_else(none);
         let frame = Pose { rot, r: over(centre, self.side) };
-        let called = JointSource { kind: "mass", name: &name, at: Some(tree.at) };
-        robot::mass(self.m, self.notes, called, body, frame, mass, inertia);
+        let source = ElementSource { kind: "mass", name: &name, at: Some(tree.at) };
+        robot::mass(self.m, self.notes, source, body, frame, mass, inertia);
     }
 
     /// Adds the mass of an arm, whose axes are in the plane of three locations: x from the second to the first, z
@@ -287,12 +287,7 @@ pub fn account(root: &Tree, read: &[&str], notes: &mut ImportLog) {
             }
             "Antiroll Body" => notes.ignored(key, Some(*at)),
             _ if read.contains(&key.as_str()) => part(key, value, notes),
-            _ => notes.not_understood(
-                key,
-                "",
-                Some(*at),
-                "unknown part of this template",
-            ),
+            _ => notes.not_understood(key, "", Some(*at), "unknown part of this template"),
         }
     }
 }

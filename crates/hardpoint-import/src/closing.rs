@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::str::FromStr;
 
-use crate::markers::{JointSource, Marker, join};
+use crate::markers::{ElementSource, Marker, join};
 use crate::mechanism::{Mechanism, NamedFrame};
 use crate::report::ImportLog;
 use crate::robot;
@@ -126,10 +126,10 @@ fn connect(
     axis: usize,
     ends: [&NamedFrame; 2],
 ) {
-    let called = JointSource { kind: "loop", name, at: None };
+    let source = ElementSource { kind: "loop", name, at: None };
     if kind == "fixed" {
         let ends = ends.map(|f| Marker { body: f.body, pose: f.pose });
-        robot::weld(m, notes, called, kind, ends);
+        robot::weld(m, notes, source, kind, ends);
         return;
     }
     let markers = ends.map(|f| match kind {
@@ -139,12 +139,12 @@ fn connect(
         _ => Marker::along(f.body, f.pose.r, f.pose.rot.cols[axis]),
     });
     if let [Some(i), Some(j)] = markers {
-        join(m, notes, called, kind, [i, j]);
+        join(m, notes, source, kind, [i, j]);
     }
 }
 
 /// Closes the loops cut by onshape-to-robot, which leaves two frames `closing_NAME_1` and `closing_NAME_2`.
-pub fn of_exporters(m: &mut Mechanism, notes: &mut ImportLog) {
+pub fn close_cut_by_exporters(m: &mut Mechanism, notes: &mut ImportLog) {
     let cut = |f: &NamedFrame| {
         Some(f.name.rsplit("::").next()?.strip_prefix("closing_")?.strip_suffix("_1")?.to_owned())
     };
@@ -165,7 +165,7 @@ pub fn of_exporters(m: &mut Mechanism, notes: &mut ImportLog) {
 }
 
 /// Reports pairs of frames that are likely to be the two ends of a cut loop.
-pub fn pairs(m: &Mechanism, notes: &mut ImportLog) {
+pub fn report_likely_pairs(m: &Mechanism, notes: &mut ImportLog) {
     let bare: Vec<&NamedFrame> = m.frames.iter().filter(|f| f.bare).take(MOST_FRAMES).collect();
     let group = groups(m);
     let near = SAME_PLACE * m.size();
@@ -173,8 +173,8 @@ pub fn pairs(m: &Mechanism, notes: &mut ImportLog) {
     for (k, a) in bare.iter().enumerate() {
         for b in &bare[k + 1..] {
             let alike = are_a_pair(&a.name, &b.name);
-            let meet = (a.pose.r - b.pose.r).norm() <= near;
-            if !(alike || meet) || group[a.body] == group[b.body] || is_joined(m, [a, b], &group) {
+            let coincide = (a.pose.r - b.pose.r).norm() <= near;
+            if !(alike || coincide) || group[a.body] == group[b.body] || is_joined(m, [a, b], &group) {
                 continue;
             }
             let bodies = [group[a.body].min(group[b.body]), group[a.body].max(group[b.body])];
@@ -184,7 +184,7 @@ pub fn pairs(m: &Mechanism, notes: &mut ImportLog) {
             if named.len() > MOST_NAMED {
                 return;
             }
-            let why = if meet { "coincide on two bodies" } else { "have matching names" };
+            let why = if coincide { "coincide on two bodies" } else { "have matching names" };
             notes.remark(format!(
                 "the frames `{0}` and `{1}` {why}: if a loop is cut here, `--close {0}={1}` closes it with a ball joint, \
                  `--close {0}={1}:revolute` with a hinge about z of `{0}`",

@@ -17,12 +17,12 @@ type Triangle = [Vec3; 3];
 
 /// Affine transformation of a node: `turn s + shift`.
 #[derive(Clone, Copy)]
-struct Placed {
+struct Affine {
     turn: Mat3,
     shift: Vec3,
 }
 
-impl Placed {
+impl Affine {
     fn point(self, s: Vec3) -> Vec3 {
         self.turn * s + self.shift
     }
@@ -45,10 +45,10 @@ pub fn triangles(text: &str) -> Result<Vec<Triangle>, String> {
         child(root, "asset").and_then(|a| child(a, "unit")).and_then(|u| u.attribute("meter")?.parse().ok());
     let metre: f64 = unit.filter(|m: &f64| m.is_finite() && *m > 0.0).unwrap_or(1.0);
     let mut reader = Reader { ids, out: Vec::new() };
-    let shown = child(root, "scene").and_then(|s| child(s, "instance_visual_scene"));
-    let scene = shown.and_then(|s| reader.named(s, "url"));
+    let instance = child(root, "scene").and_then(|s| child(s, "instance_visual_scene"));
+    let scene = instance.and_then(|s| reader.named(s, "url"));
     let first = || child(child(root, "library_visual_scenes")?, "visual_scene");
-    let scaled = Placed { turn: scale([metre; 3]), shift: Vec3::zero() };
+    let scaled = Affine { turn: scale([metre; 3]), shift: Vec3::zero() };
     match scene.or_else(first) {
         Some(scene) => reader.node(scene, scaled, 0),
         None => named(root, "library_geometries").flat_map(children).for_each(|g| reader.geometry(g, scaled)),
@@ -73,7 +73,7 @@ impl<'a, 'i: 'a> Reader<'a, 'i> {
     }
 
     /// Adds the shapes of a node and of its descendants.
-    fn node(&mut self, node: Node<'a, 'i>, outer: Placed, depth: usize) {
+    fn node(&mut self, node: Node<'a, 'i>, outer: Affine, depth: usize) {
         if depth > DEEPEST || self.out.len() > MOST {
             return;
         }
@@ -83,13 +83,13 @@ impl<'a, 'i: 'a> Reader<'a, 'i> {
             let step = match (part.tag_name().name(), &numbers()[..]) {
                 ("matrix", m @ [_, _, _, _, _, _, _, _, _, _, _, _, ..]) => {
                     let column = |k: usize| Vec3::new(m[k], m[4 + k], m[8 + k]);
-                    Placed { turn: Mat3 { cols: [column(0), column(1), column(2)] }, shift: column(3) }
+                    Affine { turn: Mat3 { cols: [column(0), column(1), column(2)] }, shift: column(3) }
                 }
-                ("translate", [x, y, z]) => Placed { turn: scale([1.0; 3]), shift: Vec3::new(*x, *y, *z) },
-                ("scale", [x, y, z]) => Placed { turn: scale([*x, *y, *z]), shift: Vec3::zero() },
+                ("translate", [x, y, z]) => Affine { turn: scale([1.0; 3]), shift: Vec3::new(*x, *y, *z) },
+                ("scale", [x, y, z]) => Affine { turn: scale([*x, *y, *z]), shift: Vec3::zero() },
                 ("rotate", [x, y, z, angle]) => {
                     let Some(axis) = Vec3::new(*x, *y, *z).unit() else { continue };
-                    Placed { turn: Mat3::about(axis, angle.to_radians()), shift: Vec3::zero() }
+                    Affine { turn: Mat3::about(axis, angle.to_radians()), shift: Vec3::zero() }
                 }
                 _ => continue,
             };
@@ -113,7 +113,7 @@ impl<'a, 'i: 'a> Reader<'a, 'i> {
         }
     }
 
-    fn geometry(&mut self, geometry: Node<'a, 'i>, place: Placed) {
+    fn geometry(&mut self, geometry: Node<'a, 'i>, place: Affine) {
         for faces in named(geometry, "mesh").flat_map(children) {
             let kind = faces.tag_name().name();
             if !["triangles", "polylist", "polygons"].contains(&kind) {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use hardpoint::model::VehicleEnd;
 use hardpoint::space::Vec3;
 
-use crate::markers::JointSource;
+use crate::markers::ElementSource;
 use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mechanism, Spring, Wheel};
 use crate::report::{ImportLog, SourceSpan};
 use crate::sides::over;
@@ -436,7 +436,7 @@ pub fn bump(
     let text = format!("{}*sin(2*pi*t)", BUMP * m.per_mm());
     let why = format!("nothing drives it in the source: a vertical bump motion is added, law `{text}`");
     notes.approximated("motion", &format!("wheel{suffix}"), at, why);
-    let drives = Drives::Way { body, at: centre, along: [0.0, 0.0, 1.0].into() };
+    let drives = Drives::Translation { body, at: centre, along: [0.0, 0.0, 1.0].into() };
     let note = "no law in the source: vertical bump motion of the wheel".into();
     m.driver(&format!("bump{suffix}"), note, drives, Law::Text(text))
 }
@@ -662,7 +662,7 @@ impl Corner {
             "steering",
             "no law in the source: fixed in the design configuration".into(),
             drives,
-            Law::Held,
+            Law::Fixed,
         );
         m.steering = Some(steering);
         notes.approximated(
@@ -695,7 +695,8 @@ impl Corner {
         };
         let mount = self.rod_on.clone().unwrap_or_else(nearest);
         if self.rod_on.is_none() {
-            let why = "the part at its outer end is not in the file: the arm with the nearest ball joint is used";
+            let why =
+                "the part at its outer end is not in the file: the arm with the nearest ball joint is used";
             notes.approximated("push rod", &name("push_rod"), self.at, why);
         }
         let Some(carrier) = on(&mount) else {
@@ -769,7 +770,7 @@ impl Corner {
     pub fn force(&self, m: &mut Mechanism, notes: &mut ImportLog, base: &str, ends: Ends) {
         let Some((spring, at)) = self.springs.get(base) else { return };
         let name = format!("{base}{}", self.suffix);
-        let note = JointSource { kind: base, name: &name, at: Some(*at) }.note(notes);
+        let note = ElementSource { kind: base, name: &name, at: Some(*at) }.note(notes);
         m.force(Force { name: name.clone(), note, on: ForceOn::Points(ends), spring: spring.clone() });
         notes.taken("force", &name, Some(*at));
     }

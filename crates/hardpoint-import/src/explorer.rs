@@ -15,7 +15,7 @@ pub const FORMAT: Format = Format {
     name: "suspension-explorer",
     about: "suspension-explorer geometry",
     endings: &["yaml", "yml"],
-    looks: |text| text.lines().any(|l| l.starts_with("hardpoints:") || l.starts_with("hard_points:")),
+    recognises: |text| text.lines().any(|l| l.starts_with("hardpoints:") || l.starts_with("hard_points:")),
     read,
     binary: false,
 };
@@ -106,12 +106,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
 
 fn units(root: &Tree, notes: &mut ImportLog) -> &'static str {
     let Some(units) = root.get("units") else {
-        notes.approximated(
-            "units",
-            "",
-            Some(root.at),
-            "the file defines no unit: millimetres are assumed",
-        );
+        notes.approximated("units", "", Some(root.at), "the file defines no unit: millimetres are assumed");
         return "mm";
     };
     match units.text().unwrap_or_default().to_ascii_lowercase().as_str() {
@@ -256,12 +251,7 @@ fn account(root: &Tree, notes: &mut ImportLog) {
                 notes.refused(key, kind, Some(*at), why);
             }
             "anti_roll" | "heave_link" => {
-                notes.refused(
-                    key,
-                    kind,
-                    Some(*at),
-                    "members between both sides are not imported",
-                );
+                notes.refused(key, kind, Some(*at), "members between both sides are not imported");
             }
             "opposite_axle_axis_height" => {
                 notes.refused(key, "", Some(*at), "no measure uses parameters of the other axle");

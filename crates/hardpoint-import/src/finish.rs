@@ -37,8 +37,8 @@ const MOST_HELD: usize = 400;
 /// cannot be assembled.
 pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<Diagnostic> {
     ground(m, notes);
-    straightened(m, notes);
-    let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Held | Law::Set(_)));
+    straighten_if_helpful(m, notes);
+    let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Fixed | Law::Constant(_)));
     let mut left = match freedom(m, notes) {
         Ok(left) => left,
         Err(fault) => return Some(*fault),
@@ -68,7 +68,7 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
         let before = m.drivers.len();
         for (name, drives) in held.drivers(m) {
             let why = "nothing drives it in the source: fixed in the design configuration".into();
-            m.driver(&format!("{name}_held"), why, drives, Law::Held);
+            m.driver(&format!("{name}_held"), why, drives, Law::Fixed);
         }
         match freedom(m, notes) {
             // The idle spin of a body is not counted as a degree of freedom until it is fixed.
@@ -86,25 +86,28 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
             _ => m.drivers.truncate(before),
         }
     }
-    as_drawn(m, notes, closed);
+    close_as_nominal(m, notes, closed);
     if only_one {
         swing(m, notes);
     }
-    unfollowed(m, notes);
+    remove_inadmissible(m, notes);
     None
 }
 
 /// Adds a remark if nothing moves: in a mechanism with all motions fixed, something is usually missing.
-pub fn remark(m: &Mechanism, notes: &mut ImportLog, closes: bool) {
-    let held = m.drivers.iter().filter(|d| d.law == Law::Held).count();
-    let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Held | Law::Set(_)));
+pub fn remark_undriven(m: &Mechanism, notes: &mut ImportLog, closes: bool) {
+    let held = m.drivers.iter().filter(|d| d.law == Law::Fixed).count();
+    let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Fixed | Law::Constant(_)));
     if moves || held == 0 {
         return;
     }
     let is_tree = m.joints.len() < m.bodies.len();
     let how = if closes { ": if it has loops, close them with `--close A=B`" } else { "" };
-    let loops =
-        if is_tree { format!("; the mechanism is a tree, without a closed loop{how}") } else { String::new() };
+    let loops = if is_tree {
+        format!("; the mechanism is a tree, without a closed loop{how}")
+    } else {
+        String::new()
+    };
     let motions =
         if held == 1 { "its one motion is".to_owned() } else { format!("all of its {held} motions are") };
     notes.remark(format!(
@@ -114,7 +117,7 @@ pub fn remark(m: &Mechanism, notes: &mut ImportLog, closes: bool) {
 
 /// Closes open joints in the design configuration if the mechanism does not assemble, since undriven motions are fixed
 /// there.
-fn as_drawn(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
+fn close_as_nominal(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
     let rods = ["distance", "leg", "revolute_spherical"];
     let is_open = |j: &Joint| j.length.is_some() || (j.at.len() > 1 && !rods.contains(&j.kind));
     let gap = |j: &Joint| match j.at[..] {
@@ -139,7 +142,7 @@ fn as_drawn(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
     }
     for frame in &m.turned {
         names.push(format!("`{}`", m.joints[frame.joint].name));
-        closed.drivers[frame.driver].law = Law::Held;
+        closed.drivers[frame.driver].law = Law::Fixed;
     }
     if assembles(&closed) {
         *m = closed;
@@ -210,7 +213,7 @@ pub fn end_point(m: &mut Mechanism, notes: &mut ImportLog) {
 }
 
 /// Removes inadmissible design variables, such as a displacement of a hinge out of the plane of a planar loop.
-fn unfollowed(m: &mut Mechanism, notes: &mut ImportLog) {
+fn remove_inadmissible(m: &mut Mechanism, notes: &mut ImportLog) {
     let Ok(mut file) = parsed(m) else { return };
     let times = &mut file.model.times;
     if times.len() > MOST_TIMES {
@@ -222,9 +225,9 @@ fn unfollowed(m: &mut Mechanism, notes: &mut ImportLog) {
     let resists = |a: &Admissibility| matches!(a, Admissibility::CannotFollow { .. });
     let names =
         file.model.variables.iter().zip(&found).filter(|(_, a)| resists(a)).map(|(v, _)| v.name.clone());
-    m.unfollowed = names.collect();
-    if !m.unfollowed.is_empty() {
-        let names: Vec<String> = m.unfollowed.iter().map(|n| format!("`{n}`")).collect();
+    m.inadmissible = names.collect();
+    if !m.inadmissible.is_empty() {
+        let names: Vec<String> = m.inadmissible.iter().map(|n| format!("`{n}`")).collect();
         let why = format!("the mechanism cannot follow them, and they are not added: {}", names.join(", "));
         notes.approximated("design variables", "", None, why);
     }
@@ -260,7 +263,7 @@ fn ground(m: &mut Mechanism, notes: &mut ImportLog) {
 }
 
 /// Makes nearly parallel axes in loops parallel if this lets the loops move.
-fn straightened(m: &mut Mechanism, notes: &mut ImportLog) {
+fn straighten_if_helpful(m: &mut Mechanism, notes: &mut ImportLog) {
     let mut straight = m.clone();
     let Some(done) = straighten(&mut straight) else { return };
     let score = |m: &Mechanism| freedom(m, notes).ok().filter(|l| l.singular.is_none()).map(|l| l.count);
@@ -305,7 +308,7 @@ fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<Diagnost
         Err(fault) => {
             let message = refused(format!("{fault}"));
             let message = fault.notes().into_iter().fold(message, |m, n| m.note(n));
-            let told = Box::new(Diagnostic { code: fault.code(), ..message }.help(fault.help()));
+            let undriven = Box::new(Diagnostic { code: fault.code(), ..message }.help(fault.help()));
             // Drivers of other quantities than joint coordinates are unnamed joints, after the named ones.
             let own =
                 |joints: &[JointId]| joints.iter().map(|j| j.0).filter(|j| *j < m.joints.len()).collect();
@@ -325,9 +328,9 @@ fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<Diagnost
                     count: *freedom,
                     joints: own(joints),
                     bodies: named(bodies),
-                    singular: Some(told),
+                    singular: Some(undriven),
                 }),
-                _ => Err(told),
+                _ => Err(undriven),
             }
         }
     }
@@ -351,15 +354,15 @@ enum FixableMotion {
     Coordinate(usize, &'static str),
     /// Several angles between the bodies of a joint, by their axes, fixed together: fixing one rotation of an idle body
     /// would leave the same number of degrees of freedom.
-    Turns(usize, &'static [usize]),
+    Rotations(usize, &'static [usize]),
     /// One angle between the bodies of a joint, by its axis.
-    Turn(usize, usize),
+    Rotation(usize, usize),
     /// Displacement of the joint location on body j along an axis.
-    Way(usize, usize),
+    Translation(usize, usize),
     /// Displacement of a body frame along an axis, by the index of the body, for bodies on rods only.
-    BodyWay(usize, usize),
+    BodyTranslation(usize, usize),
     /// Rotation of a body about an axis, by the index of the body.
-    BodyTurn(usize, usize),
+    BodyRotation(usize, usize),
 }
 
 /// Names and directions of the global axes.
@@ -370,7 +373,7 @@ impl FixableMotion {
     fn drivers(&self, m: &Mechanism) -> Vec<(String, Drives)> {
         let turn = |joint: usize, (letter, axis): (&str, [f64; 3])| {
             let j = &m.joints[joint];
-            let drives = Drives::Heading { body: j.bodies[1], about: axis.into(), relative_to: j.bodies[0] };
+            let drives = Drives::Rotation { body: j.bodies[1], about: axis.into(), relative_to: j.bodies[0] };
             (format!("{}_about_{letter}", j.name), drives)
         };
         match *self {
@@ -380,21 +383,21 @@ impl FixableMotion {
                     if coordinates(j).len() == 1 { j.name.clone() } else { format!("{}_{name}", j.name) };
                 vec![(own, Drives::Coordinate(Coordinate { joint, name }))]
             }
-            Self::Turns(joint, axes) => axes.iter().map(|k| turn(joint, AXES[*k])).collect(),
-            Self::Turn(joint, axis) => vec![turn(joint, AXES[axis])],
-            Self::Way(joint, axis) => {
+            Self::Rotations(joint, axes) => axes.iter().map(|k| turn(joint, AXES[*k])).collect(),
+            Self::Rotation(joint, axis) => vec![turn(joint, AXES[axis])],
+            Self::Translation(joint, axis) => {
                 let j = &m.joints[joint];
                 let at = j.at.last().copied().unwrap_or_else(|| Vec3::from([0.0; 3]));
-                let drives = Drives::Way { body: j.bodies[1], at, along: AXES[axis].1.into() };
+                let drives = Drives::Translation { body: j.bodies[1], at, along: AXES[axis].1.into() };
                 vec![(format!("{}_along_{}", m.bodies[j.bodies[1]].name, AXES[axis].0), drives)]
             }
-            Self::BodyWay(body, axis) => {
+            Self::BodyTranslation(body, axis) => {
                 let at = m.bodies[body].pose.map_or_else(Vec3::zero, |p| p.r);
-                let drives = Drives::Way { body, at, along: AXES[axis].1.into() };
+                let drives = Drives::Translation { body, at, along: AXES[axis].1.into() };
                 vec![(format!("{}_along_{}", m.bodies[body].name, AXES[axis].0), drives)]
             }
-            Self::BodyTurn(body, axis) => {
-                let drives = Drives::Heading { body, about: AXES[axis].1.into(), relative_to: GROUND };
+            Self::BodyRotation(body, axis) => {
+                let drives = Drives::Rotation { body, about: AXES[axis].1.into(), relative_to: GROUND };
                 vec![(format!("{}_about_{}", m.bodies[body].name, AXES[axis].0), drives)]
             }
         }
@@ -425,14 +428,17 @@ fn candidates<'m>(m: &'m Mechanism, left: &'m FreeMotions) -> impl Iterator<Item
     fn each(list: &[usize], held: fn(usize, usize) -> FixableMotion) -> impl Iterator<Item = FixableMotion> {
         list.iter().flat_map(move |&k| (0..AXES.len()).map(move |axis| held(k, axis)))
     }
-    let together = joints.iter().flat_map(|&j| TOGETHER.map(|axes| FixableMotion::Turns(j, axes)));
-    let of_joints = each(joints, FixableMotion::Turn).chain(together).chain(each(joints, FixableMotion::Way));
+    let together = joints.iter().flat_map(|&j| TOGETHER.map(|axes| FixableMotion::Rotations(j, axes)));
+    let of_joints =
+        each(joints, FixableMotion::Rotation).chain(together).chain(each(joints, FixableMotion::Translation));
     let of = |list: &[usize]| {
-        each(list, FixableMotion::BodyWay).chain(each(list, FixableMotion::BodyTurn)).collect::<Vec<_>>()
+        each(list, FixableMotion::BodyTranslation)
+            .chain(each(list, FixableMotion::BodyRotation))
+            .collect::<Vec<_>>()
     };
     let others: Vec<usize> = (1..m.bodies.len()).filter(|b| !left.bodies.contains(b)).collect();
     let of_bodies = of(&left.bodies).into_iter().chain(of(&others));
-    free.chain(balls.map(|j| FixableMotion::Turns(*j, ALL_AXES))).chain(of_joints).chain(of_bodies)
+    free.chain(balls.map(|j| FixableMotion::Rotations(*j, ALL_AXES))).chain(of_joints).chain(of_bodies)
 }
 
 /// Returns true if the mechanism moves from end to end in the first second.
@@ -449,8 +455,8 @@ fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
     let name = m.drivers[driver].name.clone();
     let (is_angle, limits) = match m.drivers[driver].drives {
         Drives::Coordinate(c) => (c.name.starts_with("angle"), m.joints[c.joint].limits),
-        Drives::Way { .. } => (false, None),
-        Drives::Heading { .. } => (true, None),
+        Drives::Translation { .. } => (false, None),
+        Drives::Rotation { .. } => (true, None),
     };
     let per_rad = if m.angle == "deg" { 180.0 / std::f64::consts::PI } else { 1.0 };
     let usual = if is_angle { SWING * per_rad } else { STROKE * m.size() };
@@ -468,8 +474,9 @@ fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
         d.law = Law::Text(text.clone());
         d.note = "nothing drives it in the source: as the only degree of freedom it is the input".into();
         if moves(m) {
-            let why =
-                format!("nothing drives it in the source: as the only degree of freedom it is the input, law `{text}`");
+            let why = format!(
+                "nothing drives it in the source: as the only degree of freedom it is the input, law `{text}`"
+            );
             notes.approximated("motion", &name, None, why);
             let short = name.strip_suffix("_held").unwrap_or(&name).to_owned();
             m.drivers[driver].name = format!("{short}_input");
@@ -478,7 +485,7 @@ fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
     }
     let d = &mut m.drivers[driver];
     (d.law, d.note) =
-        (Law::Held, "nothing drives it in the source: fixed in the design configuration".into());
+        (Law::Fixed, "nothing drives it in the source: fixed in the design configuration".into());
     notes.approximated(
         "motion",
         &name,

@@ -9,7 +9,8 @@ use roxmltree::Node;
 
 use crate::law::{self, Language};
 use crate::markers::{
-    JointSource, Marker, MarkerJoint, carrying, counted, is_drawn, join, linked, offset, screw, way,
+    ElementSource, Marker, MarkerJoint, carrying_joint, coordinate_sign, couple_screw, equals_nominal, join,
+    join_by_link, offset, relative_to_nominal,
 };
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Times};
 use crate::report::{ImportLog, SourceSpan};
@@ -22,7 +23,7 @@ pub const FORMAT: Format = Format {
     name: "freecad",
     about: "FreeCAD Assembly document",
     endings: &["fcstd"],
-    looks: |_| false,
+    recognises: |_| false,
     read,
     binary: true,
 };
@@ -180,7 +181,7 @@ impl<'a, 'i> Object<'a, 'i> {
     }
 
     /// Returns the object that it links to.
-    fn linked(&self) -> Option<&'a str> {
+    fn linked_object(&self) -> Option<&'a str> {
         self.link("LinkedObject").map(|(name, ..)| name)
     }
 
@@ -196,7 +197,7 @@ impl<'a, 'i> Object<'a, 'i> {
     }
 
     /// Returns true if it is in a body but has its own frame: a sketch or datum.
-    fn is_drawn_in_its_frame(&self) -> bool {
+    fn has_own_frame(&self) -> bool {
         const DATUMS: [&str; 4] = ["Plane", "Line", "Point", "CoordinateSystem"];
         let datum = self.kind.strip_prefix("PartDesign::").is_some_and(|k| DATUMS.contains(&k));
         datum || self.kind.starts_with("Part::Datum") || self.kind.starts_with("Sketcher::")
@@ -300,17 +301,17 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let object = &self.objects[part];
             let pose = outer.compose(object.pose(self.notes));
             let object = &self.objects[part];
-            let called = JointSource { kind: "part", name: object.label(), at: object.at() };
+            let source = ElementSource { kind: "part", name: object.label(), at: object.at() };
             let body = if grounded.contains(part) {
                 GROUND
             } else {
-                self.m.body(object.label(), called.note(self.notes), Some(pose))
+                self.m.body(object.label(), source.note(self.notes), Some(pose))
             };
             if object.kind == "Assembly::AssemblyLink" && object.text_of("Rigid") == Some("false") {
                 let why = "flexible assembly: imported as one rigid part";
-                self.notes.approximated("part", called.name, called.at, why);
+                self.notes.approximated("part", source.name, source.at, why);
             } else {
-                self.notes.taken("part", called.name, called.at);
+                self.notes.taken("part", source.name, source.at);
             }
             self.bodies.insert(part, body);
         }
@@ -416,8 +417,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 break;
             }
             // The content of a body is in the body frame, except for sketches and datums.
-            let shape = object.linked().and_then(|name| self.objects.get(name)).unwrap_or(object);
-            let has_frame = |name: &&str| self.objects.get(name).is_some_and(Object::is_drawn_in_its_frame);
+            let shape = object.linked_object().and_then(|name| self.objects.get(name)).unwrap_or(object);
+            let has_frame = |name: &&str| self.objects.get(name).is_some_and(Object::has_own_frame);
             if shape.is_shape() && !rest.first().is_some_and(has_frame) {
                 break;
             }
@@ -468,12 +469,12 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         };
         let ends = [1, 2].map(|k| self.marker(joint, k, root, outer));
         let [Some(i), Some(j)] = ends else { return };
-        let called = JointSource { kind: &kind, name: label, at };
-        let note = called.note(self.notes);
+        let source = ElementSource { kind: &kind, name: label, at };
+        let note = source.note(self.notes);
         let number = match type_name {
             "distance" => {
                 let elements = [1, 2].map(|k| self.element(joint, k));
-                return self.distance(called, elements, [i, j], distance.unwrap_or(0.0));
+                return self.distance(source, elements, [i, j], distance.unwrap_or(0.0));
             }
             "angle" if i.z().cross(j.z()).norm() > 1e-6 && i.body != j.body => {
                 self.notes.taken(&kind, label, at);
@@ -481,8 +482,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                     Joint::new(label, note, "angle", [i.body, j.body], i.pose.r).with_axes(i.z(), j.z()),
                 ))
             }
-            "angle" => join(&mut self.m, self.notes, called, "parallel", [i, j]),
-            other => join(&mut self.m, self.notes, called, other, [i, j]),
+            "angle" => join(&mut self.m, self.notes, source, "parallel", [i, j]),
+            other => join(&mut self.m, self.notes, source, other, [i, j]),
         };
         let Some(number) = number else { return };
         self.m.joints[number].limits = self.limits(joint, type_name, &i, &j);
@@ -495,15 +496,15 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     /// Returns the limits of a hinge or slide, relative to the design configuration.
     fn limits(&self, joint: &'a str, kind: &str, i: &Marker, j: &Marker) -> Option<[f64; 2]> {
         let object = &self.objects[joint];
-        let drawn = offset(i, j);
-        let (what, drawn, per_unit) = match kind {
-            "revolute" => ("Angle", drawn.angle, 1_f64.to_radians()),
-            "translational" => ("Length", drawn.displacement, 1.0),
+        let nominal = offset(i, j);
+        let (what, nominal, per_unit) = match kind {
+            "revolute" => ("Angle", nominal.angle, 1_f64.to_radians()),
+            "translational" => ("Length", nominal.displacement, 1.0),
             _ => return None,
         };
         let limit = |end: &str| {
             let is_set = object.text_of(&format!("Enable{what}{end}")) == Some("true");
-            Some(object.number(&format!("{what}{end}")).filter(|_| is_set)? * per_unit - drawn)
+            Some(object.number(&format!("{what}{end}")).filter(|_| is_set)? * per_unit - nominal)
         };
         let ends = [limit("Min"), limit("Max")];
         let open = [f64::NEG_INFINITY, f64::INFINITY];
@@ -520,7 +521,13 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
 
     /// Adds a distance between two surfaces, lines or points. The type of surface of a face is only in its shape. It is
     /// inferred from the frames in the design configuration, where the distance holds.
-    fn distance(&mut self, called: JointSource<'_>, elements: [&str; 2], ends: [Marker; 2], said: f64) {
+    fn distance(
+        &mut self,
+        source: ElementSource<'_>,
+        elements: [&str; 2],
+        ends: [Marker; 2],
+        specified: f64,
+    ) {
         // The face, or otherwise the edge, comes first.
         let rank = |e: &str| ["Face", "Edge", "Vertex"].iter().position(|x| *x == e).unwrap_or(3);
         let swapped = rank(elements[1]) < rank(elements[0]);
@@ -534,67 +541,67 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let square = i.z().dot(j.z()).abs() <= DRAWN;
         let shifted = Marker { body: i.body, pose: Pose { r: i.pose.r + i.z() * along, ..i.pose } };
         let how = match elements {
-            ["Vertex", "Vertex"] if near(said, 0.0) => "spherical",
+            ["Vertex", "Vertex"] if near(specified, 0.0) => "spherical",
             ["Vertex", "Vertex"] => "distance",
-            ["Face", "Face"] | ["Face", "Edge"] if parallel && near(along, said) => "planar",
-            ["Face", "Edge"] if square && near(along, said) => "line in plane",
-            ["Face" | "Edge", "Vertex"] if near(along, said) && !near(across, said) => "inplane",
+            ["Face", "Face"] | ["Face", "Edge"] if parallel && near(along, specified) => "planar",
+            ["Face", "Edge"] if square && near(along, specified) => "line in plane",
+            ["Face" | "Edge", "Vertex"] if near(along, specified) && !near(across, specified) => "inplane",
             ["Face" | "Edge", "Vertex"] => "point and axis",
             ["Face", "Face"] | ["Edge", "Edge"] if parallel => "axes",
             _ => "",
         };
         if i.body == j.body {
             let why = "its markers are on the same body";
-            self.notes.refused(called.kind, called.name, called.at, why);
+            self.notes.refused(source.kind, source.name, source.at, why);
             return;
         }
         // The entries of the joints are replaced by one entry for the distance.
-        let told = self.notes.report.entries.len();
+        let entry_count = self.notes.report.entries.len();
         let name = match how {
             "spherical" => {
-                join(&mut self.m, self.notes, called, how, [i, j]);
+                join(&mut self.m, self.notes, source, how, [i, j]);
                 return;
             }
             "distance" if across + along.abs() > 0.0 => {
-                let rod = Joint::new(called.name, called.note(self.notes), how, [i.body, j.body], i.pose.r);
+                let rod = Joint::new(source.name, source.note(self.notes), how, [i.body, j.body], i.pose.r);
                 let mut rod = rod.between(i.pose.r, j.pose.r);
-                rod.length = Some(said.abs()).filter(|d| !is_drawn(&self.m, *d, gap.norm()));
+                rod.length = Some(specified.abs()).filter(|d| !equals_nominal(&self.m, *d, gap.norm()));
                 self.m.joint(rod);
-                self.notes.taken(called.kind, called.name, called.at);
+                self.notes.taken(source.kind, source.name, source.at);
                 return;
             }
             "planar" => {
-                join(&mut self.m, self.notes, called, "planar", [shifted, j]);
+                join(&mut self.m, self.notes, source, "planar", [shifted, j]);
                 "two planes"
             }
             "inplane" => {
-                join(&mut self.m, self.notes, called, "inplane", [shifted, j]);
+                join(&mut self.m, self.notes, source, "inplane", [shifted, j]);
                 "a point and a plane"
             }
             "line in plane" => {
-                join(&mut self.m, self.notes, called, "dot1", [i, j]);
-                join(&mut self.m, self.notes, called, "inplane", [shifted, j]);
+                join(&mut self.m, self.notes, source, "dot1", [i, j]);
+                join(&mut self.m, self.notes, source, "inplane", [shifted, j]);
                 "a line and a plane"
             }
             "point and axis" => {
-                linked(&mut self.m, self.notes, called, ["cylindrical", "spherical"], [i, j], None);
+                join_by_link(&mut self.m, self.notes, source, ["cylindrical", "spherical"], [i, j], None);
                 "a point and an axis"
             }
             "axes" => {
-                linked(&mut self.m, self.notes, called, ["revolute", "cylindrical"], [i, j], None);
+                join_by_link(&mut self.m, self.notes, source, ["revolute", "cylindrical"], [i, j], None);
                 "two axes"
             }
             _ => {
                 let why = "its types of surfaces are not in the file and cannot be inferred: a driver fixes the motion instead";
-                self.notes.refused(called.kind, called.name, called.at, why);
+                self.notes.refused(source.kind, source.name, source.at, why);
                 return;
             }
         };
-        self.notes.report.entries.truncate(told);
+        self.notes.report.entries.truncate(entry_count);
         let why = format!(
-            "imported as a distance of {said} mm between {name}, inferred from the design configuration; the types of surfaces are not in the file"
+            "imported as a distance of {specified} mm between {name}, inferred from the design configuration; the types of surfaces are not in the file"
         );
-        self.notes.approximated(called.kind, called.name, called.at, why);
+        self.notes.approximated(source.kind, source.name, source.at, why);
     }
 
     /// Adds racks, gears, belts and screws as couplers of the joints that carry their parts.
@@ -616,11 +623,12 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
         let hinges = ["revolute", "cylindrical"];
         let hinge = |m: Marker, axis: Vec3| {
-            carrying(self.joints.values(), m.body, &hinges, m.z()).map(|k| (k.number, way(k, m.body, axis)))
+            carrying_joint(self.joints.values(), m.body, &hinges, m.z())
+                .map(|k| (k.number, coordinate_sign(k, m.body, axis)))
         };
         let slide = |m: Marker| {
-            carrying(self.joints.values(), m.body, &["translational"], m.z())
-                .map(|k| (k.number, way(k, m.body, m.z())))
+            carrying_joint(self.joints.values(), m.body, &["translational"], m.z())
+                .map(|k| (k.number, coordinate_sign(k, m.body, m.z())))
         };
         let angle = |joint: usize| Coordinate { joint, name: "angle" };
         let terms = if kind == "RackPinion" {
@@ -641,9 +649,14 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         };
         match terms {
             Some(terms) => {
-                let note = JointSource { kind: &kind, name: label, at }.note(self.notes);
+                let note = ElementSource { kind: &kind, name: label, at }.note(self.notes);
                 self.m.coupler(label, note, terms);
-                self.notes.approximated(&kind, label, at, "imported as a coupler of the joints that carry its two parts");
+                self.notes.approximated(
+                    &kind,
+                    label,
+                    at,
+                    "imported as a coupler of the joints that carry its two parts",
+                );
             }
             None => self.notes.refused(
                 &kind,
@@ -658,15 +671,15 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     /// guide its parts.
     fn screw(&mut self, joint: &'a str, markers: [Marker; 2], lead: Option<f64>) {
         let object = &self.objects[joint];
-        let called = JointSource { kind: "Screw", name: object.label(), at: object.at() };
+        let source = ElementSource { kind: "Screw", name: object.label(), at: object.at() };
         let Some(lead) = lead else {
-            let message = format!("the screw `{}` has no pitch", called.name);
-            self.notes.problem_with("HP0804", called.at, message, "give it a non-zero distance");
+            let message = format!("the screw `{}` has no pitch", source.name);
+            self.notes.problem_with("HP0804", source.at, message, "give it a non-zero distance");
             return;
         };
         let joints: Vec<MarkerJoint> = self.joints.values().copied().collect();
-        if screw(&mut self.m, self.notes, called, &joints, markers, lead).is_none()
-            && let Some(number) = join(&mut self.m, self.notes, called, "screw", markers)
+        if couple_screw(&mut self.m, self.notes, source, &joints, markers, lead).is_none()
+            && let Some(number) = join(&mut self.m, self.notes, source, "screw", markers)
         {
             self.m.joints[number].lead = Some(lead);
             self.joints.insert(joint, MarkerJoint { number, kind: "screw", markers });
@@ -691,14 +704,14 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         if self.m.is_driven(coordinate) {
             return Err("the joint is driven already".into());
         }
-        let drawn = offset(&joint.markers[0], &joint.markers[1]);
-        let text = counted(
+        let nominal = offset(&joint.markers[0], &joint.markers[1]);
+        let text = relative_to_nominal(
             &law::translate(function, Language::FreeCad)?,
-            if turns { drawn.angle } else { drawn.displacement },
+            if turns { nominal.angle } else { nominal.displacement },
             turns,
         );
-        let law = if law::constant(&text) == Some(0.0) { Law::Held } else { Law::Text(text) };
-        let note = JointSource { kind: "motion", name: label, at }.note(self.notes);
+        let law = if law::constant(&text) == Some(0.0) { Law::Fixed } else { Law::Text(text) };
+        let note = ElementSource { kind: "motion", name: label, at }.note(self.notes);
         self.m.driver(label, note, Drives::Coordinate(coordinate), law);
         self.notes.taken("motion", label, at);
         Ok(())

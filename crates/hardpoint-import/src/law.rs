@@ -40,7 +40,7 @@ pub fn translate_with(text: &str, language: Language, time: &'static str) -> Res
     let out = parser.sum()?;
     match parser.tokens.get(parser.at) {
         None => Ok(out),
-        Some(extra) => Err(format!("`{}` is not expected here", extra.shown())),
+        Some(extra) => Err(format!("`{}` is not expected here", extra.text())),
     }
 }
 
@@ -59,7 +59,7 @@ enum Token {
 }
 
 impl Token {
-    fn shown(&self) -> &str {
+    fn text(&self) -> &str {
         match self {
             Self::Number(s) | Self::Name(s) => s,
             Self::Sign(s) => s,
@@ -169,7 +169,7 @@ impl Parser {
             return Ok(());
         }
         Err(match self.tokens.get(self.at) {
-            Some(found) => format!("`{sign}` is expected instead of `{}`", found.shown()),
+            Some(found) => format!("`{sign}` is expected instead of `{}`", found.text()),
             None => format!("`{sign}` is missing at the end"),
         })
     }

@@ -105,7 +105,7 @@ pub struct Format {
     /// File extensions, without the dot.
     pub endings: &'static [&'static str],
     /// Returns true if the beginning of a text looks like this format.
-    looks: fn(&str) -> bool,
+    recognises: fn(&str) -> bool,
     /// Reads a source into a mechanism; errors are added to the log.
     read: fn(&mut Input<'_>, &mut ImportLog) -> Option<Mechanism>,
     /// True for binary formats.
@@ -146,7 +146,7 @@ impl Format {
             return FORMATS.iter().find(|f| f.binary && !TABLES.contains(&ending.as_str()));
         }
         let head = decoded(&bytes[..bytes.len().min(LOOKED_AT)]);
-        let alike: Vec<&Self> = FORMATS.iter().filter(|f| !f.binary && (f.looks)(&head)).collect();
+        let alike: Vec<&Self> = FORMATS.iter().filter(|f| !f.binary && (f.recognises)(&head)).collect();
         let by_look = alike.iter().copied().find(by_name).or(alike.first().copied());
         by_look.or_else(|| FORMATS.iter().find(by_name))
     }
@@ -205,7 +205,7 @@ pub fn import_with(
             let table = TABLES.contains(&ending.as_str());
             let help = "to create a model from a template with a table of hardpoints, run \
                         `hardpoint new NAME --template TEMPLATE --hardpoints FILE`";
-            Err(notes.only(if table { message.help(help) } else { message }))
+            Err(notes.single_error(if table { message.help(help) } else { message }))
         }
     }
 }
@@ -219,7 +219,7 @@ fn known() -> String {
 /// HP0801 for a file of a related but unsupported kind, with the file to export instead.
 fn is_sibling(notes: &ImportLog, sibling: &siblings::Sibling) -> ImportErrors {
     let message = format!("unsupported file: {}", sibling.what);
-    notes.only(notes.diagnostic("HP0801", None, message).help(sibling.help))
+    notes.single_error(notes.diagnostic("HP0801", None, message).help(sibling.help))
 }
 
 /// Imports a source of a known format.
@@ -245,7 +245,7 @@ fn read_as(
     let text = if format.binary { String::new() } else { decoded(bytes) };
     let mut notes = ImportLog::new(name, &text);
     let whole = |notes: &ImportLog, code, message: String, help: &str| {
-        Err(notes.only(notes.diagnostic(code, None, message).help(help)))
+        Err(notes.single_error(notes.diagnostic(code, None, message).help(help)))
     };
     if bytes.len() > LARGEST {
         let message = format!(
@@ -268,14 +268,14 @@ fn read_as(
     let mut mechanism = (format.read)(&mut input, &mut notes);
     if let Some(m) = mechanism.as_mut().filter(|_| notes.problem_count() == 0) {
         if is_robot {
-            closing::of_exporters(m, &mut notes);
+            closing::close_cut_by_exporters(m, &mut notes);
         }
         closing::close(m, &mut notes, closings);
-        closing::pairs(m, &mut notes);
+        closing::report_likely_pairs(m, &mut notes);
     }
     // If a file cannot be read, its kind is more informative than its errors as this format.
     let head = || decoded(&bytes[..bytes.len().min(LOOKED_AT)]);
-    let is_like_it = format.binary || (format.looks)(&head());
+    let is_like_it = format.binary || (format.recognises)(&head());
     let failed = notes.problem_count() > 0 || mechanism.is_none();
     if let (true, false, Some(sibling)) = (failed, is_like_it, siblings::of(&head(), name)) {
         return Err(is_sibling(&notes, sibling));
@@ -286,7 +286,7 @@ fn read_as(
     let Some(mut m) = mechanism else {
         let message = format!("the file has no mechanism; it was read as {}", format.about);
         let head = head();
-        let other = FORMATS.iter().find(|f| f.name != format.name && !f.binary && (f.looks)(&head));
+        let other = FORMATS.iter().find(|f| f.name != format.name && !f.binary && (f.recognises)(&head));
         return match other {
             Some(other) => {
                 let help = format!("import it with `--format {}`: it resembles {}", other.name, other.about);
@@ -298,17 +298,15 @@ fn read_as(
             None => {
                 let d = notes.diagnostic("HP0806", None, message);
                 let d = d.note(format!("it resembles none of the known formats: {}", known()));
-                Err(notes.only(d.help("export the mechanism in one of these formats")))
+                Err(notes.single_error(d.help("export the mechanism in one of these formats")))
             }
         };
     };
     let count = m.bodies.len().max(m.joints.len() / 2);
     if count > robot::MOST_PARTS {
         let message = format!("the mechanism has {} bodies and {} joints", m.bodies.len(), m.joints.len());
-        let help = format!(
-            "reduce it to at most {} bodies by removing parts that need not move",
-            robot::MOST_PARTS
-        );
+        let help =
+            format!("reduce it to at most {} bodies by removing parts that need not move", robot::MOST_PARTS);
         return whole(&notes, "HP0802", message, &help);
     }
     let numbers = m.joints.iter().flat_map(|j| j.at.iter().chain(&j.axis).chain(&j.axis2));
@@ -324,9 +322,9 @@ fn read_as(
         // Robot files define which frames coincide: only gaps due to few digits are closed.
         let closed = if is_robot { FEW_DIGITS } else { f64::INFINITY };
         let fault = finish::finish(&mut m, &mut notes, closed);
-        finish::remark(&m, &mut notes, is_robot);
+        finish::remark_undriven(&m, &mut notes, is_robot);
         if fault.is_none() {
-            cases::of_vehicle(&mut m, &mut notes);
+            cases::add_vehicle_cases(&mut m, &mut notes);
         }
         fault
     } else {
@@ -344,7 +342,7 @@ fn read_as(
         Some(message.help(help))
     };
     let files = input.shapes.files(&mut m, &format!("{}_meshes", shapes::file_name(stem)));
-    let fault = fault.map(|diagnostic| notes.only(diagnostic));
+    let fault = fault.map(|diagnostic| notes.single_error(diagnostic));
     Ok(ImportedModel {
         text: write::text(&m, &about),
         report: notes.report,
@@ -387,7 +385,7 @@ impl Input<'_> {
     }
 
     /// Adds a mesh that the source names, or reports why it is missing.
-    #[expect(clippy::too_many_arguments, reason = "what is shown, where, and what is informed of it")]
+    #[expect(clippy::too_many_arguments, reason = "a mesh, its pose, and its position in the source")]
     fn mesh(
         &mut self,
         body: usize,
@@ -398,13 +396,13 @@ impl Input<'_> {
         at: Option<SourceSpan>,
         notes: &mut ImportLog,
     ) {
-        let shown = match self.file(path) {
+        let added = match self.file(path) {
             Some(bytes) => self.shapes.file(body, place, scale, path, &bytes),
             None => Err("the file does not exist next to the source".into()),
         };
-        match shown {
+        match added {
             Ok(()) => notes.taken("mesh", name, at),
-            Err(why) => shapes::not_shown(notes, "mesh", name, at, &format!("`{path}`: {why}")),
+            Err(why) => shapes::report_missing_shape(notes, "mesh", name, at, &format!("`{path}`: {why}")),
         }
     }
 }

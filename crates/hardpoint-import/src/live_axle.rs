@@ -28,7 +28,7 @@ const PIVOT: [&str; 3] = ["pivot", "centre", "center"];
 
 /// Hardpoints of one side, or those without a side.
 #[derive(Clone, Debug, Default)]
-pub struct Places {
+pub struct SideHardpoints {
     /// Hardpoints by their names in lower case.
     pub named: Vec<(String, Vec3)>,
 }
@@ -66,13 +66,13 @@ fn member(name: &str) -> Option<(&str, &str)> {
 }
 
 /// Returns true if the names are those of a live axle.
-pub fn names_one(places: &[Places; 3]) -> bool {
+pub fn names_one(places: &[SideHardpoints; 3]) -> bool {
     let names = places.iter().flat_map(|p| &p.named);
     names.into_iter().any(|(name, _)| OWN.iter().any(|word| name.contains(word)))
 }
 
 /// Returns true if a leaf spring guides the axle.
-pub fn has_leaf_springs(places: &[Places; 3]) -> bool {
+pub fn has_leaf_springs(places: &[SideHardpoints; 3]) -> bool {
     let names = places.iter().flat_map(|p| &p.named);
     names
         .into_iter()
@@ -80,7 +80,7 @@ pub fn has_leaf_springs(places: &[Places; 3]) -> bool {
 }
 
 /// Returns the rods of all sides by side and member, and the pivot of a Watt linkage.
-fn rods(places: &[Places; 3]) -> (BTreeMap<(usize, &str), Rod>, Option<Vec3>) {
+fn rods(places: &[SideHardpoints; 3]) -> (BTreeMap<(usize, &str), Rod>, Option<Vec3>) {
     let mut rods: BTreeMap<(usize, &str), Rod> = BTreeMap::new();
     let mut pivot = None;
     for (k, side) in places.iter().enumerate() {
@@ -104,7 +104,7 @@ fn rods(places: &[Places; 3]) -> (BTreeMap<(usize, &str), Rod>, Option<Vec3>) {
 pub fn build(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    places: &[Places; 3],
+    places: &[SideHardpoints; 3],
     corners: &[Corner; 2],
     at: Option<SourceSpan>,
 ) -> bool {
@@ -175,7 +175,7 @@ fn is_watt(member: &str) -> bool {
 }
 
 /// Returns the names that are neither a known hardpoint of a suspension nor one of the two ends of a rod.
-pub fn unplaced(places: &[Places; 3], is_known: impl Fn(&str) -> bool) -> Vec<String> {
+pub fn unplaced(places: &[SideHardpoints; 3], is_known: impl Fn(&str) -> bool) -> Vec<String> {
     let (rods, _) = rods(places);
     let mut out = Vec::new();
     for (k, side) in places.iter().enumerate() {

@@ -12,7 +12,7 @@ pub const FORMAT: Format = Format {
     name: "lotus",
     about: "Lotus Suspension Analysis model",
     endings: &["shk"],
-    looks: |text| text.lines().any(|l| l.trim() == "TEMP_SETTINGS"),
+    recognises: |text| text.lines().any(|l| l.trim() == "TEMP_SETTINGS"),
     read,
     binary: false,
 };
@@ -66,7 +66,12 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         .collect();
     let Some(block) = blocks.first() else {
         let help = "save the model from Lotus again";
-        notes.problem_with("HP0803", None, "the block `FRONT SUSPENSION` or `REAR SUSPENSION` is missing", help);
+        notes.problem_with(
+            "HP0803",
+            None,
+            "the block `FRONT SUSPENSION` or `REAR SUSPENSION` is missing",
+            help,
+        );
         return None;
     };
     for other in &blocks[1..] {

@@ -56,7 +56,7 @@ pub fn offset(i: &Marker, j: &Marker) -> Offset {
 
 /// Name and position of a joint in the source.
 #[derive(Clone, Copy, Debug)]
-pub struct JointSource<'s> {
+pub struct ElementSource<'s> {
     /// Kind in the source.
     pub kind: &'s str,
     /// Name.
@@ -65,7 +65,7 @@ pub struct JointSource<'s> {
     pub at: Option<SourceSpan>,
 }
 
-impl JointSource<'_> {
+impl ElementSource<'_> {
     /// Returns a comment for the model file.
     pub fn note(&self, notes: &ImportLog) -> String {
         match self.at.and_then(|at| notes.place(at)) {
@@ -79,22 +79,22 @@ impl JointSource<'_> {
 pub fn join(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: JointSource<'_>,
+    source: ElementSource<'_>,
     kind: &'static str,
     [i, j]: [Marker; 2],
 ) -> Option<usize> {
     if i.body == j.body {
-        notes.refused(called.kind, called.name, called.at, "its markers are on the same body");
+        notes.refused(source.kind, source.name, source.at, "its markers are on the same body");
         return None;
     }
     if ["fixed", "orientation"].contains(&kind) {
-        return crate::robot::weld(m, notes, called, kind, [i, j]);
+        return crate::robot::weld(m, notes, source, kind, [i, j]);
     }
     let reach = [i, j].iter().map(|k| k.pose.r.norm()).fold(m.size(), f64::max);
     let gap = j.pose.r - i.pose.r;
     let across = gap - i.z() * i.z().dot(gap);
     let (mut open, mut awry) = (false, false);
-    let mut joint = Joint::new(called.name, called.note(notes), kind, [i.body, j.body], j.pose.r);
+    let mut joint = Joint::new(source.name, source.note(notes), kind, [i.body, j.body], j.pose.r);
     let parallel = |a: Vec3, b: Vec3| a.cross(b).norm() <= AWRY;
     match kind {
         "spherical" => open = gap.norm() > APART * reach,
@@ -122,9 +122,9 @@ pub fn join(
             let square = (b - a * a.dot(b)).unit();
             let Some(square) = square else {
                 notes.refused(
-                    called.kind,
-                    called.name,
-                    called.at,
+                    source.kind,
+                    source.name,
+                    source.at,
                     "its two axes are parallel, but must be perpendicular",
                 );
                 return None;
@@ -145,28 +145,30 @@ pub fn join(
     let turn = if awry { turn_between(kind, [&i, &j]) } else { None };
     if let Some(turn) = turn {
         let holds_point = ["revolute", "universal"].contains(&kind);
-        let drawn = Pose { rot: j.pose.rot, r: if holds_point { i.pose.r } else { j.pose.r } };
-        let note = called.note(notes);
-        joint.bodies[0] = crate::robot::turned_frame(m, called.name, note, i.body, drawn, turn);
+        let nominal = Pose { rot: j.pose.rot, r: if holds_point { i.pose.r } else { j.pose.r } };
+        let note = source.note(notes);
+        joint.bodies[0] = crate::robot::turned_frame(m, source.name, note, i.body, nominal, turn);
         let back = turn.transpose();
         joint.axis = joint.axis.map(|axis| back * axis);
         joint.axis2 = joint.axis2.map(|axis| back * axis);
     }
     if open && ["revolute", "spherical", "universal", "constant_velocity"].contains(&kind) {
         joint = joint.between(i.pose.r, j.pose.r);
-        let why = "its markers are apart in the design configuration: the mechanism is assembled before it moves";
-        notes.approximated(called.kind, called.name, called.at, why);
+        let why =
+            "its markers are apart in the design configuration: the mechanism is assembled before it moves";
+        notes.approximated(source.kind, source.name, source.at, why);
     } else if open {
         let why = "its markers do not coincide in the design configuration: the joint is closed as drawn";
-        notes.approximated(called.kind, called.name, called.at, why);
+        notes.approximated(source.kind, source.name, source.at, why);
     } else if turn.is_some() {
-        let why = "the axes of its markers are misaligned in the file: the mechanism is assembled before it moves";
-        notes.approximated(called.kind, called.name, called.at, why);
+        let why =
+            "the axes of its markers are misaligned in the file: the mechanism is assembled before it moves";
+        notes.approximated(source.kind, source.name, source.at, why);
     } else if awry {
         let why = "the axes of its markers are misaligned in the file: the axis of the first marker is used for both";
-        notes.approximated(called.kind, called.name, called.at, why);
+        notes.approximated(source.kind, source.name, source.at, why);
     } else {
-        notes.taken(called.kind, called.name, called.at);
+        notes.taken(source.kind, source.name, source.at);
     }
     Some(m.joint(joint))
 }
@@ -193,17 +195,17 @@ fn turn_between(kind: &str, [i, j]: [&Marker; 2]) -> Option<Mat3> {
 const SAID: f64 = 1e-6;
 
 /// Returns true if a specified length equals that in the design configuration.
-pub fn is_drawn(m: &Mechanism, said: f64, drawn: f64) -> bool {
-    (said - drawn).abs() <= SAID * m.size().max(said.abs())
+pub fn equals_nominal(m: &Mechanism, specified: f64, nominal: f64) -> bool {
+    (specified - nominal).abs() <= SAID * m.size().max(specified.abs())
 }
 
 /// Adds two joints with a link between them that has its own body: the parts keep a distance between two axes, or
 /// between an axis and a point. The first joint, between body i and the link, is about z of the first marker; the type
 /// of the second joint is given.
-pub fn linked(
+pub fn join_by_link(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: JointSource<'_>,
+    source: ElementSource<'_>,
     kinds: [&'static str; 2],
     [i, j]: [Marker; 2],
     distance: Option<f64>,
@@ -211,40 +213,40 @@ pub fn linked(
     let axis = i.z();
     let foot = i.pose.r + axis * axis.dot(j.pose.r - i.pose.r);
     let across = j.pose.r - foot;
-    let drawn = across.norm();
-    let distance = distance.map_or(drawn, f64::abs);
+    let nominal = across.norm();
+    let distance = distance.map_or(nominal, f64::abs);
     if distance == 0.0 {
         let kind = match kinds {
             ["revolute", "revolute"] => "revolute",
             [.., "spherical"] => "inline",
             _ => "cylindrical",
         };
-        join(m, notes, called, kind, [i, j]);
+        join(m, notes, source, kind, [i, j]);
         return;
     }
     if i.body == j.body {
-        notes.refused(called.kind, called.name, called.at, "its markers are on the same body");
+        notes.refused(source.kind, source.name, source.at, "its markers are on the same body");
         return;
     }
     let along = across.unit().unwrap_or_else(|| axis.any_square());
     let end = foot + along * distance;
-    let same = is_drawn(m, distance, drawn);
+    let same = equals_nominal(m, distance, nominal);
     let rot = from_z_and_x(axis, along).unwrap_or_else(none);
-    let link = m.body(&format!("{}_link", called.name), called.note(notes), Some(Pose { rot, r: foot }));
-    let first = Joint::new(&format!("{}_i", called.name), called.note(notes), kinds[0], [i.body, link], foot);
+    let link = m.body(&format!("{}_link", source.name), source.note(notes), Some(Pose { rot, r: foot }));
+    let first = Joint::new(&format!("{}_i", source.name), source.note(notes), kinds[0], [i.body, link], foot);
     let skew = kinds[1] != "spherical" && axis.cross(j.z()).norm() > AWRY;
     let there = Marker { body: link, pose: Pose { rot: from_z_and_x(axis, j.x()).unwrap_or(rot), r: end } };
     let turn = if skew { turn_between(kinds[1], [&there, &j]) } else { None };
     m.joint(first.along(axis));
     let (mut carrier, mut second_axis) = (link, axis);
     if let Some(turn) = turn {
-        let drawn = Pose { rot: j.pose.rot, r: if same { j.pose.r } else { end } };
-        let name = format!("{}_j", called.name);
-        carrier = crate::robot::turned_frame(m, &name, called.note(notes), link, drawn, turn);
+        let nominal = Pose { rot: j.pose.rot, r: if same { j.pose.r } else { end } };
+        let name = format!("{}_j", source.name);
+        carrier = crate::robot::turned_frame(m, &name, source.note(notes), link, nominal, turn);
         second_axis = turn.transpose() * axis;
     }
     let second =
-        Joint::new(&format!("{}_j", called.name), called.note(notes), kinds[1], [carrier, j.body], j.pose.r);
+        Joint::new(&format!("{}_j", source.name), source.note(notes), kinds[1], [carrier, j.body], j.pose.r);
     let second = if kinds[1] == "spherical" { second } else { second.along(second_axis) };
     m.joint(if same { second } else { second.between(end, j.pose.r) });
     if skew || !same {
@@ -255,9 +257,9 @@ pub fn linked(
         } else {
             "its distance differs in the design configuration: the mechanism is assembled to the specified distance"
         };
-        notes.approximated(called.kind, called.name, called.at, how);
+        notes.approximated(source.kind, source.name, source.at, how);
     } else {
-        notes.taken(called.kind, called.name, called.at);
+        notes.taken(source.kind, source.name, source.at);
     }
 }
 
@@ -282,7 +284,7 @@ pub fn relative(
                 if !is_along || !bodies.contains(&body) || !bodies.contains(&base) {
                     continue;
                 }
-                let factor = sign * way(joint, body, axis);
+                let factor = sign * coordinate_sign(joint, body, axis);
                 for (name, list) in [("displacement", &mut slides), ("angle", &mut turns)] {
                     let has = ALL
                         .iter()
@@ -303,10 +305,10 @@ pub fn relative(
 
 /// Adds the coupler of a screw whose parts are guided by other joints; `None` if no joints define the sliding and
 /// rotation.
-pub fn screw(
+pub fn couple_screw(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: JointSource<'_>,
+    source: ElementSource<'_>,
     joints: &[MarkerJoint],
     [i, j]: [Marker; 2],
     pitch: f64,
@@ -315,8 +317,8 @@ pub fn screw(
     // z - pitch/(2 pi) angle = 0
     let per_rad = pitch / std::f64::consts::TAU;
     let turns = turns.into_iter().map(|(c, factor)| (c, -per_rad * factor));
-    m.coupler(called.name, called.note(notes), slides.into_iter().chain(turns).collect());
-    notes.taken(called.kind, called.name, called.at);
+    m.coupler(source.name, source.note(notes), slides.into_iter().chain(turns).collect());
+    notes.taken(source.kind, source.name, source.at);
     Some(())
 }
 
@@ -332,7 +334,7 @@ pub struct MarkerJoint {
 }
 
 /// Returns a joint of one of these types that carries a body and has a parallel axis.
-pub fn carrying<'j>(
+pub fn carrying_joint<'j>(
     mut joints: impl Iterator<Item = &'j MarkerJoint>,
     body: usize,
     kinds: &[&str],
@@ -345,19 +347,19 @@ pub fn carrying<'j>(
 }
 
 /// Sign of a joint's coordinate for the motion of a body along or about an axis.
-pub fn way(joint: &MarkerJoint, body: usize, axis: Vec3) -> f64 {
+pub fn coordinate_sign(joint: &MarkerJoint, body: usize, axis: Vec3) -> f64 {
     let sign = if joint.markers[1].body == body { 1.0 } else { -1.0 };
     sign * joint.markers[0].z().dot(axis).signum()
 }
 
 /// Converts a law of the source to one that is zero in the design configuration, where the source's coordinate is
-/// `drawn`. Angles are reduced by whole turns.
-pub fn counted(text: &str, drawn: f64, turns: bool) -> String {
+/// `nominal`. Angles are reduced by whole turns.
+pub fn relative_to_nominal(text: &str, nominal: f64, turns: bool) -> String {
     use std::f64::consts::TAU;
     let begins = hardpoint::law::Law::parse(text).map_or(0.0_f64, |law| law.at(0.0).0[0]);
-    let rounds = if turns && begins.is_finite() { ((begins - drawn) / TAU).round() } else { 0.0 };
-    let drawn = if drawn.abs() < 1e-12 { 0.0 } else { drawn };
-    match drawn + rounds * TAU {
+    let rounds = if turns && begins.is_finite() { ((begins - nominal) / TAU).round() } else { 0.0 };
+    let nominal = if nominal.abs() < 1e-12 { 0.0 } else { nominal };
+    match nominal + rounds * TAU {
         0.0 => text.to_owned(),
         d if d > 0.0 => format!("{text} - {d}"),
         d => format!("{text} + {}", -d),

@@ -41,7 +41,7 @@ pub struct Mechanism {
     /// Hardpoints of the source without a member, if the topology is not recognised and these are known.
     pub unplaced: Option<Vec<String>>,
     /// Names of the inadmissible design variables, as the writer would name them.
-    pub unfollowed: Vec<String>,
+    pub inadmissible: Vec<String>,
     /// Output times.
     pub times: Option<Times>,
     /// Masses of the bodies.
@@ -254,7 +254,7 @@ pub enum Drives {
     /// A joint coordinate.
     Coordinate(Coordinate),
     /// The displacement of a point of a body along a direction.
-    Way {
+    Translation {
         /// The body.
         body: usize,
         /// Point in the design configuration.
@@ -263,7 +263,7 @@ pub enum Drives {
         along: Vec3,
     },
     /// The rotation of a body relative to another one about a direction.
-    Heading {
+    Rotation {
         /// The body.
         body: usize,
         /// Direction.
@@ -277,9 +277,9 @@ pub enum Drives {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {
     /// Zero: the design configuration.
-    Held,
+    Fixed,
     /// A constant value.
-    Set(f64),
+    Constant(f64),
     /// An expression of model files.
     Text(String),
     /// A smooth curve through points `[time, value]`.
@@ -348,7 +348,7 @@ impl Mechanism {
             steering: None,
             cases: Vec::new(),
             unplaced: None,
-            unfollowed: Vec::new(),
+            inadmissible: Vec::new(),
             times: None,
             masses: Vec::new(),
             forces: Vec::new(),

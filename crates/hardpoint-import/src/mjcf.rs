@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use hardpoint::space::{Mat3, Pose, Vec3};
 use roxmltree::{Document, Node};
 
-use crate::markers::{JointSource, Marker, join};
+use crate::markers::{ElementSource, Marker, join};
 use crate::mechanism::{Coordinate, GROUND, Joint, Mechanism};
 use crate::report::{ImportLog, SourceSpan};
 use crate::shapes::Solid;
@@ -22,7 +22,7 @@ pub const FORMAT: Format = Format {
     name: "mjcf",
     about: "MuJoCo model",
     endings: &["xml", "mjcf"],
-    looks: |text| text.contains("<mujoco") && !text.contains("<robot"),
+    recognises: |text| text.contains("<mujoco") && !text.contains("<robot"),
     read,
     binary: false,
 };
@@ -135,7 +135,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     reader.settings(&top);
     for (text, node) in &top {
         if node.has_tag_name("worldbody") {
-            let world = Inside { body: GROUND, pose: home(), class: None, depth: 0 };
+            let world = TreePosition { body: GROUND, pose: home(), class: None, depth: 0 };
             reader.body((*text, *node), &world, "world");
         }
     }
@@ -148,7 +148,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             other => reader.section(other, (*text, *node)),
         }
     }
-    reader.meet();
+    reader.join_connections();
     reader.free_bodies();
     reader.masses(&top);
     for (list, bare) in [(&reader.bodies, false), (&reader.sites, true)] {
@@ -164,7 +164,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     }
     let (m, shapes) = (reader.m, std::mem::take(&mut reader.shapes));
     for shape in shapes {
-        shown(input, notes, shape);
+        add_shape(input, notes, shape);
     }
     (m.bodies.len() > 1).then_some(m)
 }
@@ -190,7 +190,7 @@ pub fn extension<'d>(
             other => reader.section(other, (*text, *node)),
         }
     }
-    reader.meet();
+    reader.join_connections();
     reader.m
 }
 
@@ -248,7 +248,7 @@ type Class = HashMap<(String, String), String>;
 
 /// Position in the body tree.
 #[derive(Clone)]
-struct Inside {
+struct TreePosition {
     body: usize,
     pose: Pose,
     class: Option<String>,
@@ -264,14 +264,14 @@ struct JointOnBody<'d> {
 }
 
 /// Point at which two bodies are connected.
-struct Meet {
+struct PointConnection {
     name: String,
     at: Option<SourceSpan>,
     ends: [Marker; 2],
 }
 
 /// Free body, which equalities may constrain.
-struct Free {
+struct FreeBody {
     name: String,
     at: Option<SourceSpan>,
     bodies: [usize; 2],
@@ -307,19 +307,19 @@ struct Reader<'d, 'n> {
     tendons: BTreeMap<String, Vec<(Coordinate, f64)>>,
     /// Tendons between two sites.
     rods: BTreeMap<String, [String; 2]>,
-    meets: Vec<Meet>,
-    free: Vec<Free>,
+    connections: Vec<PointConnection>,
+    free: Vec<FreeBody>,
     shapes: Vec<VisibleShape<'d>>,
     /// Names of all joints.
     names: BTreeSet<String>,
     /// Positions of the reported includes.
-    told: BTreeSet<(usize, usize)>,
+    reported_includes: BTreeSet<(usize, usize)>,
     /// Number of expanded includes.
     expanded: usize,
     /// Masses of the geoms.
     solids: Vec<GeomMass>,
     /// Bodies with an explicit mass.
-    weighed: BTreeSet<usize>,
+    with_explicit_mass: BTreeSet<usize>,
     /// Number of meshes, whose masses are not computed.
     meshes_without_mass: usize,
 }
@@ -353,14 +353,14 @@ impl<'d, 'n> Reader<'d, 'n> {
             joints: BTreeMap::new(),
             tendons: BTreeMap::new(),
             rods: BTreeMap::new(),
-            meets: Vec::new(),
+            connections: Vec::new(),
             free: Vec::new(),
             shapes: Vec::new(),
             names: BTreeSet::new(),
-            told: BTreeSet::new(),
+            reported_includes: BTreeSet::new(),
             expanded: 0,
             solids: Vec::new(),
-            weighed: BTreeSet::new(),
+            with_explicit_mass: BTreeSet::new(),
             meshes_without_mass: 0,
         }
     }
@@ -390,7 +390,7 @@ impl<'d, 'n> Reader<'d, 'n> {
                         let help = "remove repeated includes";
                         self.notes.problem_with("HP0802", at, "files are included too often", help);
                     }
-                    if self.told.insert((text, inner.range().start)) {
+                    if self.reported_includes.insert((text, inner.range().start)) {
                         self.notes.taken("include", file, at);
                     }
                     let below = self.contents(root, depth + 1);
@@ -398,7 +398,12 @@ impl<'d, 'n> Reader<'d, 'n> {
                 }
                 None => {
                     let message = format!("the included file `{file}` cannot be read");
-                    self.notes.problem_with("HP0803", at, message, "place it next to the file that includes it");
+                    self.notes.problem_with(
+                        "HP0803",
+                        at,
+                        message,
+                        "place it next to the file that includes it",
+                    );
                 }
             }
         }
@@ -406,7 +411,7 @@ impl<'d, 'n> Reader<'d, 'n> {
     }
 
     /// Reads the content of a body or of a frame in it; `inside` is its position in the body tree.
-    fn body(&mut self, element: Element<'d>, inside: &Inside, name: &str) {
+    fn body(&mut self, element: Element<'d>, inside: &TreePosition, name: &str) {
         if inside.depth > DEEPEST {
             self.notes.problem_with(
                 "HP0805",
@@ -427,7 +432,7 @@ impl<'d, 'n> Reader<'d, 'n> {
                     let pose = inside.pose.compose(self.pose((text, node), class.as_deref()));
                     self.body(
                         (text, node),
-                        &Inside { pose, class, depth: inside.depth + 1, ..inside.clone() },
+                        &TreePosition { pose, class, depth: inside.depth + 1, ..inside.clone() },
                         name,
                     );
                 }
@@ -483,7 +488,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         }
     }
 
-    fn inner_body(&mut self, element: Element<'d>, outer: &Inside) {
+    fn inner_body(&mut self, element: Element<'d>, outer: &TreePosition) {
         let (text, node) = element;
         let at = xml::at(text, node);
         let class = node.attribute("childclass").map(str::to_owned).or_else(|| outer.class.clone());
@@ -504,7 +509,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         }
         let mut joints = Vec::new();
         self.joints_of(element, pose, class.as_deref(), 0, &mut joints);
-        let note = JointSource { kind: "body", name: &name, at }.note(self.notes);
+        let note = ElementSource { kind: "body", name: &name, at }.note(self.notes);
         // Several joints of a body form a chain, with bodies without shapes between them.
         let mut carrier = outer.body;
         let mut done = Vec::new();
@@ -540,7 +545,7 @@ impl<'d, 'n> Reader<'d, 'n> {
                 "rename one of them",
             );
         }
-        self.body(element, &Inside { body, pose, class, depth: outer.depth + 1 }, &name);
+        self.body(element, &TreePosition { body, pose, class, depth: outer.depth + 1 }, &name);
     }
 
     /// Collects the joints of a body, including those in frames.
@@ -582,13 +587,13 @@ impl<'d, 'n> Reader<'d, 'n> {
             self.notes.problem_with("HP0803", at, message, "rename one of them");
         }
         xml::unknown(text, node, &name, JOINT, self.notes);
-        let called = JointSource { kind: "joint", name: &name, at };
+        let source = ElementSource { kind: "joint", name: &name, at };
         let (type_name, coordinate) = match kind.as_str() {
             "hinge" => ("revolute", Some("angle")),
             "slide" => ("translational", Some("displacement")),
             "ball" => ("spherical", None),
             "free" => {
-                self.free.push(Free { name, at, bodies: [i, j], place: pose.r });
+                self.free.push(FreeBody { name, at, bodies: [i, j], place: pose.r });
                 return;
             }
             _ => {
@@ -607,16 +612,11 @@ impl<'d, 'n> Reader<'d, 'n> {
             pose.rot * Vec3::from(self.numbers::<3>(element, "axis", class).unwrap_or([0.0, 0.0, 1.0]));
         let Some(marker) = Marker::along(i, place, axis) else {
             let at = xml::attribute_at(text, node, "axis").or(at);
-            self.notes.problem_with(
-                "HP0804",
-                at,
-                "the axis has no direction",
-                "give a non-zero vector",
-            );
+            self.notes.problem_with("HP0804", at, "the axis has no direction", "give a non-zero vector");
             return;
         };
         let Some(number) =
-            join(&mut self.m, self.notes, called, type_name, [marker, Marker { body: j, pose: marker.pose }])
+            join(&mut self.m, self.notes, source, type_name, [marker, Marker { body: j, pose: marker.pose }])
         else {
             return;
         };
@@ -629,7 +629,7 @@ impl<'d, 'n> Reader<'d, 'n> {
             self.m.joints[number].limits = range.map(|ends| ends.map(scaled));
         }
         let coordinate = coordinate.map(|name| Coordinate { joint: number, name });
-        self.spring(element, class, called, coordinate);
+        self.spring(element, class, source, coordinate);
         if let Some(coordinate) = coordinate
             && !own.is_empty()
         {
@@ -642,7 +642,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         &mut self,
         element: Element<'d>,
         class: Option<&str>,
-        called: JointSource<'_>,
+        source: ElementSource<'_>,
         coordinate: Option<Coordinate>,
     ) {
         let mut number = |key: &str| {
@@ -652,7 +652,7 @@ impl<'d, 'n> Reader<'d, 'n> {
                 Some([x]) => Some(*x),
                 Some([_, rest @ ..]) if rest.iter().any(|x| *x != 0.0) => {
                     let why = format!("`{key}` that depends on the coordinate is not supported");
-                    self.notes.refused(key, called.name, at, why);
+                    self.notes.refused(key, source.name, at, why);
                     None
                 }
                 Some([x, ..]) => Some(*x),
@@ -670,14 +670,14 @@ impl<'d, 'n> Reader<'d, 'n> {
         let turns = coordinate.is_some_and(|c| c.name == "angle");
         // Coordinates are relative to the design configuration, where the value is `ref`.
         let free = if turns { self.angle(springref - zero) } else { springref - zero };
-        let called = JointSource { kind: "spring", ..called };
-        robot::joint_spring(&mut self.m, self.notes, called, coordinate, [stiffness, damping, free]);
-        robot::friction(self.notes, called.name, called.at, friction);
+        let source = ElementSource { kind: "spring", ..source };
+        robot::joint_spring(&mut self.m, self.notes, source, coordinate, [stiffness, damping, free]);
+        robot::friction(self.notes, source.name, source.at, friction);
     }
 
     /// Adds the explicit mass of a body.
-    fn inertial(&mut self, element: Element<'d>, inside: &Inside, name: &str) {
-        let called = JointSource { kind: "inertial", name, at: xml::at(element.0, element.1) };
+    fn inertial(&mut self, element: Element<'d>, inside: &TreePosition, name: &str) {
+        let source = ElementSource { kind: "inertial", name, at: xml::at(element.0, element.1) };
         let frame = inside.pose.compose(self.pose(element, None));
         let [mass] = self.numbers::<1>(element, "mass", None).unwrap_or_default();
         let diagonal = self.numbers::<3>(element, "diaginertia", None);
@@ -687,12 +687,12 @@ impl<'d, 'n> Reader<'d, 'n> {
             [x, y, z, 0.0, 0.0, 0.0]
         });
         let matrix = Mat3 { cols: [[xx, xy, xz].into(), [xy, yy, yz].into(), [xz, yz, zz].into()] };
-        self.weighed.insert(inside.body);
-        robot::mass(&mut self.m, self.notes, called, inside.body, frame, mass, Some(matrix));
+        self.with_explicit_mass.insert(inside.body);
+        robot::mass(&mut self.m, self.notes, source, inside.body, frame, mass, Some(matrix));
     }
 
     /// Records the mass of a geom: its volume times its density, unless it is a mesh.
-    fn weigh(&mut self, element: Element<'d>, inside: &Inside, solid: Option<(Solid, Pose)>) {
+    fn add_geom_mass(&mut self, element: Element<'d>, inside: &TreePosition, solid: Option<(Solid, Pose)>) {
         let class = inside.class.as_deref();
         let [mass] = self.numbers::<1>(element, "mass", class).map_or([f64::NAN], |m| m);
         let [density] = self.numbers::<1>(element, "density", class).unwrap_or([DENSITY]);
@@ -719,7 +719,7 @@ impl<'d, 'n> Reader<'d, 'n> {
     fn masses(&mut self, top: &[Element<'d>]) {
         let mut of_body: BTreeMap<usize, Vec<GeomMass>> = BTreeMap::new();
         for solid in std::mem::take(&mut self.solids) {
-            if solid.body != GROUND && !self.weighed.contains(&solid.body) {
+            if solid.body != GROUND && !self.with_explicit_mass.contains(&solid.body) {
                 of_body.entry(solid.body).or_default().push(solid);
             }
         }
@@ -738,10 +738,10 @@ impl<'d, 'n> Reader<'d, 'n> {
                 }
             }
             let name = self.m.bodies[body].name.clone();
-            let called = JointSource { kind: "mass of geoms", name: &name, at: None };
+            let source = ElementSource { kind: "mass of geoms", name: &name, at: None };
             let frame = Pose { rot: home().rot, r: centre };
             let matrix = Mat3 { cols: matrix.map(Vec3::from) };
-            robot::mass(&mut self.m, self.notes, called, body, frame, mass, Some(matrix));
+            robot::mass(&mut self.m, self.notes, source, body, frame, mass, Some(matrix));
         }
         if self.meshes_without_mass > 0 {
             let why =
@@ -770,7 +770,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         xml::range(low?, high?)
     }
 
-    fn geom(&mut self, element: Element<'d>, inside: &Inside, link: &str) {
+    fn geom(&mut self, element: Element<'d>, inside: &TreePosition, link: &str) {
         let class = inside.class.clone();
         let class = class.as_deref();
         let at = xml::at(element.0, element.1);
@@ -783,7 +783,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         let ends = self.numbers::<6>(element, "fromto", class);
         if inside.body != GROUND {
             let own = if ends.is_some() { home() } else { self.pose(element, class) };
-            self.weigh(element, inside, solid_of(&kind, &size, ends, own));
+            self.add_geom_mass(element, inside, solid_of(&kind, &size, ends, own));
         }
         // Shapes for contact only duplicate the visible ones.
         let group = self
@@ -818,7 +818,7 @@ impl<'d, 'n> Reader<'d, 'n> {
 }
 
 /// Adds the shape of a geom.
-fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) {
+fn add_shape(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) {
     let (text, node) = shape.element;
     let at = xml::at(text, node);
     match (shape.kind.as_str(), &shape.mesh) {
@@ -831,7 +831,9 @@ fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) 
                 input.shapes.solid(shape.body, place, solid);
                 notes.taken("geom", &shape.link, at);
             }
-            None => notes.refused("geom", &shape.link, at, format!("shapes of type `{kind}` are not supported")),
+            None => {
+                notes.refused("geom", &shape.link, at, format!("shapes of type `{kind}` are not supported"))
+            }
         },
     }
 }

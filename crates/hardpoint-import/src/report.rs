@@ -295,7 +295,7 @@ impl ImportLog {
             return;
         }
         let diagnostic = self.diagnostic(code, at, message).help(help);
-        self.tell(at.map_or(0, |at| at.text), diagnostic);
+        self.push_problem(at.map_or(0, |at| at.text), diagnostic);
     }
 
     /// Records an error with its help.
@@ -312,10 +312,10 @@ impl ImportLog {
             return;
         }
         let diagnostic = self.diagnostic(code, at, message).help(help);
-        self.tell(at.map_or(0, |at| at.text), diagnostic);
+        self.push_problem(at.map_or(0, |at| at.text), diagnostic);
     }
 
-    fn tell(&mut self, text: usize, diagnostic: Diagnostic) {
+    fn push_problem(&mut self, text: usize, diagnostic: Diagnostic) {
         let key = (text, diagnostic.line, diagnostic.column, diagnostic.message.clone());
         if self.known.insert(key) {
             self.problems.push((text, diagnostic));
@@ -338,7 +338,7 @@ impl ImportLog {
     }
 
     /// Returns a single error for the file as a whole.
-    pub fn only(&self, diagnostic: Diagnostic) -> ImportErrors {
+    pub fn single_error(&self, diagnostic: Diagnostic) -> ImportErrors {
         ImportErrors { sources: self.sources.clone(), list: vec![(0, diagnostic)], dropped: 0 }
     }
 

@@ -4,7 +4,7 @@
 use hardpoint::space::{Mat3, Pose};
 use roxmltree::Node;
 
-use crate::markers::{JointSource, Marker};
+use crate::markers::{ElementSource, Marker};
 use crate::mechanism::{
     Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mass, Mechanism, Spring, TurnedFrame,
 };
@@ -233,7 +233,7 @@ pub fn follow(
     [own, master]: [Coordinate; 2],
     [factor, constant]: [f64; 2],
 ) {
-    let note = JointSource { kind: "mimic of", name: other, at }.note(notes);
+    let note = ElementSource { kind: "mimic of", name: other, at }.note(notes);
     m.coupler_to(&format!("{name}_mimic"), note, vec![(own, 1.0), (master, -factor)], constant);
     notes.taken("mimic", name, at);
 }
@@ -243,31 +243,32 @@ pub fn follow(
 pub fn weld(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: JointSource<'_>,
+    source: ElementSource<'_>,
     kind: &'static str,
     [i, j]: [Marker; 2],
 ) -> Option<usize> {
     if i.body == j.body {
-        notes.refused(called.kind, called.name, called.at, "its frames are on the same body");
+        notes.refused(source.kind, source.name, source.at, "its frames are on the same body");
         return None;
     }
-    let note = called.note(notes);
+    let note = source.note(notes);
     let angle = j.pose.rot.angle_to(i.pose.rot);
     let apart = kind == "fixed" && (i.pose.r - j.pose.r).norm() > SAME_PLACE * m.size();
     let turned = angle > PARALLEL;
     let mut body = i.body;
     if turned {
         // From the drawn to the assembled orientation of body j: R = A_i A_j^T
-        let drawn = Pose { rot: j.pose.rot, r: i.pose.r };
-        body = turned_frame(m, called.name, note.clone(), i.body, drawn, i.pose.rot * j.pose.rot.transpose());
+        let nominal = Pose { rot: j.pose.rot, r: i.pose.r };
+        body =
+            turned_frame(m, source.name, note.clone(), i.body, nominal, i.pose.rot * j.pose.rot.transpose());
     }
-    let held = Joint::new(called.name, note, kind, [body, j.body], j.pose.r);
+    let held = Joint::new(source.name, note, kind, [body, j.body], j.pose.r);
     let number = m.joint(if apart { held.between(i.pose.r, j.pose.r) } else { held });
     if apart || turned {
         let why = "its frames do not coincide in the design configuration: the mechanism is assembled before it moves";
-        notes.approximated(called.kind, called.name, called.at, why);
+        notes.approximated(source.kind, source.name, source.at, why);
     } else {
-        notes.taken(called.kind, called.name, called.at);
+        notes.taken(source.kind, source.name, source.at);
     }
     Some(number)
 }
@@ -279,16 +280,16 @@ pub fn turned_frame(
     name: &str,
     note: String,
     body: usize,
-    drawn: Pose,
+    nominal: Pose,
     turn: Mat3,
 ) -> usize {
     let angle = turn.angle_to(Mat3::IDENTITY);
-    let frame = m.body(&format!("{name}_frame"), note.clone(), Some(drawn));
+    let frame = m.body(&format!("{name}_frame"), note.clone(), Some(nominal));
     let name = format!("{name}_turn");
-    let hinge = Joint::new(&name, note.clone(), "revolute", [body, frame], drawn.r);
+    let hinge = Joint::new(&name, note.clone(), "revolute", [body, frame], nominal.r);
     let joint = m.joint(hinge.along(turn_of(turn, angle)));
     let drives = Drives::Coordinate(Coordinate { joint, name: "angle" });
-    m.driver(&name, note, drives, Law::Set(angle));
+    m.driver(&name, note, drives, Law::Constant(angle));
     m.turned.push(TurnedFrame { joint, driver: m.drivers.len() - 1, angle });
     frame
 }
@@ -319,35 +320,35 @@ fn turn_of(turn: Mat3, angle: f64) -> hardpoint::space::Vec3 {
 pub fn mass(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: JointSource<'_>,
+    source: ElementSource<'_>,
     body: usize,
     frame: Pose,
     mass: f64,
     inertia: Option<Mat3>,
 ) {
     if body == GROUND || mass == 0.0 {
-        notes.ignored(called.kind, called.at);
+        notes.ignored(source.kind, source.at);
         return;
     }
     if !(mass > 0.0 && mass.is_finite()) {
-        notes.refused(called.kind, called.name, called.at, format!("invalid mass of {mass} kg"));
+        notes.refused(source.kind, source.name, source.at, format!("invalid mass of {mass} kg"));
         return;
     }
     let matrix = inertia.map(|i| frame.rot * i * frame.rot.transpose());
     let matrix = matrix.filter(|i| i.cols.iter().any(|c| c.norm() > 0.0));
     let possible = matrix.is_none_or(is_possible);
     m.mass(Mass {
-        name: called.name.to_owned(),
+        name: source.name.to_owned(),
         body,
         centre: frame.r,
         mass,
         inertia: matrix.filter(|_| possible),
     });
     if possible {
-        notes.taken(called.kind, called.name, called.at);
+        notes.taken(source.kind, source.name, source.at);
     } else {
         let why = "its moments of inertia are impossible, since one exceeds the sum of the other two: it is imported as a point mass";
-        notes.approximated(called.kind, called.name, called.at, why);
+        notes.approximated(source.kind, source.name, source.at, why);
     }
 }
 
@@ -379,7 +380,7 @@ pub fn standard_gravity(m: &mut Mechanism, notes: &mut ImportLog, format: &str) 
 pub fn joint_spring(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: JointSource<'_>,
+    source: ElementSource<'_>,
     coordinate: Option<Coordinate>,
     [stiffness, damping, free]: [f64; 3],
 ) {
@@ -388,7 +389,7 @@ pub fn joint_spring(
     }
     let Some(coordinate) = coordinate else {
         let why = "springs and dampers require a joint with a single coordinate";
-        notes.refused(called.kind, called.name, called.at, why);
+        notes.refused(source.kind, source.name, source.at, why);
         return;
     };
     if !(stiffness >= 0.0
@@ -398,16 +399,16 @@ pub fn joint_spring(
         && free.is_finite())
     {
         let why = format!("invalid stiffness {stiffness} or damping {damping}");
-        notes.refused(called.kind, called.name, called.at, why);
+        notes.refused(source.kind, source.name, source.at, why);
         return;
     }
     m.force(Force {
-        name: called.name.to_owned(),
-        note: called.note(notes),
+        name: source.name.to_owned(),
+        note: source.note(notes),
         on: ForceOn::Coordinate(coordinate),
         spring: Spring { stiffness, damping, free: (stiffness != 0.0).then_some(free), ..Spring::default() },
     });
-    notes.taken(called.kind, called.name, called.at);
+    notes.taken(source.kind, source.name, source.at);
 }
 
 /// Reports a constant friction of a joint, which the model does not support.

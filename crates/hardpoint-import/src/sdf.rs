@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use hardpoint::space::{Pose, Quat};
 use roxmltree::{Document, Node};
 
-use crate::markers::{JointSource, MarkerJoint};
+use crate::markers::{ElementSource, MarkerJoint};
 use crate::mechanism::{GROUND, Joint, Mechanism};
 use crate::report::ImportLog;
 use crate::shapes::Solid;
@@ -21,7 +21,7 @@ pub const FORMAT: Format = Format {
     name: "sdf",
     about: "SDFormat model or world",
     endings: &["sdf", "world"],
-    looks: |text| text.contains("<sdf"),
+    recognises: |text| text.contains("<sdf"),
     read,
     binary: false,
 };
@@ -149,7 +149,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     }
     let (m, shapes) = (reader.m, std::mem::take(&mut reader.shapes));
     for shape in shapes {
-        shown(input, notes, shape);
+        add_shape(input, notes, shape);
     }
     (m.bodies.len() > 1).then_some(m)
 }
@@ -168,7 +168,7 @@ fn included(input: &Input<'_>, notes: &mut ImportLog) -> Vec<(String, String)> {
             if texts.iter().any(|(path, _)| *path == uri) {
                 continue;
             }
-            let named = || input.file(&format!("{uri}/{}", described(input, &uri)?));
+            let named = || input.file(&format!("{uri}/{}", newest_file(input, &uri)?));
             let bytes = input.file(&uri).or_else(|| input.file(&format!("{uri}/model.sdf"))).or_else(named);
             if let Some(text) = bytes.map(|b| crate::decoded(&b)) {
                 notes.text(&uri, &text);
@@ -181,7 +181,7 @@ fn included(input: &Input<'_>, notes: &mut ImportLog) -> Vec<(String, String)> {
 }
 
 /// Returns the file that a model's description names last, usually the newest version.
-fn described(input: &Input<'_>, uri: &str) -> Option<String> {
+fn newest_file(input: &Input<'_>, uri: &str) -> Option<String> {
     let text = xml::lenient(&crate::decoded(&input.file(&format!("{uri}/model.config"))?));
     let document = xml::parse_quietly(&text).ok()?;
     let name = named(document.root_element(), "sdf").last()?.text()?.trim().to_owned();
@@ -278,8 +278,7 @@ impl<'d> Reader<'d, '_> {
             1 + children(model.node).filter(|n| ["link", "joint", "frame"].contains(&local(*n))).count();
         if self.declared > robot::MOST_PARTS {
             let message = format!("it has more than {} models, links, frames and joints", robot::MOST_PARTS);
-            let help =
-                "remove repeated includes, or parts that need not move";
+            let help = "remove repeated includes, or parts that need not move";
             self.notes.problem_with("HP0802", None, message, help);
             self.models.push(model);
             return self.models.len() - 1;
@@ -300,7 +299,7 @@ impl<'d> Reader<'d, '_> {
         for link in named(model.node, "link") {
             let name = self.name_of(model.text, link);
             let at = xml::at(model.text, link);
-            let note = JointSource { kind: "link", name: &name, at }.note(self.notes);
+            let note = ElementSource { kind: "link", name: &name, at }.note(self.notes);
             let full = format!("{}{name}", model.scope);
             let body = self.m.body(&full, note, None);
             self.notes.taken("link", &name, at);
@@ -404,7 +403,12 @@ impl<'d> Reader<'d, '_> {
         self.placed += 1;
         if self.placed > MOST_PLACED {
             let help = "remove `placement_frame` from nested models";
-            self.notes.problem_with("HP0802", None, "its models depend on each other's placement too often", help);
+            self.notes.problem_with(
+                "HP0802",
+                None,
+                "its models depend on each other's placement too often",
+                help,
+            );
             return;
         }
         self.models[k].place = place;
@@ -462,8 +466,8 @@ impl<'d> Reader<'d, '_> {
         let Some(base) = base else { return false };
         let pose = base.pose.compose(written.map_or_else(home, |(text, p)| self.written_pose(text, p)));
         let by_include = inner.include.and_then(|(_, i)| child(i, "placement_frame")?.text());
-        let stands_by = by_include.or_else(|| inner.node.attribute("placement_frame")).map(str::trim);
-        match stands_by.filter(|f| !f.is_empty()) {
+        let placement_frame = by_include.or_else(|| inner.node.attribute("placement_frame")).map(str::trim);
+        match placement_frame.filter(|f| !f.is_empty()) {
             None => self.place(k, pose),
             Some(frame) => {
                 self.place(k, home());
@@ -568,7 +572,7 @@ impl<'d> Reader<'d, '_> {
         let models = self.models.clone();
         for model in &models {
             for link in named(model.node, "link") {
-                self.stands(link, model);
+                self.add_link(link, model);
             }
             for joint in named(model.node, "joint") {
                 self.joint(joint, model);
@@ -634,9 +638,9 @@ impl<'d> Reader<'d, '_> {
                 let [xy, xz, yz] = ["ixy", "ixz", "iyz"].map(|key| number(i, key, 0.0));
                 let [xx, yy, zz] = diagonal;
                 let cols = [[xx, xy, xz].into(), [xy, yy, yz].into(), [xz, yz, zz].into()];
-                let called = JointSource { kind: "inertial", name, at: xml::at(model.text, inertial) };
+                let source = ElementSource { kind: "inertial", name, at: xml::at(model.text, inertial) };
                 let matrix = hardpoint::space::Mat3 { cols };
-                robot::mass(&mut self.m, self.notes, called, body, frame, mass, Some(matrix));
+                robot::mass(&mut self.m, self.notes, source, body, frame, mass, Some(matrix));
             }
         }
         if self.m.masses.is_empty() {
@@ -664,7 +668,7 @@ impl<'d> Reader<'d, '_> {
     }
 
     /// Fixes a link of a static model, and adds the shapes of the link.
-    fn stands(&mut self, link: Node<'d, 'd>, model: &Model<'d>) {
+    fn add_link(&mut self, link: Node<'d, 'd>, model: &Model<'d>) {
         let name = link.attribute("name").unwrap_or_default().trim();
         let Some(Frame { body, pose }) = self.frame(&model.scope, name) else { return };
         if model.is_static {
@@ -689,7 +693,7 @@ fn relative_to<'a>(pose: Node<'a, '_>) -> Option<&'a str> {
 }
 
 /// Adds the shape of a `visual`.
-fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) {
+fn add_shape(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) {
     let VisibleShape { text, visual, body, link, place } = shape;
     let at = xml::at(text, visual);
     let Some(shape) = child(visual, "geometry").and_then(|g| children(g).next()) else {

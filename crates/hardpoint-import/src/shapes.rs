@@ -110,7 +110,13 @@ pub fn file_name(name: &str) -> String {
 }
 
 /// Reports a missing shape with the reason.
-pub fn not_shown(notes: &mut ImportLog, kind: &str, name: &str, at: Option<SourceSpan>, why: &str) {
+pub fn report_missing_shape(
+    notes: &mut ImportLog,
+    kind: &str,
+    name: &str,
+    at: Option<SourceSpan>,
+    why: &str,
+) {
     notes.refused(kind, name, at, format!("the shape is not imported: {why}"));
 }
 

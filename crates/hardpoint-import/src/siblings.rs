@@ -11,14 +11,14 @@ pub struct Sibling {
 /// Kind that is recognised by its text (in lower case) or by its extension.
 struct Kind {
     endings: &'static [&'static str],
-    looks: fn(&str) -> bool,
+    recognises: fn(&str) -> bool,
     sibling: Sibling,
 }
 
 const KINDS: &[Kind] = &[
     Kind {
         endings: &["cmd"],
-        looks: |text| {
+        recognises: |text| {
             let command = |l: &str| {
                 ["model create", "part create", "marker create", "constraint create", "defaults "]
                     .iter()
@@ -33,7 +33,7 @@ const KINDS: &[Kind] = &[
     },
     Kind {
         endings: &["bin"],
-        looks: |_| false,
+        recognises: |_| false,
         sibling: Sibling {
             what: "a binary database of Adams/View (.bin)",
             help: "open it in Adams/View, export the model as an Adams/Solver dataset (.adm), and import that",
@@ -41,7 +41,7 @@ const KINDS: &[Kind] = &[
     },
     Kind {
         endings: &["acf"],
-        looks: |text| text.contains("simulate/"),
+        recognises: |text| text.contains("simulate/"),
         sibling: Sibling {
             what: "a command file of Adams/Solver (.acf), which contains no mechanism",
             help: "import the dataset (.adm) that its first line names",
@@ -49,7 +49,7 @@ const KINDS: &[Kind] = &[
     },
     Kind {
         endings: &["asy", "tpl"],
-        looks: |text| text.contains("file_type") && ["'asy'", "'tpl'"].iter().any(|t| text.contains(t)),
+        recognises: |text| text.contains("file_type") && ["'asy'", "'tpl'"].iter().any(|t| text.contains(t)),
         sibling: Sibling {
             what: "an assembly or a template of Adams/Car (.asy, .tpl)",
             help: "import one of its subsystems (.sub), which contain the hardpoints",
@@ -57,7 +57,7 @@ const KINDS: &[Kind] = &[
     },
     Kind {
         endings: &["mbd", "mbdyn"],
-        looks: |text| {
+        recognises: |text| {
             text.contains("begin:")
                 && text.contains("end:")
                 && text.contains("problem")
@@ -70,7 +70,7 @@ const KINDS: &[Kind] = &[
     },
     Kind {
         endings: &["mdl"],
-        looks: |text| text.contains("*beginmdl") || text.contains("*begincontext"),
+        recognises: |text| text.contains("*beginmdl") || text.contains("*begincontext"),
         sibling: Sibling {
             what: "a model of MotionView (.mdl)",
             help: "export it as an Adams/Solver dataset (.adm), and import that",
@@ -78,7 +78,7 @@ const KINDS: &[Kind] = &[
     },
     Kind {
         endings: &["xacro"],
-        looks: |_| false,
+        recognises: |_| false,
         sibling: Sibling {
             what: "a xacro file, from which a URDF is made",
             help: "run `xacro FILE > robot.urdf` and import that",
@@ -86,7 +86,7 @@ const KINDS: &[Kind] = &[
     },
     Kind {
         endings: &["slx", "sldasm", "iam", "catproduct", "step", "stp", "rdyn", "mjb"],
-        looks: |text| text.starts_with("iso-10303-21"),
+        recognises: |text| text.starts_with("iso-10303-21"),
         sibling: Sibling {
             what: "a CAD, Simscape, RecurDyn or compiled MuJoCo file, whose joints are not read",
             help: "export the mechanism as URDF, SDF, MJCF or an Adams/Solver dataset, and import that",
@@ -98,6 +98,6 @@ const KINDS: &[Kind] = &[
 pub fn of(text: &str, name: &str) -> Option<&'static Sibling> {
     let text = text.to_ascii_lowercase();
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
-    let by_text = KINDS.iter().find(|k| (k.looks)(&text));
+    let by_text = KINDS.iter().find(|k| (k.recognises)(&text));
     by_text.or_else(|| KINDS.iter().find(|k| k.endings.contains(&ending.as_str()))).map(|k| &k.sibling)
 }

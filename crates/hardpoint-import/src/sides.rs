@@ -152,27 +152,29 @@ impl Mirror<'_> {
     }
 
     fn is_driver(&self, left: &Driver, right: &Driver) -> bool {
-        let held = left.law == Law::Held && right.law == Law::Held;
+        let held = left.law == Law::Fixed && right.law == Law::Fixed;
         match (left.drives, right.drives) {
             (Drives::Coordinate(l), Drives::Coordinate(r)) => {
                 let [one, two] = [l, r].map(|c| &self.m.joints[c.joint].name);
                 held && l.name == r.name && *two == other(one)
             }
             (
-                Drives::Way { body: l, at: from, along: way },
-                Drives::Way { body: r, at: to, along: other_way },
+                Drives::Translation { body: l, at: from, along },
+                Drives::Translation { body: r, at: to, along: other_along },
             ) => {
-                self.is_at((l, from), (r, to)) && Self::is_direction(way, other_way) && left.law == right.law
+                self.is_at((l, from), (r, to))
+                    && Self::is_direction(along, other_along)
+                    && left.law == right.law
             }
             (
-                Drives::Heading { body: l, about, relative_to: base },
-                Drives::Heading { body: r, about: other_about, relative_to: other_base },
+                Drives::Rotation { body: l, about, relative_to: base },
+                Drives::Rotation { body: r, about: other_about, relative_to: other_base },
             ) => {
                 held && self.bodies[l] == r
                     && self.bodies[base] == other_base
                     && Self::is_axis(Some(about), Some(other_about))
             }
-            (Drives::Coordinate(_) | Drives::Way { .. } | Drives::Heading { .. }, _) => false,
+            (Drives::Coordinate(_) | Drives::Translation { .. } | Drives::Rotation { .. }, _) => false,
         }
     }
 

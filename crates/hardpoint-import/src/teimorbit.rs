@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use hardpoint::space::Vec3;
 
 use crate::corner::{Corner, Link, plain, role_of, spin_axis};
-use crate::live_axle::{self, Places};
+use crate::live_axle::{self, SideHardpoints};
 use crate::lotus::half_round;
 use crate::mechanism::{Mechanism, end_named};
 use crate::report::{ImportLog, SourceSpan};
@@ -17,7 +17,7 @@ pub const FORMAT: Format = Format {
     name: "teimorbit",
     about: "TeimOrbit hardpoints",
     endings: &["sub", "hpt", "txt", "teim"],
-    looks: |text| text.lines().any(|l| l.trim().eq_ignore_ascii_case("[HARDPOINT]")),
+    recognises: |text| text.lines().any(|l| l.trim().eq_ignore_ascii_case("[HARDPOINT]")),
     read,
     binary: false,
 };
@@ -146,7 +146,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             notes.refused("hardpoint", "leaf spring", Some(block), why);
         }
     }
-    teimorbit_blocks::take(&blocks, &mut m, parameters.mass_is_kg, notes);
+    teimorbit_blocks::read_blocks(&blocks, &mut m, parameters.mass_is_kg, notes);
     (!m.hardpoints.is_empty()).then_some(m)
 }
 
@@ -191,7 +191,7 @@ struct Side {
     /// Ends of rods by their names, inboard first, for names without another role.
     rods: BTreeMap<String, [Option<Vec3>; 2]>,
     /// All hardpoints, for a live axle.
-    places: Places,
+    places: SideHardpoints,
 }
 
 impl Side {
@@ -355,7 +355,12 @@ fn row(
     let place = [value(["x_value", "x"]), value(["y_value", "y"]), value(["z_value", "z"])];
     let (Some(name), [Some(x), Some(y), Some(z)]) = (name, place) else {
         let help = format!("write a value for each of the columns {}", columns.join(", "));
-        notes.problem_with("HP0804", Some(at), "the row is not a hardpoint with a name and three numbers", &help);
+        notes.problem_with(
+            "HP0804",
+            Some(at),
+            "the row is not a hardpoint with a name and three numbers",
+            &help,
+        );
         return;
     };
     let symmetry = column(["symmetry", "symmetry"]).map_or("", String::as_str).to_ascii_lowercase();

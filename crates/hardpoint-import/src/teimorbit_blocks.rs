@@ -3,7 +3,7 @@
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::lotus::half_round;
-use crate::markers::JointSource;
+use crate::markers::ElementSource;
 use crate::mechanism::Mechanism;
 use crate::report::ImportLog;
 use crate::robot;
@@ -22,7 +22,7 @@ const PARTS: [(&str, &[&str]); 6] = [
 ];
 
 /// Reads the masses of parts, and reports the other blocks.
-pub fn take(blocks: &[Block], m: &mut Mechanism, is_kg: bool, notes: &mut ImportLog) {
+pub fn read_blocks(blocks: &[Block], m: &mut Mechanism, is_kg: bool, notes: &mut ImportLog) {
     for block in blocks {
         let usage = block.value("USAGE").unwrap_or_default();
         match block.name.as_str() {
@@ -57,7 +57,12 @@ fn part(block: &Block, usage: &str, m: &mut Mechanism, notes: &mut ImportLog) {
     let found = PARTS.iter().find(|(_, words)| words.iter().any(|word| name.contains(word)));
     let place = ["X", "Y", "Z"].map(|axis| block.number(&format!("PART_LOC_{axis}")));
     let (Some((body, _)), [Some(x), Some(y), Some(z)]) = (found, place) else {
-        notes.refused("mass", usage, Some(block.at), "it has no body in the model, or no position in the file");
+        notes.refused(
+            "mass",
+            usage,
+            Some(block.at),
+            "it has no body in the model, or no position in the file",
+        );
         return;
     };
     // From the square of the length unit to m^2.
@@ -88,8 +93,8 @@ fn part(block: &Block, usage: &str, m: &mut Mechanism, notes: &mut ImportLog) {
         }
         let frame = Pose { rot: none(), r: over(half_round([x, y, z]), side) };
         let name = format!("{name}{suffix}");
-        let called = JointSource { kind: "mass", name: &name, at: Some(block.at) };
-        robot::mass(m, notes, called, carrier, frame, mass, Some(Mat3 { cols }));
+        let source = ElementSource { kind: "mass", name: &name, at: Some(block.at) };
+        robot::mass(m, notes, source, carrier, frame, mass, Some(Mat3 { cols }));
     }
     if numbers.iter().any(|x| *x != 0.0) {
         let why = "its moments of inertia are assumed to refer to the axes of the vehicle";

@@ -134,12 +134,7 @@ fn parse(original: &str, text: &str, language: &str, notes: &mut ImportLog) -> O
                 let at = SourceSpan { text: 0, start, end: start };
                 let help =
                     "check the brackets, quotes, commas and the indentation at or before this position";
-                notes.problem_with(
-                    "HP0802",
-                    Some(at),
-                    format!("invalid {language}: {}", e.info()),
-                    help,
-                );
+                notes.problem_with("HP0802", Some(at), format!("invalid {language}: {}", e.info()), help);
                 return None;
             }
         };
@@ -170,12 +165,7 @@ fn parse(original: &str, text: &str, language: &str, notes: &mut ImportLog) -> O
             _ => None,
         };
         if open.len() > DEEPEST {
-            notes.problem_with(
-                "HP0802",
-                Some(at),
-                "it is nested too deep",
-                "reduce its levels to 60",
-            );
+            notes.problem_with("HP0802", Some(at), "it is nested too deep", "reduce its levels to 60");
             return None;
         }
         let Some(tree) = done else { continue };

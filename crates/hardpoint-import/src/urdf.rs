@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use hardpoint::space::{Pose, Vec3};
 use roxmltree::Node;
 
-use crate::markers::{JointSource, Marker, join};
+use crate::markers::{ElementSource, Marker, join};
 use crate::mechanism::{Coordinate, GROUND, Mechanism};
 use crate::report::{ImportLog, SourceSpan};
 use crate::shapes::Solid;
@@ -21,7 +21,7 @@ pub const FORMAT: Format = Format {
     name: "urdf",
     about: "URDF robot description",
     endings: &["urdf"],
-    looks: |text| text.contains("<robot") && (text.contains("<link") || text.contains("<joint")),
+    recognises: |text| text.contains("<robot") && (text.contains("<link") || text.contains("<joint")),
     read,
     binary: false,
 };
@@ -180,13 +180,12 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     }
     let count = reader.links.len().max(named(robot, "joint").count());
     if count > robot::MOST_PARTS {
-        let message =
-            format!("the robot has {count} links or joints; the maximum is {}", robot::MOST_PARTS);
+        let message = format!("the robot has {count} links or joints; the maximum is {}", robot::MOST_PARTS);
         reader.notes.problem_with("HP0802", None, message, "remove parts that need not move from the source");
         return None;
     }
     let mut joints: Vec<JointDeclaration<'_, '_>> =
-        named(robot, "joint").filter_map(|j| reader.written(j)).collect();
+        named(robot, "joint").filter_map(|j| reader.declaration(j)).collect();
     reader.followers(robot, &mut joints);
     reader.tree(&joints);
     reader.mimics(&joints);
@@ -268,17 +267,12 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let v: Vec3 = given.unwrap_or([1.0, 0.0, 0.0]).into();
         if v.unit().is_none() {
             let at = axis.and_then(|axis| attribute_at(0, axis, "xyz"));
-            self.notes.problem_with(
-                "HP0804",
-                at,
-                "the axis has no direction",
-                "give a non-zero vector",
-            );
+            self.notes.problem_with("HP0804", at, "the axis has no direction", "give a non-zero vector");
         }
         v
     }
 
-    fn linked(&mut self, node: Node<'a, 'i>, end: &'static str) -> Option<String> {
+    fn link_of(&mut self, node: Node<'a, 'i>, end: &'static str) -> Option<String> {
         let element = child(node, end);
         let name = element.and_then(|e| e.attribute("link").or_else(|| e.text()).map(str::trim));
         let Some(name) = name else {
@@ -302,9 +296,9 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         Some(name.to_owned())
     }
 
-    fn written(&mut self, node: Node<'a, 'i>) -> Option<JointDeclaration<'a, 'i>> {
+    fn declaration(&mut self, node: Node<'a, 'i>) -> Option<JointDeclaration<'a, 'i>> {
         let name = self.name(node)?;
-        let (parent, child_link) = (self.linked(node, "parent"), self.linked(node, "child"));
+        let (parent, child_link) = (self.link_of(node, "parent"), self.link_of(node, "child"));
         let origin = self.origin(node);
         let kind = node.attribute("type").unwrap_or_default().trim().to_ascii_lowercase();
         let axis = self.axis(node, &kind);
@@ -389,7 +383,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             for &k in &ready {
                 let j = &joints[k];
                 let (_, outer) = self.poses[&j.parent];
-                let at = value_as_drawn(joints, k, 0);
+                let at = nominal_value(joints, k, 0);
                 let frame = outer.compose(j.origin);
                 let pose = moved(frame, &j.kind, j.axis, at);
                 let body = self.body(&j.child, pose);
@@ -407,19 +401,19 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             return;
         }
         for (k, j) in joints.iter().enumerate() {
-            self.joint(j, value_as_drawn(joints, k, 0));
+            self.joint(j, nominal_value(joints, k, 0));
         }
     }
 
     fn body(&mut self, name: &str, pose: Pose) -> usize {
         let at = self.links.get(name).and_then(|n| xml::at(0, *n));
         self.notes.taken("link", name, at);
-        let note = JointSource { kind: "link", name, at }.note(self.notes);
+        let note = ElementSource { kind: "link", name, at }.note(self.notes);
         self.m.body(name, note, Some(pose))
     }
 
-    /// Adds a tree joint whose coordinate has the value `drawn` in the design configuration.
-    fn joint(&mut self, j: &JointDeclaration<'a, 'i>, drawn: f64) {
+    /// Adds a tree joint whose coordinate has the value `nominal` in the design configuration.
+    fn joint(&mut self, j: &JointDeclaration<'a, 'i>, nominal: f64) {
         let (Some(&(parent, outer)), Some(&(body, inner))) =
             (self.poses.get(&j.parent), self.poses.get(&j.child))
         else {
@@ -430,7 +424,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         else {
             return;
         };
-        self.m.joints[number].limits = j.limits.map(|ends| ends.map(|x| x - drawn));
+        self.m.joints[number].limits = j.limits.map(|ends| ends.map(|x| x - nominal));
         if j.kind == "screw" {
             self.m.joints[number].lead = j.pitch.filter(|p| *p != 0.0);
             if self.m.joints[number].lead.is_none() {
@@ -478,7 +472,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             return robot::weld(
                 &mut self.m,
                 self.notes,
-                JointSource { kind: "joint", name, at },
+                ElementSource { kind: "joint", name, at },
                 "fixed",
                 ends,
             );
@@ -487,7 +481,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let axes = if kind == "universal" { [X, Y].map(Vec3::from) } else { [axis; 2] };
         let end = |body, pose: Pose, axis| Marker::along(body, pose.r, pose.rot * axis);
         let ends = [end(i, at_i, axes[0])?, end(j, at_j, axes[1])?];
-        let number = join(&mut self.m, self.notes, JointSource { kind: "joint", name, at }, type_name, ends)?;
+        let number =
+            join(&mut self.m, self.notes, ElementSource { kind: "joint", name, at }, type_name, ends)?;
         if let Some(coordinate) = coordinate {
             self.joints.insert(name.to_owned(), Coordinate { joint: number, name: coordinate });
         }
@@ -496,10 +491,10 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
 }
 
 /// Coordinate of a joint in the design configuration: zero, or the value of a mimic joint.
-fn value_as_drawn(joints: &[JointDeclaration<'_, '_>], k: usize, depth: usize) -> f64 {
+fn nominal_value(joints: &[JointDeclaration<'_, '_>], k: usize, depth: usize) -> f64 {
     let Some(mimic) = &joints[k].mimic else { return 0.0 };
     let master = joints.iter().position(|j| j.name == mimic.joint).filter(|_| depth < DEEPEST);
-    mimic.offset + mimic.factor * master.map_or(0.0, |m| value_as_drawn(joints, m, depth + 1))
+    mimic.offset + mimic.factor * master.map_or(0.0, |m| nominal_value(joints, m, depth + 1))
 }
 
 /// Returns a frame displaced by a joint coordinate.
@@ -562,7 +557,12 @@ fn shapes(input: &mut Input<'_>, notes: &mut ImportLog, link: Node<'_, '_>, body
             "capsule" => one("radius").zip(one("length")).map(|(r, l)| Solid::Capsule(r, l)),
             "sphere" => one("radius").map(|r| Solid::Ball([r; 3])),
             other => {
-                notes.refused("visual", name, xml::at(0, shape), format!("shapes of type `{other}` are not supported"));
+                notes.refused(
+                    "visual",
+                    name,
+                    xml::at(0, shape),
+                    format!("shapes of type `{other}` are not supported"),
+                );
                 continue;
             }
         };

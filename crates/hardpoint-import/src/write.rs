@@ -373,11 +373,11 @@ impl<'m> Writer<'m> {
                     t["joint"] = value(m.joints[c.joint].name.as_str());
                     t["coordinate"] = value(c.name);
                 }
-                Drives::Way { body, at, along } => {
+                Drives::Translation { body, at, along } => {
                     t["point"] = value(self.point(body, at));
                     t["along"] = direction(along);
                 }
-                Drives::Heading { body, about, relative_to } => {
+                Drives::Rotation { body, about, relative_to } => {
                     t["body"] = value(m.bodies[body].name.as_str());
                     t["about"] = direction(about);
                     if relative_to != GROUND {
@@ -386,8 +386,8 @@ impl<'m> Writer<'m> {
                 }
             }
             match &driver.law {
-                Law::Held => t["law"] = value(0),
-                Law::Set(x) => t["law"] = value(*x),
+                Law::Fixed => t["law"] = value(0),
+                Law::Constant(x) => t["law"] = value(*x),
                 Law::Text(text) => t["law"] = value(text.as_str()),
                 Law::Table(points) => {
                     let mut law = InlineTable::new();
@@ -434,7 +434,7 @@ impl<'m> Writer<'m> {
                 }
                 value(entry)
             };
-            let followed = |axis: &&str| !self.m.unfollowed.contains(&format!("{base}_{axis}"));
+            let followed = |axis: &&str| !self.m.inadmissible.contains(&format!("{base}_{axis}"));
             let axes: Vec<&str> = ["x", "y", "z"].into_iter().filter(followed).collect();
             match axes[..] {
                 [_, _, _] => table[base] = variable("xyz"),

@@ -17,7 +17,7 @@ const UNLIMITED: f64 = 1e15;
 const MOST_ATTRIBUTES: usize = 1000;
 
 /// Exceeded limit of a text, which is not parsed.
-enum Unfit {
+enum ExceededLimit {
     /// Elements are nested too deep, from this byte on.
     Deep(usize),
     /// The element at this byte has too many attributes.
@@ -26,15 +26,11 @@ enum Unfit {
     Entities(usize),
 }
 
-impl Unfit {
+impl ExceededLimit {
     fn message(&self) -> (usize, &'static str, &'static str) {
         match *self {
             Self::Deep(at) => (at, "its elements are nested too deep", "export the mechanism again"),
-            Self::Wide(at) => (
-                at,
-                "an element has more than a thousand attributes",
-                "reduce them to 1000",
-            ),
+            Self::Wide(at) => (at, "an element has more than a thousand attributes", "reduce them to 1000"),
             Self::Entities(at) => (
                 at,
                 "the file declares entities, which are not supported",
@@ -50,8 +46,8 @@ fn options<'t>() -> ParsingOptions<'t> {
 
 /// Parses a text; errors are reported.
 pub fn parse<'t>(text: &'t str, number: usize, notes: &mut ImportLog) -> Option<Document<'t>> {
-    if let Some(unfit) = unfit(text) {
-        let (start, message, help) = unfit.message();
+    if let Some(exceeded_limit) = exceeded_limit(text) {
+        let (start, message, help) = exceeded_limit.message();
         notes.problem_with("HP0802", Some(SourceSpan { text: number, start, end: start + 1 }), message, help);
         return None;
     }
@@ -76,8 +72,8 @@ pub fn parse<'t>(text: &'t str, number: usize, notes: &mut ImportLog) -> Option<
 /// # Errors
 /// Returns the first error of the document.
 pub fn parse_quietly(text: &str) -> Result<Document<'_>, String> {
-    if let Some(unfit) = unfit(text) {
-        return Err(unfit.message().1.into());
+    if let Some(exceeded_limit) = exceeded_limit(text) {
+        return Err(exceeded_limit.message().1.into());
     }
     Document::parse_with_options(text, options()).map_err(|e| format!("invalid XML: {e}"))
 }
@@ -169,7 +165,7 @@ fn colons(text: &[u8]) -> Vec<usize> {
 }
 
 /// Returns the limit on time or memory of the parser that a text would exceed.
-fn unfit(text: &str) -> Option<Unfit> {
+fn exceeded_limit(text: &str) -> Option<ExceededLimit> {
     let bytes = text.as_bytes();
     let (mut k, mut depth) = (0, 0_usize);
     while let Some(start) = bytes[k..].iter().position(|b| *b == b'<').map(|n| k + n) {
@@ -186,7 +182,7 @@ fn unfit(text: &str) -> Option<Unfit> {
         if rest.starts_with("<!DOCTYPE") {
             let end = document_type(text, start);
             if let Some(at) = text[start..end].find("<!ENTITY") {
-                return Some(Unfit::Entities(start + at));
+                return Some(ExceededLimit::Entities(start + at));
             }
             k = end;
             continue;
@@ -207,7 +203,7 @@ fn unfit(text: &str) -> Option<Unfit> {
             }
         }
         if attributes > MOST_ATTRIBUTES {
-            return Some(Unfit::Wide(start));
+            return Some(ExceededLimit::Wide(start));
         }
         match (bytes.get(start + 1), bytes.get(end.saturating_sub(2))) {
             (Some(b'/'), _) => depth = depth.saturating_sub(1),
@@ -215,7 +211,7 @@ fn unfit(text: &str) -> Option<Unfit> {
             _ => depth += 1,
         }
         if depth > DEEPEST {
-            return Some(Unfit::Deep(start));
+            return Some(ExceededLimit::Deep(start));
         }
         k = end;
     }

@@ -27,7 +27,7 @@ pub use protocol::{
     StudyReply, Text, ToleranceChoice, ToleranceOffer, ToleranceRequest, VariableChoice, VariableSetting,
 };
 
-use open::Open;
+use open::OpenModel;
 
 /// Callback that receives the progress of a study, and may end the study.
 pub type ProgressListener<'t> = dyn FnMut(&ProgressReply) -> ControlFlow<()> + Send + 't;
@@ -35,11 +35,11 @@ pub type ProgressListener<'t> = dyn FnMut(&ProgressReply) -> ControlFlow<()> + S
 /// Replies to the requests of a page.
 #[derive(Debug, Default)]
 pub struct Engine {
-    open: Option<Open>,
+    open: Option<OpenModel>,
 }
 
 /// Diagnostics in place of a reply; never empty.
-type Refusal = Vec<DiagnosticMessage>;
+type RequestError = Vec<DiagnosticMessage>;
 
 impl Engine {
     /// Returns the reply to a JSON request.
@@ -51,9 +51,9 @@ impl Engine {
     /// });
     /// assert!(String::from_utf8_lossy(&answer).contains("HP0104"));
     /// ```
-    pub fn answer(&mut self, request: &[u8], tell: &mut ProgressListener<'_>) -> Vec<u8> {
-        let answered = match serde_json::from_slice(request) {
-            Ok(request) => self.answered(request, tell),
+    pub fn answer(&mut self, request: &[u8], listener: &mut ProgressListener<'_>) -> Vec<u8> {
+        let reply = match serde_json::from_slice(request) {
+            Ok(request) => self.dispatch(request, listener),
             Err(error) => {
                 let message = format!("unknown request: {error}");
                 Err(vec![DiagnosticMessage::plain(
@@ -63,40 +63,48 @@ impl Engine {
                 )])
             }
         };
-        answered.unwrap_or_else(|failed| json(&ErrorReply { failed }))
+        reply.unwrap_or_else(|failed| json(&ErrorReply { failed }))
     }
 
-    fn answered(&mut self, request: Request, tell: &mut ProgressListener<'_>) -> Result<Vec<u8>, Refusal> {
+    fn dispatch(
+        &mut self,
+        request: Request,
+        listener: &mut ProgressListener<'_>,
+    ) -> Result<Vec<u8>, RequestError> {
         match request {
-            Request::Check { model } => Ok(json(&checked(&model))),
+            Request::Check { model } => Ok(json(&check(&model))),
             Request::Open { model } => {
                 self.open = None;
-                let (open, opened) = Open::new(&model)?;
+                let (open, opened) = OpenModel::new(&model)?;
                 self.open = Some(open);
                 Ok(json(&opened))
             }
             Request::Design { change, from } => {
-                let mut solved = self.opened()?.design(&change, from.as_deref())?;
-                Ok(block(&mut solved))
+                let mut reply = self.open_model()?.design(&change, from.as_deref())?;
+                Ok(block(&mut reply))
             }
             Request::Beside { model } => {
-                let mut solved = self.opened()?.beside(&model)?;
-                Ok(block(&mut solved))
+                let mut reply = self.open_model()?.compare(&model)?;
+                Ok(block(&mut reply))
             }
-            Request::Text { change } => Ok(json(&Text { text: self.opened()?.text(&change)? })),
+            Request::Text { change } => Ok(json(&Text { text: self.open_model()?.text(&change)? })),
             Request::Page { model } => Ok(block(&mut study::page(&model)?)),
             Request::Optimize { model, asked } => {
-                study::optimized(&model, &asked, tell).map(|found| json(&found))
+                study::run_optimization(&model, &asked, listener).map(|found| json(&found))
             }
             Request::Tolerance { model, asked } => {
-                study::toleranced(&model, &asked, tell).map(|found| json(&found))
+                study::run_tolerance(&model, &asked, listener).map(|found| json(&found))
             }
-            Request::OptimizeOffer { model } => offer::optimize(&whole(&model)?).map(|offer| json(&offer)),
-            Request::ToleranceOffer { model } => offer::tolerance(&whole(&model)?).map(|offer| json(&offer)),
+            Request::OptimizeOffer { model } => {
+                offer::optimize(&parse_model(&model)?).map(|offer| json(&offer))
+            }
+            Request::ToleranceOffer { model } => {
+                offer::tolerance(&parse_model(&model)?).map(|offer| json(&offer))
+            }
         }
     }
 
-    fn opened(&mut self) -> Result<&mut Open, Refusal> {
+    fn open_model(&mut self) -> Result<&mut OpenModel, RequestError> {
         let nothing =
             || vec![DiagnosticMessage::plain("HP0702", "no model is open".into(), "open one first")];
         self.open.as_mut().ok_or_else(nothing)
@@ -104,8 +112,8 @@ impl Engine {
 }
 
 /// Parses a model in the requested case, or in its first case if there is no such case.
-fn read(model: &ModelText) -> Result<ModelFile, Refusal> {
-    let file = whole(model)?;
+fn parse_in_case(model: &ModelText) -> Result<ModelFile, RequestError> {
+    let file = parse_model(model)?;
     let Some(name) = &model.case else { return Ok(first_case(file)) };
     match file.model.cases.iter().position(|case| case.name == *name) {
         Some(case) => Ok(file.in_case(hardpoint::model::CaseId(case))),
@@ -114,7 +122,7 @@ fn read(model: &ModelText) -> Result<ModelFile, Refusal> {
 }
 
 /// Parses a model with all its cases.
-fn whole(model: &ModelText) -> Result<ModelFile, Refusal> {
+fn parse_model(model: &ModelText) -> Result<ModelFile, RequestError> {
     parse_with(&model.text, &model.file, &model.files)
         .map_err(|all| all.list().iter().map(|d| DiagnosticMessage::of(&model.text, d)).collect())
 }
@@ -125,8 +133,8 @@ fn first_case(file: ModelFile) -> ModelFile {
 }
 
 /// Returns the diagnostics of a text, including those of its topology.
-fn checked(model: &ModelText) -> CheckReply {
-    let file = match read(model) {
+fn check(model: &ModelText) -> CheckReply {
+    let file = match parse_in_case(model) {
         Ok(file) => file,
         Err(messages) => return CheckReply { messages },
     };

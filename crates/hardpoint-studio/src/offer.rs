@@ -9,7 +9,7 @@ use hardpoint_file::{ModelFile, Units};
 use hardpoint_report::facts::variable_unit;
 use hardpoint_report::figures::{number, order_unit, with_unit};
 
-use crate::Refusal;
+use crate::RequestError;
 use crate::protocol::{
     DiagnosticMessage, OptimizeOffer, OptimizeRequest, SearchGoal, SearchVariable, ToleranceChoice,
     ToleranceOffer,
@@ -20,8 +20,8 @@ const STARTS: usize = 1;
 const ITERATIONS: usize = 100;
 
 /// Returns the options of an optimisation.
-pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, Refusal> {
-    let (model, units, asked) = (&file.model, file.units, file.model.optimization.as_ref());
+pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, RequestError> {
+    let (model, units, settings) = (&file.model, file.units, file.model.optimization.as_ref());
     let values = values(file);
     let variable = |(k, v): (usize, &hardpoint::model::DesignVariable)| SearchVariable {
         name: v.name.clone(),
@@ -29,10 +29,10 @@ pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, Refusal> {
         bounds: v
             .bounds
             .map(|b| b.map(|x| units.from_si(v.quantity, x + model.nominal_value(VariableId(k))))),
-        chosen: asked.is_some_and(|asked| asked.variables.contains(&VariableId(k))),
+        chosen: settings.is_some_and(|settings| settings.variables.contains(&VariableId(k))),
     };
     let goal = |(k, metric): (usize, &hardpoint::model::Metric)| {
-        let goal = asked.and_then(|asked| asked.goals.iter().find(|goal| goal.metric == k));
+        let goal = settings.and_then(|settings| settings.goals.iter().find(|goal| goal.metric == k));
         let dimension = model.metric_dimension(metric);
         SearchGoal {
             metric: metric.name.clone(),
@@ -47,10 +47,11 @@ pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, Refusal> {
     Ok(OptimizeOffer {
         variables: model.variables.iter().enumerate().map(variable).collect(),
         goals: model.metrics.iter().enumerate().map(goal).collect(),
-        limits: asked
-            .map_or(Vec::new(), |asked| asked.limits.iter().map(|l| sentence(model, units, l)).collect()),
-        starts: asked.map_or(STARTS, |asked| asked.starts),
-        iterations: asked.map_or(ITERATIONS, |asked| asked.iterations),
+        limits: settings.map_or(Vec::new(), |settings| {
+            settings.limits.iter().map(|l| sentence(model, units, l)).collect()
+        }),
+        starts: settings.map_or(STARTS, |settings| settings.starts),
+        iterations: settings.map_or(ITERATIONS, |settings| settings.iterations),
     })
 }
 
@@ -97,10 +98,10 @@ fn sentence(model: &Model, units: Units, limit: &Limit) -> String {
 
 /// Returns the settings of the model text with those of the request in their place, and sets the requested bounds in
 /// the model.
-pub(crate) fn asked(
+pub(crate) fn merged_settings(
     file: &mut ModelFile,
     request: &OptimizeRequest,
-) -> Result<OptimizationSettings, Refusal> {
+) -> Result<OptimizationSettings, RequestError> {
     let units = file.units;
     let unknown = |what: &str, name: &str| {
         vec![DiagnosticMessage::plain(
@@ -109,7 +110,7 @@ pub(crate) fn asked(
             "open the pane again",
         )]
     };
-    let mut asked = file.model.optimization.clone().unwrap_or(OptimizationSettings {
+    let mut settings = file.model.optimization.clone().unwrap_or(OptimizationSettings {
         variables: Vec::new(),
         goals: Vec::new(),
         limits: Vec::new(),
@@ -117,29 +118,28 @@ pub(crate) fn asked(
         starts: STARTS,
         iterations: ITERATIONS,
     });
-    asked.variables.clear();
-    for searched in &request.variables {
-        let v =
-            file.model.variable(&searched.name).ok_or_else(|| unknown("design variable", &searched.name))?;
-        let drawn = file.model.nominal_value(v);
+    settings.variables.clear();
+    for choice in &request.variables {
+        let v = file.model.variable(&choice.name).ok_or_else(|| unknown("design variable", &choice.name))?;
+        let nominal = file.model.nominal_value(v);
         let variable = &mut file.model.variables[v.0];
-        variable.bounds = Some(searched.bounds.map(|x| units.to_si(variable.quantity, x) - drawn));
-        asked.variables.push(v);
+        variable.bounds = Some(choice.bounds.map(|x| units.to_si(variable.quantity, x) - nominal));
+        settings.variables.push(v);
     }
-    let before = std::mem::take(&mut asked.goals);
-    for wanted in &request.goals {
-        let metric = file.model.metrics.iter().position(|m| m.name == wanted.metric);
-        let metric = metric.ok_or_else(|| unknown("metric", &wanted.metric))?;
+    let before = std::mem::take(&mut settings.goals);
+    for goal in &request.goals {
+        let metric = file.model.metrics.iter().position(|m| m.name == goal.metric);
+        let metric = metric.ok_or_else(|| unknown("metric", &goal.metric))?;
         let dimension = file.model.metric_dimension(&file.model.metrics[metric]);
-        let name = before.iter().find(|goal| goal.metric == metric).map_or(&wanted.metric, |goal| &goal.name);
-        asked.goals.push(Goal {
+        let name = before.iter().find(|goal| goal.metric == metric).map_or(&goal.metric, |goal| &goal.name);
+        settings.goals.push(Goal {
             name: name.clone(),
             metric,
-            target: wanted.target.map(|x| x / units.from_si(dimension, 1.0)),
-            weight: wanted.weight * units.from_si(dimension, 1.0),
+            target: goal.target.map(|x| x / units.from_si(dimension, 1.0)),
+            weight: goal.weight * units.from_si(dimension, 1.0),
         });
     }
-    if asked.variables.is_empty() || asked.goals.is_empty() {
+    if settings.variables.is_empty() || settings.goals.is_empty() {
         let message = "an optimisation requires at least one variable and one goal".into();
         return Err(vec![DiagnosticMessage::plain(
             "HP0602",
@@ -147,15 +147,15 @@ pub(crate) fn asked(
             "select them in the pane, or add `[optimize.goals]` and `bounds`",
         )]);
     }
-    asked.starts = request.starts.max(1);
-    asked.iterations = request.iterations.max(1);
-    Ok(asked)
+    settings.starts = request.starts.max(1);
+    settings.iterations = request.iterations.max(1);
+    Ok(settings)
 }
 
 /// Returns the options of a tolerance study.
-pub(crate) fn tolerance(file: &ModelFile) -> Result<ToleranceOffer, Refusal> {
+pub(crate) fn tolerance(file: &ModelFile) -> Result<ToleranceOffer, RequestError> {
     let (model, units) = (&file.model, file.units);
-    let asked = model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(model));
+    let settings = model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(model));
     let scattered = |t: &hardpoint::model::Tolerance| {
         let first = &model.variables[t.variables[0].0];
         ToleranceChoice {
@@ -165,12 +165,12 @@ pub(crate) fn tolerance(file: &ModelFile) -> Result<ToleranceOffer, Refusal> {
             distribution: t.scatter.name().into(),
         }
     };
-    Ok(match asked {
-        Some(asked) => ToleranceOffer {
-            tolerances: asked.tolerances.iter().map(scattered).collect(),
-            metrics: asked.metrics.iter().map(|k| model.metrics[*k].name.clone()).collect(),
-            samples: asked.samples,
-            seed: asked.seed,
+    Ok(match settings {
+        Some(settings) => ToleranceOffer {
+            tolerances: settings.tolerances.iter().map(scattered).collect(),
+            metrics: settings.metrics.iter().map(|k| model.metrics[*k].name.clone()).collect(),
+            samples: settings.samples,
+            seed: settings.seed,
         },
         None => ToleranceOffer {
             tolerances: Vec::new(),

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 use super::{Reader, Statement};
-use crate::markers::JointSource;
+use crate::markers::ElementSource;
 use crate::mechanism::{Force, ForceOn, GROUND, Spring};
 use crate::robot;
 
@@ -109,7 +109,7 @@ impl Reader<'_> {
         let Some(mass) = first("MASS").map(|m| m * unit).filter(|m| *m != 0.0 && body != GROUND) else {
             return;
         };
-        let called = JointSource { kind: "mass", ..s.called() };
+        let source = ElementSource { kind: "mass", ..s.source() };
         let marker =
             |reader: &Self, key: &str| s.reference(key).and_then(|id| reader.markers.get(id)).copied();
         let own = self.m.bodies[body].pose;
@@ -143,7 +143,7 @@ impl Reader<'_> {
             *column -= (Vec3::from(one) - d * d[c]) * mass;
         }
         let frame = Pose { rot: about.rot, r: centre.r };
-        robot::mass(&mut self.m, self.notes, called, body, frame, mass, (!list.is_empty()).then_some(matrix));
+        robot::mass(&mut self.m, self.notes, source, body, frame, mass, (!list.is_empty()).then_some(matrix));
     }
 
     /// Reads a spring and damper between two markers. The force that separates them is
@@ -170,7 +170,7 @@ impl Reader<'_> {
         }
         self.m.force(Force {
             name: s.label.clone(),
-            note: s.called().note(self.notes),
+            note: s.source().note(self.notes),
             on: ForceOn::Points([(i.body, i.pose.r), (j.body, j.pose.r)]),
             spring: Spring {
                 stiffness: k * per_length,

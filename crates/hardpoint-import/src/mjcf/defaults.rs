@@ -75,8 +75,8 @@ impl<'d> Reader<'d, '_> {
     /// Reads a default class and its nested classes.
     fn class(&mut self, (text, node): Element<'d>, outer: Option<&str>, depth: usize) {
         // Total number of attributes, including inherited ones.
-        let held: usize = self.classes.values().map(HashMap::len).sum();
-        if held > MOST_DEFAULTS {
+        let count: usize = self.classes.values().map(HashMap::len).sum();
+        if count > MOST_DEFAULTS {
             let help = "remove unused classes";
             self.notes.problem_with(
                 "HP0802",
@@ -85,7 +85,7 @@ impl<'d> Reader<'d, '_> {
                 help,
             );
         }
-        if depth > DEEPEST || held > MOST_DEFAULTS {
+        if depth > DEEPEST || count > MOST_DEFAULTS {
             return;
         }
         let name = node.attribute("class").unwrap_or(if outer.is_none() { "main" } else { "" });
@@ -167,10 +167,11 @@ impl<'d> Reader<'d, '_> {
             none()
         };
         // The notation of the element takes precedence over that of its class.
-        const WAYS: [&str; 5] = ["axisangle", "xyaxes", "zaxis", "euler", "quat"];
-        let own = WAYS.into_iter().find(|key| node.has_attribute(*key));
-        let way = own.or_else(|| WAYS.into_iter().find(|key| self.attribute(element, key, class).is_some()));
-        match way {
+        const NOTATIONS: [&str; 5] = ["axisangle", "xyaxes", "zaxis", "euler", "quat"];
+        let own = NOTATIONS.into_iter().find(|key| node.has_attribute(*key));
+        let notation =
+            own.or_else(|| NOTATIONS.into_iter().find(|key| self.attribute(element, key, class).is_some()));
+        match notation {
             Some("axisangle") => {
                 let Some([x, y, z, angle]) = self.numbers::<4>(element, "axisangle", class) else {
                     return none();

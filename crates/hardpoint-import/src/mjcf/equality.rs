@@ -2,8 +2,8 @@
 
 use hardpoint::space::{Pose, Quat, Vec3};
 
-use super::{CLOSED, Element, Meet, Reader};
-use crate::markers::{JointSource, Marker, join};
+use super::{CLOSED, Element, PointConnection, Reader};
+use crate::markers::{ElementSource, Marker, join};
 use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Spring};
 use crate::turn::{home, none};
 use crate::{robot, xml};
@@ -70,7 +70,7 @@ impl<'d> Reader<'d, '_> {
     fn closure(&mut self, element: Element<'d>, kind: &str, name: &str) {
         let (text, node) = element;
         let at = xml::at(text, node);
-        let called = JointSource { kind, name, at };
+        let source = ElementSource { kind, name, at };
         let sites = ["site1", "site2"].map(|key| node.attribute(key));
         let ends = if let [Some(a), Some(b)] = sites {
             let found = [a, b].map(|s| self.sites.get(s).copied());
@@ -97,7 +97,7 @@ impl<'d> Reader<'d, '_> {
         let [Some(i), Some(j)] = ends else { return };
         let [mut i, mut j] = [i, j].map(|(body, pose)| Marker { body, pose });
         if kind == "connect" {
-            self.meets.push(Meet { name: name.to_owned(), at, ends: [i, j] });
+            self.connections.push(PointConnection { name: name.to_owned(), at, ends: [i, j] });
             return;
         }
         if !matches!(sites, [Some(_), Some(_)])
@@ -107,7 +107,7 @@ impl<'d> Reader<'d, '_> {
         }
         self.place_free(&i, &mut j);
         self.place_free(&j, &mut i);
-        robot::weld(&mut self.m, self.notes, called, "fixed", [i, j]);
+        robot::weld(&mut self.m, self.notes, source, "fixed", [i, j]);
     }
 
     /// Places a free body that only this weld constrains: its frame `own` is moved to the other one.
@@ -115,11 +115,11 @@ impl<'d> Reader<'d, '_> {
         let body = own.body;
         let is_free = self.free.iter().any(|f| f.bodies[1] == body);
         let is_held = self.m.joints.iter().any(|j| j.bodies.contains(&body))
-            || self.meets.iter().any(|meet| meet.ends.iter().any(|end| end.body == body));
-        let Some(drawn) = self.m.bodies[body].pose.filter(|_| is_free && !is_held) else { return };
+            || self.connections.iter().any(|connection| connection.ends.iter().any(|end| end.body == body));
+        let Some(nominal) = self.m.bodies[body].pose.filter(|_| is_free && !is_held) else { return };
         // X_new = X_other (X^-1 X_own)^-1
-        let moved = other.pose.compose(own.pose.inverse()).compose(drawn);
-        let carried = |pose: Pose| moved.compose(drawn.inverse()).compose(pose);
+        let moved = other.pose.compose(own.pose.inverse()).compose(nominal);
+        let carried = |pose: Pose| moved.compose(nominal.inverse()).compose(pose);
         self.m.bodies[body].pose = Some(moved);
         for (_, pose) in self.bodies.values_mut().chain(self.sites.values_mut()).filter(|(b, _)| *b == body) {
             *pose = carried(*pose);
@@ -132,18 +132,18 @@ impl<'d> Reader<'d, '_> {
 
     /// Adds joints for connected points. Two bodies that are connected at two points rotate about the line through
     /// both.
-    pub(super) fn meet(&mut self) {
-        let meets = std::mem::take(&mut self.meets);
+    pub(super) fn join_connections(&mut self) {
+        let connections = std::mem::take(&mut self.connections);
         let apart = |a: Vec3, b: Vec3| (a - b).norm() > CLOSED * self.m.size();
-        let place = |k: usize| meets[k].ends[0].pose.r;
+        let place = |k: usize| connections[k].ends[0].pose.r;
         let pair = |k: usize| {
-            let [i, j] = meets[k].ends.map(|end| end.body);
+            let [i, j] = connections[k].ends.map(|end| end.body);
             (i.min(j), i.max(j))
         };
-        let closed = |k: usize| !apart(place(k), meets[k].ends[1].pose.r);
-        let mut partner = vec![None; meets.len()];
-        for k in 0..meets.len() {
-            let same: Vec<usize> = (0..meets.len()).filter(|l| pair(*l) == pair(k)).collect();
+        let closed = |k: usize| !apart(place(k), connections[k].ends[1].pose.r);
+        let mut partner = vec![None; connections.len()];
+        for k in 0..connections.len() {
+            let same: Vec<usize> = (0..connections.len()).filter(|l| pair(*l) == pair(k)).collect();
             if let [a, b] = same[..]
                 && closed(a)
                 && closed(b)
@@ -152,18 +152,19 @@ impl<'d> Reader<'d, '_> {
                 partner[k] = Some(if k == a { b } else { a });
             }
         }
-        for (k, meet) in meets.iter().enumerate() {
-            let called = JointSource { kind: "connect", name: &meet.name, at: meet.at };
+        for (k, connection) in connections.iter().enumerate() {
+            let source = ElementSource { kind: "connect", name: &connection.name, at: connection.at };
             match partner[k] {
                 None => {
-                    join(&mut self.m, self.notes, called, "spherical", meet.ends);
+                    join(&mut self.m, self.notes, source, "spherical", connection.ends);
                 }
                 Some(other) if other > k => {
-                    let axis = meets[other].ends[0].pose.r - meet.ends[0].pose.r;
-                    let ends = meet.ends.map(|end| Marker::along(end.body, meet.ends[0].pose.r, axis));
+                    let axis = connections[other].ends[0].pose.r - connection.ends[0].pose.r;
+                    let ends =
+                        connection.ends.map(|end| Marker::along(end.body, connection.ends[0].pose.r, axis));
                     if let [Some(i), Some(j)] = ends {
-                        join(&mut self.m, self.notes, called, "revolute", [i, j]);
-                        self.notes.taken("connect", &meets[other].name, meets[other].at);
+                        join(&mut self.m, self.notes, source, "revolute", [i, j]);
+                        self.notes.taken("connect", &connections[other].name, connections[other].at);
                     }
                 }
                 Some(_) => {}
@@ -182,7 +183,7 @@ impl<'d> Reader<'d, '_> {
             }
             let why = "nothing constrains it in the source: it is fixed in the design configuration";
             self.notes.approximated("joint", &free.name, free.at, why);
-            let note = JointSource { kind: "joint", name: &free.name, at: free.at }.note(self.notes);
+            let note = ElementSource { kind: "joint", name: &free.name, at: free.at }.note(self.notes);
             self.m.joint(Joint::new(&free.name, note, "fixed", [i, j], free.place));
         }
     }
@@ -231,8 +232,8 @@ impl<'d> Reader<'d, '_> {
             self.notes.refused(kind, name, at, "nonlinear relations have no equivalent");
             return;
         }
-        let called = JointSource { kind, name, at };
-        let note = called.note(self.notes);
+        let source = ElementSource { kind, name, at };
+        let note = source.note(self.notes);
         let mut terms = first;
         if let Some(second) = second {
             terms.extend(second.iter().map(|(c, k)| (*c, -a[1] * k)));
@@ -241,7 +242,7 @@ impl<'d> Reader<'d, '_> {
         match terms[..] {
             [(only, factor)] => {
                 let value = if factor == 0.0 { 0.0 } else { a[0] / factor };
-                let law = if value == 0.0 { Law::Held } else { Law::Set(value) };
+                let law = if value == 0.0 { Law::Fixed } else { Law::Constant(value) };
                 self.m.driver(name, note, Drives::Coordinate(only), law);
             }
             _ => self.m.coupler_to(name, note, terms, a[0]),
@@ -273,7 +274,7 @@ impl<'d> Reader<'d, '_> {
             return;
         }
         self.notes.taken("tendon", name, at);
-        let note = JointSource { kind: "tendon", name, at }.note(self.notes);
+        let note = ElementSource { kind: "tendon", name, at }.note(self.notes);
         let rod = Joint::new(name, note, "distance", [i, j], to.r).between(from.r, to.r);
         self.m.joint(Joint { length: (constant != 0.0).then_some(length), ..rod });
     }
@@ -329,7 +330,8 @@ impl<'d> Reader<'d, '_> {
         let ends = self.rods.get(name).map(|ends| ends.each_ref().map(|site| self.sites.get(site).copied()));
         let (Some([Some((i, from)), Some((j, to))]), true) = (ends, lengths.len() < 2 && are_two(ends))
         else {
-            let why = "only springs of tendons with one length between two sites on two bodies have an equivalent";
+            let why =
+                "only springs of tendons with one length between two sites on two bodies have an equivalent";
             self.notes.refused(kind, name, at, why);
             return;
         };
@@ -337,12 +339,12 @@ impl<'d> Reader<'d, '_> {
             self.notes.refused(kind, name, at, "stiffness and damping must not be negative");
             return;
         }
-        let called = JointSource { kind, name, at };
+        let source = ElementSource { kind, name, at };
         // A negative length means the length in the design configuration.
         let free = lengths.first().copied().filter(|l| *l > 0.0 && stiffness > 0.0);
         self.m.force(Force {
             name: name.to_owned(),
-            note: called.note(self.notes),
+            note: source.note(self.notes),
             on: ForceOn::Points([(i, from.r), (j, to.r)]),
             spring: Spring { stiffness, damping, free, ..Spring::default() },
         });

@@ -6,7 +6,7 @@ use hardpoint::space::{Pose, Vec3};
 use roxmltree::Node;
 
 use super::{Frame, Model, Reader, version};
-use crate::markers::{JointSource, Marker, MarkerJoint, carrying, join, way};
+use crate::markers::{ElementSource, Marker, MarkerJoint, carrying_joint, coordinate_sign, join};
 use crate::mechanism::{Coordinate, Mechanism};
 use crate::turn::home;
 use crate::xml::{Vocabulary, child, children, exactly, local, named};
@@ -120,12 +120,7 @@ impl<'d> Reader<'d, '_> {
         };
         if v.unit().is_none() {
             let at = xyz.and_then(|x| xml::at(text, x));
-            self.notes.problem_with(
-                "HP0804",
-                at,
-                "the axis has no direction",
-                "give a non-zero vector",
-            );
+            self.notes.problem_with("HP0804", at, "the axis has no direction", "give a non-zero vector");
             return [0.0, 0.0, 1.0].into();
         }
         rot * v
@@ -151,7 +146,7 @@ impl<'d> Reader<'d, '_> {
         let ends = ["parent", "child"].map(|end| self.end(joint, model, end));
         let [Some(i), Some(j)] = ends else { return };
         let Some(frame) = self.frames.get(&format!("{scope}joint {name}")).map(|f| f.pose) else { return };
-        let called = JointSource { kind: "joint", name: &full, at };
+        let source = ElementSource { kind: "joint", name: &full, at };
         let kind = joint.attribute("type").unwrap_or_default().trim();
         let type_name = match kind {
             "revolute" | "continuous" => "revolute",
@@ -183,7 +178,7 @@ impl<'d> Reader<'d, '_> {
         let second = if type_name == "universal" { self.axis(joint, model, frame, "axis2") } else { axis };
         let ends = [(i.body, axis), (j.body, second)].map(|(body, axis)| Marker::along(body, frame.r, axis));
         let [Some(i), Some(j)] = ends else { return };
-        let Some(number) = join(&mut self.m, self.notes, called, type_name, [i, j]) else { return };
+        let Some(number) = join(&mut self.m, self.notes, source, type_name, [i, j]) else { return };
         let limit = child(joint, "axis").and_then(|a| child(a, "limit"));
         let ends = ["lower", "upper"].map(|key| {
             let n = limit.and_then(|l| child(l, key))?;
@@ -228,8 +223,8 @@ impl<'d> Reader<'d, '_> {
                     let [x] = found.unwrap_or_default();
                     x
                 });
-            let called = JointSource { kind: "spring", name, at };
-            robot::joint_spring(&mut self.m, self.notes, called, coordinate, [stiffness, damping, free]);
+            let source = ElementSource { kind: "spring", name, at };
+            robot::joint_spring(&mut self.m, self.notes, source, coordinate, [stiffness, damping, free]);
             robot::friction(self.notes, name, at, friction);
         }
     }
@@ -253,7 +248,7 @@ impl<'d> Reader<'d, '_> {
         {
             let other = mimic.attribute("joint").unwrap_or_default();
             let factor = number(self, mimic, "multiplier").unwrap_or(1.0);
-            let drawn = number(self, mimic, "offset").unwrap_or(0.0)
+            let constant = number(self, mimic, "offset").unwrap_or(0.0)
                 - factor * number(self, mimic, "reference").unwrap_or(0.0);
             let ends = [full.clone(), format!("{scope}{other}")]
                 .map(|n| self.joints.get(&n).and_then(only_coordinate));
@@ -270,7 +265,7 @@ impl<'d> Reader<'d, '_> {
                 self.notes.problem_with("HP0803", at, message, "use a revolute or prismatic joint");
                 continue;
             };
-            robot::follow(&mut self.m, self.notes, [name, other], at, [own, master], [factor, drawn]);
+            robot::follow(&mut self.m, self.notes, [name, other], at, [own, master], [factor, constant]);
         }
         if joint.attribute("type").map(str::trim) != Some("gearbox") {
             return;
@@ -294,8 +289,8 @@ impl<'d> Reader<'d, '_> {
             let on_carrier =
                 self.joints.values().filter(|k| k.markers.iter().any(|m| m.body == carrier.body));
             let axis = axis.unit().unwrap_or(axis);
-            let k = carrying(on_carrier, body, &["revolute"], axis)?;
-            Some((k.number, way(k, body, axis)))
+            let k = carrying_joint(on_carrier, body, &["revolute"], axis)?;
+            Some((k.number, coordinate_sign(k, body, axis)))
         };
         match (hinge(parent.body, axes[0]), hinge(driven.body, axes[1])) {
             (Some((a, u)), Some((b, v))) => {
@@ -303,7 +298,7 @@ impl<'d> Reader<'d, '_> {
                     (Coordinate { joint: b, name: "angle" }, v),
                     (Coordinate { joint: a, name: "angle" }, ratio * u),
                 ];
-                let note = JointSource { kind: "joint", name, at }.note(self.notes);
+                let note = ElementSource { kind: "joint", name, at }.note(self.notes);
                 self.m.coupler(name, note, terms);
                 self.notes.taken("gearbox", &full, at);
             }
@@ -396,8 +391,8 @@ impl<'d> Reader<'d, '_> {
             });
             let [Some(i), Some(j)] = ends else { continue };
             let name = format!("{}ball_constraint_{}", model.scope, k + 1);
-            let called = JointSource { kind: "ball_constraint", name: &name, at };
-            join(&mut self.m, self.notes, called, "spherical", [i, j]);
+            let source = ElementSource { kind: "ball_constraint", name: &name, at };
+            join(&mut self.m, self.notes, source, "spherical", [i, j]);
         }
         for node in named(model.node, "linear_bushing_rpy") {
             let why = "bushings are forces: if it closes a loop, use a joint instead";

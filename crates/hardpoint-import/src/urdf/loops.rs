@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use hardpoint::space::{Mat3, Pose, Vec3};
 use roxmltree::Node;
 
-use super::{IRRELEVANT_IN_GAZEBO, JointDeclaration, Mimic, Reader, WITHOUT_AXIS, pose, value_as_drawn};
-use crate::markers::JointSource;
+use super::{IRRELEVANT_IN_GAZEBO, JointDeclaration, Mimic, Reader, WITHOUT_AXIS, nominal_value, pose};
+use crate::markers::ElementSource;
 use crate::mechanism::Mechanism;
 use crate::robot::{self, Follower};
 use crate::turn::{Z, home, roll_pitch_yaw};
@@ -65,10 +65,10 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 }
             }
             // Coordinates are relative to the design configuration.
-            let free = free - value_as_drawn(joints, k, 0);
-            let called = JointSource { kind: "spring", name: &j.name, at };
+            let free = free - nominal_value(joints, k, 0);
+            let source = ElementSource { kind: "spring", name: &j.name, at };
             let coordinate = self.joints.get(&j.name).copied();
-            robot::joint_spring(&mut self.m, self.notes, called, coordinate, [stiffness, damping, free]);
+            robot::joint_spring(&mut self.m, self.notes, source, coordinate, [stiffness, damping, free]);
         }
     }
 
@@ -91,8 +91,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let [xx, yy, zz, xy, xz, yz] =
                 ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"].map(|k| one(self, matrix, k));
             let matrix = Mat3 { cols: [[xx, xy, xz].into(), [xy, yy, yz].into(), [xz, yz, zz].into()] };
-            let called = JointSource { kind: "inertial", name: &name, at: xml::at(0, inertial) };
-            robot::mass(&mut self.m, self.notes, called, body, frame, mass, Some(matrix));
+            let source = ElementSource { kind: "inertial", name: &name, at: xml::at(0, inertial) };
+            robot::mass(&mut self.m, self.notes, source, body, frame, mass, Some(matrix));
         }
         robot::standard_gravity(&mut self.m, self.notes, "URDF");
     }
@@ -111,26 +111,26 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     pub(super) fn gazebo(&mut self, node: Node<'a, 'i>) {
         const READ: [&str; 2] = ["joint", "springStiffness"];
         let owner = node.attribute("reference").unwrap_or_default();
-        let mut told = false;
+        let mut is_reported = false;
         for part in children(node) {
             match local(part) {
-                name if READ.contains(&name) => told = true,
+                name if READ.contains(&name) => is_reported = true,
                 name if IRRELEVANT_IN_GAZEBO.contains(&name) => {}
                 "plugin" => {
-                    told = true;
+                    is_reported = true;
                     if robot::is_mimic_plugin(part) {
                         continue;
                     }
                     robot::plugin(0, part, self.notes);
                 }
                 name => {
-                    told = true;
+                    is_reported = true;
                     let why = "unknown element for Gazebo";
                     self.notes.not_understood(name, owner, xml::at(0, part), why);
                 }
             }
         }
-        if !told {
+        if !is_reported {
             self.notes.ignored("gazebo", xml::at(0, node));
         }
     }
@@ -181,7 +181,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let at = attribute_at(0, mimic.node, "joint").or_else(|| xml::at(0, mimic.node));
             match (self.joints.get(&j.name).copied(), self.joints.get(&mimic.joint).copied()) {
                 (Some(own), Some(master)) if own != master => {
-                    let note = JointSource { kind: "mimic of", name: &mimic.joint, at }.note(self.notes);
+                    let note = ElementSource { kind: "mimic of", name: &mimic.joint, at }.note(self.notes);
                     let terms = vec![(own, 1.0), (master, -mimic.factor)];
                     self.m.coupler(&format!("{}_mimic", j.name), note, terms);
                     self.notes.taken("mimic", &j.name, at);
@@ -218,7 +218,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 children(node).filter(|n| ["link1", "link2"].contains(&n.tag_name().name())).collect();
             let ends = match links[..] {
                 [a, b] => [a, b].map(|end| {
-                    let (body, outer) = self.standing(end, "link")?;
+                    let (body, outer) = self.link_frame(end, "link")?;
                     Some((body, outer.compose(pose(end, self.notes))))
                 }),
                 _ => self.ends(node),
@@ -237,10 +237,15 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let ends = robot::BALL_ENDS.map(|(body, place)| {
                 let Some(named) = child(node, body) else {
                     let message = format!("the ball constraint has no `{body}`");
-                    self.notes.problem_with("HP0803", xml::at(0, node), message, "add it with the name of a link");
+                    self.notes.problem_with(
+                        "HP0803",
+                        xml::at(0, node),
+                        message,
+                        "add it with the name of a link",
+                    );
                     return None;
                 };
-                let (body, outer) = self.standing(named, "name")?;
+                let (body, outer) = self.link_frame(named, "name")?;
                 let place = child(node, place).and_then(|p| attribute::<3>(0, p, "value", self.notes));
                 Some((body, Pose { rot: home().rot, r: outer.point(place.unwrap_or_default().into()) }))
             });
@@ -275,19 +280,20 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         for (name, node, bodies, place) in std::mem::take(&mut self.floating) {
             let at = xml::at(0, node);
             if self.m.are_connected(bodies) {
-                let why = "no joint: loops constrain the link, and drivers fix its remaining degrees of freedom";
+                let why =
+                    "no joint: loops constrain the link, and drivers fix its remaining degrees of freedom";
                 self.notes.approximated("joint", &name, at, why);
                 continue;
             }
             let why = "nothing constrains it in the source: it is fixed in the design configuration";
             self.notes.approximated("joint", &name, at, why);
-            let note = JointSource { kind: "joint", name: &name, at }.note(self.notes);
+            let note = ElementSource { kind: "joint", name: &name, at }.note(self.notes);
             self.m.joint(crate::mechanism::Joint::new(&name, note, "fixed", bodies, place));
         }
     }
 
     /// Returns the body and pose of the link that an attribute names.
-    fn standing(&mut self, node: Node<'a, 'i>, key: &str) -> Option<(usize, Pose)> {
+    fn link_frame(&mut self, node: Node<'a, 'i>, key: &str) -> Option<(usize, Pose)> {
         let link = node.attribute(key).unwrap_or_default().trim();
         let found = self.poses.get(link).copied();
         if found.is_none() {
@@ -302,7 +308,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     /// parent if `origin` is given.
     fn ends(&mut self, node: Node<'a, 'i>) -> [Option<(usize, Pose)>; 2] {
         let [parent, body] = ["parent", "child"]
-            .map(|end| self.linked(node, end).and_then(|link| self.poses.get(&link).copied()));
+            .map(|end| self.link_of(node, end).and_then(|link| self.poses.get(&link).copied()));
         let (Some((i, outer)), Some((j, inner))) = (parent, body) else { return [None, None] };
         let on =
             |reader: &mut Self, key, outer: Pose| Some(outer.compose(pose(child(node, key)?, reader.notes)));

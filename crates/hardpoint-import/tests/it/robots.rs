@@ -107,7 +107,10 @@ fn texts_are_read_however_exporters_write_them() {
     assert!(refused("arm.urdf", &format!("{remark}\n{wrong}")).contains("arm.urdf:5:"), "{wrong}");
     // Numbers that are none stay a fault.
     assert!(refused("arm.urdf", &ARM.replace("xyz=\"0 0 1\"", "xyz=\"0 0 nan\"")).contains("HP0804"));
-    assert!(refused("arm.urdf", &ARM.replace("name=\"flange\"", "name=\"shoulder\"")).contains("is defined twice"));
+    assert!(
+        refused("arm.urdf", &ARM.replace("name=\"flange\"", "name=\"shoulder\""))
+            .contains("is defined twice")
+    );
 }
 
 /// A plate of 2 by 1 mm as two triangles, and another turned upright and shifted by 3 mm, as a square; the file is in

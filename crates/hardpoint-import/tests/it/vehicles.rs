@@ -371,7 +371,7 @@ fn an_axle_on_five_rods_has_one_driver_and_what_is_no_axle_is_told_by_name() {
     let (imported, file) = read("five.sub", &hardpoints(&five));
     assert_eq!(file.model.named_joints().filter(|(_, j)| j.kind.name == "distance").count(), 5);
     let told = imported.report.to_string();
-    assert!(told.contains("its five rods leave it one freedom"), "{told}");
+    assert!(told.contains("its five rods leave one degree of freedom"), "{told}");
     assert_eq!(imported.text.matches("bump = \"bump\"").count(), 1, "{}", imported.text);
     let import = |rows: &[(&str, &str, [f64; 3])]| {
         let text = hardpoints(rows);
