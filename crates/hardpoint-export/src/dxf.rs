@@ -69,7 +69,7 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
     }
     if model.hardpoints.iter().any(|h| h.unnamed) {
         out.report_unsupported(
-            "places",
+            "points",
             "coordinates",
             "points without the name of a hardpoint are not written",
         );

@@ -95,7 +95,7 @@ fn teimorbit(file: &ModelFile, out: &mut ExportedModel) {
     }
     if file.model.hardpoints.iter().any(|h| h.unnamed) {
         out.report_unsupported(
-            "places",
+            "points",
             "coordinates",
             "points without the name of a hardpoint are not written",
         );

@@ -281,7 +281,7 @@ impl Reader<'_> {
                 self.notes.problem_with(
                     "HP0803",
                     Some(part.at),
-                    format!("there are two parts `{path}`"),
+                    format!("the part `{path}` is defined twice"),
                     "rename one of them",
                 );
             }
@@ -324,7 +324,7 @@ impl Reader<'_> {
                     self.notes.problem_with(
                         "HP0803",
                         Some(marker.at),
-                        format!("there are two markers `{path}`"),
+                        format!("the marker `{path}` is defined twice"),
                         "rename one of them",
                     );
                 }

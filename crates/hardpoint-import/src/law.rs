@@ -408,7 +408,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_equivalent_is_named() {
+    fn functions_without_equivalent_are_reported() {
         for (text, word) in [
             ("DX(1,2)", "dx"),
             ("AKISPL(TIME", "`)`"),

@@ -74,8 +74,8 @@ pub(crate) fn run_optimization(
     let models = file.model.motions();
     let motions = motions(&file, &models, model)?;
     let (units, many, mut done) = (file.units, settings.starts > 1, 0);
-    let mut progress = |k: usize, reply: SearchProgress<'_>| {
-        let reply = match reply {
+    let mut progress = |k: usize, event: SearchProgress<'_>| {
+        let reply = match event {
             SearchProgress::Iteration(iteration) if !many => ProgressReply {
                 done: iteration.number,
                 total: Some(settings.iterations),

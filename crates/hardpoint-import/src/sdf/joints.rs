@@ -381,7 +381,7 @@ impl<'d> Reader<'d, '_> {
                 let place = child(node, place).and_then(|p| {
                     exactly::<3>(
                         p.text().unwrap_or_default(),
-                        "the place",
+                        "the point",
                         xml::at(model.text, p),
                         self.notes,
                     )

@@ -75,7 +75,7 @@ fn solved(text: &str, model: &Value) -> Vec<(f64, Vec<f64>)> {
 }
 
 #[test]
-fn hardpoints_are_drawn_where_the_changes_put_them() {
+fn changed_hardpoints_are_displayed_at_their_positions() {
     let (model, mut engine) = (named("macpherson.toml"), Engine::default());
     ask(&mut engine, json!({ "ask": "open", "model": model }));
     let change = json!([{ "name": "tie_rod_outer_z", "by": 20.0 }, { "name": "strut_top.x", "by": -8.0 }]);
@@ -162,7 +162,7 @@ fn a_drag_stops_where_the_mechanism_locks_and_says_why() {
 }
 
 #[test]
-fn what_is_asked_in_vain_is_told() {
+fn failed_requests_are_reported() {
     let mut engine = Engine::default();
     let strut = named("macpherson.toml");
     for (request, code) in [
@@ -185,7 +185,7 @@ fn what_is_asked_in_vain_is_told() {
 }
 
 #[test]
-fn messages_stand_at_their_places() {
+fn messages_have_positions() {
     let mut strut = named("macpherson.toml");
     let text = strut["text"].as_str().unwrap().replace("type = \"spherical\"", "type = \"spherica\"");
     let line = 1 + text[..text.find("spherica\"").unwrap()].matches('\n').count();
@@ -197,7 +197,7 @@ fn messages_stand_at_their_places() {
 }
 
 #[test]
-fn another_design_of_the_mechanism_stands_beside_it() {
+fn another_design_is_compared() {
     let mut engine = Engine::default();
     let strut = named("macpherson.toml");
     ask(&mut engine, json!({ "ask": "open", "model": strut }));
