@@ -15,7 +15,7 @@
 //! let urdf = hardpoint_export::Format::named("urdf").unwrap();
 //! let exported = urdf.export(&file);
 //! assert!(exported.text.contains(r#"<origin xyz="0 0 0.5"/>"#));
-//! assert!(exported.unsupported.iter().any(|u| u.name == "swing")); // URDF has no motions
+//! assert!(exported.unsupported.iter().any(|u| u.name == "swing")); // URDF does not support motions
 //! ```
 
 mod animation;

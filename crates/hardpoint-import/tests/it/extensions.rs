@@ -340,7 +340,10 @@ fn closings_are_parsed() {
     let options = Options { format: None, closings: vec!["tip=nowhere".parse().unwrap()] };
     let text = FOUR_BAR.replace("FRAMES", "").replace("CLOSED", "");
     let problems = hardpoint_import::import_with(&options, text.as_bytes(), "r.urdf", &|_| None).unwrap_err();
-    assert!(problems.to_string().contains("the frame `nowhere` for closing a loop does not exist"), "{problems}");
+    assert!(
+        problems.to_string().contains("the frame `nowhere` for closing a loop does not exist"),
+        "{problems}"
+    );
 }
 
 /// Single mass of a model: centre and moments of inertia as written.
