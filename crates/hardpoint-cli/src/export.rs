@@ -53,14 +53,14 @@ fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Re
     write(to, &exported).map_err(|e| session.not_written(&e))?;
     if session.is_json() {
         session.print_json(&json!({
-            "generator": GENERATOR, "status": "complete", "format": format.name, "file": to, "unsaid": exported.unsaid,
+            "generator": GENERATOR, "status": "complete", "format": format.name, "file": to, "unsaid": exported.unsupported,
         }));
         return Ok(Outcome::Done);
     }
     let mut out = format!("{}: {}\n", to.display(), format.about);
-    if !exported.unsaid.is_empty() {
+    if !exported.unsupported.is_empty() {
         out += "  not said, or said otherwise:\n";
-        out.extend(exported.unsaid.iter().map(|u| format!("    {} `{}`: {}\n", u.kind, u.name, u.why)));
+        out.extend(exported.unsupported.iter().map(|u| format!("    {} `{}`: {}\n", u.kind, u.name, u.why)));
     }
     text::print(&out);
     Ok(Outcome::Done)

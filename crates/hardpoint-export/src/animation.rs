@@ -16,15 +16,15 @@ use hardpoint::motion::Motion;
 use hardpoint::space::{Pose, Vec3};
 use hardpoint_file::{MeshFrame, ModelFile};
 
-use crate::links::{lines, places, rods};
+use crate::links::{body_points, lines, rods};
 
 const GENERATOR: &str = concat!("hardpoint ", env!("CARGO_PKG_VERSION"));
-/// Half of the thickness of links, and the radius of joints, as parts of the mechanism's size.
+/// Half diagonal of the section of links, and radius of joints, as fractions of the mechanism size.
 const LINK: f64 = 0.006;
 const JOINT: f64 = 0.011;
-/// Ours is z up, glTF is y up: x, y, z become x, z, -y by a quarter turn about x.
+/// Rotation from z up (model) to y up (glTF): x, y, z become x, z, -y by a quarter turn about x; quaternion x, y, z, w.
 const Y_UP: [f32; 4] = [-std::f32::consts::FRAC_1_SQRT_2, 0.0, 0.0, std::f32::consts::FRAC_1_SQRT_2];
-/// The colours of ground, and of bodies in turn.
+/// Colour of ground, and colours that the other bodies cycle through.
 const GROUND: [f32; 3] = [0.35, 0.35, 0.37];
 const COLOURS: [[f32; 3]; 8] = [
     [0.06, 0.26, 0.56],
@@ -37,9 +37,9 @@ const COLOURS: [[f32; 3]; 8] = [
     [0.25, 0.18, 0.55],
 ];
 
-/// A motion as a binary glTF file (`.glb`): under a node of the model's name, which turns z up into glTF's y up, one
-/// node for each body, in metres, with its translation and rotation at every output time, from 0 s on. Bodies are the
-/// shapes that the model names for them; others, and rods, are drawn as links between their places.
+/// Writes a motion as a binary glTF file (`.glb`). A root node with the model's name turns z up into glTF's y up. Below
+/// it is one node per body with its translation (m) and rotation at every output time, counted from 0 s. A body is
+/// drawn with the mesh that the model names for it, otherwise, like rods, as links between its points.
 ///
 /// ```
 /// let text = r#"
@@ -58,18 +58,18 @@ const COLOURS: [[f32; 3]; 8] = [
 /// ```
 ///
 /// # Errors
-/// Where it is larger than the format allows, 4 GiB.
+/// Returns an error if the file exceeds the limit of the format, 4 GiB.
 pub fn animation(file: &ModelFile, motion: &Motion) -> io::Result<Vec<u8>> {
     let model = &file.model;
-    let steps = moments(motion);
+    let steps = distinct_times(motion);
     let mut scene = Writer::new();
     let start = steps.first().map_or(0.0, |k| motion.times[*k]);
     let times: Vec<f32> = steps.iter().map(|k| (motion.times[*k] - start) as f32).collect();
     let times = scene.accessor(Type::Scalar, &times, None);
     let mut tracks = Vec::new();
     let mut nodes = Vec::new();
-    for (b, places) in places(model).iter().enumerate() {
-        let mesh = shape(file, b).unwrap_or_else(|| linked(places, b > 0, model.size()));
+    for (b, places) in body_points(model).iter().enumerate() {
+        let mesh = shape(file, b).unwrap_or_else(|| link_triangles(places, b > 0, model.size()));
         let colour = if b == 0 { GROUND } else { COLOURS[(b - 1) % COLOURS.len()] };
         let poses: Vec<Pose> = steps
             .iter()
@@ -80,7 +80,7 @@ pub fn animation(file: &ModelFile, motion: &Motion) -> io::Result<Vec<u8>> {
             .collect();
         let turns = poses.iter().map(|p| quaternion(*p));
         let track = Track::new(poses.iter().map(|p| p.r), turns, None);
-        nodes.push(scene.moving(&model.bodies[b].name, &mesh, colour, &track, &mut tracks));
+        nodes.push(scene.add_node(&model.bodies[b].name, &mesh, colour, &track, &mut tracks));
     }
     for (joint, ends) in rods(model) {
         let [i, j] = joint.bodies.map(|b| b.0);
@@ -90,19 +90,19 @@ pub fn animation(file: &ModelFile, motion: &Motion) -> io::Result<Vec<u8>> {
         };
         let spans: Vec<[Vec3; 2]> =
             steps.iter().map(|&k| [place(k, i, ends[0]), place(k, j, ends[1])]).collect();
-        // A rod of unit length along z, turned and stretched.
+        // A rod of unit length along z, which is rotated and scaled.
         let mut mesh = Triangles::default();
         mesh.prism([Vec3::zero(), Vec3::new(0.0, 0.0, 1.0)], LINK * model.size());
         let lengths = spans.iter().map(|[a, b]| (*b - *a).norm()).collect();
         let turns = spans.iter().map(|[a, b]| from_z(*b - *a));
         let track = Track::new(spans.iter().map(|[a, _]| *a), turns, Some(lengths));
-        nodes.push(scene.moving(&joint.name, &mesh, GROUND, &track, &mut tracks));
+        nodes.push(scene.add_node(&joint.name, &mesh, GROUND, &track, &mut tracks));
     }
     scene.end(model, nodes, times, tracks)
 }
 
-/// The output times, but those that come after another by less than single precision indicates.
-fn moments(motion: &Motion) -> Vec<usize> {
+/// Indices of the output times that remain distinct in single precision.
+fn distinct_times(motion: &Motion) -> Vec<usize> {
     let Some(start) = motion.times.first() else { return Vec::new() };
     let mut last = None;
     let later = |k: &usize| {
@@ -114,17 +114,17 @@ fn moments(motion: &Motion) -> Vec<usize> {
     (0..motion.len()).filter(later).collect()
 }
 
-/// As glTF has it: x, y, z, w.
+/// Orientation as a quaternion in the order of glTF: x, y, z, w.
 fn quaternion(pose: Pose) -> [f64; 4] {
     let [w, x, y, z] = hardpoint::space::Quat::from_rotation(pose.rot).to_array();
     [x, y, z, w]
 }
 
-/// The turn that takes z into this direction.
+/// Quaternion x, y, z, w of the smallest rotation that takes z into the direction `d`.
 fn from_z(d: Vec3) -> [f64; 4] {
     let length = d.norm();
     let w = length + d.z;
-    // Half round, about any axis perpendicular to z.
+    // Half a turn, about any axis perpendicular to z.
     if !(w > 1e-9 * length) {
         return [1.0, 0.0, 0.0, 0.0];
     }
@@ -132,7 +132,7 @@ fn from_z(d: Vec3) -> [f64; 4] {
     [-d.y / norm, d.x / norm, 0.0, w / norm]
 }
 
-/// The body's own shape, in its frame.
+/// Mesh that the model names for a body, in the body frame.
 fn shape(file: &ModelFile, body: usize) -> Option<Triangles> {
     let mesh = file.drawing.bodies.get(&body)?;
     let body_from_file = match mesh.frame {
@@ -143,8 +143,8 @@ fn shape(file: &ModelFile, body: usize) -> Option<Triangles> {
     Some(Triangles { places, corners: mesh.triangles.iter().flatten().copied().collect() })
 }
 
-/// Links between places, and joints there; of ground only these.
-fn linked(places: &[Vec3], links: bool, size: f64) -> Triangles {
+/// Triangles of the joints at the points of a body and, if `links`, of the links between them.
+fn link_triangles(places: &[Vec3], links: bool, size: f64) -> Triangles {
     let mut mesh = Triangles::default();
     for line in lines(places).into_iter().filter(|_| links) {
         mesh.prism(line, LINK * size);
@@ -153,16 +153,16 @@ fn linked(places: &[Vec3], links: bool, size: f64) -> Triangles {
     mesh
 }
 
-/// A surface.
+/// Triangulated surface.
 #[derive(Default)]
 struct Triangles {
     places: Vec<Vec3>,
-    /// Three for each.
+    /// Vertex indices, three per triangle.
     corners: Vec<u32>,
 }
 
 impl Triangles {
-    /// A rod with a square section along a line.
+    /// Adds a rod of square section along a line; `half` is the half diagonal of the section.
     fn prism(&mut self, [from, to]: [Vec3; 2], half: f64) {
         let along = (to - from) * (1.0 / (to - from).norm());
         let other = if along.x.abs() < 0.9 { Vec3::new(1.0, 0.0, 0.0) } else { Vec3::new(0.0, 1.0, 0.0) };
@@ -180,7 +180,7 @@ impl Triangles {
         self.corners.extend([0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7].map(|c| first + c));
     }
 
-    /// An octahedron about a place.
+    /// Adds an octahedron about a point.
     fn joint(&mut self, at: Vec3, radius: f64) {
         let first = self.places.len() as u32;
         let axes =
@@ -194,7 +194,7 @@ impl Triangles {
     }
 }
 
-/// Positions over time.
+/// Transformation of a node at every output time.
 struct Track {
     places: Vec<[f32; 3]>,
     turns: Vec<[f32; 4]>,
@@ -202,14 +202,14 @@ struct Track {
 }
 
 impl Track {
-    /// `lengths` stretch it along its z axis.
+    /// Creates a track; `lengths` scale the node along its z axis.
     fn new(
         places: impl Iterator<Item = Vec3>,
         turns: impl Iterator<Item = [f64; 4]>,
         lengths: Option<Vec<f64>>,
     ) -> Self {
         let mut turns: Vec<[f64; 4]> = turns.collect();
-        // A turn has two quaternions: of those, the one that is nearer to the one before.
+        // A rotation has two quaternions: choose the one nearer to the previous.
         for k in 1..turns.len() {
             let dot: f64 = turns[k].iter().zip(&turns[k - 1]).map(|(a, b)| a * b).sum();
             if dot < 0.0 {
@@ -224,8 +224,8 @@ impl Track {
     }
 }
 
-/// Animated property of a node, and its numbers.
-type Changing = (Index<Node>, Property, Index<Accessor>);
+/// Animated property of a node, with the accessor of its values.
+type AnimatedProperty = (Index<Node>, Property, Index<Accessor>);
 
 struct Writer {
     root: Root,
@@ -249,14 +249,14 @@ impl Writer {
         Self { root, data: Vec::new(), buffer }
     }
 
-    /// A node that moves; `tracks` get what changes of it.
-    fn moving(
+    /// Adds an animated node; its varying properties are appended to `tracks`.
+    fn add_node(
         &mut self,
         name: &str,
         shape: &Triangles,
         colour: [f32; 3],
         track: &Track,
-        tracks: &mut Vec<Changing>,
+        tracks: &mut Vec<AnimatedProperty>,
     ) -> Index<Node> {
         let mesh = self.mesh(name, shape, colour);
         let node = self.root.push(Node {
@@ -267,15 +267,15 @@ impl Writer {
             scale: track.scales.first().copied(),
             ..Node::default()
         });
-        // Of what does not change there are no tracks.
-        let mut add = |property, kind, changes: bool, numbers: &[f32]| {
-            if changes {
+        // Constant properties need no track.
+        let mut add = |property, kind, varies: bool, numbers: &[f32]| {
+            if varies {
                 tracks.push((node, property, self.accessor(kind, numbers, None)));
             }
         };
-        add(Property::Translation, Type::Vec3, changes(&track.places), track.places.as_flattened());
-        add(Property::Rotation, Type::Vec4, changes(&track.turns), track.turns.as_flattened());
-        add(Property::Scale, Type::Vec3, changes(&track.scales), track.scales.as_flattened());
+        add(Property::Translation, Type::Vec3, varies(&track.places), track.places.as_flattened());
+        add(Property::Rotation, Type::Vec4, varies(&track.turns), track.turns.as_flattened());
+        add(Property::Scale, Type::Vec3, varies(&track.scales), track.scales.as_flattened());
         node
     }
 
@@ -349,7 +349,7 @@ impl Writer {
         model: &Model,
         children: Vec<Index<Node>>,
         times: Index<Accessor>,
-        tracks: Vec<Changing>,
+        tracks: Vec<AnimatedProperty>,
     ) -> io::Result<Vec<u8>> {
         let top = self.root.push(Node {
             name: Some(model.name.clone()),
@@ -364,14 +364,14 @@ impl Writer {
             extras: Default::default(),
         };
         self.root.scene = Some(self.root.push(scene));
-        let sampler = |(_, _, output): &Changing| Sampler {
+        let sampler = |(_, _, output): &AnimatedProperty| Sampler {
             input: times,
             interpolation: Checked::Valid(Interpolation::Linear),
             output: *output,
             extensions: None,
             extras: Default::default(),
         };
-        let channel = |(k, (node, property, _)): (usize, &Changing)| Channel {
+        let channel = |(k, (node, property, _)): (usize, &AnimatedProperty)| Channel {
             sampler: Index::new(k as u32),
             target: Target {
                 node: *node,
@@ -426,6 +426,6 @@ fn accessor(
     }
 }
 
-fn changes<const N: usize>(list: &[[f32; N]]) -> bool {
+fn varies<const N: usize>(list: &[[f32; N]]) -> bool {
     list.iter().any(|x| *x != list[0])
 }

@@ -1,10 +1,10 @@
-//! DXF: hardpoints as points with their names, bodies as lines between their places.
+//! DXF: hardpoints as points with their names, bodies as lines between their points.
 
 use hardpoint::joint::Quantity;
 use hardpoint::space::Vec3;
 use hardpoint_file::{LengthUnit, ModelFile};
 
-use crate::links::{lines, places, rods};
+use crate::links::{body_points, lines, rods};
 use crate::tables::hardpoints;
 use crate::{ExportedModel, Format};
 
@@ -12,13 +12,13 @@ mod drawing;
 
 use drawing::{Drawing, number, point, single_line};
 
-/// See the module.
+/// DXF format.
 pub const FORMAT: Format =
     Format { name: "dxf", about: "skeleton of hardpoints and bodies as DXF", endings: &["dxf"], write };
 
-/// The layer of hardpoints and their names.
+/// Layer of the hardpoints and their names.
 const HARDPOINTS: &str = "hardpoints";
-/// The height of names, as a part of the mechanism's size.
+/// Text height of the names, as a fraction of the mechanism size.
 const TEXT: f64 = 0.015;
 
 fn write(file: &ModelFile, out: &mut ExportedModel) {
@@ -40,11 +40,11 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
     }
     let in_units = |at: Vec3| at.to_array().map(|x| units.from_si(Quantity::Length, x));
     let line = |[a, b]: [Vec3; 2]| point(10, in_units(a)) + &point(11, in_units(b));
-    for (b, places) in places(model).iter().enumerate().skip(1) {
+    for (b, places) in body_points(model).iter().enumerate().skip(1) {
         let body = &model.bodies[b];
         let links = lines(places);
         if links.is_empty() {
-            out.unsaid("body", &body.name, "it has a single place, and no line");
+            out.report_unsupported("body", &body.name, "it has a single point, and no line");
             continue;
         }
         let layer = drawing.add_layer(&body.name);
@@ -61,10 +61,18 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
     let rods = rods(model).count();
     let joints = model.named_joints().count() - rods;
     if joints > 0 {
-        out.unsaid("joints", &joints.to_string(), "DXF has no joints: only their places are written");
+        out.report_unsupported(
+            "joints",
+            &joints.to_string(),
+            "DXF has no joints: only their points are written",
+        );
     }
     if model.hardpoints.iter().any(|h| h.unnamed) {
-        out.unsaid("places", "coordinates", "places without a hardpoint's name have no point of their own");
+        out.report_unsupported(
+            "points",
+            "coordinates",
+            "points without the name of a hardpoint are not written",
+        );
     }
     out.without_motions(file, "DXF");
 }

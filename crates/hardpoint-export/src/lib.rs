@@ -1,4 +1,5 @@
-//! Models of Hardpoint as files of other programs, and what these does not support.
+//! Export of Hardpoint models to files of other programs, with a list of the features that each format does not
+//! support.
 //!
 //! ```
 //! let text = r#"
@@ -14,7 +15,7 @@
 //! let urdf = hardpoint_export::Format::named("urdf").unwrap();
 //! let exported = urdf.export(&file);
 //! assert!(exported.text.contains(r#"<origin xyz="0 0 0.5"/>"#));
-//! assert!(exported.unsaid.iter().any(|u| u.name == "swing")); // URDF has no motions
+//! assert!(exported.unsupported.iter().any(|u| u.name == "swing")); // URDF does not support motions
 //! ```
 
 mod animation;
@@ -35,31 +36,31 @@ pub use tables::hardpoints;
 /// A model as a file of another program.
 #[derive(Clone, Debug, Default)]
 pub struct ExportedModel {
-    /// The file's text.
+    /// Text of the file.
     pub text: String,
-    /// Features that the format does not support, or only approximately.
-    pub unsaid: Vec<UnsupportedFeature>,
+    /// Features that the format does not support, or supports only approximately.
+    pub unsupported: Vec<UnsupportedFeature>,
 }
 
-/// Something that a format does not support.
+/// Feature of a model that a format does not support.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct UnsupportedFeature {
     /// Kind in the model: `joint`, `driver`.
     pub kind: &'static str,
-    /// Name there.
+    /// Name in the model.
     pub name: String,
-    /// Reason, or replacement.
+    /// Reason, or substitute that is written.
     pub why: String,
 }
 
-/// A format.
+/// Export format.
 #[derive(Clone, Copy)]
 pub struct Format {
-    /// The name by which it can be requested.
+    /// Name, as in `--format NAME`.
     pub name: &'static str,
     /// Description of the format.
     pub about: &'static str,
-    /// Endings of its files' names.
+    /// File extensions, without the dot.
     pub endings: &'static [&'static str],
     write: fn(&ModelFile, &mut ExportedModel),
 }
@@ -70,42 +71,46 @@ impl std::fmt::Debug for Format {
     }
 }
 
-/// All formats.
+/// All export formats.
 pub const FORMATS: &[Format] = &[tables::CSV, tables::TEIMORBIT, urdf::FORMAT, mjcf::FORMAT, dxf::FORMAT];
 
-/// Formats whose writers quote names, whatever is in them.
+/// Formats whose writers quote names, so that these may contain any character.
 const QUOTES_NAMES: [&str; 1] = ["csv"];
 
 impl Format {
-    /// The format of that name.
+    /// Returns the format with a name.
     pub fn named(name: &str) -> Option<&'static Self> {
         FORMATS.iter().find(|f| f.name == name)
     }
 
-    /// The format of a file by how its name ends.
+    /// Returns the format of a file from its extension.
     pub fn of(name: &str) -> Option<&'static Self> {
         let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
         FORMATS.iter().find(|f| f.endings.contains(&ending.as_str()))
     }
 
-    /// A model as a file of this format.
+    /// Exports a model to this format.
     pub fn export(&self, file: &ModelFile) -> ExportedModel {
         let mut out = ExportedModel::default();
-        let neutral = if QUOTES_NAMES.contains(&self.name) { None } else { names::neutral(file, &mut out) };
-        (self.write)(neutral.as_ref().unwrap_or(file), &mut out);
+        let renamed = if QUOTES_NAMES.contains(&self.name) {
+            None
+        } else {
+            names::with_supported_names(file, &mut out)
+        };
+        (self.write)(renamed.as_ref().unwrap_or(file), &mut out);
         out
     }
 }
 
 impl ExportedModel {
-    fn unsaid(&mut self, kind: &'static str, name: &str, why: impl Into<String>) {
-        self.unsaid.push(UnsupportedFeature { kind, name: name.to_owned(), why: why.into() });
+    fn report_unsupported(&mut self, kind: &'static str, name: &str, why: impl Into<String>) {
+        self.unsupported.push(UnsupportedFeature { kind, name: name.to_owned(), why: why.into() });
     }
 
-    /// Drivers, design variables, measures and the like, which no format of mechanisms has.
+    /// Reports the drivers, design variables, measures, wheels and meshes, which no format for mechanisms supports.
     fn without_motions(&mut self, file: &ModelFile, format: &str) {
         for driver in &file.model.drivers {
-            self.unsaid("driver", &driver.name, format!("{format} has no motions"));
+            self.report_unsupported("driver", &driver.name, format!("{format} does not support motions"));
         }
         let rest = [
             ("design variables", file.model.variables.len()),
@@ -114,12 +119,12 @@ impl ExportedModel {
             ("meshes", file.drawing.bodies.len()),
         ];
         for (kind, count) in rest.into_iter().filter(|(_, count)| *count > 0) {
-            self.unsaid(kind, &count.to_string(), "they are not written");
+            self.report_unsupported(kind, &count.to_string(), "not written");
         }
     }
 }
 
-/// A number as short as it can be read back.
+/// Shortest text that reads back as the same number.
 fn number(x: f64) -> String {
     // Zero is written without a sign.
     format!("{}", x + 0.0)
@@ -129,7 +134,7 @@ fn numbers(list: [f64; 3]) -> String {
     list.map(number).join(" ")
 }
 
-/// A text in an attribute of XML, which holds no control characters.
+/// Escapes a text for an XML attribute. The text must not contain control characters.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

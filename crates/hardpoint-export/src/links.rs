@@ -3,15 +3,15 @@
 use hardpoint::model::{Direction, Joint, Model};
 use hardpoint::space::Vec3;
 
-/// Places of a body that are nearer to each other than this part of the mechanism's size are one.
+/// Points of a body closer than this fraction of the mechanism size coincide.
 const SAME_PLACE: f64 = 1e-9;
-/// Joints whose axis, where it goes through two hardpoints, has a bearing at both.
+/// Joint types with a bearing at both hardpoints that define the axis.
 const HINGES: [&str; 2] = ["revolute", "cylindrical"];
-/// Joints that are rods between their two places.
+/// Joint types that are rods between their two points.
 const RODS: [&str; 3] = ["distance", "leg", "revolute_spherical"];
 
-/// The places of every body, in its frame, m: where joints hold it, the bearings of hinges, and its named points.
-pub fn places(model: &Model) -> Vec<Vec<Vec3>> {
+/// Points of every body in its frame, m: joint locations, bearings of hinges, and named points.
+pub fn body_points(model: &Model) -> Vec<Vec<Vec3>> {
     let geometry = model.geometry(&[]);
     let same = SAME_PLACE * model.size();
     let mut places = vec![Vec::<Vec3>::new(); model.bodies.len()];
@@ -39,14 +39,14 @@ pub fn places(model: &Model) -> Vec<Vec<Vec3>> {
     places
 }
 
-/// The rods that are joints, each with its two places in the frames of its bodies, m.
+/// Joints that are rods, each with its two end points in the frames of bodies i and j, m.
 pub fn rods(model: &Model) -> impl Iterator<Item = (&Joint, [Vec3; 2])> {
     let geometry = model.geometry(&[]);
     let rods = model.named_joints().filter(|(_, joint)| RODS.contains(&joint.kind.name));
     rods.map(move |(id, joint)| (joint, [0, 1].map(|end| geometry.markers[id.0][end].r)))
 }
 
-/// Lines that connect places: all of up to three, the shortest tree of more.
+/// Lines that connect points: all pairs of up to three points, the shortest tree of more.
 pub fn lines(places: &[Vec3]) -> Vec<[Vec3; 2]> {
     let mut lines = Vec::new();
     let mut left: Vec<Vec3> = places.to_vec();

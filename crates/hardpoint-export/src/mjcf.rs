@@ -1,4 +1,4 @@
-//! MJCF: bodies in bodies, loops, rods and couplers as equalities.
+//! MJCF: nested bodies, with loops, rods and couplers as equality constraints.
 
 use std::fmt::Write;
 
@@ -6,17 +6,17 @@ use hardpoint::model::Joint;
 use hardpoint::space::Vec3;
 use hardpoint_file::ModelFile;
 
-use crate::skeleton::{Carrier, Skeleton, axis, followers, is_closed, places};
+use crate::skeleton::{Carrier, Skeleton, axis, followers, is_closed, joint_points};
 use crate::{ExportedModel, Format, escaped, number, numbers};
 
-/// See the module.
+/// MJCF format.
 pub const FORMAT: Format = Format { name: "mjcf", about: "MuJoCo model", endings: &["xml", "mjcf"], write };
 
-/// A joint of MJCF: its type, which axis it has, and the end of its name.
-type Part = (&'static str, Along, &'static str);
+/// Joint of MJCF: its type, the axis of the joint frame that it uses, and the suffix of its name.
+type MjcfJoint = (&'static str, Along, &'static str);
 
-/// Types of joints that can carry a body, and the joints of MJCF in a row that they are.
-const TYPES: [(&str, &[Part]); 8] = [
+/// Joint types that can carry a body (tree joints), each with its equivalent sequence of MJCF joints.
+const TYPES: [(&str, &[MjcfJoint]); 8] = [
     ("revolute", &[("hinge", Along::Z, "")]),
     ("translational", &[("slide", Along::Z, "")]),
     ("spherical", &[("ball", Along::Z, "")]),
@@ -26,9 +26,9 @@ const TYPES: [(&str, &[Part]); 8] = [
     ("pin_in_slot", &[("slide", Along::X, "_slide"), ("hinge", Along::Z, "_hinge")]),
     ("planar", &[("slide", Along::X, "_x"), ("slide", Along::Y, "_y"), ("hinge", Along::Z, "_hinge")]),
 ];
-/// Types that can close a loop.
+/// Joint types that can close a loop (cut joints).
 const CLOSE: [&str; 4] = ["spherical", "revolute", "fixed", "distance"];
-/// A hinge that closes a loop is held at two points of its axis, this part of the mechanism's size apart.
+/// Distance between the two points of its axis at which a cut hinge is connected, as a fraction of the mechanism size.
 const APART: f64 = 0.1;
 
 /// Axis of a joint's frame.
@@ -39,7 +39,7 @@ enum Along {
     Z,
 }
 
-/// A place on a body that an equality names.
+/// Point of a body that an equality refers to.
 struct Site {
     name: String,
     body: usize,
@@ -78,7 +78,7 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut ExportedModel) ->
         let [i, j] = joint.bodies.map(|b| b.0);
         let mut meet = |element: &str, name: &str, at: [Vec3; 2]| {
             let ends = if is_closed(model, joint) {
-                // The anchor of a weld is of the second body.
+                // The anchor of a weld is in the frame of the second body.
                 let anchor = if element == "weld" { at[1] - tree.origin(j) } else { at[0] - tree.origin(i) };
                 format!(
                     "body1=\"{}\" body2=\"{}\" anchor=\"{}\"",
@@ -92,7 +92,7 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut ExportedModel) ->
             };
             let _ = writeln!(equalities, "    <{element} name=\"{name}\" {ends}/>");
         };
-        let at = places(model, joint);
+        let at = joint_points(model, joint);
         match joint.kind.name {
             "spherical" => meet("connect", &name, at),
             "fixed" => meet("weld", &name, at),
@@ -107,9 +107,9 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut ExportedModel) ->
                     tendons,
                     "    <spatial name=\"{name}\"><site site=\"{a}\"/><site site=\"{b}\"/></spatial>"
                 );
-                // The constant is by how much it is longer than drawn.
-                let drawn = (places(model, joint)[1] - places(model, joint)[0]).norm();
-                let constant = joint.length.map_or(0.0, |length| length - drawn);
+                // The constant is the difference of the rod length from the distance in the design configuration.
+                let nominal = (joint_points(model, joint)[1] - joint_points(model, joint)[0]).norm();
+                let constant = joint.length.map_or(0.0, |length| length - nominal);
                 let constant = if constant == 0.0 {
                     String::new()
                 } else {
@@ -118,8 +118,8 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut ExportedModel) ->
                 let _ = writeln!(equalities, "    <tendon name=\"{name}\" tendon1=\"{name}\"{constant}/>");
             }
             other => {
-                let why = format!("MJCF has nothing like a joint of type {other} that closes a loop");
-                out.unsaid("joint", &joint.name, why);
+                let why = format!("MJCF has no equivalent of a joint of type {other} that closes a loop");
+                out.report_unsupported("joint", &joint.name, why);
             }
         }
     }
@@ -135,16 +135,16 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut ExportedModel) ->
         );
     }
     for name in others {
-        out.unsaid(
+        out.report_unsupported(
             "coupler",
             &name,
-            "an equality of MJCF is between two joints of the tree with one coordinate each",
+            "an equality of MJCF couples two tree joints with a single coordinate each",
         );
     }
     (equalities, tendons)
 }
 
-/// Sites for the two places of a joint; their names.
+/// Adds sites for the two points of a joint and returns their names.
 fn site_at(sites: &mut Vec<Site>, joint: &str, bodies: [usize; 2], at: [Vec3; 2]) -> [String; 2] {
     [0, 1].map(|end| {
         let name = format!("{joint}_{}", ["i", "j"][end]);
@@ -153,7 +153,7 @@ fn site_at(sites: &mut Vec<Site>, joint: &str, bodies: [usize; 2], at: [Vec3; 2]
     })
 }
 
-/// The sites of a body, and the bodies that it carries.
+/// Writes the sites of a body, and the bodies that it carries.
 fn inside(tree: &Skeleton<'_>, sites: &[Site], outer: usize, depth: usize, out: &mut ExportedModel) {
     let indent = "  ".repeat(depth);
     for site in sites.iter().filter(|s| s.body == outer) {
@@ -170,17 +170,17 @@ fn inside(tree: &Skeleton<'_>, sites: &[Site], outer: usize, depth: usize, out: 
                 let _ = writeln!(out.text, "{indent}  <freejoint/>");
             }
         }
-        // A moving body has to have a mass.
+        // MuJoCo requires a mass of every moving body.
         let _ = writeln!(out.text, "{indent}  <inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/>");
         inside(tree, sites, body, depth + 1, out);
         let _ = writeln!(out.text, "{indent}</body>");
     }
 }
 
-/// The joints of a body that one of the model's carries.
+/// Writes the MJCF joints of a body for its tree joint; `backward` if the body is body i of the joint.
 fn joints(joint: &Joint, backward: bool, indent: &str, out: &mut ExportedModel) {
     let parts = TYPES.iter().find(|(own, _)| *own == joint.kind.name).map_or(&[][..], |(_, parts)| parts);
-    // Seen from the other body they come the other way round.
+    // Seen from body j, the order is reversed.
     let order: Vec<_> = if backward { parts.iter().rev().collect() } else { parts.iter().collect() };
     for (kind, along, ending) in order {
         let name = escaped(&joint.name);
@@ -195,7 +195,7 @@ fn joints(joint: &Joint, backward: bool, indent: &str, out: &mut ExportedModel) 
         let _ = writeln!(out.text, "{indent}  <joint name=\"{name}{ending}\" type=\"{kind}\"{axis}/>");
     }
     if parts.len() > 1 {
-        let why = format!("written as {} joints in a row, which move alike", parts.len());
-        out.unsaid("joint", &joint.name, why);
+        let why = format!("written as a chain of {} equivalent joints", parts.len());
+        out.report_unsupported("joint", &joint.name, why);
     }
 }

@@ -1,45 +1,45 @@
-//! The tree that robot formats are made of: which joint carries which body, and which joints close loops.
+//! Spanning tree of a mechanism for robot formats: the joint that carries each body, and the joints that close loops.
 
 use hardpoint::model::{Joint, Model};
 use hardpoint::space::Vec3;
 
 use crate::ExportedModel;
 
-/// A tree over the bodies.
+/// Spanning tree over the bodies.
 pub struct Skeleton<'m> {
     /// The model.
     pub model: &'m Model,
-    /// Carrier of each body; ground, and bodies that are not written, have none.
+    /// Carrier of each body; `None` for ground and for bodies that are not written.
     pub carrier: Vec<Option<Carrier>>,
-    /// The bodies in an order in which what carries comes first; ground is the first.
+    /// Bodies in topological order: a body follows the body that carries it; ground is first.
     pub order: Vec<usize>,
-    /// The joints that close loops.
+    /// Indices of the joints that close loops (cut joints).
     pub loops: Vec<usize>,
 }
 
 /// Joint that carries a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carrier {
-    /// A joint: its number, and whether the body is its first one. Then the format's joint has the opposite axis, about
-    /// or along which the first body's coordinate is the same number.
+    /// A joint: its index, and true if the carried body is body i. In the latter case the joint of the format has the
+    /// opposite axis, about or along which the coordinate of body i has the same value.
     Joint(usize, bool),
-    /// Nothing: it floats, and joints that close loops hold it.
+    /// No joint: the body floats, and cut joints constrain it.
     Loops,
 }
 
-/// The place of a joint on each of its bodies, in the design configuration.
-pub fn places(model: &Model, joint: &Joint) -> [Vec3; 2] {
+/// Points of a joint on bodies i and j in the design configuration, m, global.
+pub fn joint_points(model: &Model, joint: &Joint) -> [Vec3; 2] {
     joint.at.map(|h| model.hardpoints[h.0].position)
 }
 
-/// The axis of a joint, in the design configuration.
+/// Axis of a joint in the design configuration, global.
 pub fn axis(joint: &Joint) -> Vec3 {
     joint.frames[0].cols[2]
 }
 
 impl<'m> Skeleton<'m> {
-    /// Skeleton of a model; `carries` are the types of joints that can carry a body, `closes` those that can close a
-    /// loop. Others are reported.
+    /// Creates the tree of a model. `carries` lists the types of joints that can carry a body, `closes` those that can
+    /// close a loop. Bodies and joints that cannot be written are reported.
     pub fn new(model: &'m Model, carries: &[&str], closes: &[&str], out: &mut ExportedModel) -> Self {
         let mut tree =
             Self { model, carrier: vec![None; model.bodies.len()], order: vec![0], loops: Vec::new() };
@@ -47,8 +47,9 @@ impl<'m> Skeleton<'m> {
         let bodies = |k: usize| model.joints[k].bodies.map(|b| b.0);
         let is = |kinds: &[&str], k: usize| kinds.contains(&model.joints[k].kind.name);
         let can_carry = |k: usize| is(carries, k) && is_closed(model, &model.joints[k]);
-        // What cannot close a loop comes first, whichever way round; then from the first body of a joint to its second, since the coordinate
-        // counts that way; then the other way round; and at last a body floats that joints which close loops hold.
+        // Order of preference: joints that cannot close a loop, in either direction; joints from body i to body j,
+        // which keep the sign of the coordinate; joints from body j to body i; and last, floating bodies that cut
+        // joints constrain.
         let rank = |tree: &Self, k: usize| {
             let [i, j] = bodies(k).map(|b| tree.has(b));
             let backward = j;
@@ -72,17 +73,17 @@ impl<'m> Skeleton<'m> {
             }
         }
         for (body, _) in model.bodies.iter().enumerate().filter(|(b, _)| !tree.has(*b)) {
-            out.unsaid(
+            out.report_unsupported(
                 "body",
                 &model.bodies[body].name,
-                "no joint that the format has leads to it from a body that is",
+                "no joint that the format supports connects it to a body that is written",
             );
         }
         for &k in &named {
             let is_carrier =
                 tree.carrier.iter().any(|c| matches!(c, Some(Carrier::Joint(own, _)) if *own == k));
             if !bodies(k).iter().all(|b| tree.has(*b)) {
-                out.unsaid("joint", &model.joints[k].name, "a body that it connects is not written");
+                out.report_unsupported("joint", &model.joints[k].name, "one of its bodies is not written");
             } else if !is_carrier {
                 tree.loops.push(k);
             }
@@ -99,7 +100,7 @@ impl<'m> Skeleton<'m> {
         self.order.push(body);
     }
 
-    /// The body that carries a body.
+    /// Returns the body that carries a body.
     pub fn outer(&self, body: usize) -> usize {
         match self.carrier[body] {
             Some(Carrier::Joint(k, backward)) => self.model.joints[k].bodies[usize::from(backward)].0,
@@ -107,16 +108,17 @@ impl<'m> Skeleton<'m> {
         }
     }
 
-    /// True if a joint carries a body.
+    /// Returns true if the joint carries a body.
     pub fn is_carrier(&self, joint: usize) -> bool {
         self.carrier.iter().any(|c| matches!(c, Some(Carrier::Joint(k, _)) if *k == joint))
     }
 
-    /// Origin of the frame of a body's element: at the joint that carries it, or else at one that holds it.
+    /// Origin of the frame of a body's element, m, global: at the joint that carries the body, or otherwise at a cut
+    /// joint.
     pub fn origin(&self, body: usize) -> Vec3 {
         let on = |k: usize| {
             let joint = &self.model.joints[k];
-            joint.bodies.iter().position(|b| b.0 == body).map(|end| places(self.model, joint)[end])
+            joint.bodies.iter().position(|b| b.0 == body).map(|end| joint_points(self.model, joint)[end])
         };
         match self.carrier[body] {
             Some(Carrier::Joint(k, _)) => on(k),
@@ -127,27 +129,27 @@ impl<'m> Skeleton<'m> {
     }
 }
 
-/// True if both places of a joint are one.
+/// Returns true if the points of a joint on both bodies coincide in the design configuration.
 pub fn is_closed(model: &Model, joint: &Joint) -> bool {
-    let [i, j] = places(model, joint);
+    let [i, j] = joint_points(model, joint);
     i == j
 }
 
-/// A coupler of two joints with one coordinate each.
+/// Coupler of two joints with one coordinate each: `own = factor * master + constant`.
 pub struct Follower {
-    /// The coupler's name.
+    /// Name of the coupler.
     pub name: String,
-    /// The number of the joint that follows.
+    /// Index of the dependent joint.
     pub own: usize,
-    /// That of the one which it follows.
+    /// Index of the independent joint.
     pub master: usize,
-    /// By what factor.
+    /// Factor.
     pub factor: f64,
-    /// Constant added to that, in rad or m.
+    /// Constant, rad or m.
     pub constant: f64,
 }
 
-/// The couplers by which one joint of the tree follows another; the names of all others are handed back.
+/// Returns the couplers of two tree joints, and the names of all other couplers.
 pub fn followers(tree: &Skeleton<'_>) -> (Vec<Follower>, Vec<String>) {
     let (mut two, mut other) = (Vec::new(), Vec::new());
     for coupler in &tree.model.couplers {

@@ -8,11 +8,11 @@ use hardpoint_file::{LengthUnit, ModelFile};
 
 use crate::{ExportedModel, Format, number};
 
-/// A table for spreadsheets.
+/// CSV format, a table for spreadsheets.
 pub const CSV: Format =
     Format { name: "csv", about: "hardpoints as a CSV table", endings: &["csv"], write: csv };
 
-/// A block for Adams/Car.
+/// TeimOrbit format, a block for Adams/Car.
 pub const TEIMORBIT: Format = Format {
     name: "teimorbit",
     about: "hardpoints as a TeimOrbit block",
@@ -20,13 +20,13 @@ pub const TEIMORBIT: Format = Format {
     write: teimorbit,
 };
 
-/// Names and places of the hardpoints, in the file's unit and as short as they give the same places again.
+/// Names and positions of the hardpoints, in the unit of the file, with the fewest digits that reproduce the positions.
 pub fn hardpoints(file: &ModelFile) -> impl Iterator<Item = (&str, [f64; 3])> {
     let own = file.model.hardpoints.iter().filter(|h| !h.unnamed);
     own.map(|h| (h.name.as_str(), h.position.to_array().map(|x| shortest(file.units.length, x))))
 }
 
-/// A length in the file's unit, as short as it gives the same length again.
+/// Length in the unit of the file, with the fewest digits that reproduce it.
 fn shortest(unit: LengthUnit, metres: f64) -> f64 {
     let value = metres * unit.per_metre();
     let rounded = |digits: usize| format!("{value:.digits$e}").parse::<f64>().unwrap_or(value);
@@ -43,14 +43,14 @@ fn csv(file: &ModelFile, out: &mut ExportedModel) {
     }
     match written.map_err(io::Error::from).and_then(|()| table.end()) {
         Ok(bytes) => out.text = String::from_utf8_lossy(&bytes).into_owned(),
-        Err(error) => out.unsaid("table", &file.model.name, error.to_string()),
+        Err(error) => out.report_unsupported("table", &file.model.name, error.to_string()),
     }
 }
 
-/// The name without its side, where that is its last word, and its side in Adams/Car. A name that begins with its side
-/// keeps the word.
+/// Returns the name without its side if this is the last word, and the symmetry of Adams/Car. A name that begins with
+/// its side keeps the word.
 fn side_of(name: &str) -> (&str, &'static str) {
-    // What an importer would name otherwise keeps its name whole, and has no side.
+    // A name that the importer would change keeps all its words, and has no side.
     let is_free = |short: &&str| {
         !short.is_empty() && !["left_", "right_", "hpl_", "hpr_", "hps_"].iter().any(|p| short.starts_with(p))
     };
@@ -66,7 +66,7 @@ fn side_of(name: &str) -> (&str, &'static str) {
     (name, "single")
 }
 
-/// In Adams/Car's axes: from x forward, y left to x back, y right.
+/// Writes the block in Adams/Car's axes: x forward, y left become x back, y right.
 fn teimorbit(file: &ModelFile, out: &mut ExportedModel) {
     let unit = match file.units.length {
         LengthUnit::Metre => "meter",
@@ -81,15 +81,23 @@ fn teimorbit(file: &ModelFile, out: &mut ExportedModel) {
     out.text += "$----------------------------------------------------------------------HARDPOINT\n[HARDPOINT]\n{hardpoint_name              symmetry        x_value      y_value      z_value}\n";
     for (name, [x, y, z]) in hardpoints(file) {
         let (short, side) = side_of(name);
-        // `$` and `!` begin remarks.
+        // `$` and `!` begin comments.
         if name.contains(['\'', '$', '!']) || name.contains(char::is_control) {
-            out.unsaid("hardpoint", name, "names with `'`, `$`, `!` or control characters cannot be written");
+            out.report_unsupported(
+                "hardpoint",
+                name,
+                "names must not contain `'`, `$`, `!` or control characters",
+            );
             continue;
         }
         let place = [-x, -y, z].map(number);
         let _ = writeln!(out.text, " '{short}'  '{side}'  {}", place.join("  "));
     }
     if file.model.hardpoints.iter().any(|h| h.unnamed) {
-        out.unsaid("places", "coordinates", "places without a hardpoint's name are not written");
+        out.report_unsupported(
+            "points",
+            "coordinates",
+            "points without the name of a hardpoint are not written",
+        );
     }
 }

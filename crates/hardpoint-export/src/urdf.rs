@@ -1,21 +1,21 @@
-//! URDF: the tree, mimic joints, loops as `loop_joint`.
+//! URDF: tree joints, couplers as mimic joints, loops as `loop_joint`.
 
 use std::fmt::Write;
 
 use hardpoint_file::ModelFile;
 
-use crate::skeleton::{Carrier, Skeleton, axis, followers, places};
+use crate::skeleton::{Carrier, Skeleton, axis, followers, joint_points};
 use crate::{ExportedModel, Format, escaped, numbers};
 
-/// See the module.
+/// URDF format.
 pub const FORMAT: Format =
     Format { name: "urdf", about: "URDF robot description", endings: &["urdf"], write };
 
-/// Types of joints, and what URDF calls them.
+/// Types of tree joints, with their names in URDF.
 const TYPES: [(&str, &str); 4] =
     [("revolute", "continuous"), ("translational", "prismatic"), ("fixed", "fixed"), ("planar", "planar")];
 
-/// Types that can close a loop.
+/// Joint types that can close a loop (cut joints).
 const CLOSE: [&str; 5] = ["spherical", "revolute", "translational", "fixed", "planar"];
 
 fn write(file: &ModelFile, out: &mut ExportedModel) {
@@ -56,7 +56,7 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
             let _ = writeln!(text, "    <axis xyz=\"{}\"/>", numbers(axis.to_array()));
         }
         if kind == "prismatic" {
-            // Required there; without limits of the model's own it says nothing.
+            // URDF requires a limit; this one is not effective.
             text += "    <limit lower=\"-1e9\" upper=\"1e9\" effort=\"1e9\" velocity=\"1e9\"/>\n";
         }
         for (n, f) in follow.iter().filter(|f| f.own == k).enumerate() {
@@ -78,15 +78,15 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
             other => TYPES.iter().find(|(own, _)| *own == other).map_or("", |(_, theirs)| *theirs),
         };
         if kind.is_empty() {
-            out.unsaid(
+            out.report_unsupported(
                 "joint",
                 &joint.name,
-                format!("URDF has nothing like a joint of type {}", joint.kind.name),
+                format!("URDF has no equivalent of a joint of type {}", joint.kind.name),
             );
             continue;
         }
         let _ = writeln!(text, "  <loop_joint name=\"{}\" type=\"{kind}\">", escaped(&joint.name));
-        for (e, at) in places(model, joint).into_iter().enumerate() {
+        for (e, at) in joint_points(model, joint).into_iter().enumerate() {
             let body = joint.bodies[e].0;
             let place = at - tree.origin(body);
             let _ = writeln!(
@@ -98,14 +98,14 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
             );
         }
         let _ = writeln!(text, "    <axis xyz=\"{}\"/>\n  </loop_joint>", numbers(axis(joint).to_array()));
-        out.unsaid(
+        out.report_unsupported(
             "joint",
             &joint.name,
-            "it closes a loop: written as `loop_joint`, which not every program reads",
+            "it closes a loop: written as `loop_joint`, which some programs do not read",
         );
     }
     for coupler in &others {
-        out.unsaid("coupler", coupler, "a mimic joint follows one other joint of the tree");
+        out.report_unsupported("coupler", coupler, "a mimic joint depends on one other tree joint");
     }
     out.text = text + "</robot>\n";
     out.without_motions(file, "URDF");

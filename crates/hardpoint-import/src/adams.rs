@@ -9,18 +9,20 @@ use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::adams_statement::{SEAM, SHORTEST, Statement, number, statements};
 use crate::law::{self, Language};
-use crate::markers::{Marker, MarkerJoint, carrying, counted, join, offset, way};
+use crate::markers::{
+    Marker, MarkerJoint, carrying_joint, coordinate_sign, join, offset, relative_to_nominal,
+};
 use crate::mechanism::{Coordinate, Drives, GROUND, Law, Mechanism};
 use crate::report::{ImportLog, SourceSpan};
 use crate::turn::{from_z_and_x, home, sequence};
 use crate::{Format, Input};
 
-/// See the module.
+/// Adams/Solver format.
 pub const FORMAT: Format = Format {
     name: "adams",
     about: "Adams/Solver dataset",
     endings: &["adm"],
-    looks: |text| {
+    recognises: |text| {
         let statement = |l: &str, word: &str| {
             l.len() > word.len()
                 && l.is_char_boundary(word.len())
@@ -61,18 +63,13 @@ fn read(source: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     reader.rest(&statements, &loads);
     if !source.text.lines().rev().any(|l| l.trim().eq_ignore_ascii_case("END")) {
         let at = SourceSpan { text: 0, start: source.text.len(), end: source.text.len() };
-        reader.notes.approximated(
-            "END",
-            "",
-            Some(at),
-            "there is no such statement: the file may be cut short",
-        );
+        reader.notes.approximated("END", "", Some(at), "the statement is missing: the file may be truncated");
     }
     let m = reader.m;
     (m.bodies.len() > 1).then_some(m)
 }
 
-/// The factor of lengths, the length unit of the model, and the time of functions.
+/// Returns the factor of lengths, the length unit of the model, and the time of functions in seconds.
 fn units(statements: &[Statement], notes: &mut ImportLog) -> (f64, &'static str, &'static str) {
     let mut out = (1.0, "mm", "t");
     let Some(units) = statements.iter().find(|s| s.name == "UNITS") else {
@@ -80,7 +77,7 @@ fn units(statements: &[Statement], notes: &mut ImportLog) -> (f64, &'static str,
             "UNITS",
             "",
             None,
-            "there is no such statement: lengths are taken for millimetres",
+            "the statement is missing: lengths are assumed to be in millimetres",
         );
         return out;
     };
@@ -107,7 +104,7 @@ fn units(statements: &[Statement], notes: &mut ImportLog) -> (f64, &'static str,
         };
         match known {
             Some((scale, unit)) => (out.0, out.1) = (scale, unit),
-            None => notes.problem("HP0804", at, format!("`{word}` is no unit of length")),
+            None => notes.problem("HP0804", at, format!("`{word}` is not a known unit of length")),
         }
     }
     match units.text("TIME").unwrap_or("SECOND").to_ascii_uppercase().as_str() {
@@ -116,15 +113,21 @@ fn units(statements: &[Statement], notes: &mut ImportLog) -> (f64, &'static str,
         "MICROSECOND" => out.2 = "(1000000*t)",
         "MINUTE" | "MIN" => out.2 = "(t/60)",
         "HOUR" => out.2 = "(t/3600)",
-        word => notes.problem("HP0804", at, format!("`{word}` is no unit of time")),
+        word => notes.problem("HP0804", at, format!("`{word}` is not a known unit of time")),
     }
     notes.taken("UNITS", "", at);
     out
 }
 
-/// Points of time and way over the first second, of a rate of this order: Simpson's rule in steps much shorter than the
-/// points' distance.
-fn summed(text: &str, order: usize, scale: f64, begin: f64, rate: f64) -> Result<Vec<[f64; 2]>, String> {
+/// Integrates a rate of order 1 or 2 over the first second and returns points `[time, displacement]`. Uses Simpson's
+/// rule with steps much shorter than the distance of the points.
+fn integrate_rate(
+    text: &str,
+    order: usize,
+    scale: f64,
+    begin: f64,
+    rate: f64,
+) -> Result<Vec<[f64; 2]>, String> {
     const POINTS: usize = 200;
     const STEPS: usize = 10;
     let law = hardpoint::law::Law::parse(text).map_err(|_| format!("`{text}` cannot be evaluated"))?;
@@ -148,7 +151,7 @@ fn summed(text: &str, order: usize, scale: f64, begin: f64, rate: f64) -> Result
     if points.iter().all(|p| p[1].is_finite()) {
         Ok(points)
     } else {
-        Err("its rate is no number at some time".into())
+        Err("its rate is not finite at some time".into())
     }
 }
 
@@ -159,20 +162,20 @@ struct Reader<'n> {
     time: &'static str,
     parts: BTreeMap<String, usize>,
     markers: BTreeMap<String, Marker>,
-    /// Markers that could not be read.
+    /// Identifiers of markers with errors.
     faulty: BTreeSet<String>,
-    /// Joints that no model file can say.
+    /// Identifiers of joints that are not supported.
     refused: BTreeSet<String>,
-    /// Markers whose place is not in the file.
+    /// Identifiers of markers without a position in the file.
     unplaced: BTreeSet<String>,
     joints: BTreeMap<String, MarkerJoint>,
     splines: BTreeMap<String, Vec<[f64; 2]>>,
-    /// Functions of variables.
+    /// Functions of VARIABLE statements, by identifier.
     variables: BTreeMap<String, String>,
 }
 
 impl Reader<'_> {
-    /// A frame by its origin and its orientation: Euler angles, or points on its z and x axes.
+    /// Reads a frame from its origin and its orientation: Euler angles, or points on its z and x axes.
     fn frame(&mut self, s: &Statement, origin: &str, along_z: &str, along_x: &str) -> Pose {
         let r = s.vector(origin, self.notes).unwrap_or_else(|| [0.0; 3].into());
         let angles = s.vector("REULER", self.notes).or_else(|| s.vector("EULER", self.notes));
@@ -186,7 +189,8 @@ impl Reader<'_> {
         Pose { rot, r: r * self.scale }
     }
 
-    /// The orientation by a point on the z axis and one in the xz plane; with `USEXP` the other way round.
+    /// Returns the orientation from a point on the z axis and a point in the xz plane. With `USEXP`, the x axis is
+    /// exact instead.
     fn pointed(&mut self, s: &Statement, z: Option<Vec3>, x: Option<Vec3>) -> Mat3 {
         let found = match (z, x) {
             (None, None) => return home().rot,
@@ -207,7 +211,7 @@ impl Reader<'_> {
             self.notes.problem(
                 "HP0804",
                 Some(s.at),
-                format!("the points of {}/{} give it no orientation: they lie on one line", s.name, s.id),
+                format!("the points of {}/{} define no orientation: they are collinear", s.name, s.id),
             );
             home().rot
         })
@@ -226,24 +230,24 @@ impl Reader<'_> {
                 continue;
             }
             let pose = self.frame(s, "QG", "ZG", "XG");
-            let body = self.m.body(&s.label, s.called().note(self.notes), Some(pose));
+            let body = self.m.body(&s.label, s.source().note(self.notes), Some(pose));
             match kind {
                 "FLEX_BODY" => self.notes.approximated(
                     kind,
                     &s.label,
                     Some(s.at),
-                    "taken as a rigid body in its undeformed shape",
+                    "imported as a rigid body in its undeformed shape",
                 ),
                 "POINT_MASS" => {
                     self.notes.approximated(
                         kind,
                         &s.label,
                         Some(s.at),
-                        "taken as a rigid body that does not turn",
+                        "imported as a rigid body that does not rotate",
                     );
                     let never = crate::mechanism::Joint::new(
                         &format!("{}_upright", s.label),
-                        "a point mass does not turn".into(),
+                        "a point mass does not rotate".into(),
                         "orientation",
                         [GROUND, body],
                         pose.r,
@@ -253,7 +257,7 @@ impl Reader<'_> {
                 _ => self.notes.taken(kind, &s.label, Some(s.at)),
             }
             if self.parts.insert(id.clone(), body).is_some() {
-                self.notes.problem("HP0803", Some(s.at), format!("{id} is there twice"));
+                self.notes.problem("HP0803", Some(s.at), format!("{id} is defined twice"));
             }
         }
     }
@@ -272,7 +276,7 @@ impl Reader<'_> {
                 let why = if s.has("FE_PART") {
                     "it is on an elastic part"
                 } else {
-                    "its place is not in the file"
+                    "its position is not in the file"
                 };
                 self.notes.refused("MARKER", &s.label, Some(s.at), why);
                 self.unplaced.insert(s.id.clone());
@@ -285,12 +289,12 @@ impl Reader<'_> {
                 None => part,
             };
             let Some(body) = body else {
-                let what = named.map_or("no part before it".into(), |(kind, id)| format!("no {kind}/{id}"));
+                let what = named.map_or("no part precedes it".into(), |(kind, id)| format!("no {kind}/{id}"));
                 self.faulty.insert(s.id.clone());
                 self.notes.problem(
                     "HP0803",
                     Some(s.at),
-                    format!("MARKER/{} is on a part that is not there: {what}", s.id),
+                    format!("MARKER/{} is on an unknown part: {what}", s.id),
                 );
                 continue;
             };
@@ -301,12 +305,12 @@ impl Reader<'_> {
         }
     }
 
-    /// The markers of a statement: Adams' J first, against which Adams' I moves.
+    /// Returns the markers of a statement as bodies i and j: Adams' J first, relative to which Adams' I moves.
     fn pair(&mut self, s: &Statement) -> Option<[Marker; 2]> {
         let unplaced = |key: &&str| s.reference(key).is_some_and(|id| self.unplaced.contains(id));
         if let Some(key) = ["I", "J"].into_iter().find(unplaced) {
             let why = format!(
-                "its marker {key}, MARKER/{}, has no place here",
+                "its marker {key}, MARKER/{}, has no position here",
                 s.reference(key).unwrap_or_default()
             );
             self.notes.refused(&s.name, &s.label, Some(s.at), why);
@@ -317,11 +321,11 @@ impl Reader<'_> {
             let id = s.reference(key);
             match id.and_then(|id| self.markers.get(id)) {
                 Some(marker) => found.push(*marker),
-                // That is reported already.
+                // The marker has been reported.
                 None if id.is_some_and(|id| self.faulty.contains(id)) => {}
                 None => {
                     let what = id.map_or(format!("has no `{key}`"), |id| {
-                        format!("names MARKER/{id} as `{key}`, which is not there")
+                        format!("names MARKER/{id} as `{key}`, which does not exist")
                     });
                     self.notes.problem("HP0803", Some(s.at), format!("{}/{} {what}", s.name, s.id));
                 }
@@ -365,17 +369,18 @@ impl Reader<'_> {
         if s.has("RACKPIN") {
             return;
         }
-        // Words may be cut short as far as they are clear.
+        // Keywords may be abbreviated as long as they are unambiguous.
         let written = s.keys.iter().filter(|(k, v)| v.is_empty() && k.len() >= SHORTEST).map(|(k, _)| k);
         let kind =
             written.into_iter().find_map(|k| KINDS.iter().find(|(name, _)| name.starts_with(k.as_str())));
         let Some((name, kind)) = kind else {
-            self.notes.refused("JOINT", &s.label, Some(s.at), "its type is none that is known");
+            self.notes.refused("JOINT", &s.label, Some(s.at), "its type is unknown");
             return;
         };
         let Some(mut markers) = self.pair(s) else { return };
         if *name == "HOOKE" {
-            // The cross turns about x of I and about y of J; what else is drawn square is taken where these are not.
+            // The pins of the cross are x of I and y of J. If these are not perpendicular, another perpendicular pair
+            // is used.
             let [j, i] = markers;
             let pins = [(j.y(), i.x()), (j.x(), i.y()), (j.x(), i.x()), (j.y(), i.y())];
             let square = pins.iter().find(|(a, b)| a.dot(*b).abs() < 1e-6).unwrap_or(&pins[0]);
@@ -386,14 +391,14 @@ impl Reader<'_> {
                 Marker { body: i.body, pose: turned(&i, square.1) },
             ];
         }
-        let Some(number) = join(&mut self.m, self.notes, s.called(), kind, markers) else { return };
+        let Some(number) = join(&mut self.m, self.notes, s.source(), kind, markers) else { return };
         if *kind == "screw" {
             match s.numbers("PITCH", self.notes).and_then(|p| p.first().copied()) {
                 Some(pitch) if pitch != 0.0 => self.m.joints[number].lead = Some(pitch * self.scale),
                 _ => self.notes.problem(
                     "HP0804",
                     Some(s.at),
-                    format!("JOINT/{} is a screw without a PITCH", s.id),
+                    format!("JOINT/{} is a screw without `PITCH`", s.id),
                 ),
             }
         }
@@ -415,29 +420,35 @@ impl Reader<'_> {
         match kind {
             Some((_, kind)) => {
                 if let Some(markers) = self.pair(s) {
-                    join(&mut self.m, self.notes, s.called(), kind, markers);
+                    join(&mut self.m, self.notes, s.source(), kind, markers);
                 }
             }
-            None => self.notes.refused("JPRIM", &s.label, Some(s.at), "its type is none that is known"),
+            None => self.notes.refused("JPRIM", &s.label, Some(s.at), "its type is unknown"),
         }
     }
 
-    /// Couples the slide of the rack's part with the hinge of the pinion's, by rolling where the markers are.
+    /// Couples the slide of the rack with the hinge of the pinion; the contact follows from the positions of the
+    /// markers.
     fn rack_and_pinion(&mut self, s: &Statement) {
         let Some([rack, pinion]) = self.pair(s) else { return };
         let diameter =
             s.numbers("PD", self.notes).and_then(|d| d.first().copied()).unwrap_or(0.0) * self.scale;
-        let hinge = carrying(self.joints.values(), pinion.body, &["revolute", "cylindrical"], pinion.z());
-        let slide = carrying(self.joints.values(), rack.body, &["translational", "cylindrical"], rack.z());
+        let hinge =
+            carrying_joint(self.joints.values(), pinion.body, &["revolute", "cylindrical"], pinion.z());
+        let slide =
+            carrying_joint(self.joints.values(), rack.body, &["translational", "cylindrical"], rack.z());
         let (Some(hinge), Some(slide)) = (hinge, slide) else {
-            self.notes.refused("JOINT", &s.label, Some(s.at), "a rack and pinion needs a hinge of the pinion and a slide of the rack, along the markers' z axes");
+            self.notes.refused("JOINT", &s.label, Some(s.at), "a rack and pinion requires a hinge of the pinion and a slide of the rack, along the z axes of the markers");
             return;
         };
         let arm = rack.pose.r - pinion.pose.r;
         let rolls = pinion.z().cross(arm).dot(rack.z());
         let turn = if rolls.abs() > 1e-9 * arm.norm() { rolls.signum() } else { 1.0 };
-        let factor =
-            turn * way(hinge, pinion.body, pinion.z()) * way(slide, rack.body, rack.z()) * diameter / 2.0;
+        let factor = turn
+            * coordinate_sign(hinge, pinion.body, pinion.z())
+            * coordinate_sign(slide, rack.body, rack.z())
+            * diameter
+            / 2.0;
         let terms = vec![
             (Coordinate { joint: slide.number, name: "displacement" }, 1.0),
             (Coordinate { joint: hinge.number, name: "angle" }, -factor),
@@ -449,12 +460,12 @@ impl Reader<'_> {
                 format!("JOINT/{} is a rack and pinion without a pitch diameter `PD`", s.id),
             );
         }
-        self.m.coupler(&s.label, s.called().note(self.notes), terms);
+        self.m.coupler(&s.label, s.source().note(self.notes), terms);
         self.notes.approximated(
             "JOINT",
             &s.label,
             Some(s.at),
-            "a coupler of the rack's slide and the pinion's hinge; it rolls as its markers lie",
+            "imported as a coupler of the rack's slide and the pinion's hinge; the markers define the contact",
         );
     }
 
@@ -487,30 +498,30 @@ impl Reader<'_> {
                 "MOTION",
                 &s.label,
                 Some(s.at),
-                format!("{why}; what it drives is fixed in the design configuration"),
+                format!("{why}; its coordinate is fixed in the design configuration"),
             );
         };
         let order = if s.flag("VELOCITY") { 1 } else { 2 * usize::from(s.flag("ACCELERATION")) };
         let Some(function) = s.text("FUNCTION") else { return refuse(self, "it has no FUNCTION") };
-        let function = self.written_out(function);
+        let function = self.expand_variables(function);
         if let Some(id) = s.reference("JOINT") {
             let Some(joint) = self.joints.get(id) else {
                 if self.refused.contains(id) {
-                    return refuse(self, &format!("JOINT/{id} is refused"));
+                    return refuse(self, &format!("JOINT/{id} is not supported"));
                 }
                 self.notes.problem(
                     "HP0803",
                     Some(s.at),
-                    format!("MOTION/{} drives JOINT/{id}, which is not there", s.id),
+                    format!("MOTION/{} drives JOINT/{id}, which does not exist", s.id),
                 );
                 return;
             };
-            let drawn = offset(&joint.markers[0], &joint.markers[1]);
+            let nominal = offset(&joint.markers[0], &joint.markers[1]);
             let turns = s.flag("ROTATIONAL") || (joint.kind == "revolute" && !s.flag("TRANSLATIONAL"));
-            let (name, drawn, scale) = if turns {
-                ("angle", drawn.angle, 1.0)
+            let (name, nominal, scale) = if turns {
+                ("angle", nominal.angle, 1.0)
             } else {
-                ("displacement", drawn.displacement, self.scale)
+                ("displacement", nominal.displacement, self.scale)
             };
             let has = hardpoint::joint::ALL
                 .iter()
@@ -524,13 +535,13 @@ impl Reader<'_> {
                 return refuse(self, "the joint is driven already");
             }
             let law = match order {
-                0 => self.law(&function, scale, drawn, turns),
-                _ => self.integral(s, &function, order, scale, drawn, turns),
+                0 => self.law(&function, scale, nominal, turns),
+                _ => self.integral(s, &function, order, scale, nominal, turns),
             };
             match law {
                 Ok(law) => {
-                    self.m.driver(&s.label, s.called().note(self.notes), Drives::Coordinate(coordinate), law);
-                    let why = "its rate is summed up over the first second, and a spline goes through that";
+                    self.m.driver(&s.label, s.source().note(self.notes), Drives::Coordinate(coordinate), law);
+                    let why = "its rate is integrated over the first second and interpolated by a spline";
                     if order > 0 && matches!(self.m.drivers.last().map(|d| &d.law), Some(Law::Table(_))) {
                         self.notes.approximated("MOTION", &s.label, Some(s.at), why);
                     } else {
@@ -549,8 +560,8 @@ impl Reader<'_> {
                     Ok(law) => {
                         self.m.driver(
                             &s.label,
-                            s.called().note(self.notes),
-                            Drives::Way { body: i.body, at: i.pose.r, along },
+                            s.source().note(self.notes),
+                            Drives::Translation { body: i.body, at: i.pose.r, along },
                             law,
                         );
                         self.notes.taken("MOTION", &s.label, Some(s.at));
@@ -560,19 +571,18 @@ impl Reader<'_> {
             }
             _ => refuse(
                 self,
-                "it drives an angle between two markers, or a way that is not against the ground, or by its rate",
+                "only displacements of a marker relative to ground, prescribed by position, are supported between markers",
             ),
         }
     }
 
-    /// A function with those of the variables that it names in their place: `VARVAL(3)`. What names itself stays as it
-    /// is.
-    fn written_out(&self, function: &str) -> String {
+    /// Expands references to variables (`VARVAL(3)`) in a function. Recursive references remain.
+    fn expand_variables(&self, function: &str) -> String {
         const DEEPEST: usize = 8;
         const LONGEST: usize = 100_000;
         let mut text = function.to_owned();
         for _ in 0..DEEPEST {
-            // Letters of other alphabets would move in capitals.
+            // Upper-case forms of non-ASCII letters can differ in length.
             let Some(start) = text.to_ascii_uppercase().find("VARVAL") else { break };
             let inner = text[start..].find('(').zip(text[start..].find(')'));
             let Some((open, close)) = inner.filter(|(open, close)| open < close) else { break };
@@ -584,55 +594,55 @@ impl Reader<'_> {
         text
     }
 
-    /// A function as the law of a coordinate, counted from the drawing.
-    fn law(&self, function: &str, scale: f64, drawn: f64, turns: bool) -> Result<Law, String> {
-        let drawn = if drawn.abs() < 1e-12 { 0.0 } else { drawn };
-        let said = |text: &str| {
+    /// Converts a function to the law of a coordinate, relative to the design configuration.
+    fn law(&self, function: &str, scale: f64, nominal: f64, turns: bool) -> Result<Law, String> {
+        let nominal = if nominal.abs() < 1e-12 { 0.0 } else { nominal };
+        let translated = |text: &str| {
             let text = text.trim().trim_matches(['\'', '"']);
             law::translate_with(text, Language::Adams, self.time)
         };
-        // A continued function: the comma at the beginning of a line only continues it, or is one of its own.
+        // The comma at the beginning of a continuation line either marks the continuation or is part of the function.
         let readings = [" ", ","].map(|seam| function.replace(SEAM, seam));
         if let Some(points) = readings.iter().find_map(|text| self.through_spline(text)) {
-            return Ok(Law::Table(points.iter().map(|[t, x]| [*t, x * scale - drawn]).collect()));
+            return Ok(Law::Table(points.iter().map(|[t, x]| [*t, x * scale - nominal]).collect()));
         }
-        let text = said(&readings[0]).or_else(|why| said(&readings[1]).map_err(|_| why))?;
+        let text = translated(&readings[0]).or_else(|why| translated(&readings[1]).map_err(|_| why))?;
         let text = if scale == 1.0 { text } else { format!("{scale}*({text})") };
-        let text = counted(&text, drawn, turns);
-        if law::constant(&text) == Some(0.0) { Ok(Law::Held) } else { Ok(Law::Text(text)) }
+        let text = relative_to_nominal(&text, nominal, turns);
+        if law::constant(&text) == Some(0.0) { Ok(Law::Fixed) } else { Ok(Law::Text(text)) }
     }
 
-    /// Law with a given velocity (order 1) or acceleration (order 2): an expression if that is constant, otherwise a
-    /// table.
+    /// Law of a prescribed velocity (order 1) or acceleration (order 2): an expression if the rate is constant,
+    /// otherwise a table.
     fn integral(
         &mut self,
         s: &Statement,
         function: &str,
         order: usize,
         scale: f64,
-        drawn: f64,
+        nominal: f64,
         turns: bool,
     ) -> Result<Law, String> {
         let function = function.replace(SEAM, " ");
         let text =
             law::translate_with(function.trim().trim_matches(['\'', '"']), Language::Adams, self.time)?;
         let mut first = |key: &str| s.numbers(key, self.notes).and_then(|list| list.first().copied());
-        // Where it starts: as it is said, or else in the design configuration.
+        // The initial value is that of ICDISP, or otherwise that of the design configuration.
         let [start, rate] = [first("ICDISP"), first("ICVEL")];
         let per_second = self.per_second().powi(order as i32);
-        let begin = start.map_or(0.0, |x| x * scale - drawn);
+        let begin = start.map_or(0.0, |x| x * scale - nominal);
         let rate = if order == 2 { rate.unwrap_or(0.0) * scale * self.per_second() } else { 0.0 };
         let Some(constant) = law::constant(&text).map(|x| x * scale * per_second) else {
             let begin = if turns { begin - (begin / TAU).round() * TAU } else { begin };
-            return summed(&text, order, scale * per_second, begin, rate).map(Law::Table);
+            return integrate_rate(&text, order, scale * per_second, begin, rate).map(Law::Table);
         };
         // x = x0 + v t, or x0 + v t + a/2 t^2
         let text =
             if order == 1 { format!("{constant}*t") } else { format!("{rate}*t + {}*t^2", constant / 2.0) };
-        Ok(if begin == 0.0 { Law::Text(text) } else { Law::Text(counted(&text, -begin, turns)) })
+        Ok(if begin == 0.0 { Law::Text(text) } else { Law::Text(relative_to_nominal(&text, -begin, turns)) })
     }
 
-    /// Number of the source's units of time a second has.
+    /// Number of time units of the source per second.
     fn per_second(&self) -> f64 {
         law::translate_with("time", Language::Adams, self.time)
             .ok()
@@ -640,7 +650,7 @@ impl Reader<'_> {
             .map_or(1.0, |law| law.at(1.0).0[0])
     }
 
-    /// `a*AKISPL(TIME, 0, id) + b` and the like: the spline's points.
+    /// Returns the points of a function that is linear in a spline of the time, such as `a*AKISPL(TIME, 0, id) + b`.
     fn through_spline(&self, function: &str) -> Option<Vec<[f64; 2]>> {
         let lower = function.to_ascii_lowercase();
         let start = ["akispl", "cubspl", "intspl"].iter().find_map(|name| lower.find(name))?;
@@ -671,7 +681,7 @@ impl Reader<'_> {
 
     fn coupler(&mut self, s: &Statement) {
         if s.has("FUNCTION") || s.has("ROUTINE") {
-            let why = "a relation by a subroutine is not in the file";
+            let why = "its subroutine is not in the file";
             self.notes.refused("COUPLER", &s.label, Some(s.at), why);
             return;
         }
@@ -685,14 +695,14 @@ impl Reader<'_> {
         for (k, id) in names.iter().enumerate() {
             let Some(joint) = self.joints.get(*id) else {
                 if self.refused.contains(*id) {
-                    let why = format!("JOINT/{id} is refused");
+                    let why = format!("JOINT/{id} is not supported");
                     self.notes.refused("COUPLER", &s.label, Some(s.at), why);
                     return;
                 }
                 self.notes.problem(
                     "HP0803",
                     Some(s.at),
-                    format!("COUPLER/{} names JOINT/{id}, which is not there", s.id),
+                    format!("COUPLER/{} names JOINT/{id}, which does not exist", s.id),
                 );
                 return;
             };
@@ -709,15 +719,15 @@ impl Reader<'_> {
                 );
                 return;
             };
-            // Scales are for the source's lengths; angles are in rad on both sides.
+            // Scales refer to lengths of the source; angles are in rad on both sides.
             let factor = if turns { *scale } else { scale / self.scale };
             terms.push((Coordinate { joint: joint.number, name }, factor));
         }
-        self.m.coupler(&s.label, s.called().note(self.notes), terms);
+        self.m.coupler(&s.label, s.source().note(self.notes), terms);
         self.notes.taken("COUPLER", &s.label, Some(s.at));
     }
 
-    /// Both joints give the common point, of marker CV, the same velocity along its z axis.
+    /// Adds a gear: both joints have the same velocity of the common point (marker CV) along its z axis.
     fn gear(&mut self, s: &Statement) {
         let names: Vec<&str> =
             s.text("JOINTS").unwrap_or_default().split([',', ':', SEAM]).map(str::trim).collect();
@@ -725,18 +735,18 @@ impl Reader<'_> {
         let joints: Vec<&MarkerJoint> = names.iter().filter_map(|id| self.joints.get(*id)).collect();
         let (Some(cv), [a, b]) = (cv, &joints[..]) else {
             if names.iter().any(|id| self.refused.contains(*id)) {
-                self.notes.refused("GEAR", &s.label, Some(s.at), "one of its joints is refused");
+                self.notes.refused("GEAR", &s.label, Some(s.at), "one of its joints is not supported");
                 return;
             }
             self.notes.problem(
                 "HP0803",
                 Some(s.at),
-                format!("GEAR/{} needs two JOINTS and a marker CV that are there", s.id),
+                format!("GEAR/{} requires two existing JOINTS and an existing marker CV", s.id),
             );
             return;
         };
         let speed = |k: &MarkerJoint| {
-            // Of the part that is not the carrier, against the carrier.
+            // Velocity of the gear relative to the carrier.
             let sign = if k.markers[1].body == cv.body { -1.0 } else { 1.0 };
             let z = k.markers[0].z();
             let slides = k.kind == "translational";
@@ -756,13 +766,13 @@ impl Reader<'_> {
             );
             return;
         }
-        self.m.coupler(&s.label, s.called().note(self.notes), vec![(first, u), (second, -v)]);
+        self.m.coupler(&s.label, s.source().note(self.notes), vec![(first, u), (second, -v)]);
         self.notes.taken("GEAR", &s.label, Some(s.at));
     }
 
-    /// Lists the keys of a statement that are not known here: unknown is not irrelevant.
+    /// Reports the keys of a statement that the reader does not know. These may affect the motion.
     fn unknown_keys(&mut self, s: &Statement) {
-        // What a joint's own friction is made of moves nothing that is driven.
+        // Friction of a joint does not affect prescribed motions.
         const FRICTION: &[&str] = &[
             "FRICTION",
             "MU_STATIC",
@@ -797,7 +807,7 @@ impl Reader<'_> {
             "X_PIN",
             "Y_PIN",
         ];
-        // Velocities at the start belong to motions that follow from forces.
+        // Initial velocities belong to dynamic motions.
         const SPEEDS: &[&str] = &["VX", "VY", "VZ", "WX", "WY", "WZ", "VM", "WM"];
         let (known, irrelevant): (&[&str], &[&str]) = match s.name.as_str() {
             "JOINT" => (
@@ -887,17 +897,17 @@ impl Reader<'_> {
             if ["ICTRAN", "ICROT", "IC"].contains(&key) {
                 if !zero {
                     let why =
-                        "where the joint starts is left out: the model begins in the design configuration";
+                        "the initial condition is not imported: the model begins in the design configuration";
                     self.notes.refused(key, &s.label, Some(s.at), why);
                 }
                 continue;
             }
-            let why = format!("`{}` has a key `{key}` that is not known here", s.name);
+            let why = format!("`{}` has an unknown key `{key}`", s.name);
             self.notes.not_understood(key, &s.label, Some(s.at), why);
         }
     }
 
-    /// All that is neither mechanism nor force.
+    /// Reports all statements that are neither part of the mechanism nor forces.
     fn rest(&mut self, statements: &[Statement], loads: &BTreeSet<(String, String)>) {
         const DONE: [&str; 10] = [
             "PART",
@@ -912,7 +922,7 @@ impl Reader<'_> {
             "UNITS",
         ];
         const HOLD: [&str; 8] = ["PTCV", "CVCV", "PTSF", "CURVE", "UCON", "GCON", "SURFACE", "NFORCE"];
-        // Statements that do not concern how parts move, as far as the motion is driven.
+        // Statements without effect on prescribed motions.
         const IRRELEVANT: &[&str] = &[
             "ACCGRAV",
             "ADAMS",
@@ -984,14 +994,14 @@ impl Reader<'_> {
         };
         for s in statements.iter().filter(|s| !is_read(s)) {
             if s.name == "FE_PART" {
-                let why = "an elastic part: what is on it is refused";
+                let why = "elastic parts are not supported, nor are joints on them";
                 self.notes.refused(&s.name, &s.label, Some(s.at), why);
             } else if HOLD[..6].contains(&s.name.as_str()) && s.name != "CURVE" {
                 self.notes.refused(
                     &s.name,
                     &s.label,
                     Some(s.at),
-                    "a constraint that has no equivalent: what it holds is held by a driver",
+                    "the constraint has no equivalent: a driver fixes the motion instead",
                 );
             } else if IRRELEVANT
                 .iter()
@@ -999,7 +1009,7 @@ impl Reader<'_> {
             {
                 self.notes.ignored(&s.name, Some(s.at));
             } else {
-                let why = "a statement that is not known here";
+                let why = "unknown statement";
                 self.notes.not_understood(&s.name, &s.label, Some(s.at), why);
             }
         }

@@ -1,32 +1,31 @@
-//! The statements of Adams/Solver datasets: names, numbers, keys with values, and flags, over as many lines as they
-//! take.
+//! Statements of Adams/Solver datasets: names, numbers, keys with values, and flags, on any number of lines.
 
 use hardpoint::space::Vec3;
 
-use crate::markers::JointSource;
+use crate::markers::ElementSource;
 use crate::report::{ImportLog, SourceSpan};
 
-/// Words may be cut short to that many letters.
+/// Minimum length of an abbreviated keyword.
 pub const SHORTEST: usize = 3;
-/// The statements whose names may be cut short, first those that are often so.
+/// Statements whose names may be abbreviated, the most frequent first.
 const NAMES: [&str; 10] =
     ["PART", "MARKER", "JOINT", "JPRIM", "MOTION", "COUPLER", "GEAR", "UNITS", "SPLINE", "FLEX_BODY"];
 
-/// Mark of a continued statement: a blank, or in the middle of a function perhaps a comma.
+/// Mark at the beginning of a continuation line: a blank, or within a function possibly a comma.
 pub const SEAM: char = '\u{1}';
 
-/// A statement: `NAME/id, KEY = values, FLAG, ...`.
+/// Statement: `NAME/id, KEY = values, FLAG, ...`.
 #[derive(Debug, Default)]
 pub struct Statement {
-    /// In capital letters, written out.
+    /// Name in capital letters, not abbreviated.
     pub name: String,
-    /// The number behind the stroke.
+    /// Number after the slash.
     pub id: String,
     /// Position in the source.
     pub at: SourceSpan,
-    /// Name that the modeller gives it, from the comment before it.
+    /// Name in Adams/View, from the comment before the statement.
     pub label: String,
-    /// In capital letters, with what is behind the equals sign; flags with nothing.
+    /// Keys in capital letters, with the text after the equals sign; the text of flags is empty.
     pub keys: Vec<(String, String)>,
 }
 
@@ -38,22 +37,22 @@ impl Statement {
         found.or_else(|| self.keys.iter().find(|(k, v)| !v.is_empty() && short(k))).map(|(_, v)| v.as_str())
     }
 
-    /// True if it has a key.
+    /// Returns true if the statement has a key.
     pub fn has(&self, key: &str) -> bool {
         self.text(key).is_some()
     }
 
-    /// True if it has a flag, which may be cut short.
+    /// Returns true if the statement has a flag, which may be abbreviated.
     pub fn flag(&self, flag: &str) -> bool {
         self.keys.iter().any(|(k, v)| v.is_empty() && k.len() >= SHORTEST && flag.starts_with(k.as_str()))
     }
 
     /// Name and position for reports.
-    pub fn called(&self) -> JointSource<'_> {
-        JointSource { kind: &self.name, name: &self.label, at: Some(self.at) }
+    pub fn source(&self) -> ElementSource<'_> {
+        ElementSource { kind: &self.name, name: &self.label, at: Some(self.at) }
     }
 
-    /// Numbers behind a key; angles in rad. What is wrong with them is reported.
+    /// Returns the numbers of a key; angles in rad. Errors are reported.
     pub fn numbers(&self, key: &str, notes: &mut ImportLog) -> Option<Vec<f64>> {
         let text = self.text(key)?;
         let words =
@@ -64,13 +63,13 @@ impl Statement {
             notes.problem(
                 "HP0804",
                 Some(self.at),
-                format!("`{key}` of {}/{} is no list of numbers: `{}`", self.name, self.id, text.trim()),
+                format!("`{key}` of {}/{} is not a list of numbers: `{}`", self.name, self.id, text.trim()),
             );
         }
         list
     }
 
-    /// Three numbers behind a key.
+    /// Returns the three numbers of a key.
     pub fn vector(&self, key: &str, notes: &mut ImportLog) -> Option<Vec3> {
         let list = self.numbers(key, notes)?;
         match <[f64; 3]>::try_from(list) {
@@ -79,20 +78,20 @@ impl Statement {
                 notes.problem(
                     "HP0804",
                     Some(self.at),
-                    format!("`{key}` of {}/{} is three numbers, not {}", self.name, self.id, list.len()),
+                    format!("`{key}` of {}/{} must be three numbers, not {}", self.name, self.id, list.len()),
                 );
                 None
             }
         }
     }
 
-    /// The number that a key refers to.
+    /// Returns the identifier that a key refers to.
     pub fn reference<'s>(&'s self, key: &str) -> Option<&'s str> {
         self.text(key).map(str::trim)
     }
 }
 
-/// `30D` is an angle in degrees; exponents are as in Fortran.
+/// Reads a number. `30D` is an angle in degrees; exponents are those of Fortran.
 pub fn number(word: &str) -> Option<f64> {
     let lower = word.to_ascii_lowercase();
     let degrees = lower.strip_suffix('d');
@@ -101,7 +100,7 @@ pub fn number(word: &str) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// The statements of a dataset: comments and continuations resolved.
+/// Returns the statements of a dataset, without comments and with continuation lines joined.
 pub fn statements(text: &str) -> Vec<Statement> {
     let mut lines: Vec<(SourceSpan, String, String)> = Vec::new();
     let mut label = String::new();
@@ -116,12 +115,12 @@ pub fn statements(text: &str) -> Vec<Statement> {
             label = name.trim().trim_matches(['\'', '"']).to_owned();
         }
         let code = code.trim();
-        // The first line is a title, whatever it looks like.
+        // The first line is a title.
         let is_title = k == 0 && code.to_ascii_uppercase().starts_with("ADAMS");
         if code.is_empty() || is_title {
             continue;
         }
-        // A line goes on where the next begins with a comma or `&`, or where it ends with one.
+        // A statement continues if the next line begins with a comma or `&`, or if its line ends with one.
         let goes_on = lines.last().is_some_and(|l| l.1.ends_with([',', '&']));
         let rest = code.strip_prefix([',', '&']).or(goes_on.then_some(code));
         match (rest, lines.last_mut()) {
@@ -161,7 +160,7 @@ fn statement(at: SourceSpan, code: &str, label: &str) -> Option<Statement> {
         } else if out.keys.is_empty() && out.id.is_empty() && part.chars().all(|c| c.is_ascii_digit()) {
             out.id = part.to_owned();
         } else {
-            // A further value of the key before, or a flag.
+            // A further value of the previous key, or a flag.
             let is_value = part.chars().next().is_some_and(|c| c.is_ascii_digit() || "+-.(".contains(c));
             match out.keys.last_mut() {
                 Some((key, text))
@@ -181,11 +180,11 @@ fn statement(at: SourceSpan, code: &str, label: &str) -> Option<Statement> {
     Some(out)
 }
 
-/// Flags that may stand behind a function.
+/// Flags that may follow a function.
 const FLAGS: [&str; 5] = ["ROTATIONAL", "TRANSLATIONAL", "DISPLACEMENT", "VELOCITY", "ACCELERATION"];
 
-/// The parts between commas outside of parentheses; a backslash parts too, and a seam before a key or a flag: the comma
-/// at the beginning of a line only continues it where it is in the middle of a list or a function.
+/// Splits a text at commas outside parentheses, at backslashes, and at seams before a key or flag. Within a list or a
+/// function, the comma at the beginning of a continuation line only marks the continuation.
 fn parts_of(text: &str) -> Vec<String> {
     let (mut out, mut depth) = (vec![String::new()], 0_i32);
     let chars: Vec<char> = text.chars().collect();

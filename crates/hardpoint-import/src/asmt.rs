@@ -1,5 +1,5 @@
-//! Assemblies of OndselSolver (`.asmt`), which FreeCAD's Assembly workbench solves with and exports; with the motion
-//! stored in them.
+//! Assemblies of OndselSolver (`.asmt`), the solver and export format of FreeCAD's Assembly workbench, with the stored
+//! motion.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,8 @@ use hardpoint::space::{Mat3, Pose, Vec3};
 use crate::chain;
 use crate::law::{self, Language};
 use crate::markers::{
-    JointSource, Marker, MarkerJoint, carrying, counted, is_drawn, join, linked, offset, screw, way,
+    ElementSource, Marker, MarkerJoint, carrying_joint, coordinate_sign, couple_screw, equals_nominal, join,
+    join_by_link, offset, relative_to_nominal,
 };
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Times};
 use crate::report::{ImportLog, SourceSpan};
@@ -16,12 +17,12 @@ use crate::series::{Series, StoredPose};
 use crate::turn::{home, none, sequence};
 use crate::{Format, Input};
 
-/// See the module.
+/// Ondsel format.
 pub const FORMAT: Format = Format {
     name: "asmt",
     about: "Ondsel assembly",
     endings: &["asmt"],
-    looks: |text| {
+    recognises: |text| {
         let mut lines = text.lines().map(str::trim_end);
         lines.any(|l| l == "Assembly") && lines.any(|l| l.trim() == "RefPoints" || l.trim() == "Parts")
     },
@@ -29,18 +30,19 @@ pub const FORMAT: Format = Format {
     binary: false,
 };
 
-/// Lines are nested so deep at most.
+/// Maximum depth of nested lines.
 const DEEPEST: usize = 64;
-/// Maximum number of output times; more are requested in no file.
+/// Maximum number of output times.
 const MOST_TIMES: f64 = 100_000.0;
 
-/// Parts that are stored nearer than this to where they are drawn, in the file's unit and rad, are not moved.
+/// Parts whose stored pose differs by less than this from the drawn one, in the unit of the file and rad, are not
+/// moved.
 const OFF: f64 = 1e-12;
 
-/// Lines as they are, and where they stand.
+/// Lines with their positions.
 type Lines<'t> = Vec<(&'t str, SourceSpan)>;
 
-/// A line and what is indented under it.
+/// Line with the lines indented below it.
 #[derive(Debug)]
 struct Node<'t> {
     text: &'t str,
@@ -53,7 +55,7 @@ impl<'t> Node<'t> {
         self.children.iter().find(|c| c.text == name)
     }
 
-    /// The text on the line below a heading.
+    /// Returns the text on the line below a heading.
     fn value(&self, name: &str) -> Option<(&'t str, SourceSpan)> {
         let below = self.child(name)?.children.first()?;
         Some((below.text, below.at))
@@ -63,7 +65,7 @@ impl<'t> Node<'t> {
         self.value("Name").map_or("", |(name, _)| name)
     }
 
-    /// Numbers on the lines below a heading.
+    /// Returns the numbers on the lines below a heading.
     fn numbers<const N: usize>(&self, name: &str, notes: &mut ImportLog) -> Option<[f64; N]> {
         let list = self.child(name)?;
         let words = list.children.iter().flat_map(|c| c.text.split_whitespace());
@@ -72,26 +74,26 @@ impl<'t> Node<'t> {
         if exact.is_none() {
             let s = if N == 1 { "number" } else { "numbers" };
             let found: Vec<&str> = list.children.iter().map(|c| c.text).collect();
-            let message = format!("`{name}` is {N} {s}, not `{}`", found.join(" "));
+            let message = format!("`{name}` must be {N} {s}, not `{}`", found.join(" "));
             let at = list.children.first().map_or(list.at, |c| c.at);
             notes.problem_with(
                 "HP0804",
                 Some(at),
                 message,
-                "export the assembly again, or correct the lines below it",
+                "export the assembly again, or correct the lines below the heading",
             );
         }
         exact
     }
 
-    /// A frame by its position and its rotation matrix; home where none is given.
+    /// Returns the frame with its position and rotation matrix; the identity if none is given.
     fn pose(&self, notes: &mut ImportLog) -> Pose {
         let r = self.numbers::<3>("Position3D", notes).unwrap_or_default();
         let rows = self.numbers::<9>("RotationMatrix", notes);
         let rot = rows.map_or_else(none, |[a, b, c, d, e, f, g, h, i]| Mat3 {
             cols: [[a, d, g].into(), [b, e, h].into(), [c, f, i].into()],
         });
-        // What has six digits is no rotation yet.
+        // Matrices with six digits have to be orthonormalised.
         let q = hardpoint::space::Quat::from_rotation(rot).to_array();
         let square = crate::turn::quaternion(q);
         let off = (0..3).map(|k| (rot.cols[k].norm() - 1.0).abs()).fold(0.0, f64::max);
@@ -99,14 +101,18 @@ impl<'t> Node<'t> {
             Some(rot) if off < 1e-3 => Pose { rot, r: r.into() },
             _ => {
                 let at = self.child("RotationMatrix").map(|c| c.at);
-                notes.problem("HP0804", at, "the rotation matrix is none: its columns are not of length one");
+                notes.problem(
+                    "HP0804",
+                    at,
+                    "the matrix is not a rotation matrix: its columns are not of length one",
+                );
                 home()
             }
         }
     }
 }
 
-/// A number; C++ may have written `1.0d`, Smalltalk does.
+/// Reads a number; Smalltalk, and some C++ code, writes `1.0d`.
 fn number(word: &str) -> Option<f64> {
     let word = word.strip_suffix(['d', 'D']).unwrap_or(word);
     word.parse().ok().filter(|x: &f64| x.is_finite())
@@ -115,35 +121,35 @@ fn number(word: &str) -> Option<f64> {
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let (nodes, lines) = tree(input.text, notes)?;
     let Some(assembly) = nodes.iter().find(|n| n.text == "Assembly") else {
-        let help = "export the assembly as .asmt again";
-        notes.problem_with("HP0803", None, "there is no `Assembly` in the file", help);
+        let help = "export the assembly as `.asmt` again";
+        notes.problem_with("HP0803", None, "the file has no `Assembly`", help);
         return None;
     };
     for section in ["ConstraintSets", "SimulationParameters"] {
         if assembly.child(section).is_none() {
             let at = assembly.children.last().map_or(assembly.at, |c| c.at);
             let message = format!(
-                "the assembly has no `{section}`: the file is cut short, `{}` is the last that it has",
+                "the assembly has no `{section}`: the file is truncated, `{}` is its last section",
                 assembly.children.last().map_or("", |c| c.text)
             );
             notes.problem_with("HP0802", Some(at), message, "export the assembly again");
             return None;
         }
     }
-    // What FreeCAD writes is in its millimetres; the solver's own examples say that theirs is in SI.
+    // Files of FreeCAD are in mm; the examples of the solver state that they are in SI.
     let by_freecad = input.text.starts_with("OndselSolver");
     let unit = if by_freecad { "mm" } else { "m" };
     notes.approximated(
         "Assembly",
         assembly.name(),
         Some(assembly.at),
-        format!("the file names no unit: lengths are taken for {unit}"),
+        format!("the file defines no unit of length: {unit} is assumed"),
     );
     let mut m =
         Mechanism::new(if assembly.name().is_empty() { input.stem } else { assembly.name() }, unit, "rad");
     m.times = times(assembly, notes);
     let stored = stored(&lines.unwrap_or_default(), notes);
-    // The solver closes what is drawn open before it moves: its first stored positions are what moves.
+    // The solver assembles open joints before it moves: the first stored poses are the assembled ones.
     let begins = m.times.is_none_or(|t| stored.0.first() == Some(&t.start));
     let first = |t: &StoredPart<'_>| Some((t.path.to_owned(), t.states.as_ref()?.first()?.pose));
     let closed = stored.1.iter().filter(|_| begins).filter_map(first).collect();
@@ -165,7 +171,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     (m.bodies.len() > 1).then_some(m)
 }
 
-/// The lines by their tabs, and where the stored series begin.
+/// Parses the lines by their tabs; returns the stored series separately.
 fn tree<'t>(text: &'t str, notes: &mut ImportLog) -> Option<(Vec<Node<'t>>, Option<Lines<'t>>)> {
     let mut open: Vec<Node<'t>> = vec![Node { text: "", at: SourceSpan::default(), children: Vec::new() }];
     let mut series: Option<Lines<'_>> = None;
@@ -191,7 +197,7 @@ fn tree<'t>(text: &'t str, notes: &mut ImportLog) -> Option<(Vec<Node<'t>>, Opti
             notes.problem_with(
                 "HP0802",
                 Some(at),
-                "the line is indented more than what it could stand below",
+                "the line is indented too deep",
                 "indent it by one tab more than its heading",
             );
             return None;
@@ -222,7 +228,7 @@ fn times(assembly: &Node<'_>, notes: &mut ImportLog) -> Option<Times> {
             "SimulationParameters",
             "",
             Some(s.at),
-            "`hout` does not divide the time into that many intervals: one second in a hundred is taken",
+            "`hout` does not divide the time into 1 to 100,000 equal intervals: one second in 100 intervals is used",
         );
         return None;
     }
@@ -233,13 +239,13 @@ fn times(assembly: &Node<'_>, notes: &mut ImportLog) -> Option<Times> {
 struct Reader<'n> {
     m: Mechanism,
     notes: &'n mut ImportLog,
-    /// By their paths.
+    /// Markers by their paths.
     markers: BTreeMap<String, Marker>,
     joints: BTreeMap<String, MarkerJoint>,
     parts: BTreeMap<String, usize>,
-    /// Poses of the parts at the start of the stored motion.
+    /// Poses of the parts at the start of the stored motion, by their paths.
     closed: BTreeMap<String, Pose>,
-    /// Number of are drawn elsewhere.
+    /// Number of parts whose stored pose differs from the drawn one.
     moved: usize,
 }
 
@@ -251,26 +257,31 @@ impl Reader<'_> {
         let parts = assembly.child("Parts").map_or(&[][..], |p| &p.children);
         for part in parts {
             if part.text != "Part" {
-                self.notes.refused(part.text, part.name(), Some(part.at), "only parts are known here");
+                self.notes.refused(
+                    part.text,
+                    part.name(),
+                    Some(part.at),
+                    "only elements of type `Part` are supported",
+                );
                 continue;
             }
             let path = format!("{path}/{}", part.name());
-            let drawn = whole.compose(part.pose(self.notes));
+            let nominal = whole.compose(part.pose(self.notes));
             let is_fixed = part.value("isFixed").is_some_and(|(v, _)| v == "true");
             let off = |p: &&Pose| {
-                (p.r - drawn.r).norm() > OFF * p.r.norm().max(1.0) || p.rot.angle_to(drawn.rot) > OFF
+                (p.r - nominal.r).norm() > OFF * p.r.norm().max(1.0) || p.rot.angle_to(nominal.rot) > OFF
             };
             let closed = self.closed.get(&path).filter(off).filter(|_| !is_fixed).copied();
             self.moved += usize::from(closed.is_some());
-            let pose = closed.unwrap_or(drawn);
-            let called = JointSource { kind: "Part", name: part.name(), at: Some(part.at) };
+            let pose = closed.unwrap_or(nominal);
+            let source = ElementSource { kind: "Part", name: part.name(), at: Some(part.at) };
             let body =
-                if is_fixed { GROUND } else { self.m.body(part.name(), called.note(self.notes), Some(pose)) };
+                if is_fixed { GROUND } else { self.m.body(part.name(), source.note(self.notes), Some(pose)) };
             if self.parts.insert(path.clone(), body).is_some() {
                 self.notes.problem_with(
                     "HP0803",
                     Some(part.at),
-                    format!("there are two parts `{path}`"),
+                    format!("the part `{path}` is defined twice"),
                     "rename one of them",
                 );
             }
@@ -279,7 +290,7 @@ impl Reader<'_> {
         }
         if self.moved > 0 {
             let why = format!(
-                "{} of them are drawn where no joint holds them: they stand where the stored motion begins",
+                "{} of them are drawn where their joints do not close: they are placed at the start of the stored motion",
                 self.moved
             );
             self.notes.approximated("Parts", "", assembly.child("Parts").map(|p| p.at), why);
@@ -289,13 +300,13 @@ impl Reader<'_> {
                 "Assemblies",
                 "",
                 Some(list.at),
-                "assemblies in assemblies are not read: export them as parts of one",
+                "nested assemblies are not supported: export their parts in one assembly",
             );
         }
     }
 
     fn markers_of(&mut self, owner: &Node<'_>, path: &str, body: usize, pose: Pose) {
-        // Motions and forces may be of the centre of mass.
+        // Motions and forces may refer to the centre of mass.
         if let Some(mass) = owner.child("PrincipalMassMarker") {
             let pose = pose.compose(mass.pose(self.notes));
             self.markers.insert(format!("{path}/{}", mass.name()), Marker { body, pose });
@@ -313,7 +324,7 @@ impl Reader<'_> {
                     self.notes.problem_with(
                         "HP0803",
                         Some(marker.at),
-                        format!("there are two markers `{path}`"),
+                        format!("the marker `{path}` is defined twice"),
                         "rename one of them",
                     );
                 }
@@ -330,7 +341,7 @@ impl Reader<'_> {
                 let message = if path.is_empty() {
                     format!("`{}` has no `{key}`", joint.name())
                 } else {
-                    format!("`{}` names the marker `{path}`, which is not there", joint.name())
+                    format!("`{}` names the marker `{path}`, which does not exist", joint.name())
                 };
                 self.notes.problem_with(
                     "HP0803",
@@ -372,20 +383,20 @@ impl Reader<'_> {
         }
     }
 
-    /// Lists what is below a heading and not known here: unknown is not irrelevant.
+    /// Reports unknown lines below a heading. These may affect the motion.
     fn unknown(&mut self, owner: &Node<'_>, known: &[&str]) {
         for part in owner.children.iter().filter(|c| !known.contains(&c.text)) {
-            // Other headings of the format may stand there empty.
+            // Other headings of the format may be empty.
             if part.children.is_empty() {
                 continue;
             }
-            let why = format!("`{}` has `{}`, which is not known here", owner.text, part.text);
+            let why = format!("`{}` has `{}`, which is unknown", owner.text, part.text);
             self.notes.not_understood(part.text, owner.name(), Some(part.at), why);
         }
     }
 
     fn joint(&mut self, joint: &Node<'_>) {
-        let called = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
+        let source = ElementSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
         let kind = match joint.text {
             "FixedJoint" => "fixed",
             "RevoluteJoint" => "revolute",
@@ -408,12 +419,12 @@ impl Reader<'_> {
             "CylSphJoint" => return self.link(joint, ["cylindrical", "spherical"]),
             "GearJoint" | "RackPinionJoint" | "ScrewJoint" => return,
             contact if contact.ends_with("Contact") => {
-                let why = "contacts have no equivalent: what it holds is held by a driver";
+                let why = "contacts have no equivalent: a driver fixes the motion instead";
                 self.notes.refused(contact, joint.name(), Some(joint.at), why);
                 return;
             }
             _ => {
-                let why = "its type is none that is known";
+                let why = "its type is unknown";
                 self.notes.refused(joint.text, joint.name(), Some(joint.at), why);
                 return;
             }
@@ -423,20 +434,20 @@ impl Reader<'_> {
             notes.taken(joint.text, joint.name(), Some(joint.at));
             m.joint(made)
         };
-        let note = called.note(self.notes);
-        let said = |reader: &mut Self, key: &str| {
+        let note = source.note(self.notes);
+        let specified = |reader: &mut Self, key: &str| {
             joint.child(key).and_then(|_| joint.numbers::<1>(key, reader.notes)).map(|[x]| x)
         };
         let number = match kind {
             "distance" => {
                 let mut rod = Joint::new(joint.name(), note, "distance", [i.body, j.body], i.pose.r)
                     .between(i.pose.r, j.pose.r);
-                let drawn = (j.pose.r - i.pose.r).norm();
-                let length = said(self, "distanceIJ").unwrap_or(drawn);
-                let why = if drawn == 0.0 || i.body == j.body {
-                    "both its markers are at one place, or on one body"
+                let nominal = (j.pose.r - i.pose.r).norm();
+                let length = specified(self, "distanceIJ").unwrap_or(nominal);
+                let why = if nominal == 0.0 || i.body == j.body {
+                    "its markers coincide, or are on the same body"
                 } else if length <= 0.0 {
-                    "its length is zero, which says less than a ball joint"
+                    "its length is zero: use a ball joint"
                 } else {
                     ""
                 };
@@ -444,19 +455,19 @@ impl Reader<'_> {
                     self.notes.refused(joint.text, joint.name(), Some(joint.at), why);
                     return;
                 }
-                if !is_drawn(&self.m, length, drawn) {
+                if !equals_nominal(&self.m, length, nominal) {
                     rod.length = Some(length);
                 }
                 Some(place(&mut self.m, self.notes, rod))
             }
             "angle" if i.z().cross(j.z()).norm() > 1e-6 && i.body != j.body => {
-                let drawn = i.z().dot(j.z()).clamp(-1.0, 1.0).acos();
+                let nominal = i.z().dot(j.z()).clamp(-1.0, 1.0).acos();
                 let angle = Joint::new(joint.name(), note, "angle", [i.body, j.body], i.pose.r)
                     .with_axes(i.z(), j.z());
-                match said(self, "theIzJz").filter(|a| (a.cos() - drawn.cos()).abs() > 1e-6) {
-                    Some(said) => {
+                match specified(self, "theIzJz").filter(|a| (a.cos() - nominal.cos()).abs() > 1e-6) {
+                    Some(specified) => {
                         let why = format!(
-                            "drawn at {drawn} rad where {said} rad are said: it is taken in the design configuration"
+                            "specified as {specified} rad, but {nominal} rad in the design configuration, which is used"
                         );
                         self.notes.approximated(joint.text, joint.name(), Some(joint.at), why);
                         Some(self.m.joint(angle))
@@ -464,46 +475,46 @@ impl Reader<'_> {
                     None => Some(place(&mut self.m, self.notes, angle)),
                 }
             }
-            "angle" => join(&mut self.m, self.notes, called, "parallel", [i, j]),
-            // The origin of marker J stays on a plane perpendicular to z of marker I, `offset` from it.
+            "angle" => join(&mut self.m, self.notes, source, "parallel", [i, j]),
+            // The origin of marker J stays in a plane perpendicular to z of marker I, at the distance `offset`.
             "planar" | "inplane" | "line_in_plane" => {
-                let offset = said(self, "offset").unwrap_or(0.0);
+                let offset = specified(self, "offset").unwrap_or(0.0);
                 let i = Marker { body: i.body, pose: Pose { r: i.pose.r + i.z() * offset, ..i.pose } };
                 if kind == "line_in_plane" {
-                    join(&mut self.m, self.notes, called, "dot1", [i, j]);
-                    join(&mut self.m, self.notes, called, "inplane", [i, j])
+                    join(&mut self.m, self.notes, source, "dot1", [i, j]);
+                    join(&mut self.m, self.notes, source, "inplane", [i, j])
                 } else {
-                    join(&mut self.m, self.notes, called, kind, [i, j])
+                    join(&mut self.m, self.notes, source, kind, [i, j])
                 }
             }
-            _ => join(&mut self.m, self.notes, called, kind, [i, j]),
+            _ => join(&mut self.m, self.notes, source, kind, [i, j]),
         };
         let Some(number) = number else { return };
         self.joints.insert(joint.name().to_owned(), MarkerJoint { number, kind, markers: [i, j] });
     }
 
-    /// A joint with a link between its two ends.
+    /// Adds a joint that represents a massless link between two markers.
     fn link(&mut self, joint: &Node<'_>, kinds: [&'static str; 2]) {
         let Some(markers) = self.pair(joint) else { return };
-        let called = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
+        let source = ElementSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
         let distance = joint.child("distanceIJ").and_then(|_| joint.numbers::<1>("distanceIJ", self.notes));
-        linked(&mut self.m, self.notes, called, kinds, markers, distance.map(|[d]| d));
+        join_by_link(&mut self.m, self.notes, source, kinds, markers, distance.map(|[d]| d));
     }
 
-    /// A screw holds one coordinate: 2 pi z = pitch * angle, of marker J against marker I. What else holds the parts
-    /// are other joints.
+    /// Adds a screw, a single constraint: 2 pi z = pitch * angle, of marker J relative to marker I. Other joints guide
+    /// the parts.
     fn screw(&mut self, joint: &Node<'_>) {
         let Some([i, j]) = self.pair(joint) else { return };
-        let called = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
+        let source = ElementSource { kind: joint.text, name: joint.name(), at: Some(joint.at) };
         let Some(pitch) = joint.numbers::<1>("pitch", self.notes).map(|[p]| p).filter(|p| *p != 0.0) else {
             let message = format!("the screw `{}` has no pitch", joint.name());
-            let help = "give it a `pitch` other than zero";
+            let help = "give it a non-zero `pitch`";
             self.notes.problem_with("HP0804", Some(joint.at), message, help);
             return;
         };
         let joints: Vec<MarkerJoint> = self.joints.values().copied().collect();
-        if screw(&mut self.m, self.notes, called, &joints, [i, j], pitch).is_none()
-            && let Some(number) = join(&mut self.m, self.notes, called, "screw", [i, j])
+        if couple_screw(&mut self.m, self.notes, source, &joints, [i, j], pitch).is_none()
+            && let Some(number) = join(&mut self.m, self.notes, source, "screw", [i, j])
         {
             self.m.joints[number].lead = Some(pitch);
             self.joints
@@ -511,19 +522,20 @@ impl Reader<'_> {
         }
     }
 
-    /// Gears, and a rack with its pinion: couplers of the joints that carry their parts.
+    /// Adds gears, or a rack and pinion, as couplers of the joints that carry their parts.
     fn gear(&mut self, joint: &Node<'_>) {
         let Some([i, j]) = self.pair(joint) else { return };
         let hinges = ["revolute", "cylindrical"];
-        let note = JointSource { kind: joint.text, name: joint.name(), at: Some(joint.at) }.note(self.notes);
+        let note =
+            ElementSource { kind: joint.text, name: joint.name(), at: Some(joint.at) }.note(self.notes);
         let radius = |reader: &mut Self, key: &str| {
             joint.numbers::<1>(key, reader.notes).map(|[r]| r).filter(|r| *r != 0.0)
         };
         let terms = if joint.text == "GearJoint" {
             let radii = [radius(self, "radiusI"), radius(self, "radiusJ")];
             let [a, b] = [i, j].map(|m| {
-                carrying(self.joints.values(), m.body, &hinges, m.z())
-                    .map(|k| (k.number, way(k, m.body, i.z())))
+                carrying_joint(self.joints.values(), m.body, &hinges, m.z())
+                    .map(|k| (k.number, coordinate_sign(k, m.body, i.z())))
             });
             match (radii, a, b) {
                 ([Some(ri), Some(rj)], Some((a, u)), Some((b, v))) if a != b => Some(vec![
@@ -534,14 +546,21 @@ impl Reader<'_> {
             }
         } else {
             let radius = radius(self, "pitchRadius");
-            // The rack moves along the x axis of marker I, s, the pinion turns about the z axis of marker J: s = r
+            // The rack moves by s along the x axis of marker I, the pinion turns about the z axis of marker J: s = r
             // angle.
-            let slide = carrying(self.joints.values(), i.body, &["translational", "cylindrical"], i.x());
-            let hinge = carrying(self.joints.values(), j.body, &hinges, j.z());
+            let slide =
+                carrying_joint(self.joints.values(), i.body, &["translational", "cylindrical"], i.x());
+            let hinge = carrying_joint(self.joints.values(), j.body, &hinges, j.z());
             match (radius, slide, hinge) {
                 (Some(r), Some(slide), Some(hinge)) => Some(vec![
-                    (Coordinate { joint: slide.number, name: "displacement" }, way(slide, i.body, i.x())),
-                    (Coordinate { joint: hinge.number, name: "angle" }, -r * way(hinge, j.body, j.z())),
+                    (
+                        Coordinate { joint: slide.number, name: "displacement" },
+                        coordinate_sign(slide, i.body, i.x()),
+                    ),
+                    (
+                        Coordinate { joint: hinge.number, name: "angle" },
+                        -r * coordinate_sign(hinge, j.body, j.z()),
+                    ),
                 ]),
                 _ => None,
             }
@@ -549,11 +568,11 @@ impl Reader<'_> {
         match terms {
             Some(terms) => {
                 self.m.coupler(joint.name(), note, terms);
-                let why = "a coupler of the joints that carry its two parts";
+                let why = "imported as a coupler of the joints that carry its two parts";
                 self.notes.approximated(joint.text, joint.name(), Some(joint.at), why);
             }
             None => {
-                let why = "no joints that carry its two parts along its markers' axes, or no radii";
+                let why = "it has no radii, or no joints along the axes of its markers carry its parts";
                 self.notes.refused(joint.text, joint.name(), Some(joint.at), why);
             }
         }
@@ -568,7 +587,7 @@ impl Reader<'_> {
                     motion.text,
                     motion.name(),
                     Some(motion.at),
-                    format!("{why}; what it drives is fixed in the design configuration"),
+                    format!("{why}; its coordinate is fixed in the design configuration"),
                 );
             }
         }
@@ -579,7 +598,7 @@ impl Reader<'_> {
             "RotationalMotion" => ("RotationZ", "angle"),
             "TranslationalMotion" => ("TranslationZ", "displacement"),
             "GeneralMotion" => return self.general(motion),
-            _ => return Err("its type is none that is known".into()),
+            _ => return Err("its type is unknown".into()),
         };
         let (path, at) = motion.value("MotionJoint").unwrap_or(("", motion.at));
         let wanted = path.rsplit('/').next().unwrap_or_default();
@@ -589,9 +608,9 @@ impl Reader<'_> {
                 return Ok(());
             }
             if self.notes.report.of(crate::ElementOutcome::Refused).any(|e| e.name == wanted) {
-                return Err(format!("the joint `{wanted}` is refused"));
+                return Err(format!("the joint `{wanted}` is not supported"));
             }
-            let message = format!("`{}` drives the joint `{path}`, which is not there", motion.name());
+            let message = format!("`{}` drives the joint `{path}`, which does not exist", motion.name());
             self.notes.problem_with(
                 "HP0803",
                 Some(at),
@@ -610,24 +629,24 @@ impl Reader<'_> {
             return Err("the joint is driven already".into());
         }
         let turns = name == "angle";
-        let drawn = offset(&joint.markers[0], &joint.markers[1]);
-        let drawn = if turns { drawn.angle } else { drawn.displacement };
-        let text = counted(&law::translate(function, Language::Ondsel)?, drawn, turns);
-        let law = if law::constant(&text) == Some(0.0) { Law::Held } else { Law::Text(text) };
+        let nominal = offset(&joint.markers[0], &joint.markers[1]);
+        let nominal = if turns { nominal.angle } else { nominal.displacement };
+        let text = relative_to_nominal(&law::translate(function, Language::Ondsel)?, nominal, turns);
+        let law = if law::constant(&text) == Some(0.0) { Law::Fixed } else { Law::Text(text) };
         let note =
-            JointSource { kind: motion.text, name: motion.name(), at: Some(motion.at) }.note(self.notes);
+            ElementSource { kind: motion.text, name: motion.name(), at: Some(motion.at) }.note(self.notes);
         self.m.driver(motion.name(), note, Drives::Coordinate(coordinate), law);
         self.notes.taken(motion.text, motion.name(), Some(motion.at));
         Ok(())
     }
 
-    /// A motion of all six coordinates of marker J against marker I.
+    /// Adds a motion that prescribes all six coordinates of marker J relative to marker I.
     fn general(&mut self, motion: &Node<'_>) -> Result<(), String> {
         let text = |key: &str| -> Result<String, String> {
             let (function, _) = motion.value(key).ok_or_else(|| format!("it has no `{key}`"))?;
             law::translate(function, Language::Ondsel)
         };
-        let ways = [text("rIJI1")?, text("rIJI2")?, text("rIJI3")?];
+        let displacements = [text("rIJI1")?, text("rIJI2")?, text("rIJI3")?];
         let angles = [text("angIJJ1")?, text("angIJJ2")?, text("angIJJ3")?];
         let order = match motion.child("RotationOrder") {
             Some(_) => motion.numbers::<3>("RotationOrder", self.notes).unwrap_or([1.0, 2.0, 3.0]),
@@ -635,20 +654,20 @@ impl Reader<'_> {
         };
         let axis = order.map(|x| [1.0, 2.0, 3.0].iter().position(|k| *k == x));
         let [Some(a), Some(b), Some(c)] = axis else {
-            return Err("its `RotationOrder` is none of axes 1 to 3".into());
+            return Err("its `RotationOrder` is not a sequence of axes 1 to 3".into());
         };
         let Some(markers) = self.pair(motion) else { return Ok(()) };
         let [p, q, r] = angles;
-        let called = JointSource { kind: motion.text, name: motion.name(), at: Some(motion.at) };
-        chain::drive(&mut self.m, self.notes, called, markers, ways, [(a, p), (b, q), (c, r)])
+        let source = ElementSource { kind: motion.text, name: motion.name(), at: Some(motion.at) };
+        chain::drive(&mut self.m, self.notes, source, markers, displacements, [(a, p), (b, q), (c, r)])
     }
 
-    /// The joint between the markers of a motion that names no joint.
+    /// Returns the joint between the markers of a motion that names no joint.
     fn between(&mut self, motion: &Node<'_>) -> Result<Option<MarkerJoint>, String> {
         let Some([i, j]) = self.pair(motion) else { return Ok(None) };
         let same = |a: &Marker, b: &Marker| a.body == b.body && a.pose == b.pose;
         let found = self.joints.values().find(|k| same(&k.markers[0], &i) && same(&k.markers[1], &j));
-        found.copied().map(Some).ok_or_else(|| "no joint is between its two markers".into())
+        found.copied().map(Some).ok_or_else(|| "no joint connects its two markers".into())
     }
 
     fn rest(&mut self, assembly: &Node<'_>) {
@@ -658,11 +677,11 @@ impl Reader<'_> {
                 limit.text,
                 limit.name(),
                 Some(limit.at),
-                "drivers prescribe what moves: nothing stops at a limit",
+                "limits are not supported: drivers prescribe the motion",
             );
         }
         for set in sets.and_then(|c| c.child("GeneralConstraintSets")).map_or(&[][..], |p| &p.children) {
-            self.notes.refused(set.text, set.name(), Some(set.at), "a general constraint has no equivalent");
+            self.notes.refused(set.text, set.name(), Some(set.at), "general constraints have no equivalent");
         }
         if let Some(sets) = sets {
             self.unknown(sets, &["Joints", "Motions", "Limits", "GeneralConstraintSets"]);
@@ -691,15 +710,16 @@ impl Reader<'_> {
     }
 }
 
-/// Stored data of a part.
+/// Stored motion of a part.
 struct StoredPart<'t> {
     path: &'t str,
     at: SourceSpan,
-    /// One for each of the times, or none where a number is missing.
+    /// Pose at each of the times; `None` if a number is missing.
     states: Option<Vec<StoredPose>>,
 }
 
-/// The stored times, and the series of the parts: the column of the input, and then one for each output time.
+/// Returns the stored times and the series of the parts. Each line has the column of the input, followed by one column
+/// per output time.
 fn stored<'t>(lines: &[(&'t str, SourceSpan)], notes: &mut ImportLog) -> (Vec<f64>, Vec<StoredPart<'t>>) {
     let row = |line: &str| -> Vec<Option<f64>> { line.split_whitespace().skip(1).map(number).collect() };
     let nothing = (Vec::new(), Vec::new());
@@ -709,10 +729,10 @@ fn stored<'t>(lines: &[(&'t str, SourceSpan)], notes: &mut ImportLog) -> (Vec<f6
     let skipped = times.iter().take_while(|t| t.is_none()).count();
     let times: Option<Vec<f64>> = times[skipped..].iter().copied().collect();
     let Some(times) = times.filter(|t| !t.is_empty()) else {
-        notes.refused("TimeSeries", "", Some(*at), "its times are no numbers");
+        notes.refused("TimeSeries", "", Some(*at), "its times are not numbers");
         return nothing;
     };
-    let mut told = Vec::new();
+    let mut stored_parts = Vec::new();
     let mut k = 0;
     while k < lines.len() {
         let (head, at) = lines[k];
@@ -741,26 +761,30 @@ fn stored<'t>(lines: &[(&'t str, SourceSpan)], notes: &mut ImportLog) -> (Vec<f6
                 rates: rates.map(|names| vector(names, step)),
             })
         };
-        told.push(StoredPart { path: path.trim(), at, states: (0..times.len()).map(state).collect() });
+        stored_parts.push(StoredPart {
+            path: path.trim(),
+            at,
+            states: (0..times.len()).map(state).collect(),
+        });
     }
-    (times, told)
+    (times, stored_parts)
 }
 
-/// The stored motion of the bodies.
+/// Returns the stored motion of the bodies.
 fn series(
-    (times, told): (Vec<f64>, Vec<StoredPart<'_>>),
+    (times, parts_stored): (Vec<f64>, Vec<StoredPart<'_>>),
     m: &Mechanism,
     parts: &BTreeMap<String, usize>,
     notes: &mut ImportLog,
 ) -> Option<Series> {
     let mut series = Series { times, bodies: Vec::new() };
-    for StoredPart { path, at, states } in told {
+    for StoredPart { path, at, states } in parts_stored {
         match (parts.get(path).filter(|b| **b != GROUND), states) {
             (Some(body), Some(states)) => {
                 series.bodies.push((m.bodies[*body].name.clone(), states));
                 notes.taken("PartSeries", path, Some(at));
             }
-            (Some(_), None) => notes.refused("PartSeries", path, Some(at), "a number is missing in it"),
+            (Some(_), None) => notes.refused("PartSeries", path, Some(at), "it has a missing number"),
             (None, _) => notes.ignored("PartSeries", Some(at)),
         }
     }

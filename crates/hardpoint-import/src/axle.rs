@@ -1,4 +1,4 @@
-//! Members of a live axle: rods, springs and dampers between the body of the vehicle and one rigid axle.
+//! Members of a live axle: rods, springs and dampers between the vehicle body and one rigid axle.
 
 use hardpoint::space::{Pose, Vec3};
 
@@ -6,18 +6,18 @@ use crate::mechanism::{Joint, Mechanism};
 use crate::report::{ImportLog, SourceSpan};
 use crate::sides::with_word;
 
-/// A body whose frame has its origin there and is parallel to the global one.
+/// Adds a body whose frame has its origin at `at` and is parallel to the global frame.
 pub fn body(m: &mut Mechanism, name: &str, at: Vec3) -> usize {
     m.body(name, String::new(), Some(Pose { rot: crate::turn::none(), r: at }))
 }
 
-/// Names both ends of a member as hardpoints.
+/// Adds both ends of a member as hardpoints.
 pub fn ends(m: &mut Mechanism, name: &str, ends: [Vec3; 2], words: [&str; 2]) {
     let named = ends.into_iter().zip(words).map(|(end, word)| (with_word(name, word), end));
     m.hardpoints.extend(named);
 }
 
-/// A rod between two bodies.
+/// Adds a rod between two bodies.
 pub fn rod(
     m: &mut Mechanism,
     notes: &mut ImportLog,
@@ -27,7 +27,7 @@ pub fn rod(
     at: Option<SourceSpan>,
 ) {
     if i == j {
-        let message = format!("both ends of `{name}` are at one place");
+        let message = format!("both ends of `{name}` coincide");
         notes.problem_with("HP0804", at, message, "correct one of them");
         return;
     }
@@ -35,7 +35,7 @@ pub fn rod(
     notes.taken("link", name, at);
 }
 
-/// A spring or a damper as a leg, which holds nothing and has a length that is worth knowing.
+/// Adds a spring or damper as a leg, which is no constraint; its length is measured.
 pub fn leg(
     m: &mut Mechanism,
     notes: &mut ImportLog,

@@ -1,19 +1,19 @@
-//! Motions of a vehicle that no source gives: heave, roll and steering, each by itself.
+//! Cases of a vehicle, which no source defines: heave, roll and steering.
 
 use crate::finish;
 use crate::mechanism::{Case, Law, Mechanism};
 use crate::report::ImportLog;
 
-/// Travel of the wheels, mm: in heave or bump, in roll, and of the rack.
+/// Travel of the wheels in heave or bump and in roll, and of the rack, mm.
 const HEAVE: f64 = 60.0;
 const ROLL: f64 = 40.0;
 const RACK: f64 = 30.0;
-/// Parts of these that are tried, one after the other: a mechanism may end before.
+/// Fractions of the travel that are tried in order, since a mechanism may lock before.
 const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 
-/// Adds the motions that a vehicle has: of both wheels up and down together and against each other, and of the
-/// steering. A single motion needs no case.
-pub fn of_vehicle(m: &mut Mechanism, notes: &mut ImportLog) {
+/// Adds the cases of a vehicle: both wheels in the same direction (heave), in opposite directions (roll), and steering.
+/// A single motion needs no case.
+pub fn add_vehicle_cases(m: &mut Mechanism, notes: &mut ImportLog) {
     let mut bumps: Vec<usize> = m.wheels.iter().map(|w| w.bump).collect();
     bumps.dedup();
     let mut wanted: Vec<(&'static str, Vec<(usize, f64)>)> = match bumps[..] {
@@ -36,27 +36,26 @@ pub fn of_vehicle(m: &mut Mechanism, notes: &mut ImportLog) {
             Some(case) => {
                 let laws: Vec<String> =
                     case.laws.iter().map(|(k, law)| format!("`{}` {law}", m.drivers[*k].name)).collect();
-                let why =
-                    format!("nothing drives it in the source: a motion of its own, {}", laws.join(", "));
+                let why = format!("nothing drives it in the source: added with {}", laws.join(", "));
                 notes.approximated("case", name, None, why);
                 m.cases.push(case);
             }
             None => {
-                let why = "the mechanism does not move so far: there is no such case";
+                let why = "the mechanism does not reach the travel: the case is not added";
                 notes.approximated("case", name, None, why);
             }
         }
     }
 }
 
-/// Returns whether the mechanism moves from end to end in a case.
+/// Returns true if the mechanism moves from end to end in a case.
 fn moves(m: &Mechanism, case: &Case) -> bool {
     let mut alone = m.clone();
     alone.cases.clear();
     for driver in &mut alone.drivers {
         match driver.law {
-            Law::Text(_) | Law::Table(_) => driver.law = Law::Held,
-            Law::Held | Law::Set(_) => {}
+            Law::Text(_) | Law::Table(_) => driver.law = Law::Fixed,
+            Law::Fixed | Law::Constant(_) => {}
         }
     }
     for (driver, law) in &case.laws {

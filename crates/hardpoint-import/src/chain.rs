@@ -1,19 +1,19 @@
-//! A motion that prescribes how one frame is to another, all six coordinates of it: slides and hinges one behind the
-//! other, each driven, with bodies between them.
+//! Motion that prescribes all six coordinates of one frame relative to another: a chain of driven slides and hinges
+//! with bodies between them.
 
 use hardpoint::law::Law as Function;
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::law;
-use crate::markers::{JointSource, Marker};
+use crate::markers::{ElementSource, Marker};
 use crate::mechanism::{Coordinate, Drives, Joint, Law, Mechanism};
 use crate::report::ImportLog;
 use crate::turn::{X, Y, Z};
 
-/// Numbers of the source that differ by less than this from what is drawn, in the file's unit or rad, say the same.
+/// Tolerance for equal values, in the unit of the file or rad.
 const SAME: f64 = 1e-9;
 
-/// One coordinate: a way along an axis of frame I, or a turn about one of the frame as it has turned so far.
+/// One coordinate: a displacement along an axis of frame I, or a rotation about an axis of the frame rotated so far.
 struct Step {
     kind: &'static str,
     axis: Vec3,
@@ -21,31 +21,31 @@ struct Step {
     first: f64,
 }
 
-/// Drives frame J against frame I: along the axes of I by three expressions of the time, and then about the axes of
-/// this order by three.
+/// Drives frame J relative to frame I: three displacements along the axes of I, followed by three rotations about the
+/// given axes, all as expressions of the time.
 ///
 /// # Errors
-/// Why it cannot be.
+/// Returns the reason why the motion is not supported.
 pub fn drive(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: JointSource<'_>,
+    source: ElementSource<'_>,
     [i, j]: [Marker; 2],
-    ways: [String; 3],
+    displacements: [String; 3],
     turns: [(usize, String); 3],
 ) -> Result<(), String> {
     if i.body == j.body {
-        return Err("both its markers are on the same body".into());
+        return Err("its markers are on the same body".into());
     }
     let start = m.times.map_or(0.0, |t| t.start);
     let value = |text: &str| {
         let law = Function::parse(text).map_err(|_| format!("`{text}` cannot be evaluated"))?;
         Some(law.at(start).0[0])
             .filter(|x| x.is_finite())
-            .ok_or_else(|| format!("`{text}` is no number at {start} s"))
+            .ok_or_else(|| format!("`{text}` is not finite at {start} s"))
     };
     let (mut steps, mut pose) = (Vec::new(), i.pose);
-    for (k, law) in ways.into_iter().enumerate() {
+    for (k, law) in displacements.into_iter().enumerate() {
         let (axis, first) = (i.pose.rot.cols[k], value(&law)?);
         pose.r += axis * first;
         steps.push(Step { kind: "translational", axis, law, first });
@@ -56,9 +56,9 @@ pub fn drive(
         pose.rot = pose.rot * Mat3::about([X, Y, Z][k].into(), first);
         steps.push(Step { kind: "revolute", axis, law, first });
     }
-    // What does not move is as it is drawn.
+    // Constant coordinates need no joint.
     steps.retain(|s| law::constant(&s.law).is_none());
-    let note = called.note(notes);
+    let note = source.note(notes);
     let at = j.pose.r;
     let count = steps.len();
     let mut carrier = i.body;
@@ -67,9 +67,9 @@ pub fn drive(
             j.body
         } else {
             let frame = Pose { rot: i.pose.rot, r: at };
-            m.body(&format!("{}_{}", called.name, k + 1), note.clone(), Some(frame))
+            m.body(&format!("{}_{}", source.name, k + 1), note.clone(), Some(frame))
         };
-        let name = format!("{}_{}", called.name, k + 1);
+        let name = format!("{}_{}", source.name, k + 1);
         let joint = m.joint(Joint::new(&name, note.clone(), step.kind, [carrier, body], at).along(step.axis));
         let coordinate = if step.kind == "revolute" { "angle" } else { "displacement" };
         let text = match step.first {
@@ -85,14 +85,14 @@ pub fn drive(
         carrier = body;
     }
     if count == 0 {
-        m.joint(Joint::new(called.name, note, "fixed", [i.body, j.body], at));
+        m.joint(Joint::new(source.name, note, "fixed", [i.body, j.body], at));
     }
     let off = (pose.r - at).norm() > SAME * (1.0 + at.norm()) || pose.rot.angle_to(j.pose.rot) > SAME;
     if off {
-        let why = "its markers are drawn elsewhere than where it begins: it moves them from there";
-        notes.approximated(called.kind, called.name, called.at, why);
+        let why = "the drawn positions of its markers differ from its initial values: it moves them from their drawn positions";
+        notes.approximated(source.kind, source.name, source.at, why);
     } else {
-        notes.taken(called.kind, called.name, called.at);
+        notes.taken(source.kind, source.name, source.at);
     }
     Ok(())
 }

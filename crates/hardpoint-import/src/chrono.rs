@@ -1,5 +1,5 @@
-//! Suspension templates of Project Chrono's vehicle module (JSON): one side, as the file has it, or both with their
-//! mirror image.
+//! Suspension templates of Project Chrono's vehicle module (JSON): one side as in the file, or both sides with the
+//! right one as mirror image.
 
 use hardpoint::space::Vec3;
 
@@ -10,17 +10,17 @@ use crate::report::ImportLog;
 use crate::tree::{self, Tree};
 use crate::{Format, Input, chrono_axle, chrono_generic, robot};
 
-/// See the module.
+/// Chrono format.
 pub const FORMAT: Format = Format {
     name: "chrono",
     about: "Chrono suspension",
     endings: &["json"],
-    looks: |text| text.contains("\"Template\"") && text.contains("\"Type\""),
+    recognises: |text| text.contains("\"Template\"") && text.contains("\"Type\""),
     read,
     binary: false,
 };
 
-/// Templates whose topology is known here.
+/// Templates with a known topology.
 const TEMPLATES: [&str; 8] = [
     "DoubleWishbone",
     "DoubleWishboneReduced",
@@ -31,10 +31,10 @@ const TEMPLATES: [&str; 8] = [
     "ThreeLinkIRS",
     GENERIC,
 ];
-/// The template whose file has its bodies and joints one by one.
+/// Template whose file lists its bodies and joints.
 const GENERIC: &str = "GenericWheeledSuspension";
 
-/// The static angles of the wheel.
+/// Keys of the static wheel angles.
 const ANGLES: [&str; 2] = ["Camber Angle (deg)", "Toe Angle (deg)"];
 
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
@@ -48,15 +48,15 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         notes.problem_with(
             "HP0805",
             Some(at),
-            format!("the file is of type `{kind}`, not a `Suspension`"),
+            format!("the file is of type `{kind}`, not `Suspension`"),
             "import the file of the suspension",
         );
         return None;
     }
     let all = || TEMPLATES.iter().chain(&chrono_axle::TEMPLATES);
     let Some(known) = all().find(|t| t.eq_ignore_ascii_case(name)) else {
-        let help = format!("known are {}", all().copied().collect::<Vec<_>>().join(", "));
-        notes.problem_with("HP0805", at, format!("the template `{name}` is not known here"), &help);
+        let help = format!("the known templates are {}", all().copied().collect::<Vec<_>>().join(", "));
+        notes.problem_with("HP0805", at, format!("the template `{name}` is unknown"), &help);
         return None;
     };
     let title = root.text_of("Name").filter(|n| !n.trim().is_empty()).unwrap_or(input.stem);
@@ -82,7 +82,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
                 [Role::LowerFront, Role::LowerRear, Role::LowerOuter],
                 &["Location Chassis Front", "Location Chassis Back", "Location Upright"],
             );
-            // Chrono's strut slides along its spring.
+            // The strut of Chrono slides along its spring.
             let strut = if root.get("Spring").is_some() { "Spring" } else { "Shock" };
             reader.pair(strut, [Role::StrutTop, Role::StrutBottom], &["Location Upright"]);
             if strut != "Shock" {
@@ -99,7 +99,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             for link in ["Lateral", "Trailing Link"] {
                 reader.link(link);
             }
-            // Spring and shock are on the trailing link.
+            // Spring and shock act on the trailing link.
             let ends = ["Location Link", "Location Upright"];
             reader.pair("Shock", [Role::DamperChassis, Role::DamperMoving], &ends);
             reader.pair("Spring", [Role::SpringChassis, Role::SpringMoving], &ends);
@@ -135,7 +135,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             reader.arm("Upper Control Arm", [Role::UpperFront, Role::UpperRear, Role::UpperOuter], &ends);
             reader.arm("Lower Control Arm", [Role::LowerFront, Role::LowerRear, Role::LowerOuter], &ends);
             let ends = ["Location Arm", "Location Upright"];
-            // One element is both in the reduced template.
+            // In the reduced template, one element is both spring and shock.
             let is_both = root.get("Spring").is_none() && root.get("Shock").is_some();
             let shock = if is_both {
                 [Role::StrutTop, Role::StrutBottom]
@@ -163,8 +163,8 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     chrono_part::account(&root, PARTS, notes);
     let mut rack = None;
     if notes.problem_count() == 0 && !corner.build(&mut m, notes, &mut rack) {
-        let message = format!("points are missing of what a `{name}` consists of");
-        notes.problem_with("HP0803", at, message, "give the locations of its arms and links");
+        let message = format!("points of the template `{name}` are missing");
+        notes.problem_with("HP0803", at, message, "add the locations of its arms and links");
     }
     if notes.problem_count() == 0 {
         masses(&root, &mut m, known, &corner, notes);
@@ -172,7 +172,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     Some(m)
 }
 
-/// Parts of the templates that are read here.
+/// Parts of the templates that are read.
 const PARTS: &[&str] = &[
     "Spindle",
     "Upright",
@@ -191,8 +191,7 @@ const PARTS: &[&str] = &[
     "Shock",
 ];
 
-/// The masses of the parts, on the bodies that they are of, or at the ends of rods, along the axes that Chrono gives
-/// each part.
+/// Adds the masses of the parts to their bodies, or to the ends of rods, along the axes that Chrono uses for each part.
 fn masses(root: &Tree, m: &mut Mechanism, template: &str, corner: &Corner, notes: &mut ImportLog) {
     let point = |part: &str, key: &str| root.get(part).and_then(|p| p.get(key)?.vector()).map(Vec3::from);
     let outer = |part: &str| point(part, "Location Upright").or_else(|| point(part, "Location Arm"));
@@ -223,7 +222,7 @@ fn masses(root: &Tree, m: &mut Mechanism, template: &str, corner: &Corner, notes
         let Some(places) = ends(part) else { continue };
         let body = plain(part);
         if masses.m.bodies.iter().any(|b| b.name == body) {
-            // z along the link, y across its plane with the spring.
+            // z along the link, y perpendicular to its plane with the spring.
             let seat = point("Spring", "Location Link").or_else(|| outer("Spring"));
             let [chassis, upright] = places;
             let axes = seat
@@ -247,30 +246,30 @@ struct Reader<'r> {
 }
 
 impl Reader<'_> {
-    /// A location in a part; the first of the names that is there.
+    /// Returns a location of a part, by the first of some keys that is present.
     fn location(&mut self, part: &str, names: &[&str]) -> Option<Vec3> {
         let Some(tree) = self.root.get(part) else {
             self.notes.problem_with(
                 "HP0803",
                 Some(self.root.at),
-                format!("there is no `{part}`"),
-                "a template has all its parts",
+                format!("the part `{part}` is missing"),
+                "add the part, or export the template again",
             );
             return None;
         };
         let Some(found) = names.iter().find_map(|n| tree.get(n)) else {
             let message = format!("`{part}` has no `{}`", names[0]);
-            self.notes.problem_with("HP0803", Some(tree.at), message, "give it as a list of three numbers");
+            self.notes.problem_with("HP0803", Some(tree.at), message, "add it as a list of three numbers");
             return None;
         };
         let v = found.vector();
         if v.is_none() {
-            let message = format!("`{}` of `{part}` is three numbers", names[0]);
+            let message = format!("`{}` of `{part}` must be three numbers", names[0]);
             self.notes.problem_with(
                 "HP0804",
                 Some(found.at),
                 message,
-                "give it as a list like `[0, 0.7, 0.2]`",
+                "write it as a list like `[0, 0.7, 0.2]`",
             );
         }
         v.map(Vec3::from)
@@ -292,7 +291,7 @@ impl Reader<'_> {
         }
     }
 
-    /// From the body to something: a tie rod, spring or shock; a spring or shock may be missing.
+    /// Reads both ends of a tie rod, spring or shock, chassis first; springs and shocks are optional.
     fn pair(&mut self, part: &str, [chassis, moving]: [Role; 2], ends: &[&str]) {
         if self.root.get(part).is_none() && part != "Tierod" {
             return;
@@ -320,7 +319,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The wheel's centre is the spindle's, its axis y but for static angles.
+    /// Reads the wheel centre and the spin axis: that of the spindle, along y except for the static angles.
     fn wheel(&mut self) {
         if let Some(centre) = self.location("Spindle", &["COM", "Location"]) {
             self.m.hardpoints.push(("spindle".into(), centre));

@@ -1,5 +1,5 @@
-//! Live axles of Project Chrono's vehicle module: one rigid axle between both wheels. The file has the left side; the
-//! right one is its mirror image, as Chrono makes it.
+//! Live axles of Project Chrono's vehicle module: one rigid axle between both wheels. The file describes the left side;
+//! the right side is its mirror image, as in Chrono.
 
 use hardpoint::space::Vec3;
 
@@ -11,7 +11,7 @@ use crate::sides::{SIDES, over};
 use crate::tree::Tree;
 use crate::{axle, robot};
 
-/// The templates that are read here.
+/// Templates that are read here.
 pub const TEMPLATES: [&str; 6] = [
     "SolidAxle",
     "SolidThreeLinkAxle",
@@ -29,7 +29,7 @@ struct Axle<'r> {
     read: Vec<&'static str>,
 }
 
-/// See the module; `angles` are the static camber and toe of the wheels, rad.
+/// Reads a live axle; `angles` are the static camber and toe of the wheels, rad.
 pub fn read(
     root: &Tree,
     m: Mechanism,
@@ -49,24 +49,29 @@ impl Axle<'_> {
         self.root.get(part).map(|t| t.at)
     }
 
-    /// A place of a part, by the first of the names that it has; what is missing is a problem.
+    /// Returns a location of a part, by the first of some keys that is present. A missing location is reported.
     fn place(&mut self, parts: &[&'static str], names: &[&str]) -> Option<Vec3> {
         let found = parts.iter().find_map(|p| Some((*p, self.root.get(p)?)));
         let Some((part, tree)) = found else {
-            let message = format!("there is no `{}`", parts[0]);
-            self.notes.problem_with("HP0803", Some(self.root.at), message, "a template has all its parts");
+            let message = format!("the part `{}` is missing", parts[0]);
+            self.notes.problem_with(
+                "HP0803",
+                Some(self.root.at),
+                message,
+                "add the part, or export the template again",
+            );
             return None;
         };
         self.read.push(part);
         let Some(place) = names.iter().find_map(|n| tree.get(n)) else {
             let message = format!("`{part}` has no `{}`", names[0]);
-            self.notes.problem_with("HP0803", Some(tree.at), message, "give it as a list of three numbers");
+            self.notes.problem_with("HP0803", Some(tree.at), message, "add it as a list of three numbers");
             return None;
         };
         let v = place.vector();
         if v.is_none() {
-            let message = format!("`{}` of `{part}` is three numbers", names[0]);
-            let help = "give it as a list like `[0, 0.7, 0.2]`";
+            let message = format!("`{}` of `{part}` must be three numbers", names[0]);
+            let help = "write it as a list like `[0, 0.7, 0.2]`";
             self.notes.problem_with("HP0804", Some(place.at), message, help);
         }
         v.map(Vec3::from)
@@ -80,7 +85,7 @@ impl Axle<'_> {
         self.m.hardpoints.push((name.to_owned(), at));
     }
 
-    /// A rod between two bodies; both its ends are hardpoints.
+    /// Adds a rod between two bodies, with both ends as hardpoints.
     fn rod(
         &mut self,
         name: &str,
@@ -93,14 +98,14 @@ impl Axle<'_> {
         axle::rod(&mut self.m, self.notes, name, bodies, ends, at);
     }
 
-    /// Returns the ends of a member, on the vehicle and on the axle.
+    /// Returns the ends of a member on the vehicle and on the axle.
     fn ends(&mut self, part: &'static str) -> Option<[Vec3; 2]> {
         let chassis = self.place(&[part], &["Location Chassis"]);
         let outer = self.place(&[part], &["Location Axle"]);
         Some([chassis?, outer?])
     }
 
-    /// A rod on each side, from the body of the vehicle to the axle.
+    /// Adds a rod on each side, from the vehicle body to the axle.
     fn rods(&mut self, part: &'static str, axle: usize) {
         let Some(ends) = self.ends(part) else { return };
         let at = self.at(part);
@@ -110,7 +115,7 @@ impl Axle<'_> {
         }
     }
 
-    /// A spring or a damper on each side; returns its ends on the left, if it is there.
+    /// Adds a spring or damper on each side. Returns its ends on the left, if the part is present.
     fn legs(&mut self, part: &'static str, draw: &'static str, axle: usize) -> Option<[Vec3; 2]> {
         self.root.get(part)?;
         let ends = self.ends(part).filter(|[c, a]| c != a)?;
@@ -123,11 +128,11 @@ impl Axle<'_> {
         Some(ends)
     }
 
-    /// A triangle that turns on the body of the vehicle about y; its ball joint is on the axle.
+    /// Adds a triangular link with a hinge about y on the vehicle body and a ball joint on the axle.
     fn triangle(&mut self, axle: usize) {
         let part = "Triangular Link";
         let Some(ends) = self.ends(part) else { return };
-        // Chrono takes the middle of both sides.
+        // Chrono uses the midpoint between both sides.
         let [pivot, ball] = ends.map(middle);
         let body = self.body("triangle", pivot);
         for (name, at) in [("triangle_chassis", pivot), ("triangle_axle", ball)] {
@@ -139,14 +144,14 @@ impl Axle<'_> {
         self.notes.taken("arm", "triangle", self.at(part));
     }
 
-    /// Knuckles that turn on the axle, left and right.
+    /// Adds the left and right knuckles with their kingpins on the axle.
     fn knuckles(&mut self, axle: usize) -> Option<[(usize, [Vec3; 2]); 2]> {
         let part = "Knuckle";
         let lower = self.place(&[part], &["Location Lower"]);
         let upper = self.place(&[part], &["Location Upper"]);
         let (Some(l), Some(u)) = (lower, upper) else { return None };
         if l == u {
-            let message = "both points of the kingpin are at one place";
+            let message = "both points of the kingpin coincide";
             self.notes.problem_with("HP0804", self.at(part), message, "correct one of them");
             return None;
         }
@@ -162,8 +167,8 @@ impl Axle<'_> {
         }))
     }
 
-    /// The drag link from the steering to the bell crank; the steering slides along the greater component of the drag
-    /// link.
+    /// Adds the drag link from the steering to the bell crank. The steering slides along the larger component of the
+    /// drag link.
     fn drag_link(&mut self, crank: usize) -> Option<()> {
         let part = "Draglink";
         let from = self.place(&[part], &["Location Steering", "Location Chassis"]);
@@ -181,16 +186,16 @@ impl Axle<'_> {
             "steering",
             "no law in the source: fixed in the design configuration".into(),
             drives,
-            Law::Held,
+            Law::Fixed,
         );
         self.m.steering = Some(steering);
-        let why = "the steering is a file of its own: its link slides along the drag link, and a driver holds it in the design configuration";
+        let why = "the steering is in another file: its link slides along the drag link, and a driver fixes it in the design configuration";
         self.notes.approximated("motion", "steering_slide", self.at(part), why);
         self.rod("drag_link", [rack, crank], [from, to], ["steering", "crank"], self.at(part));
         Some(())
     }
 
-    /// The bell crank on the axle and what it moves; the tie rods.
+    /// Adds the bell crank on the axle, the drag link and the tie rods.
     fn steering(&mut self, template: &str, axle: usize, knuckles: &[(usize, [Vec3; 2]); 2]) -> Option<()> {
         let crank = ["Bellcrank", "Bell Crank"];
         let pivot = self.place(&crank, &["Location Axle"])?;
@@ -203,7 +208,7 @@ impl Axle<'_> {
         let z = Vec3::from([0.0, 0.0, 1.0]);
         let axis = if is_solid { (drag - pivot).cross(tie - pivot) } else { z };
         let Some(axis) = axis.unit() else {
-            let message = "the points of the bell crank lie on one line: its axis is perpendicular to them";
+            let message = "the points of the bell crank are collinear and define no axis";
             self.notes.problem_with("HP0804", at, message, "correct one of them");
             return None;
         };
@@ -214,8 +219,8 @@ impl Axle<'_> {
             let ends = self.place(&["Tierod"], &["Location Knuckle"])?;
             let [left, right] = [over(ends, 1.0), over(ends, -1.0)];
             if left == right {
-                let message = "both ends of the tie rod are at one place";
-                self.notes.problem_with("HP0804", self.at("Tierod"), message, "correct its y");
+                let message = "both ends of the tie rod coincide";
+                self.notes.problem_with("HP0804", self.at("Tierod"), message, "correct its y coordinate");
                 return None;
             }
             let rod = self.body("tie_rod", (left + right) * 0.5);
@@ -229,7 +234,7 @@ impl Axle<'_> {
                 Joint::new("tie_rod_right", String::new(), "universal", [rod, knuckles[1].0], right)
                     .with_axes(x, z),
             );
-            // The crank takes the tie rod along: its point stays in a plane of the rod.
+            // The crank guides the tie rod: its point stays in a plane of the rod.
             self.m.joint(
                 Joint::new("bell_crank_guide", String::new(), "inplane", [rod, body], tie).with_axes(y, x),
             );
@@ -282,7 +287,7 @@ impl Axle<'_> {
                     Joint::new("axle_guide", String::new(), "inplane", [GROUND, axle], middle)
                         .with_axes(y, x),
                 );
-                let why = "a plane holds its middle sideways, in place of a Watt linkage: the file has no points of it";
+                let why = "the Watt linkage is replaced by a lateral plane for its midpoint: the file has no points of the linkage";
                 self.notes.approximated("joint", "axle_guide", self.at(part), why);
             }
             _ => {
@@ -334,7 +339,7 @@ impl Axle<'_> {
         Some(())
     }
 
-    /// The masses of the parts, on the bodies that they are of, or at the ends of rods.
+    /// Adds the masses of the parts to their bodies, or to the ends of rods.
     fn masses(&mut self, template: &str, [camber, toe]: [f64; 2], has_knuckles: bool) {
         let root = self.root;
         let point = |part: &str, key: &str| root.get(part).and_then(|p| p.get(key)?.vector()).map(Vec3::from);
@@ -358,8 +363,8 @@ impl Axle<'_> {
             let places = point(crank, "Location Axle").zip(point(crank, "Location Tierod"));
             if let Some((pivot, tie)) = places {
                 let is_solid = template == "SolidAxle";
-                // Of the axle on four links the crank's axes are those of the drag link, across the plane with the
-                // lower link.
+                // On four-link axles the axes of the crank are those of the drag link, perpendicular to its plane with
+                // the lower link.
                 let lower = point("Lower Link", "Location Axle").filter(|_| is_solid);
                 let axes = lower.and_then(|l| chrono_part::link_axes(from - to, (to - l).cross(from - l)));
                 let centre = if is_solid { (to + pivot + tie) * (1.0 / 3.0) } else { pivot };
@@ -388,7 +393,7 @@ impl Axle<'_> {
     }
 }
 
-/// The place in the middle between both sides.
+/// Returns the midpoint between both sides.
 fn middle(v: Vec3) -> Vec3 {
     Vec3::from([v.x, 0.0, v.z])
 }

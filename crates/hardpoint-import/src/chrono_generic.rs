@@ -1,5 +1,5 @@
-//! The template of Project Chrono whose file has its bodies and joints one by one (`GenericWheeledSuspension`): the
-//! left side, and the right one, its mirror image, where both hang on a body between them.
+//! Template of Project Chrono whose file lists its bodies and joints (`GenericWheeledSuspension`): the left side, and
+//! the right side as its mirror image if a body connects both.
 
 use std::collections::BTreeMap;
 
@@ -7,22 +7,22 @@ use hardpoint::space::{Mat3, Vec3};
 
 use crate::chrono_part::{self, Inertial, Masses};
 use crate::corner::{Corner, spin_axis};
-use crate::markers::JointSource;
+use crate::markers::ElementSource;
 use crate::mechanism::{Force, ForceOn, GROUND, Joint, Mechanism, Spring};
 use crate::report::{ImportLog, SourceSpan};
 use crate::robot;
 use crate::sides::{SIDES, over};
 use crate::tree::{Tree, Value};
 
-/// Bodies of the vehicle that stand still here.
+/// Bodies of the vehicle that are ground here.
 const CHASSIS: [&str; 2] = ["Chassis", "Subchassis"];
-/// The body of the vehicle that the tie rods are on.
+/// Body of the vehicle that carries the tie rods.
 const STEERING: &str = "Steering";
 
-/// Lists of elements.
+/// Keys of the lists of elements.
 const LISTS: [&str; 4] = ["Bodies", "Joints", "Distance Constraints", "TSDAs"];
 
-/// See the module.
+/// Reads a generic suspension; the angles are the static camber and toe of the wheels, rad.
 pub fn read(
     root: &Tree,
     mut m: Mechanism,
@@ -61,7 +61,7 @@ pub fn read(
         chrono_part::part(tree.text_of("Name").unwrap_or_default(), tree, notes);
     }
     for tree in list(root, "RSDAs") {
-        let why = "a spring about an axis of its own has no equivalent: it is left out";
+        let why = "rotational springs between bodies have no equivalent";
         notes.refused("RSDA", tree.text_of("Name").unwrap_or_default(), Some(tree.at), why);
     }
     let read: Vec<&str> = LISTS.into_iter().chain(["RSDAs", "Spindle"]).collect();
@@ -77,7 +77,7 @@ struct Side<'r> {
     /// 1 on the left, -1 on the right.
     side: f64,
     suffix: &'static str,
-    /// The bodies by their names in the file.
+    /// Bodies by their names in the file.
     names: BTreeMap<String, usize>,
     rack: &'r mut Option<usize>,
     /// Characteristics of springs and dampers by their names in the file.
@@ -85,7 +85,7 @@ struct Side<'r> {
 }
 
 impl Side<'_> {
-    /// True for elements of this side: all that is mirrored, and on the left the elements between both sides.
+    /// Returns true for elements of this side: all mirrored ones, and on the left those between both sides.
     fn is_here(&self, tree: &Tree) -> bool {
         self.side > 0.0 || is_mirrored(tree)
     }
@@ -99,21 +99,21 @@ impl Side<'_> {
         over(v, self.side)
     }
 
-    /// The axes of an element on this side: x and z are mirrored, y follows, as Chrono has it.
+    /// Axes of an element on this side: x and z are mirrored, y follows, as in Chrono.
     fn axes(&self, tree: &Tree, rotation: Mat3) -> Mat3 {
         let [x, _, z] = rotation.cols.map(|axis| if is_mirrored(tree) { self.over(axis) } else { axis });
         Mat3 { cols: [x, z.cross(x), z] }
     }
 
-    /// Three numbers of an element, on this side.
+    /// Returns a location of an element on this side.
     fn place(&mut self, tree: &Tree, key: &str) -> Option<Vec3> {
         let found = tree.get(key);
         let v = found.and_then(Tree::vector);
         if v.is_none() {
             let at = found.map_or(tree.at, |t| t.at);
             let message =
-                format!("`{key}` of `{}` is three numbers", tree.text_of("Name").unwrap_or_default());
-            self.notes.problem_with("HP0804", Some(at), message, "give it as a list like `[0, 0.7, 0.2]`");
+                format!("`{key}` of `{}` must be three numbers", tree.text_of("Name").unwrap_or_default());
+            self.notes.problem_with("HP0804", Some(at), message, "write it as a list like `[0, 0.7, 0.2]`");
         }
         v.map(|v| if is_mirrored(tree) { self.over(v.into()) } else { v.into() })
     }
@@ -131,20 +131,20 @@ impl Side<'_> {
             let frame = hardpoint::space::Pose { rot: crate::turn::none(), r };
             let body = self.m.body(&name, note("body", &own, tree.at, self.notes), Some(frame));
             if self.names.insert(own.clone(), body).is_some() {
-                let message = format!("there are two bodies `{own}`");
+                let message = format!("the body `{own}` is defined twice");
                 self.notes.problem_with("HP0803", Some(tree.at), message, "rename one of them");
             }
             self.notes.taken("body", &name, Some(tree.at));
             if let Some(Inertial { mass, inertia }) = Inertial::of(tree) {
                 let rotation = tree.get("Rotation").and_then(quaternion).unwrap_or_else(crate::turn::none);
                 let frame = hardpoint::space::Pose { rot: self.axes(tree, rotation), r };
-                let called = JointSource { kind: "mass", name: &name, at: Some(tree.at) };
-                robot::mass(self.m, self.notes, called, body, frame, mass, inertia);
+                let source = ElementSource { kind: "mass", name: &name, at: Some(tree.at) };
+                robot::mass(self.m, self.notes, source, body, frame, mass, inertia);
             }
         }
     }
 
-    /// Both bodies that an element is between, and where it is on them if it is a rod's.
+    /// Returns the two bodies of an element; `at` is its location on body i.
     fn pair(&mut self, tree: &Tree, at: Vec3) -> Option<[usize; 2]> {
         let found = ["Body1", "Body2"].map(|key| {
             let name = tree.text_of(key).unwrap_or_default();
@@ -158,10 +158,10 @@ impl Side<'_> {
             let body = self.names.get(name).copied();
             if body.is_none() {
                 let message = format!(
-                    "`{key}` of `{}` is `{name}`, which is no body here",
+                    "`{key}` of `{}` is `{name}`, which is not a body",
                     tree.text_of("Name").unwrap_or_default()
                 );
-                let help = "name one of the `Bodies`, or `Chassis`, `Subchassis`, `Steering`";
+                let help = "use one of the `Bodies`, or `Chassis`, `Subchassis`, `Steering`";
                 self.notes.problem_with(
                     "HP0803",
                     Some(tree.get(key).map_or(tree.at, |t| t.at)),
@@ -188,7 +188,7 @@ impl Side<'_> {
                 "pointplane" => "inplane",
                 _ => {
                     let why =
-                        format!("its type `{written}` has no equivalent: what it holds is held by a driver");
+                        format!("its type `{written}` has no equivalent: a driver fixes the motion instead");
                     self.notes.refused("joint", &name, Some(tree.at), why);
                     continue;
                 }
@@ -205,7 +205,8 @@ impl Side<'_> {
             };
             let rotation = frame.get("Rotation").map_or(Some(crate::turn::none()), quaternion);
             let (Some(at), Some(rotation)) = (frame.get("Position").and_then(Tree::vector), rotation) else {
-                let message = format!("the `Coordinate System` of `{name}` is no place with a quaternion");
+                let message =
+                    format!("the `Coordinate System` of `{name}` is not a position with a quaternion");
                 self.notes.problem_with(
                     "HP0804",
                     Some(frame.at),
@@ -238,7 +239,7 @@ impl Side<'_> {
         }
     }
 
-    /// Springs and dampers hold nothing; their lengths are worth knowing. Returns the ends of the first spring.
+    /// Adds springs and dampers as legs, whose lengths are measured. Returns the ends of the first spring.
     fn springs(&mut self) -> Option<[(usize, Vec3); 2]> {
         let mut first = None;
         for tree in list(self.root, "TSDAs").iter().filter(|t| self.is_here(t)).collect::<Vec<_>>() {
@@ -274,7 +275,7 @@ impl Side<'_> {
         let [Some(i), Some(j)] = ends else { return None };
         let bodies = self.pair(tree, i)?;
         if i == j {
-            let message = format!("both ends of `{name}` are at one place");
+            let message = format!("both ends of `{name}` coincide");
             self.notes.problem_with("HP0804", Some(tree.at), message, "correct one of them");
             return None;
         }
@@ -288,8 +289,8 @@ impl Side<'_> {
 
     fn wheel(&mut self, axis: Vec3, spring: Option<[(usize, Vec3); 2]>) {
         let Some(spindle) = self.root.get("Spindle") else {
-            let help = "give its `Attachment Body` and `COM`";
-            self.notes.problem_with("HP0803", Some(self.root.at), "there is no `Spindle`", help);
+            let help = "add it with `Attachment Body` and `COM`";
+            self.notes.problem_with("HP0803", Some(self.root.at), "the part `Spindle` is missing", help);
             return;
         };
         let centre = spindle.get("COM").or_else(|| spindle.get("Location")).and_then(Tree::vector);
@@ -299,7 +300,7 @@ impl Side<'_> {
             self.notes.problem_with(
                 "HP0804",
                 Some(spindle.at),
-                "the `Spindle` is on no body, or has no place",
+                "the `Spindle` has no attachment body, or no position",
                 help,
             );
             return;
@@ -339,5 +340,5 @@ fn quaternion(tree: &Tree) -> Option<Mat3> {
 }
 
 fn note(kind: &str, name: &str, at: SourceSpan, notes: &ImportLog) -> String {
-    JointSource { kind, name, at: Some(at) }.note(notes)
+    ElementSource { kind, name, at: Some(at) }.note(notes)
 }

@@ -1,11 +1,11 @@
-//! Masses, springs and dampers of the parts of Project Chrono's suspension templates.
+//! Masses, springs and dampers of the parts in Project Chrono's suspension templates.
 
 use std::collections::BTreeMap;
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::corner::plain;
-use crate::markers::JointSource;
+use crate::markers::ElementSource;
 use crate::mechanism::{GROUND, Mechanism, Spring};
 use crate::report::{ImportLog, SourceSpan};
 use crate::robot;
@@ -13,7 +13,7 @@ use crate::sides::{over, with_word};
 use crate::tree::{Tree, Value};
 use crate::turn::{Z, from_z_and_x, none};
 
-/// Keys of a part that are read here.
+/// Keys of a part that are read.
 const READ: &[&str] = &[
     "Name",
     "Attachment Body",
@@ -45,49 +45,49 @@ const READ: &[&str] = &[
     "Point1",
     "Point2",
 ];
-/// Keys of a part for its drawing.
+/// Keys of a part for visualisation.
 const DRAWN: [&str; 3] = ["Radius", "Width", "Visualization"];
-/// Ends of the range of a spring between its stops.
+/// Keys of the stops of a spring.
 const STOPS: [&str; 2] = ["Minimum Length", "Maximum Length"];
 
-/// Mass and inertia of a part, about its centre and along its own axes.
+/// Mass and inertia of a part about its centre of mass, along its own axes.
 pub struct Inertial {
-    /// In kg.
+    /// Mass, kg.
     pub mass: f64,
-    /// In kg m^2.
+    /// Inertia matrix, kg m^2.
     pub inertia: Option<Mat3>,
 }
 
 impl Inertial {
-    /// Reads those of a part that has a mass.
+    /// Reads the inertia of a part that has a mass.
     pub fn of(part: &Tree) -> Option<Self> {
         let mass = part.get("Mass")?.number()?;
         let vector = |keys: [&str; 3]| keys.iter().find_map(|key| part.get(key)?.vector());
         let moments = vector(["Inertia", "Moments of Inertia", "Inertia Moments"]);
         let [xy, yz, zx] = vector(["Products of Inertia", "Inertia Products", ""]).unwrap_or_default();
-        // Products are entries of the matrix here.
+        // In Chrono, products of inertia are entries of the matrix.
         let matrix =
             |[x, y, z]: [f64; 3]| Mat3 { cols: [[x, xy, zx], [xy, y, yz], [zx, yz, z]].map(Vec3::from) };
         Some(Self { mass, inertia: moments.map(matrix) })
     }
 }
 
-/// Masses of parts under way to the bodies of a mechanism.
+/// Transfer of the masses of parts to the bodies of a mechanism.
 pub struct Masses<'r> {
-    /// The file.
+    /// File.
     pub root: &'r Tree,
-    /// Mechanism that they go to.
+    /// Mechanism that receives the masses.
     pub m: &'r mut Mechanism,
-    /// Report of what becomes of them.
+    /// Log of the import.
     pub notes: &'r mut ImportLog,
-    /// 1 on the left, where the file has them, and -1 on the right.
+    /// 1 on the left, the side in the file, and -1 on the right.
     pub side: f64,
-    /// Ending of names of that side.
+    /// Suffix of names of that side.
     pub suffix: &'static str,
 }
 
 impl Masses<'_> {
-    /// Reborrows it, for another side.
+    /// Reborrows it for another side.
     pub fn again(&mut self) -> Masses<'_> {
         Masses { root: self.root, m: self.m, notes: self.notes, side: self.side, suffix: self.suffix }
     }
@@ -100,39 +100,40 @@ impl Masses<'_> {
         self.root.get(part).map(|t| t.at)
     }
 
-    /// The mass of a part on a body; its centre on the left, where the part has none of its own; its axes on this side,
-    /// if they are not the global ones.
+    /// Adds the mass of a part to a body. `centre` is the centre on the left if the part has none of its own; `axes`
+    /// are the axes on this side if they are not the global ones.
     pub fn on(&mut self, part: &str, body: &str, centre: Option<Vec3>, axes: Option<Mat3>) {
         let Some(tree) = self.root.get(part) else { return };
         let Some(Inertial { mass, inertia }) = Inertial::of(tree) else { return };
         let name = format!("{}{}", plain(part), self.suffix);
         let own = tree.get("COM").and_then(Tree::vector).map(Vec3::from);
         let (Some(centre), Some(body)) = (own.or(centre), self.body(body)) else {
-            let why = "it has no centre in the file, or no body here: its mass is left out";
+            let why = "the part has no centre in the file, or no body in the model: its mass is not imported";
             self.notes.refused("mass", &name, Some(tree.at), why);
             return;
         };
         let is_global = self.root.text_of("Vehicle-Frame Inertia") == Some("true");
         let rot = axes.filter(|_| !is_global).unwrap_or_else(none);
         let frame = Pose { rot, r: over(centre, self.side) };
-        let called = JointSource { kind: "mass", name: &name, at: Some(tree.at) };
-        robot::mass(self.m, self.notes, called, body, frame, mass, inertia);
+        let source = ElementSource { kind: "mass", name: &name, at: Some(tree.at) };
+        robot::mass(self.m, self.notes, source, body, frame, mass, inertia);
     }
 
-    /// The mass of an arm in the plane of its places: x from the second to the first, z across the plane.
+    /// Adds the mass of an arm, whose axes are in the plane of three locations: x from the second to the first, z
+    /// perpendicular to the plane.
     pub fn arm(&mut self, part: &str, body: &str, places: [&str; 3]) {
         let place = |key: &str| self.root.get(part).and_then(|p| p.get(key)?.vector()).map(Vec3::from);
         let [Some(f), Some(b), Some(u)] = places.map(place) else { return };
         self.on(part, body, None, from_z_and_x((b - u).cross(f - u), f - b));
     }
 
-    /// The mass of a part that is a rod here, without a body: at its ends, as its centre lies between them.
+    /// Adds the mass of a rod, which has no body, to its ends in proportion to the position of its centre.
     pub fn rod(&mut self, part: &str, carriers: [&str; 2], ends: [Vec3; 2]) {
         let Some(tree) = self.root.get(part) else { return };
         let Some(Inertial { mass, .. }) = Inertial::of(tree).filter(|i| i.mass != 0.0) else { return };
         let name = format!("{}{}", plain(part), self.suffix);
         if !(mass > 0.0 && mass.is_finite()) {
-            self.notes.refused("mass", &name, Some(tree.at), format!("no body has a mass of {mass} kg"));
+            self.notes.refused("mass", &name, Some(tree.at), format!("invalid mass of {mass} kg"));
             return;
         }
         let along = ends[1] - ends[0];
@@ -150,31 +151,31 @@ impl Masses<'_> {
                 });
             }
         }
-        let why = "it is a rod without a body here: its mass is at its ends, as its centre lies between them, its inertia is left out";
+        let why = "the rod has no body in the model: its mass is divided between its ends to preserve the centre, its inertia is not imported";
         self.notes.approximated("mass", &name, self.at(part), why);
     }
 }
 
-/// The axes of a spindle: y along the wheel's axis, x level.
+/// Axes of a spindle: y along the spin axis, x horizontal.
 pub fn spindle_axes(axis: Vec3) -> Option<Mat3> {
-    // The same way on both sides.
+    // The same direction on both sides.
     let y = if axis.y < 0.0 { -axis } else { axis };
     let x = y.cross(Z.into()).unit()?;
     Some(Mat3 { cols: [x, y, x.cross(y)] })
 }
 
-/// The axes of a link: z along it, y along another direction as nearly as can be.
+/// Axes of a link: z along the link, y as near as possible to another direction.
 pub fn link_axes(along: Vec3, y: Vec3) -> Option<Mat3> {
     from_z_and_x(along, y.cross(along))
 }
 
-/// The axes of an arm along x, its y level.
+/// Axes of an arm along x, with y horizontal.
 pub fn level_axes(along: Vec3) -> Option<Mat3> {
     let z = along.cross(Vec3::from(Z).cross(along));
     from_z_and_x(z, along)
 }
 
-/// Characteristics of the springs and dampers among the parts, by the words of their members, and their places.
+/// Returns the characteristics and positions of the springs and dampers among the parts, by the names of their members.
 pub fn springs(
     root: &Tree,
     parts: &[(&str, &'static str)],
@@ -188,7 +189,7 @@ pub fn springs(
     found
 }
 
-/// The characteristic of a spring or damper, if it has one that the model can have. It pushes its ends apart with
+/// Returns the characteristic of a spring or damper, if the model supports it. The force that separates its ends is
 /// `Preload - Coefficient (length - Free Length)`.
 pub fn spring(part: &Tree, name: &str, notes: &mut ImportLog) -> Option<Spring> {
     let number = |key: &str| part.get(key).and_then(Tree::number);
@@ -196,18 +197,18 @@ pub fn spring(part: &Tree, name: &str, notes: &mut ImportLog) -> Option<Spring> 
     let [stiffness, damping, preload] =
         ["Spring Coefficient", "Damping Coefficient", "Preload"].map(|key| number(key).unwrap_or(0.0));
     if !(stiffness >= 0.0 && damping >= 0.0) {
-        let why = format!("no spring has a stiffness of {stiffness} and a damping of {damping}");
+        let why = format!("invalid stiffness {stiffness} or damping {damping}");
         notes.refused("force", name, Some(part.at), why);
         return None;
     }
     for key in STOPS.into_iter().filter(|key| part.get(key).is_some()) {
-        notes.refused(key, name, at(key), "the force of its stop is not in the file, and not made");
+        notes.refused(key, name, at(key), "its stop is not imported: the force is not in the file");
     }
     let length = number("Free Length");
     let is_spring = length.is_some();
     for (key, is_damping) in [("Damping Curve Data", true), ("Curve Data", !is_spring), ("Map Data", true)] {
         if is_damping && part.get(key).is_some() {
-            let why = "a damping that is not in proportion to the speed has no equivalent: it is left out";
+            let why = "nonlinear damping has no equivalent";
             notes.refused(key, name, at(key), why);
         }
     }
@@ -218,7 +219,7 @@ pub fn spring(part: &Tree, name: &str, notes: &mut ImportLog) -> Option<Spring> 
             key,
             name,
             at(key),
-            "its damping is taken as in proportion to the speed, as it is at low speeds",
+            "its damping is linear in the model, with the coefficient at low speeds",
         );
     }
     let curve =
@@ -226,12 +227,12 @@ pub fn spring(part: &Tree, name: &str, notes: &mut ImportLog) -> Option<Spring> 
     let points = curve.and_then(|key| Some((key, points(part.get(key)?))));
     let extension: Vec<[f64; 2]> = match points {
         Some((key, Some(points))) => {
-            let why = "straight between its points there, a smooth curve through them here";
+            let why = "piecewise linear in the source, a smooth curve through the points in the model";
             notes.approximated(key, name, at(key), why);
             points.into_iter().map(|[x, force]| [x, force - preload]).collect()
         }
         Some((key, None)) => {
-            notes.refused(key, name, at(key), "it is no list of two or more points in increasing order");
+            notes.refused(key, name, at(key), "it is not a list of two or more points in increasing order");
             Vec::new()
         }
         None => Vec::new(),
@@ -244,7 +245,7 @@ pub fn spring(part: &Tree, name: &str, notes: &mut ImportLog) -> Option<Spring> 
             "force",
             name,
             Some(part.at),
-            "it has no `Free Length`: that of the drawing is taken",
+            "it has no `Free Length`: the length in the design configuration is used",
         );
     }
     let is_curve = !extension.is_empty();
@@ -255,7 +256,7 @@ pub fn spring(part: &Tree, name: &str, notes: &mut ImportLog) -> Option<Spring> 
     Some(Spring { stiffness, damping, free, preload, extension })
 }
 
-/// Two or more points in increasing order.
+/// Returns two or more points in increasing order.
 fn points(list: &Tree) -> Option<Vec<[f64; 2]>> {
     let Value::List(rows) = &list.value else { return None };
     let point = |row: &Tree| match &row.value {
@@ -268,8 +269,7 @@ fn points(list: &Tree) -> Option<Vec<[f64; 2]>> {
     (points.len() >= 2 && points.windows(2).all(|w| w[0][0] < w[1][0])).then_some(points)
 }
 
-/// Accounts for all keys of the file besides the parts that were read: those that hold something else, and keys that
-/// are not known.
+/// Accounts for all keys of the file besides the parts that were read: those with other content, and unknown keys.
 pub fn account(root: &Tree, read: &[&str], notes: &mut ImportLog) {
     for (key, at, value) in root.entries() {
         match key.as_str() {
@@ -278,21 +278,16 @@ pub fn account(root: &Tree, read: &[&str], notes: &mut ImportLog) {
                 notes.taken(key, value.text().unwrap_or_default(), Some(*at))
             }
             "Axle" => {
-                let why = "the wheel does not spin here: the inertia of its shaft is left out";
+                let why = "the wheel does not spin in the model: the inertia of its shaft is not imported";
                 notes.refused(key, "", Some(*at), why);
             }
             "Anti Roll Bar" => {
-                let why = "its two halves, their masses and the spring between them are not made";
+                let why = "anti-roll bars are not imported";
                 notes.refused(key, "", Some(*at), why);
             }
             "Antiroll Body" => notes.ignored(key, Some(*at)),
             _ if read.contains(&key.as_str()) => part(key, value, notes),
-            _ => notes.not_understood(
-                key,
-                "",
-                Some(*at),
-                "a part that is not known in this template: it is left out",
-            ),
+            _ => notes.not_understood(key, "", Some(*at), "unknown part of this template"),
         }
     }
 }
@@ -311,9 +306,9 @@ pub fn part(name: &str, part: &Tree, notes: &mut ImportLog) {
         if known(&DRAWN) {
             notes.ignored(key, Some(*at));
         } else if key.starts_with("Bushing") {
-            notes.refused(key, name, Some(*at), "bushings are forces: its joint is rigid here");
+            notes.refused(key, name, Some(*at), "bushings are not imported: the joint is rigid in the model");
         } else {
-            notes.not_understood(key, name, Some(*at), "a key of the part that is not known here");
+            notes.not_understood(key, name, Some(*at), "unknown key of the part");
         }
     }
 }

@@ -1,28 +1,28 @@
-//! Loops that a source leaves open: frames on two bodies that meet, as the user names them, or as they look like a
+//! Loops that a source leaves open: frames on two bodies that coincide, as named by the user or detected as a likely
 //! pair.
 
 use std::collections::BTreeSet;
 use std::str::FromStr;
 
-use crate::markers::{JointSource, Marker, join};
+use crate::markers::{ElementSource, Marker, join};
 use crate::mechanism::{Mechanism, NamedFrame};
 use crate::report::ImportLog;
 use crate::robot;
 use crate::turn::home;
 
-/// Types of joints that can close a loop between two frames; all but the first and the second have an axis.
+/// Joint types that can close a loop between two frames; all but the first two have an axis.
 const TYPES: [&str; 6] = ["spherical", "fixed", "revolute", "cylindrical", "translational", "planar"];
-/// Axes of a frame.
+/// Names of the axes of a frame.
 const AXES: [&str; 3] = ["x", "y", "z"];
-/// Frames nearer than this part of the mechanism's size are at one place.
+/// Distance below which frames coincide, as a fraction of the mechanism size.
 const SAME_PLACE: f64 = 1e-6;
-/// Maximum number of pairs of frames that are named.
+/// Maximum number of reported pairs.
 const MOST_NAMED: usize = 8;
 /// Maximum number of frames that are searched for pairs.
 const MOST_FRAMES: usize = 1000;
-/// Words in the names of frames that are made for loops.
+/// Words in the names of frames for loops.
 const OF_LOOPS: [&str; 6] = ["loop", "clos", "cut", "weld", "constraint", "mate"];
-/// Ends of names that go together.
+/// Suffixes of the names of a pair.
 const ENDS: [(&str, &str); 8] = [
     ("_1", "_2"),
     ("_a", "_b"),
@@ -34,16 +34,16 @@ const ENDS: [(&str, &str); 8] = [
     ("A", "B"),
 ];
 
-/// Two frames that a joint closes a loop between: `A=B`, `A=B:revolute`, `A=B:revolute:x`, `A@0.2,0,0=B`.
+/// Joint that closes a loop between two frames: `A=B`, `A=B:revolute`, `A=B:revolute:x`, `A@0.2,0,0=B`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Closing {
-    /// The names of the frames.
+    /// Names of the frames.
     pub frames: [String; 2],
-    /// Places in these frames, from their origins along their axes, in the source's unit.
+    /// Points in these frames, relative to their origins along their axes, in the unit of the source.
     pub places: [[f64; 3]; 2],
-    /// The joint type.
+    /// Joint type.
     pub kind: &'static str,
-    /// Axis of the first frame that the joint has: 0, 1, 2 for x, y, z.
+    /// Axis of the joint in the first frame: 0, 1, 2 for x, y, z.
     pub axis: usize,
 }
 
@@ -52,7 +52,7 @@ impl FromStr for Closing {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let mut rest = text.trim();
-        // Names of frames in SDFormat hold `::`.
+        // Names of frames in SDFormat may contain `::`.
         let suffix = |rest: &mut &str, known: &[&'static str]| {
             let (before, last) = rest.rsplit_once(':').filter(|(before, _)| !before.ends_with(':'))?;
             let found = known.iter().position(|k| *k == last)?;
@@ -64,8 +64,8 @@ impl FromStr for Closing {
         let ends = rest.split_once('=').map(|(a, b)| [a, b].map(end));
         let (Some([Some(a), Some(b)]), true) = (ends, axis.is_none() || kind.is_some()) else {
             return Err(format!(
-                "`{text}` names no two frames: write `A=B`, `A=B:TYPE` with a type of {}, or `A=B:TYPE:AXIS` with x, y or z of frame A; \
-                 a place in a frame is written behind it, as `A@0.2,0,0=B`",
+                "`{text}` does not name two frames: write `A=B`, `A=B:TYPE` with a type of {}, or `A=B:TYPE:AXIS` with x, y or z of frame A; \
+                 a point in a frame follows its name, as in `A@0.2,0,0=B`",
                 TYPES.join(", ")
             ));
         };
@@ -74,7 +74,7 @@ impl FromStr for Closing {
     }
 }
 
-/// A frame and a place in it: `NAME`, or `NAME@x,y,z`.
+/// Parses a frame and a point in it: `NAME`, or `NAME@x,y,z`.
 fn end(text: &str) -> Option<(String, [f64; 3])> {
     let (name, place) = match text.rsplit_once('@') {
         Some((name, place)) => {
@@ -86,7 +86,7 @@ fn end(text: &str) -> Option<(String, [f64; 3])> {
     Some((name.trim().to_owned(), place)).filter(|(name, _)| !name.is_empty())
 }
 
-/// Closes loops between frames that the user has named.
+/// Closes loops between frames named by the user.
 pub fn close(m: &mut Mechanism, notes: &mut ImportLog, closings: &[Closing]) {
     for closing in closings {
         let ends = closing.frames.each_ref().map(|name| {
@@ -95,7 +95,7 @@ pub fn close(m: &mut Mechanism, notes: &mut ImportLog, closings: &[Closing]) {
                 let near = hardpoint::draft::did_you_mean(name, m.frames.iter().map(|f| f.name.as_str()));
                 let help = near.map_or_else(
                     || {
-                        "name links of URDF, links and frames of SDFormat, or bodies and sites of MJCF"
+                        "use links of URDF, links and frames of SDFormat, or bodies and sites of MJCF"
                             .to_owned()
                     },
                     |near| format!("did you mean `{near}`?"),
@@ -103,7 +103,7 @@ pub fn close(m: &mut Mechanism, notes: &mut ImportLog, closings: &[Closing]) {
                 notes.problem_with(
                     "HP0803",
                     None,
-                    format!("there is no frame `{name}` to close a loop at"),
+                    format!("the frame `{name}` for closing a loop does not exist"),
                     &help,
                 );
             }
@@ -126,10 +126,10 @@ fn connect(
     axis: usize,
     ends: [&NamedFrame; 2],
 ) {
-    let called = JointSource { kind: "loop", name, at: None };
+    let source = ElementSource { kind: "loop", name, at: None };
     if kind == "fixed" {
         let ends = ends.map(|f| Marker { body: f.body, pose: f.pose });
-        robot::weld(m, notes, called, kind, ends);
+        robot::weld(m, notes, source, kind, ends);
         return;
     }
     let markers = ends.map(|f| match kind {
@@ -139,12 +139,12 @@ fn connect(
         _ => Marker::along(f.body, f.pose.r, f.pose.rot.cols[axis]),
     });
     if let [Some(i), Some(j)] = markers {
-        join(m, notes, called, kind, [i, j]);
+        join(m, notes, source, kind, [i, j]);
     }
 }
 
-/// Closes the loops that onshape-to-robot has cut: it leaves two frames, `closing_NAME_1` and `closing_NAME_2`.
-pub fn of_exporters(m: &mut Mechanism, notes: &mut ImportLog) {
+/// Closes the loops cut by onshape-to-robot, which leaves two frames `closing_NAME_1` and `closing_NAME_2`.
+pub fn close_cut_by_exporters(m: &mut Mechanism, notes: &mut ImportLog) {
     let cut = |f: &NamedFrame| {
         Some(f.name.rsplit("::").next()?.strip_prefix("closing_")?.strip_suffix("_1")?.to_owned())
     };
@@ -158,14 +158,14 @@ pub fn of_exporters(m: &mut Mechanism, notes: &mut ImportLog) {
             continue;
         }
         let name = format!("closing_{name}");
-        let why = "a loop that onshape-to-robot has cut: its two frames are taken to meet in a ball joint";
+        let why = "loop cut by onshape-to-robot: its two frames are connected by a ball joint";
         notes.approximated("loop", &name, None, why);
         connect(m, notes, &name, "spherical", 2, [&i, &j]);
     }
 }
 
-/// Names frames that look like the two ends of a loop that is cut there.
-pub fn pairs(m: &Mechanism, notes: &mut ImportLog) {
+/// Reports pairs of frames that are likely to be the two ends of a cut loop.
+pub fn report_likely_pairs(m: &Mechanism, notes: &mut ImportLog) {
     let bare: Vec<&NamedFrame> = m.frames.iter().filter(|f| f.bare).take(MOST_FRAMES).collect();
     let group = groups(m);
     let near = SAME_PLACE * m.size();
@@ -173,8 +173,8 @@ pub fn pairs(m: &Mechanism, notes: &mut ImportLog) {
     for (k, a) in bare.iter().enumerate() {
         for b in &bare[k + 1..] {
             let alike = are_a_pair(&a.name, &b.name);
-            let meet = (a.pose.r - b.pose.r).norm() <= near;
-            if !(alike || meet) || group[a.body] == group[b.body] || is_joined(m, [a, b], &group) {
+            let coincide = (a.pose.r - b.pose.r).norm() <= near;
+            if !(alike || coincide) || group[a.body] == group[b.body] || is_joined(m, [a, b], &group) {
                 continue;
             }
             let bodies = [group[a.body].min(group[b.body]), group[a.body].max(group[b.body])];
@@ -184,9 +184,9 @@ pub fn pairs(m: &Mechanism, notes: &mut ImportLog) {
             if named.len() > MOST_NAMED {
                 return;
             }
-            let why = if meet { "are at one place on two bodies" } else { "have names that go together" };
+            let why = if coincide { "coincide on two bodies" } else { "have matching names" };
             notes.remark(format!(
-                "the frames `{0}` and `{1}` {why}: if a loop is cut there, `--close {0}={1}` closes it with a ball joint, \
+                "the frames `{0}` and `{1}` {why}: if a loop is cut here, `--close {0}={1}` closes it with a ball joint, \
                  `--close {0}={1}:revolute` with a hinge about z of `{0}`",
                 a.name, b.name
             ));
@@ -194,7 +194,7 @@ pub fn pairs(m: &Mechanism, notes: &mut ImportLog) {
     }
 }
 
-/// Per body, the lowest body that it is fixed to.
+/// Returns for each body the lowest index of the bodies fixed to it.
 fn groups(m: &Mechanism) -> Vec<usize> {
     let mut group: Vec<usize> = (0..m.bodies.len()).collect();
     let find = |group: &[usize], mut b: usize| {
@@ -210,7 +210,7 @@ fn groups(m: &Mechanism) -> Vec<usize> {
     (0..group.len()).map(|b| find(&group, b)).collect()
 }
 
-/// Returns whether a joint connects what two frames are on, at the place of one of them.
+/// Returns true if a joint connects the bodies of two frames at the origin of one of them.
 fn is_joined(m: &Mechanism, [a, b]: [&NamedFrame; 2], group: &[usize]) -> bool {
     let near = SAME_PLACE * m.size();
     let pair = [group[a.body], group[b.body]];

@@ -1,5 +1,5 @@
-//! Meshes in COLLADA, as most robots have them: what the scene shows, as triangles in metres. The axis that a file
-//! calls up is left alone, as RViz and Gazebo do: such meshes are already in the frames of their links.
+//! Meshes in COLLADA, the usual format of robots: the displayed scene as triangles in metres. The `up_axis` of a file
+//! is ignored, as by RViz and Gazebo: such meshes are already in the frames of their links.
 
 use std::collections::BTreeMap;
 
@@ -8,21 +8,21 @@ use roxmltree::Node;
 
 use crate::xml::{self, child, children, named};
 
-/// Nodes of a scene are nested so deep at most.
+/// Maximum depth of nested nodes.
 const DEEPEST: usize = 60;
-/// A mesh has at most that many triangles.
+/// Maximum number of triangles of a mesh.
 const MOST: usize = 1_000_000;
 
 type Triangle = [Vec3; 3];
 
-/// Placement of a node's points: `turn s + shift`.
+/// Affine transformation of a node: `turn s + shift`.
 #[derive(Clone, Copy)]
-struct Placed {
+struct Affine {
     turn: Mat3,
     shift: Vec3,
 }
 
-impl Placed {
+impl Affine {
     fn point(self, s: Vec3) -> Vec3 {
         self.turn * s + self.shift
     }
@@ -32,10 +32,10 @@ impl Placed {
     }
 }
 
-/// The triangles of a file.
+/// Returns the triangles of a file, m.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Returns a description of the first error.
 pub fn triangles(text: &str) -> Result<Vec<Triangle>, String> {
     let text = xml::lenient(text);
     let document = xml::parse_quietly(&text)?;
@@ -45,15 +45,15 @@ pub fn triangles(text: &str) -> Result<Vec<Triangle>, String> {
         child(root, "asset").and_then(|a| child(a, "unit")).and_then(|u| u.attribute("meter")?.parse().ok());
     let metre: f64 = unit.filter(|m: &f64| m.is_finite() && *m > 0.0).unwrap_or(1.0);
     let mut reader = Reader { ids, out: Vec::new() };
-    let shown = child(root, "scene").and_then(|s| child(s, "instance_visual_scene"));
-    let scene = shown.and_then(|s| reader.named(s, "url"));
+    let instance = child(root, "scene").and_then(|s| child(s, "instance_visual_scene"));
+    let scene = instance.and_then(|s| reader.named(s, "url"));
     let first = || child(child(root, "library_visual_scenes")?, "visual_scene");
-    let scaled = Placed { turn: scale([metre; 3]), shift: Vec3::zero() };
+    let scaled = Affine { turn: scale([metre; 3]), shift: Vec3::zero() };
     match scene.or_else(first) {
         Some(scene) => reader.node(scene, scaled, 0),
         None => named(root, "library_geometries").flat_map(children).for_each(|g| reader.geometry(g, scaled)),
     }
-    if reader.out.is_empty() { Err("it shows no triangles".into()) } else { Ok(reader.out) }
+    if reader.out.is_empty() { Err("it has no triangles".into()) } else { Ok(reader.out) }
 }
 
 fn scale(by: [f64; 3]) -> Mat3 {
@@ -67,13 +67,13 @@ struct Reader<'a, 'i> {
 }
 
 impl<'a, 'i: 'a> Reader<'a, 'i> {
-    /// The element that an attribute refers to, as `#id`.
+    /// Returns the element that an attribute refers to as `#id`.
     fn named(&self, node: Node<'a, 'i>, key: &str) -> Option<Node<'a, 'i>> {
         self.ids.get(node.attribute(key)?.trim().strip_prefix('#')?).copied()
     }
 
-    /// Adds the shapes of a node of the scene, and of the nodes in it.
-    fn node(&mut self, node: Node<'a, 'i>, outer: Placed, depth: usize) {
+    /// Adds the shapes of a node and of its descendants.
+    fn node(&mut self, node: Node<'a, 'i>, outer: Affine, depth: usize) {
         if depth > DEEPEST || self.out.len() > MOST {
             return;
         }
@@ -83,13 +83,13 @@ impl<'a, 'i: 'a> Reader<'a, 'i> {
             let step = match (part.tag_name().name(), &numbers()[..]) {
                 ("matrix", m @ [_, _, _, _, _, _, _, _, _, _, _, _, ..]) => {
                     let column = |k: usize| Vec3::new(m[k], m[4 + k], m[8 + k]);
-                    Placed { turn: Mat3 { cols: [column(0), column(1), column(2)] }, shift: column(3) }
+                    Affine { turn: Mat3 { cols: [column(0), column(1), column(2)] }, shift: column(3) }
                 }
-                ("translate", [x, y, z]) => Placed { turn: scale([1.0; 3]), shift: Vec3::new(*x, *y, *z) },
-                ("scale", [x, y, z]) => Placed { turn: scale([*x, *y, *z]), shift: Vec3::zero() },
+                ("translate", [x, y, z]) => Affine { turn: scale([1.0; 3]), shift: Vec3::new(*x, *y, *z) },
+                ("scale", [x, y, z]) => Affine { turn: scale([*x, *y, *z]), shift: Vec3::zero() },
                 ("rotate", [x, y, z, angle]) => {
                     let Some(axis) = Vec3::new(*x, *y, *z).unit() else { continue };
-                    Placed { turn: Mat3::about(axis, angle.to_radians()), shift: Vec3::zero() }
+                    Affine { turn: Mat3::about(axis, angle.to_radians()), shift: Vec3::zero() }
                 }
                 _ => continue,
             };
@@ -113,7 +113,7 @@ impl<'a, 'i: 'a> Reader<'a, 'i> {
         }
     }
 
-    fn geometry(&mut self, geometry: Node<'a, 'i>, place: Placed) {
+    fn geometry(&mut self, geometry: Node<'a, 'i>, place: Affine) {
         for faces in named(geometry, "mesh").flat_map(children) {
             let kind = faces.tag_name().name();
             if !["triangles", "polylist", "polygons"].contains(&kind) {
@@ -152,7 +152,7 @@ impl<'a, 'i: 'a> Reader<'a, 'i> {
         }
     }
 
-    /// The points that faces refer to.
+    /// Returns the points that faces refer to.
     fn points(&self, faces: Node<'a, 'i>) -> Option<Vec<Vec3>> {
         let semantic = |node: Node<'a, 'i>, what: &str| {
             named(node, "input")

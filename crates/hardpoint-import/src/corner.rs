@@ -1,69 +1,69 @@
-//! Suspensions by the names of their hardpoints: what hangs on what follows from which of them there are.
+//! Suspensions recognised by the names of their hardpoints; the topology follows from the hardpoints that are present.
 
 use std::collections::BTreeMap;
 
 use hardpoint::model::VehicleEnd;
 use hardpoint::space::Vec3;
 
-use crate::markers::JointSource;
+use crate::markers::ElementSource;
 use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mechanism, Spring, Wheel};
 use crate::report::{ImportLog, SourceSpan};
 use crate::sides::over;
 use crate::turn::{X, Y, from_z_and_x};
 
-/// Role of a hardpoint of a corner.
+/// Role of a hardpoint in a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
-    /// Lower arm: its pivots and its ball joint.
+    /// Front pivot of the lower arm.
     LowerFront,
-    /// See there.
+    /// Rear pivot of the lower arm.
     LowerRear,
-    /// See there.
+    /// Ball joint of the lower arm.
     LowerOuter,
-    /// Upper arm.
+    /// Front pivot of the upper arm.
     UpperFront,
-    /// See there.
+    /// Rear pivot of the upper arm.
     UpperRear,
-    /// See there.
+    /// Ball joint of the upper arm.
     UpperOuter,
-    /// Tie rod.
+    /// Inner end of the tie rod.
     TieInner,
-    /// See there.
+    /// Outer end of the tie rod.
     TieOuter,
-    /// The wheel's centre.
+    /// Wheel centre.
     WheelCentre,
-    /// A point of the wheel's axis, inboard of the centre.
+    /// Point on the spin axis, inboard of the centre.
     Spindle,
-    /// Strut or coilover: on the body, and at its clamp.
+    /// Top mount of the strut or coilover, on the vehicle body.
     StrutTop,
-    /// See there.
+    /// Lower end of the strut or coilover, at its clamp.
     StrutBottom,
-    /// Push or pull rod: at the suspension, and at the rocker.
+    /// Outer end of the push or pull rod, at the suspension.
     RodOuter,
-    /// See there.
+    /// Inner end of the push or pull rod, at the rocker.
     RodInner,
-    /// Two points of the rocker's axis.
+    /// First point on the axis of the rocker.
     RockerA,
-    /// See there.
+    /// Second point on the axis of the rocker.
     RockerB,
-    /// Damper at the rocker or arm: on the body, and there.
+    /// End of the damper on the vehicle body.
     DamperChassis,
-    /// See there.
+    /// End of the damper on the rocker or arm.
     DamperMoving,
-    /// Spring, likewise.
+    /// End of the spring on the vehicle body.
     SpringChassis,
-    /// See there.
+    /// End of the spring on the rocker or arm.
     SpringMoving,
-    /// Two pivots of a trailing arm.
+    /// First pivot of the trailing arm.
     TrailingA,
-    /// See there.
+    /// Second pivot of the trailing arm.
     TrailingB,
-    /// The ball joint of a trailing arm that has one alone.
+    /// Ball joint of a trailing arm with a single pivot.
     TrailingBall,
 }
 
 impl Role {
-    /// Returns whether it is of an arm, which carries the upright by a ball joint.
+    /// Returns true for the points of an arm that carries the upright.
     pub fn is_of_an_arm(self) -> bool {
         use Role::*;
         let arms = [LowerFront, LowerRear, LowerOuter, UpperFront, UpperRear, UpperOuter];
@@ -71,7 +71,7 @@ impl Role {
     }
 }
 
-/// Names of hardpoints, in small letters and with `_` between words, by what they are. The first that fits is taken.
+/// Names of hardpoints by their role, in lower case and with `_` between words. The first match is used.
 const NAMES: &[(Role, &[&str])] = &[
     (
         Role::LowerFront,
@@ -326,7 +326,7 @@ const NAMES: &[(Role, &[&str])] = &[
     (Role::TrailingB, &["trailing_arm_pivot_b", "trailing_arm_outer", "trailing_arm_rear"]),
 ];
 
-/// In small letters, with `_` between words.
+/// Returns a name in lower case, with `_` between words.
 pub fn plain(name: &str) -> String {
     let mut out = String::new();
     for c in name.trim().chars() {
@@ -339,13 +339,13 @@ pub fn plain(name: &str) -> String {
     out.trim_end_matches('_').to_owned()
 }
 
-/// Role of a hardpoint with this name.
+/// Returns the role of a hardpoint with this name.
 pub fn role_of(name: &str) -> Option<Role> {
     let name = plain(name);
     NAMES.iter().find(|(_, names)| names.contains(&name.as_str())).map(|(role, _)| *role)
 }
 
-/// Part that a rod or a spring is attached to.
+/// Part to which a rod or a spring is attached.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Mount {
     /// The lower arm.
@@ -354,27 +354,28 @@ pub enum Mount {
     Upper,
     /// The upright.
     Upright,
-    /// A link, which has a body of its own then.
+    /// A link, which then has a body.
     Link(String),
-    /// Nothing that has a body of its own.
+    /// A part without a body.
     Nothing(String),
 }
 
-/// A rod of constant length from the body to the upright.
+/// Rod of constant length from the vehicle body to the upright.
 #[derive(Clone, Debug)]
 pub struct Link {
     /// Name.
     pub name: String,
     /// Ends, inboard first.
     pub ends: [Vec3; 2],
-    /// Both pins of the cross at its inner end, of the body's and of its own, where the source has one.
+    /// Pins of the cross at the inner end, that of the vehicle body and that of the link, if the source defines them.
     pub pins: Option<[Vec3; 2]>,
     /// Position in the source.
     pub at: Option<SourceSpan>,
 }
 
 impl Link {
-    /// The pins of its cross, perpendicular to each other: the source's as nearly as can be, or else ones across it.
+    /// Returns perpendicular pins of the cross: those of the source as nearly as possible, or otherwise two directions
+    /// perpendicular to the link.
     fn cross(&self) -> [Vec3; 2] {
         let along = (self.ends[1] - self.ends[0]).unit().unwrap_or(X.into());
         let square = |a: Vec3, b: Vec3| Some([a.unit()?, from_z_and_x(a, b)?.cols[0]]);
@@ -384,46 +385,46 @@ impl Link {
     }
 }
 
-/// One corner of a vehicle.
+/// Corner of a vehicle.
 #[derive(Clone, Debug, Default)]
 pub struct Corner {
     /// Suffix of the names of its bodies and joints.
     pub suffix: String,
-    /// Hardpoints, by what they are.
+    /// Hardpoints by their role.
     pub points: BTreeMap<Role, Vec3>,
-    /// Further links between body and upright.
+    /// Further links between the vehicle body and the upright.
     pub links: Vec<Link>,
-    /// Part that the push rod is attached to.
+    /// Part to which the push rod is attached.
     pub rod_on: Option<Mount>,
-    /// Part that the coilover, or the spring and damper, are attached to.
+    /// Part to which the coilover, or the spring and damper, are attached.
     pub spring_on: Option<Mount>,
-    /// Part that the damper is attached to, if it is another one.
+    /// Part to which the damper is attached, if it differs.
     pub damper_on: Option<Mount>,
     /// True if a rack moves the tie rod.
     pub rack: bool,
-    /// From the wheel's centre to the ground.
+    /// Radius of the wheel, from its centre to the road.
     pub radius: Option<f64>,
-    /// The spin axis, outboard, where no spindle point gives it.
+    /// Spin axis, pointing outboard, if there is no spindle point.
     pub spin_axis: Option<Vec3>,
-    /// Characteristics of its coilover, spring and damper, by these words, and their places in the source.
+    /// Characteristics of the coilover, spring and damper, by these names, with their positions in the source.
     pub springs: BTreeMap<&'static str, (Spring, SourceSpan)>,
-    /// The end of the vehicle that it is at.
+    /// End of the vehicle.
     pub end: Option<VehicleEnd>,
-    /// The driver that moves its wheel up and down, where there is one already.
+    /// Index of the driver that moves the wheel vertically, if it exists.
     pub bump: Option<usize>,
     /// Start of its description in the file.
     pub at: Option<SourceSpan>,
 }
 
-/// The ends of a spring, each on a body.
+/// Ends of a spring: body and point.
 type Ends = [(usize, Vec3); 2];
 
-/// The bump of a wheel, in mm, of whose law no source says anything.
+/// Default bump travel of a wheel, mm.
 const BUMP: f64 = 60.0;
-/// The radius of a wheel, in mm, of which the source says none.
+/// Default radius of a wheel, mm.
 const RADIUS: f64 = 330.0;
 
-/// A driver that moves a point of a body, such as a wheel's centre, up and down; its number.
+/// Adds a driver that moves a point of a body, such as a wheel centre, vertically. Returns its index.
 pub fn bump(
     m: &mut Mechanism,
     notes: &mut ImportLog,
@@ -433,15 +434,15 @@ pub fn bump(
     centre: Vec3,
 ) -> usize {
     let text = format!("{}*sin(2*pi*t)", BUMP * m.per_mm());
-    let why = format!("nothing drives it in the source: it goes up and down, law `{text}`");
+    let why = format!("nothing drives it in the source: a vertical bump motion is added, law `{text}`");
     notes.approximated("motion", &format!("wheel{suffix}"), at, why);
-    let drives = Drives::Way { body, at: centre, along: [0.0, 0.0, 1.0].into() };
-    let note = "no law in the source: the wheel goes up and down".into();
+    let drives = Drives::Translation { body, at: centre, along: [0.0, 0.0, 1.0].into() };
+    let note = "no law in the source: vertical bump motion of the wheel".into();
     m.driver(&format!("bump{suffix}"), note, drives, Law::Text(text))
 }
 
-/// The spin axis, outboard, of a wheel with static camber and toe-in, in rad: toe-in turns it forward, camber tilts it
-/// down. `side` is 1 on the left and -1 on the right.
+/// Spin axis, pointing outboard, of a wheel with static camber and toe-in, rad. Toe-in turns the axis forward, camber
+/// tilts it down. `side` is 1 on the left and -1 on the right.
 pub fn spin_axis(side: f64, camber: f64, toe: f64) -> Vec3 {
     Vec3::from([toe.sin() * camber.cos(), side * toe.cos() * camber.cos(), -camber.sin()])
 }
@@ -456,8 +457,8 @@ impl Corner {
         found.and_then(|v| <[Vec3; N]>::try_from(v).ok())
     }
 
-    /// Returns whether that many rods, with its arm and its tie rod, hold an upright with one freedom: a multi-link
-    /// suspension.
+    /// Returns true if this number of rods, together with an arm and the tie rod, leaves the upright one degree of
+    /// freedom, as in a multi-link suspension.
     pub fn is_held_by(&self, rods: usize) -> bool {
         use Role::*;
         let arm = |roles: [Role; 3]| 2 * usize::from(self.all(roles).is_some());
@@ -467,7 +468,7 @@ impl Corner {
         rods > 0 && !is_guided && arms + tie + rods == 5
     }
 
-    /// The same on the other side.
+    /// Returns the mirror image of the corner.
     pub fn mirrored(&self, suffix: &str) -> Self {
         let image = |v: Vec3| over(v, -1.0);
         let mut out = self.clone();
@@ -479,8 +480,8 @@ impl Corner {
         out
     }
 
-    /// Bodies, joints and the wheel of it; `rack` is that of the axle, once there is one. Whether its topology is
-    /// known.
+    /// Adds the bodies, joints and wheel of the corner; `rack` is the rack of the axle, once it exists. Returns true if
+    /// the topology is known.
     pub fn build(&self, m: &mut Mechanism, notes: &mut ImportLog, rack: &mut Option<usize>) -> bool {
         use Role::*;
         let lower = self.all([LowerFront, LowerRear, LowerOuter]);
@@ -501,7 +502,7 @@ impl Corner {
             notes.problem_with(
                 "HP0804",
                 self.at,
-                format!("both points of the {what} are at one place"),
+                format!("both points of the {what} coincide"),
                 "correct one of them",
             );
         }
@@ -532,7 +533,7 @@ impl Corner {
                 notes.problem_with(
                     "HP0804",
                     self.at,
-                    format!("both pivots of the {} are at one place", arm.replace('_', " ")),
+                    format!("both pivots of the {} coincide", arm.replace('_', " ")),
                     "correct one of them",
                 );
             }
@@ -592,7 +593,7 @@ impl Corner {
                 ));
                 bodies.insert(&link.name, body);
                 if link.pins.is_none() {
-                    let why = "something is on it: how it turns about itself is not in the file, a cross at its inner end holds it";
+                    let why = "it carries another part: its rotation about itself is not in the file, and a cross at its inner end fixes it";
                     notes.approximated("link", &own, link.at, why);
                     continue;
                 }
@@ -629,13 +630,13 @@ impl Corner {
                 "wheel",
                 &name("wheel"),
                 self.at,
-                "its centre is not in the file: what moves is held, or swings if it is the only freedom",
+                "its centre is not in the file: motions are fixed, or oscillate if there is only one",
             );
         }
         true
     }
 
-    /// The rack of the axle.
+    /// Returns the rack of the axle, which is added if necessary.
     pub fn rack_of(
         &self,
         m: &mut Mechanism,
@@ -649,7 +650,7 @@ impl Corner {
         let at = Vec3::from([at.x, 0.0, at.z]);
         let body = m.body(
             "rack",
-            "what the tie rods are on".into(),
+            "carrier of the tie rods".into(),
             Some(hardpoint::space::Pose { rot: crate::turn::none(), r: at }),
         );
         let slide = m.joint(
@@ -661,20 +662,20 @@ impl Corner {
             "steering",
             "no law in the source: fixed in the design configuration".into(),
             drives,
-            Law::Held,
+            Law::Fixed,
         );
         m.steering = Some(steering);
         notes.approximated(
             "motion",
             "rack_slide",
             self.at,
-            "nothing drives it in the source: a driver holds it in the design configuration",
+            "nothing drives it in the source: a driver fixes it in the design configuration",
         );
         *rack = Some(body);
         body
     }
 
-    /// The rocker, moved by its rod.
+    /// Adds the rocker and its push rod. Returns the body of the rocker.
     fn rocker(
         &self,
         m: &mut Mechanism,
@@ -694,7 +695,8 @@ impl Corner {
         };
         let mount = self.rod_on.clone().unwrap_or_else(nearest);
         if self.rod_on.is_none() {
-            let why = "what its outer end is on is not in the file: the arm whose ball joint is nearest";
+            let why =
+                "the part at its outer end is not in the file: the arm with the nearest ball joint is used";
             notes.approximated("push rod", &name("push_rod"), self.at, why);
         }
         let Some(carrier) = on(&mount) else {
@@ -702,7 +704,7 @@ impl Corner {
                 "push rod",
                 &name("push_rod"),
                 self.at,
-                "what its outer end is on has no body here",
+                "the part at its outer end has no body in the model",
             );
             return None;
         };
@@ -722,8 +724,8 @@ impl Corner {
         Some(body)
     }
 
-    /// Adds coilover, damper and spring as legs, whose lengths are worth knowing, and their forces. Returns the ends of
-    /// the spring.
+    /// Adds coilover, damper and spring as legs, whose lengths are measured, and their forces. Returns the ends of the
+    /// spring.
     fn springs(
         &self,
         m: &mut Mechanism,
@@ -747,7 +749,7 @@ impl Corner {
             let mount = own.or_else(|| self.spring_on.clone()).unwrap_or(guess);
             let carrier = rocker.or_else(|| on(&mount));
             let Some(carrier) = carrier else {
-                notes.refused(base, &name, self.at, "what its lower end is on has no body here");
+                notes.refused(base, &name, self.at, "the part at its lower end has no body in the model");
                 continue;
             };
             let mut leg =
@@ -764,16 +766,16 @@ impl Corner {
         spring
     }
 
-    /// The force of a coilover, spring or damper, as far as the source gives its characteristic.
+    /// Adds the force of a coilover, spring or damper if the source defines its characteristic.
     pub fn force(&self, m: &mut Mechanism, notes: &mut ImportLog, base: &str, ends: Ends) {
         let Some((spring, at)) = self.springs.get(base) else { return };
         let name = format!("{base}{}", self.suffix);
-        let note = JointSource { kind: base, name: &name, at: Some(*at) }.note(notes);
+        let note = ElementSource { kind: base, name: &name, at: Some(*at) }.note(notes);
         m.force(Force { name: name.clone(), note, on: ForceOn::Points(ends), spring: spring.clone() });
         notes.taken("force", &name, Some(*at));
     }
 
-    /// The wheel on an upright, which goes up and down.
+    /// Adds the wheel on an upright, with its bump driver.
     pub fn wheel(
         &self,
         m: &mut Mechanism,
@@ -795,7 +797,7 @@ impl Corner {
                 "wheel",
                 &name,
                 self.at,
-                format!("its radius is not in the file: taken for {radius} {}", m.length),
+                format!("its radius is not in the file: {radius} {} is assumed", m.length),
             );
             radius
         });

@@ -1,4 +1,4 @@
-//! Geometry files of suspension-explorer (YAML): corners and axles by the names of their hardpoints.
+//! Geometry files of suspension-explorer (YAML): corners and axles recognised by the names of their hardpoints.
 
 use hardpoint::model::{Vehicle, VehicleEnd};
 use hardpoint::space::Vec3;
@@ -10,17 +10,17 @@ use crate::sides::{self, over};
 use crate::tree::{self, Tree};
 use crate::{FEW_DIGITS, Format, Input};
 
-/// See the module.
+/// suspension-explorer format.
 pub const FORMAT: Format = Format {
     name: "suspension-explorer",
     about: "suspension-explorer geometry",
     endings: &["yaml", "yml"],
-    looks: |text| text.lines().any(|l| l.starts_with("hardpoints:") || l.starts_with("hard_points:")),
+    recognises: |text| text.lines().any(|l| l.starts_with("hardpoints:") || l.starts_with("hard_points:")),
     read,
     binary: false,
 };
 
-/// Types whose parts follow from the names of their hardpoints.
+/// Suspension types whose parts follow from the names of their hardpoints.
 const TYPES: [&str; 5] = ["double_wishbone", "macpherson", "macpherson_strut", "multi_link", "trailing_arm"];
 
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
@@ -28,7 +28,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let points = root.get("hardpoints").or_else(|| root.get("hard_points"));
     let Some(points) = points.filter(|p| !p.entries().is_empty()) else {
         let help = "write them as `hardpoints:` with entries like `strut_top: {x: 0, y: 700, z: 850}`";
-        notes.problem_with("HP0803", Some(root.at), "there are no `hardpoints`", help);
+        notes.problem_with("HP0803", Some(root.at), "the file has no `hardpoints`", help);
         return None;
     };
     let name = root.text_of("name").filter(|n| !n.trim().is_empty()).unwrap_or(input.stem);
@@ -37,7 +37,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         .get("type")
         .filter(|t| !t.text().is_some_and(|t| TYPES.contains(&plain(t).trim_end_matches("_axle"))))
     {
-        let why = "the type is not known here: built from the names of its hardpoints alone";
+        let why = "the type is unknown: the topology follows from the names of the hardpoints";
         notes.approximated("type", kind.text().unwrap_or_default(), Some(kind.at), why);
     }
     let sides: Vec<&str> = ["left", "right"].into_iter().filter(|s| points.get(s).is_some()).collect();
@@ -55,7 +55,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
                 "side",
                 "right",
                 root.get("side").map(|s| s.at),
-                "its hardpoints have positive y, which is left: they are taken as written",
+                "its hardpoints have positive y, which is the left side: they are used as written",
             );
         }
         known &= corner.build(&mut m, notes, &mut rack);
@@ -75,7 +75,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
                 "side",
                 other.trim_start_matches('_'),
                 Some(list.at),
-                "the file has one side: the other is its mirror image",
+                "the file defines one side: the other side is its mirror image",
             );
             let images: Vec<(String, Vec3)> =
                 m.hardpoints.iter().map(|(name, at)| (sides::other(name), over(*at, -1.0))).collect();
@@ -89,7 +89,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
                 "hardpoint",
                 name,
                 Some(*at),
-                "what is between both sides (anti-roll bar, heave link) holds nothing and is not made",
+                "members between both sides (anti-roll bar, heave link) are not imported",
             );
         }
     }
@@ -106,12 +106,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
 
 fn units(root: &Tree, notes: &mut ImportLog) -> &'static str {
     let Some(units) = root.get("units") else {
-        notes.approximated(
-            "units",
-            "",
-            Some(root.at),
-            "the file names none: lengths are taken for millimetres",
-        );
+        notes.approximated("units", "", Some(root.at), "the file defines no unit: millimetres are assumed");
         return "mm";
     };
     match units.text().unwrap_or_default().to_ascii_lowercase().as_str() {
@@ -120,7 +115,7 @@ fn units(root: &Tree, notes: &mut ImportLog) -> &'static str {
         "centimeters" | "centimetres" | "cm" => "cm",
         "inches" | "inch" | "in" => "in",
         other => {
-            let message = format!("`{other}` is no unit of length");
+            let message = format!("`{other}` is not a known unit of length");
             notes.problem_with(
                 "HP0804",
                 Some(units.at),
@@ -132,12 +127,12 @@ fn units(root: &Tree, notes: &mut ImportLog) -> &'static str {
     }
 }
 
-/// The settings of the corner or axle.
+/// Returns the settings of the corner or axle.
 fn config(root: &Tree) -> Option<&Tree> {
     ["axle_config", "config", "configuration"].into_iter().find_map(|key| root.get(key))
 }
 
-/// Steering, and the wheel.
+/// Reads the settings of steering and wheel.
 fn settings(root: &Tree, per_mm: f64, notes: &mut ImportLog) -> Corner {
     let config = config(root);
     let steering = config.and_then(|c| c.get("steering"));
@@ -145,7 +140,7 @@ fn settings(root: &Tree, per_mm: f64, notes: &mut ImportLog) -> Corner {
     let steered = config.and_then(|c| c.text_of("steered")).is_none_or(|s| s != "false");
     let tire = config.and_then(|c| c.get("wheel")).and_then(|w| w.get("tire").or_else(|| w.get("tyre")));
     let number = |key: &str| tire.and_then(|t| t.get(key)).and_then(Tree::number);
-    // A rim is in inches and a tyre in millimetres, whatever the hardpoints are in.
+    // Rims are in inches and tyres in millimetres, independent of the unit of the hardpoints.
     let radius = match (number("aspect_ratio"), number("section_width"), number("rim_diameter")) {
         (Some(aspect), Some(width), Some(rim)) => Some((aspect * width + rim * 25.4 / 2.0) * per_mm),
         _ => number("nominal_radius").or_else(|| number("radius")),
@@ -156,7 +151,7 @@ fn settings(root: &Tree, per_mm: f64, notes: &mut ImportLog) -> Corner {
             "wheel",
             "offset",
             Some(offset.at),
-            "the wheel's centre is taken where the axle ends, without its offset",
+            "the wheel centre is placed at the end of the axle, without its offset",
         );
     }
     let own = config.iter().flat_map(|c| c.entries()).filter(|(key, ..)| !key.ends_with("_setup"));
@@ -170,7 +165,7 @@ fn settings(root: &Tree, per_mm: f64, notes: &mut ImportLog) -> Corner {
         if thickness[0] == thickness[1] {
             notes.ignored(key, Some(*at));
         } else {
-            let why = "the parts are taken as designed, without the shim of the setup";
+            let why = "the parts are imported as designed, without the shim of the setup";
             notes.refused(key, "", Some(*at), why);
         }
     }
@@ -178,7 +173,7 @@ fn settings(root: &Tree, per_mm: f64, notes: &mut ImportLog) -> Corner {
     Corner { rack: steered && !kind.eq_ignore_ascii_case("none"), radius, end, ..Corner::default() }
 }
 
-/// Figures of the vehicle: of a corner they are among its settings.
+/// Reads the parameters of the vehicle; those of a corner are among its settings.
 fn vehicle(root: &Tree, m: &mut Mechanism, notes: &mut ImportLog) {
     let found =
         |key: &str| [root.get("vehicle_config"), config(root)].into_iter().flatten().find_map(|c| c.get(key));
@@ -188,7 +183,7 @@ fn vehicle(root: &Tree, m: &mut Mechanism, notes: &mut ImportLog) {
         match figure {
             Some(_) => notes.taken(key, "", Some(tree.at)),
             None => {
-                let why = "no figure of a vehicle that the model has";
+                let why = "the value is not valid for a vehicle";
                 notes.refused(key, tree.text().unwrap_or_default(), Some(tree.at), why);
             }
         }
@@ -205,7 +200,7 @@ fn vehicle(root: &Tree, m: &mut Mechanism, notes: &mut ImportLog) {
     let road = m.wheels.first().map_or(0.0, |wheel| {
         let down = wheel.spin_axis.unit().map_or(1.0, |n| (1.0 - n.z * n.z).max(0.0).sqrt());
         let road = wheel.centre.z - wheel.radius * down;
-        // Files have few digits: a wheel that is on z = 0 to these does.
+        // Files have few digits: z = 0 is assumed for a wheel that touches it within these.
         if road.abs() <= FEW_DIGITS * wheel.radius { 0.0 } else { road }
     });
     m.vehicle = Vehicle {
@@ -249,24 +244,19 @@ fn account(root: &Tree, notes: &mut ImportLog) {
                 notes.ignored(key, Some(*at));
             }
             "spring" | "damper" if tree.entries().len() > 1 => {
-                notes.not_understood(key, kind, Some(*at), "values of it that are not known here");
+                notes.not_understood(key, kind, Some(*at), "it has unknown values");
             }
             "spring" | "damper" => {
-                let why = "the file has its type alone, no stiffness or damping: it is measured where it has two ends, and has no force";
+                let why = "the file defines its type only, without stiffness or damping: its length is measured if it has two ends, and it has no force";
                 notes.refused(key, kind, Some(*at), why);
             }
             "anti_roll" | "heave_link" => {
-                notes.refused(
-                    key,
-                    kind,
-                    Some(*at),
-                    "what is between both sides holds nothing and is not made",
-                );
+                notes.refused(key, kind, Some(*at), "members between both sides are not imported");
             }
             "opposite_axle_axis_height" => {
-                notes.refused(key, "", Some(*at), "no measure uses a figure of the other axle");
+                notes.refused(key, "", Some(*at), "no measure uses parameters of the other axle");
             }
-            _ => notes.not_understood(key, "", Some(*at), "a setting that is not known here"),
+            _ => notes.not_understood(key, "", Some(*at), "unknown setting"),
         }
     }
 }
@@ -286,7 +276,7 @@ fn mount(root: &Tree, corner: &mut Corner) {
     corner.spring_on = mount;
 }
 
-/// The hardpoints of a corner, also where they are grouped.
+/// Collects the hardpoints of a corner, including grouped ones.
 fn collect(
     list: &Tree,
     before: &str,
@@ -303,7 +293,7 @@ fn collect(
                 collect(value, &name, corner, m, notes, suffix);
             } else {
                 let help = "write it as `{x: 0, y: 700, z: 850}`";
-                notes.problem_with("HP0804", Some(value.at), format!("`{name}` is three numbers"), help);
+                notes.problem_with("HP0804", Some(value.at), format!("`{name}` must be three numbers"), help);
             }
             continue;
         };
@@ -327,7 +317,7 @@ fn collect(
                 }
             }
             _ => {
-                let why = "what is at it does not follow from its name: it is in the list alone";
+                let why = "no member follows from its name: the hardpoint is only listed";
                 notes.approximated("hardpoint", &name, Some(*at), why);
             }
         }
@@ -338,8 +328,8 @@ fn collect(
             _ => notes.problem_with(
                 "HP0803",
                 Some(at),
-                format!("`{name}` has one end"),
-                "give it `_inboard` and `_outboard`",
+                format!("`{name}` has only one end"),
+                "add both `_inboard` and `_outboard`",
             ),
         }
     }

@@ -1,4 +1,4 @@
-//! Completion of what a source leaves open: bodies that nothing holds, motions that nothing drives.
+//! Completion of an imported mechanism: bodies without a connection to ground, and undriven motions.
 
 use std::collections::HashSet;
 
@@ -17,35 +17,36 @@ use crate::straighten::straighten;
 use crate::turn::{X, Y, Z};
 use crate::write;
 
-/// The one degree of freedom of a mechanism swings by this angle, in rad.
+/// Amplitude of the input of a mechanism with one degree of freedom: of an angle, rad.
 const SWING: f64 = 0.2;
-/// Or along this part of the mechanism's size.
+/// Amplitude of a displacement, as a fraction of the mechanism size.
 const STROKE: f64 = 0.05;
 /// Distance from an axis, as a fraction of the mechanism's size, below which a point does not move when the axis turns.
 const OFF: f64 = 1e-6;
-/// Output times at which such a swing is tried.
+/// Number of intervals with which an input law is tried.
 const TRIED: usize = 20;
-/// That many output times show which design variables are followed.
+/// Maximum number of output times at which the design variables are tested.
 const MOST_TIMES: usize = 200;
-/// Mechanisms with more motions left open than this are reported as they are.
+/// Maximum number of undriven motions that are fixed; more are an error.
 const MOST_HELD: usize = 400;
 
-/// Holds what nothing holds, and drives what nothing drives. What remains wrong is handed back: the model is written
-/// all the same, for the user to mend.
+/// Connects loose bodies to ground, and fixes or drives undriven motions. Returns the remaining error, if any: the
+/// model is written all the same, for the user to correct.
 ///
-/// Gaps of up to `closed` parts of its size are taken as closed where they stand, if what is held keeps them open.
+/// Open joints whose gaps are below `closed` times the mechanism size are closed in the design configuration if they
+/// cannot be assembled.
 pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<Diagnostic> {
     ground(m, notes);
-    straightened(m, notes);
-    let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Held | Law::Set(_)));
+    straighten_if_helpful(m, notes);
+    let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Fixed | Law::Constant(_)));
     let mut left = match freedom(m, notes) {
         Ok(left) => left,
         Err(fault) => return Some(*fault),
     };
     let only_one = left.count == 1 && !moves;
     if left.count > MOST_HELD {
-        let message = format!("{} motions of it are driven by nothing", left.count);
-        let help = "leave out of the source what need not move, or give the model drivers";
+        let message = format!("{} motions are undriven", left.count);
+        let help = "remove parts that need not move from the source, or add drivers to the model";
         return Some(notes.diagnostic("HP0808", None, message).help(help));
     }
     let mut tried = HashSet::new();
@@ -55,22 +56,22 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
                 return Some(*fault);
             }
             let names: Vec<String> = left.joints.iter().map(|j| format!("`{}`", m.joints[*j].name)).collect();
-            let message = format!("{} motions remain that no driver could be found for", left.count);
+            let message = format!("{} motions remain undriven: no driver was found for them", left.count);
             return Some(
                 notes
                     .diagnostic("HP0808", None, message)
-                    .note(format!("joints that still move: {}", names.join(", ")))
-                    .help("give the model drivers for these, or joints that hold them"),
+                    .note(format!("undriven joints: {}", names.join(", ")))
+                    .help("add drivers for these joints to the model, or joints that constrain them"),
             );
         };
         tried.insert(held.clone());
         let before = m.drivers.len();
         for (name, drives) in held.drivers(m) {
             let why = "nothing drives it in the source: fixed in the design configuration".into();
-            m.driver(&format!("{name}_held"), why, drives, Law::Held);
+            m.driver(&format!("{name}_held"), why, drives, Law::Fixed);
         }
         match freedom(m, notes) {
-            // A body that would only spin idly is none of the freedoms, and one once its spin is held.
+            // The idle spin of a body is not counted as a degree of freedom until it is fixed.
             Ok(now)
                 if now.count < left.count
                     || (now.count == left.count && now.joints.len() < left.joints.len()) =>
@@ -78,32 +79,35 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
                 left = now;
                 for driver in m.drivers[before..].iter().filter(|_| !only_one) {
                     let why =
-                        "nothing drives it in the source: a driver holds it in the design configuration";
+                        "nothing drives it in the source: a driver fixes it in the design configuration";
                     notes.approximated("motion", driver.name.trim_end_matches("_held"), None, why);
                 }
             }
             _ => m.drivers.truncate(before),
         }
     }
-    as_drawn(m, notes, closed);
+    close_as_nominal(m, notes, closed);
     if only_one {
         swing(m, notes);
     }
-    unfollowed(m, notes);
+    remove_inadmissible(m, notes);
     None
 }
 
-/// Says first of all where nothing moves: of a mechanism all of whose motions are held, mostly something is missing.
-pub fn remark(m: &Mechanism, notes: &mut ImportLog, closes: bool) {
-    let held = m.drivers.iter().filter(|d| d.law == Law::Held).count();
-    let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Held | Law::Set(_)));
+/// Adds a remark if nothing moves: in a mechanism with all motions fixed, something is usually missing.
+pub fn remark_undriven(m: &Mechanism, notes: &mut ImportLog, closes: bool) {
+    let held = m.drivers.iter().filter(|d| d.law == Law::Fixed).count();
+    let moves = m.drivers.iter().any(|d| !matches!(d.law, Law::Fixed | Law::Constant(_)));
     if moves || held == 0 {
         return;
     }
     let is_tree = m.joints.len() < m.bodies.len();
-    let how = if closes { ": name the frames that meet, as `--close A=B`, if it has loops" } else { "" };
-    let loops =
-        if is_tree { format!("; it is a tree, in which no loop is closed{how}") } else { String::new() };
+    let how = if closes { ": if it has loops, close them with `--close A=B`" } else { "" };
+    let loops = if is_tree {
+        format!("; the mechanism is a tree, without a closed loop{how}")
+    } else {
+        String::new()
+    };
     let motions =
         if held == 1 { "its one motion is".to_owned() } else { format!("all of its {held} motions are") };
     notes.remark(format!(
@@ -111,9 +115,9 @@ pub fn remark(m: &Mechanism, notes: &mut ImportLog, closes: bool) {
     ));
 }
 
-/// Takes as closed what is drawn open where it does not close, since what nothing drives is fixed in the design
-/// configuration.
-fn as_drawn(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
+/// Closes open joints in the design configuration if the mechanism does not assemble, since undriven motions are fixed
+/// there.
+fn close_as_nominal(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
     let rods = ["distance", "leg", "revolute_spherical"];
     let is_open = |j: &Joint| j.length.is_some() || (j.at.len() > 1 && !rods.contains(&j.kind));
     let gap = |j: &Joint| match j.at[..] {
@@ -138,19 +142,19 @@ fn as_drawn(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
     }
     for frame in &m.turned {
         names.push(format!("`{}`", m.joints[frame.joint].name));
-        closed.drivers[frame.driver].law = Law::Held;
+        closed.drivers[frame.driver].law = Law::Fixed;
     }
     if assembles(&closed) {
         *m = closed;
         let why = format!(
-            "what is fixed in the design configuration keeps them from closing: they are taken as they are drawn: {}",
+            "they cannot be closed with the other motions fixed: they are closed as drawn in the design configuration: {}",
             names.join(", ")
         );
         notes.approximated("joints", "", None, why);
     }
 }
 
-/// True if it assembles at its first time.
+/// Returns true if the mechanism assembles at its first output time.
 fn assembles(m: &Mechanism) -> bool {
     parsed(m).is_ok_and(|mut file| {
         file.model.times.truncate(1);
@@ -158,13 +162,13 @@ fn assembles(m: &Mechanism) -> bool {
     })
 }
 
-/// A point to look at first, where the source names none: of the last body of the longest chain of joints that move, at
-/// its place that is farthest from the joint that carries it.
+/// Adds a point to observe if the source names none: on the last body of the longest chain of moving joints, at the
+/// location farthest from the joint that carries it.
 pub fn end_point(m: &mut Mechanism, notes: &mut ImportLog) {
     if !m.points.is_empty() || !m.wheels.is_empty() {
         return;
     }
-    // Of every body, how many joints that move are between it and the ground at least, and the joint that leads there.
+    // For each body, the minimum number of moving joints between it and ground, and the joint that leads to it.
     let mut chains: Vec<Option<(usize, usize)>> = vec![None; m.bodies.len()];
     chains[GROUND] = Some((0, usize::MAX));
     let mut settled = false;
@@ -196,21 +200,20 @@ pub fn end_point(m: &mut Mechanism, notes: &mut ImportLog) {
     let others = m.joints.iter().filter_map(place).chain(m.bodies[end].pose.map(|p| p.r));
     let at = others
         .fold(carried, |best, at| if (at - carried).norm() > (best - carried).norm() { at } else { best });
-    // What turns about a place of the ground has to be off it, and off its axis.
+    // A point on a body that rotates about ground has to be off the axis.
     let arm = carried_by.axis.map_or(at - carried, |axis| (at - carried).cross(axis));
     let slides = ["translational", "cylindrical", "planar"].contains(&carried_by.kind);
     if length == 1 && !slides && arm.norm() <= OFF * m.size() {
         return;
     }
     m.point(&format!("{}_end", m.bodies[end].name), end, at);
-    let why = "added: a point of the last body of the longest chain, so that there is a motion to look at";
+    let why = "added: a point on the last body of the longest chain, to observe the motion";
     let name = m.points.last().map_or(String::new(), |p| p.name.clone());
     notes.approximated("point", &name, None, why);
 }
 
-/// Leaves out the design variables that the mechanism cannot follow: a plane loop, say, whose hinge would leave the
-/// plane.
-fn unfollowed(m: &mut Mechanism, notes: &mut ImportLog) {
+/// Removes inadmissible design variables, such as a displacement of a hinge out of the plane of a planar loop.
+fn remove_inadmissible(m: &mut Mechanism, notes: &mut ImportLog) {
     let Ok(mut file) = parsed(m) else { return };
     let times = &mut file.model.times;
     if times.len() > MOST_TIMES {
@@ -222,17 +225,17 @@ fn unfollowed(m: &mut Mechanism, notes: &mut ImportLog) {
     let resists = |a: &Admissibility| matches!(a, Admissibility::CannotFollow { .. });
     let names =
         file.model.variables.iter().zip(&found).filter(|(_, a)| resists(a)).map(|(v, _)| v.name.clone());
-    m.unfollowed = names.collect();
-    if !m.unfollowed.is_empty() {
-        let names: Vec<String> = m.unfollowed.iter().map(|n| format!("`{n}`")).collect();
-        let why = format!("the mechanism cannot follow them, so they are left out: {}", names.join(", "));
+    m.inadmissible = names.collect();
+    if !m.inadmissible.is_empty() {
+        let names: Vec<String> = m.inadmissible.iter().map(|n| format!("`{n}`")).collect();
+        let why = format!("the mechanism cannot follow them, and they are not added: {}", names.join(", "));
         notes.approximated("design variables", "", None, why);
     }
 }
 
-/// Joins to the ground what no joint connects with it.
+/// Fixes to ground the bodies that no joint connects with it.
 fn ground(m: &mut Mechanism, notes: &mut ImportLog) {
-    // `root[b]`: the lowest body that joints connect `b` with.
+    // `root[b]`: the lowest index of the bodies that joints connect with `b`.
     let mut root: Vec<usize> = (0..m.bodies.len()).collect();
     fn find(root: &mut [usize], mut b: usize) -> usize {
         while root[b] != b {
@@ -253,14 +256,14 @@ fn ground(m: &mut Mechanism, notes: &mut ImportLog) {
         let first = m.joints.iter().find(|j| j.bodies.contains(&b)).and_then(|j| j.at.first().copied());
         let at = body.pose.map(|p| p.r).or(first).unwrap_or_else(|| Vec3::from([0.0; 3]));
         let name = body.name.clone();
-        let why = "nothing connects it with the ground in the source: it is fixed there";
+        let why = "nothing connects it to ground in the source: it is fixed to ground";
         m.joint(Joint::new(&format!("{name}_fixed"), why.into(), "fixed", [GROUND, b], at));
         notes.approximated("body", &name, None, why);
     }
 }
 
-/// Loops whose axes are nearly parallel, as far as that lets them move.
-fn straightened(m: &mut Mechanism, notes: &mut ImportLog) {
+/// Makes nearly parallel axes in loops parallel if this lets the loops move.
+fn straighten_if_helpful(m: &mut Mechanism, notes: &mut ImportLog) {
     let mut straight = m.clone();
     let Some(done) = straighten(&mut straight) else { return };
     let score = |m: &Mechanism| freedom(m, notes).ok().filter(|l| l.singular.is_none()).map(|l| l.count);
@@ -270,28 +273,28 @@ fn straightened(m: &mut Mechanism, notes: &mut ImportLog) {
     *m = straight;
     let names: Vec<String> = done.joints.iter().map(|n| format!("`{n}`")).collect();
     let why = format!(
-        "turned by up to {:.1e} rad, to be parallel to others or to a global axis, since their loops could not move as written: {}",
+        "rotated by up to {:.1e} rad to be parallel to other axes, since their loops could not move as written: {}",
         done.by,
         names.join(", ")
     );
     notes.approximated("axes", "", None, why);
 }
 
-/// The motions that nothing drives.
+/// Undriven motions.
 #[derive(Default)]
 struct FreeMotions {
-    /// Number of them.
+    /// Number of undriven motions.
     count: usize,
-    /// The joints that move in them.
+    /// Joints that move.
     joints: Vec<usize>,
-    /// The bodies that move in them.
+    /// Bodies that move.
     bodies: Vec<usize>,
-    /// Note that this may be so in the design configuration only: a driver shows it, since special proportions look
-    /// alike.
+    /// Diagnostic if the motions may exist in the design configuration only. Adding a driver shows whether they do,
+    /// since special proportions look the same.
     singular: Option<Box<Diagnostic>>,
 }
 
-/// Motions that nothing drives.
+/// Returns the undriven motions of a mechanism.
 fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<Diagnostic>> {
     let refused = |message: String| {
         notes.diagnostic("HP0808", None, format!("the imported mechanism does not work: {message}"))
@@ -305,11 +308,11 @@ fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<Diagnost
         Err(fault) => {
             let message = refused(format!("{fault}"));
             let message = fault.notes().into_iter().fold(message, |m, n| m.note(n));
-            let told = Box::new(Diagnostic { code: fault.code(), ..message }.help(fault.help()));
-            // Drivers that are no joint's coordinate are joints without a name, behind the others.
+            let undriven = Box::new(Diagnostic { code: fault.code(), ..message }.help(fault.help()));
+            // Drivers of other quantities than joint coordinates are unnamed joints, after the named ones.
             let own =
                 |joints: &[JointId]| joints.iter().map(|j| j.0).filter(|j| *j < m.joints.len()).collect();
-            // The fault quotes its names.
+            // The error quotes the names.
             let named = |names: &[String]| {
                 let is = |b: &usize| names.iter().any(|n| n.trim_matches('`') == m.bodies[*b].name);
                 (1..m.bodies.len()).filter(is).collect()
@@ -325,15 +328,15 @@ fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<Diagnost
                     count: *freedom,
                     joints: own(joints),
                     bodies: named(bodies),
-                    singular: Some(told),
+                    singular: Some(undriven),
                 }),
-                _ => Err(told),
+                _ => Err(undriven),
             }
         }
     }
 }
 
-/// The model without its meshes, which lie in files.
+/// Parses the model without its meshes, which are separate files.
 fn parsed(m: &Mechanism) -> Result<hardpoint_file::ModelFile, String> {
     let mut bare = m.clone();
     bare.bodies.iter_mut().for_each(|b| b.mesh = None);
@@ -344,33 +347,33 @@ fn parsed(m: &Mechanism) -> Result<hardpoint_file::ModelFile, String> {
     })
 }
 
-/// Motion that a driver could fix, mostly a coordinate by the joint's number.
+/// Motion that drivers can fix; the first number is the index of the joint unless stated.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum FixableMotion {
-    /// A coordinate of it.
+    /// A joint coordinate.
     Coordinate(usize, &'static str),
-    /// Some of the angles between its bodies, these axes, together: to hold one turn of a body that else spins idly
-    /// leaves as much to hold as before.
-    Turns(usize, &'static [usize]),
-    /// One of the angles between its bodies.
-    Turn(usize, usize),
-    /// The way of its place on its second body along an axis.
-    Way(usize, usize),
-    /// The way of a body's frame along an axis, by the body's number: where rods alone hold it.
-    BodyWay(usize, usize),
-    /// The turning of a body about an axis.
-    BodyTurn(usize, usize),
+    /// Several angles between the bodies of a joint, by their axes, fixed together: fixing one rotation of an idle body
+    /// would leave the same number of degrees of freedom.
+    Rotations(usize, &'static [usize]),
+    /// One angle between the bodies of a joint, by its axis.
+    Rotation(usize, usize),
+    /// Displacement of the joint location on body j along an axis.
+    Translation(usize, usize),
+    /// Displacement of a body frame along an axis, by the index of the body, for bodies on rods only.
+    BodyTranslation(usize, usize),
+    /// Rotation of a body about an axis, by the index of the body.
+    BodyRotation(usize, usize),
 }
 
-/// Global axes and their letters.
+/// Names and directions of the global axes.
 const AXES: [(&str, [f64; 3]); 3] = [("x", X), ("y", Y), ("z", Z)];
 
 impl FixableMotion {
-    /// The drivers that hold it.
+    /// Returns the names and quantities of the drivers that fix the motion.
     fn drivers(&self, m: &Mechanism) -> Vec<(String, Drives)> {
         let turn = |joint: usize, (letter, axis): (&str, [f64; 3])| {
             let j = &m.joints[joint];
-            let drives = Drives::Heading { body: j.bodies[1], about: axis.into(), relative_to: j.bodies[0] };
+            let drives = Drives::Rotation { body: j.bodies[1], about: axis.into(), relative_to: j.bodies[0] };
             (format!("{}_about_{letter}", j.name), drives)
         };
         match *self {
@@ -380,39 +383,39 @@ impl FixableMotion {
                     if coordinates(j).len() == 1 { j.name.clone() } else { format!("{}_{name}", j.name) };
                 vec![(own, Drives::Coordinate(Coordinate { joint, name }))]
             }
-            Self::Turns(joint, axes) => axes.iter().map(|k| turn(joint, AXES[*k])).collect(),
-            Self::Turn(joint, axis) => vec![turn(joint, AXES[axis])],
-            Self::Way(joint, axis) => {
+            Self::Rotations(joint, axes) => axes.iter().map(|k| turn(joint, AXES[*k])).collect(),
+            Self::Rotation(joint, axis) => vec![turn(joint, AXES[axis])],
+            Self::Translation(joint, axis) => {
                 let j = &m.joints[joint];
                 let at = j.at.last().copied().unwrap_or_else(|| Vec3::from([0.0; 3]));
-                let drives = Drives::Way { body: j.bodies[1], at, along: AXES[axis].1.into() };
+                let drives = Drives::Translation { body: j.bodies[1], at, along: AXES[axis].1.into() };
                 vec![(format!("{}_along_{}", m.bodies[j.bodies[1]].name, AXES[axis].0), drives)]
             }
-            Self::BodyWay(body, axis) => {
+            Self::BodyTranslation(body, axis) => {
                 let at = m.bodies[body].pose.map_or_else(Vec3::zero, |p| p.r);
-                let drives = Drives::Way { body, at, along: AXES[axis].1.into() };
+                let drives = Drives::Translation { body, at, along: AXES[axis].1.into() };
                 vec![(format!("{}_along_{}", m.bodies[body].name, AXES[axis].0), drives)]
             }
-            Self::BodyTurn(body, axis) => {
-                let drives = Drives::Heading { body, about: AXES[axis].1.into(), relative_to: GROUND };
+            Self::BodyRotation(body, axis) => {
+                let drives = Drives::Rotation { body, about: AXES[axis].1.into(), relative_to: GROUND };
                 vec![(format!("{}_about_{}", m.bodies[body].name, AXES[axis].0), drives)]
             }
         }
     }
 }
 
-/// The coordinates of a joint's type.
+/// Returns the coordinates of a joint type.
 fn coordinates(joint: &Joint) -> &'static [hardpoint::joint::CoordinateType] {
     ALL.iter().find(|k| k.name == joint.kind).map_or(&[], |k| k.coordinates)
 }
 
-/// All axes, and two of them.
+/// All three axes, and the combinations that are fixed together.
 const ALL_AXES: &[usize] = &[0, 1, 2];
 const TOGETHER: [&[usize]; 4] = [ALL_AXES, &[0, 1], &[0, 2], &[1, 2]];
 
-/// Motions that could be fixed, best first: coordinates of the joints that move, then rotations and translations of
-/// their bodies, then of any body. A ball joint is fixed as a whole if possible: the rotation of a body between two of
-/// them is none of the counted freedoms.
+/// Motions that can be fixed, in order of preference: coordinates of the moving joints, then rotations and translations
+/// of their bodies, then those of any body. A ball joint is fixed as a whole if possible, since the spin of a body
+/// between two ball joints is not counted as a degree of freedom.
 fn candidates<'m>(m: &'m Mechanism, left: &'m FreeMotions) -> impl Iterator<Item = FixableMotion> + 'm {
     let joints = &left.joints;
     let free = joints.iter().flat_map(move |&joint| {
@@ -425,17 +428,20 @@ fn candidates<'m>(m: &'m Mechanism, left: &'m FreeMotions) -> impl Iterator<Item
     fn each(list: &[usize], held: fn(usize, usize) -> FixableMotion) -> impl Iterator<Item = FixableMotion> {
         list.iter().flat_map(move |&k| (0..AXES.len()).map(move |axis| held(k, axis)))
     }
-    let together = joints.iter().flat_map(|&j| TOGETHER.map(|axes| FixableMotion::Turns(j, axes)));
-    let of_joints = each(joints, FixableMotion::Turn).chain(together).chain(each(joints, FixableMotion::Way));
+    let together = joints.iter().flat_map(|&j| TOGETHER.map(|axes| FixableMotion::Rotations(j, axes)));
+    let of_joints =
+        each(joints, FixableMotion::Rotation).chain(together).chain(each(joints, FixableMotion::Translation));
     let of = |list: &[usize]| {
-        each(list, FixableMotion::BodyWay).chain(each(list, FixableMotion::BodyTurn)).collect::<Vec<_>>()
+        each(list, FixableMotion::BodyTranslation)
+            .chain(each(list, FixableMotion::BodyRotation))
+            .collect::<Vec<_>>()
     };
     let others: Vec<usize> = (1..m.bodies.len()).filter(|b| !left.bodies.contains(b)).collect();
     let of_bodies = of(&left.bodies).into_iter().chain(of(&others));
-    free.chain(balls.map(|j| FixableMotion::Turns(*j, ALL_AXES))).chain(of_joints).chain(of_bodies)
+    free.chain(balls.map(|j| FixableMotion::Rotations(*j, ALL_AXES))).chain(of_joints).chain(of_bodies)
 }
 
-/// Returns whether it moves from end to end in the first second.
+/// Returns true if the mechanism moves from end to end in the first second.
 pub fn moves(m: &Mechanism) -> bool {
     parsed(m).is_ok_and(|mut file| {
         file.model.times = (0..=TRIED).map(|k| k as f64 / TRIED as f64).collect();
@@ -443,19 +449,19 @@ pub fn moves(m: &Mechanism) -> bool {
     })
 }
 
-/// The one degree of freedom is plainly the input: it swings, as far as it can.
+/// Makes the only degree of freedom the input: it oscillates as far as possible.
 fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
     let Some(driver) = m.drivers.len().checked_sub(1) else { return };
     let name = m.drivers[driver].name.clone();
     let (is_angle, limits) = match m.drivers[driver].drives {
         Drives::Coordinate(c) => (c.name.starts_with("angle"), m.joints[c.joint].limits),
-        Drives::Way { .. } => (false, None),
-        Drives::Heading { .. } => (true, None),
+        Drives::Translation { .. } => (false, None),
+        Drives::Rotation { .. } => (true, None),
     };
     let per_rad = if m.angle == "deg" { 180.0 / std::f64::consts::PI } else { 1.0 };
     let usual = if is_angle { SWING * per_rad } else { STROKE * m.size() };
     let wanted = match limits.map(|[low, high]| (-low, high)) {
-        // Both directions, or the only one that is possible.
+        // In both directions, or in the only possible one.
         Some((down, up)) if down > 0.0 && up > 0.0 => vec![(usual.min(down).min(up), false)],
         Some((down, up)) if up > 0.0 && down <= 0.0 => vec![(usual.min(up), true)],
         Some((down, _)) if down > 0.0 => vec![(-usual.min(down), true)],
@@ -466,10 +472,11 @@ fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
         let text = if one_way { format!("{a}*(1 - cos(2*pi*t))/2") } else { format!("{a}*sin(2*pi*t)") };
         let d = &mut m.drivers[driver];
         d.law = Law::Text(text.clone());
-        d.note = "nothing drives it in the source: as the only freedom it is the input".into();
+        d.note = "nothing drives it in the source: as the only degree of freedom it is the input".into();
         if moves(m) {
-            let why =
-                format!("nothing drives it in the source: as the only freedom it is the input, law `{text}`");
+            let why = format!(
+                "nothing drives it in the source: as the only degree of freedom it is the input, law `{text}`"
+            );
             notes.approximated("motion", &name, None, why);
             let short = name.strip_suffix("_held").unwrap_or(&name).to_owned();
             m.drivers[driver].name = format!("{short}_input");
@@ -478,16 +485,16 @@ fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
     }
     let d = &mut m.drivers[driver];
     (d.law, d.note) =
-        (Law::Held, "nothing drives it in the source: fixed in the design configuration".into());
+        (Law::Fixed, "nothing drives it in the source: fixed in the design configuration".into());
     notes.approximated(
         "motion",
         &name,
         None,
-        "nothing drives it in the source, and it does not swing freely: a driver holds it in the design configuration",
+        "nothing drives it in the source, and it cannot oscillate: a driver fixes it in the design configuration",
     );
 }
 
-/// To two digits, for people to read.
+/// Rounds to two digits, for readability.
 pub fn rounded(x: f64) -> f64 {
     if x == 0.0 || !x.is_finite() {
         return x;

@@ -1,5 +1,5 @@
-//! Documents of FreeCAD's Assembly workbench (`.FCStd`): parts where they stand, joints, grounded parts, motions of
-//! simulations.
+//! Documents of FreeCAD's Assembly workbench (`.FCStd`): parts in their current poses, joints, grounded parts, motions
+//! of simulations.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Cursor, Read};
@@ -9,7 +9,8 @@ use roxmltree::Node;
 
 use crate::law::{self, Language};
 use crate::markers::{
-    JointSource, Marker, MarkerJoint, carrying, counted, is_drawn, join, linked, offset, screw, way,
+    ElementSource, Marker, MarkerJoint, carrying_joint, coordinate_sign, couple_screw, equals_nominal, join,
+    join_by_link, offset, relative_to_nominal,
 };
 use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Times};
 use crate::report::{ImportLog, SourceSpan};
@@ -17,17 +18,17 @@ use crate::turn::home;
 use crate::xml::{child, children, named};
 use crate::{Format, Input, LARGEST, xml};
 
-/// See the module.
+/// FreeCAD format.
 pub const FORMAT: Format = Format {
     name: "freecad",
     about: "FreeCAD Assembly document",
     endings: &["fcstd"],
-    looks: |_| false,
+    recognises: |_| false,
     read,
     binary: true,
 };
 
-/// The types of joints, as documents that list no names for them count them.
+/// Joint types in the order of their numbers, for documents that list no names.
 const TYPES: [&str; 13] = [
     "Fixed",
     "Revolute",
@@ -43,9 +44,9 @@ const TYPES: [&str; 13] = [
     "Gears",
     "Belt",
 ];
-/// A distance that is drawn to this part of the mechanism's size is the one that is said: documents are saved solved.
+/// Relative tolerance for a distance that holds in the design configuration: documents are saved solved.
 const DRAWN: f64 = 1e-5;
-/// Groups are nested so deep at most.
+/// Maximum depth of nested groups.
 const DEEPEST: usize = 40;
 
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
@@ -53,7 +54,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         Ok(text) => text,
         Err(why) => {
             let help = "save the document in FreeCAD again";
-            notes.problem_with("HP0802", None, format!("the file is no FreeCAD document: {why}"), help);
+            notes.problem_with("HP0802", None, format!("the file is not a FreeCAD document: {why}"), help);
             return None;
         }
     };
@@ -88,16 +89,16 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     (m.bodies.len() > 1).then_some(m)
 }
 
-/// The text of the document in the zip.
+/// Returns the text of the document in the archive.
 fn document(bytes: &[u8]) -> Result<String, String> {
     let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| e.to_string())?;
-    let file = archive.by_name("Document.xml").map_err(|_| "there is no `Document.xml` in it".to_owned())?;
+    let file = archive.by_name("Document.xml").map_err(|_| "it has no `Document.xml`".to_owned())?;
     let mut text = String::new();
     file.take(LARGEST as u64).read_to_string(&mut text).map_err(|e| format!("`Document.xml`: {e}"))?;
     Ok(text)
 }
 
-/// An object of the document.
+/// Object of the document.
 struct Object<'a, 'i> {
     name: &'a str,
     node: Node<'a, 'i>,
@@ -111,7 +112,7 @@ impl<'a, 'i> Object<'a, 'i> {
         xml::attribute_at(self.text, self.node, "name")
     }
 
-    /// The element in a property.
+    /// Returns the element of a property.
     fn value(&self, property: &str) -> Option<Node<'a, 'i>> {
         children(*self.properties.get(property)?).next()
     }
@@ -128,7 +129,7 @@ impl<'a, 'i> Object<'a, 'i> {
         self.text_of(property)?.parse().ok().filter(|x: &f64| x.is_finite())
     }
 
-    /// A property that is one of some words.
+    /// Returns the word of an enumeration property.
     fn word(&self, property: &str) -> Option<String> {
         let node = *self.properties.get(property)?;
         let value = child(node, "Integer").and_then(|n| n.attribute("value"));
@@ -154,7 +155,7 @@ impl<'a, 'i> Object<'a, 'i> {
         let r = [number("Px"), number("Py"), number("Pz")];
         let q = [number("Q3"), number("Q0"), number("Q1"), number("Q2")];
         let (true, true) = (r.iter().all(Option::is_some), q.iter().all(Option::is_some)) else {
-            let message = format!("`{property}` of `{}` is no placement", self.label());
+            let message = format!("`{property}` of `{}` is not a placement", self.label());
             notes.problem_with(
                 "HP0804",
                 xml::at(self.text, node),
@@ -168,7 +169,7 @@ impl<'a, 'i> Object<'a, 'i> {
         Some(Pose { rot, r: r.map(Option::unwrap_or_default).into() })
     }
 
-    /// Target of a link: the object, the first path in it, and the file of another document.
+    /// Returns the target of a link: the object, the first path in it, and the file of another document.
     fn link(&self, property: &str) -> Option<(&'a str, String, &'a str)> {
         let node = self.value(property)?;
         let name = node.attribute("name").or_else(|| node.attribute("value"))?;
@@ -179,30 +180,30 @@ impl<'a, 'i> Object<'a, 'i> {
         Some((name, sub.to_owned(), node.attribute("file").unwrap_or_default()))
     }
 
-    /// The object that it is a link to.
-    fn linked(&self) -> Option<&'a str> {
+    /// Returns the object that it links to.
+    fn linked_object(&self) -> Option<&'a str> {
         self.link("LinkedObject").map(|(name, ..)| name)
     }
 
-    /// True if it is a link to an object of another document.
+    /// Returns true if it links to an object of another document.
     fn is_elsewhere(&self) -> bool {
         self.link("LinkedObject").is_some_and(|(_, _, file)| !file.is_empty())
     }
 
-    /// True if it has a shape of its own, in whose frame what is in it is drawn.
+    /// Returns true if it has a shape, in whose frame its content is drawn.
     fn is_shape(&self) -> bool {
         self.kind.starts_with("PartDesign::Body")
             || (self.kind.starts_with("Part::") && !self.kind.starts_with("Part::Datum"))
     }
 
-    /// True if it is in a body with a frame of its own: a sketch, a datum.
-    fn is_drawn_in_its_frame(&self) -> bool {
+    /// Returns true if it is in a body but has its own frame: a sketch or datum.
+    fn has_own_frame(&self) -> bool {
         const DATUMS: [&str; 4] = ["Plane", "Line", "Point", "CoordinateSystem"];
         let datum = self.kind.strip_prefix("PartDesign::").is_some_and(|k| DATUMS.contains(&k));
         datum || self.kind.starts_with("Part::Datum") || self.kind.starts_with("Sketcher::")
     }
 
-    /// The objects in a group.
+    /// Returns the objects in a group.
     fn group(&self) -> Vec<&'a str> {
         let list = self.value("Group").into_iter().flat_map(children);
         list.filter_map(|n| n.attribute("value").or_else(|| n.attribute("name"))).collect()
@@ -240,13 +241,13 @@ const OF_JOINTS: [&str; 42] = [
     "AngleMin",
     "AngleMax",
     "ObjectToGround",
-    // Placements contain these.
+    // Contained in the placements.
     "Offset1",
     "Offset2",
     "Detach1",
     "Detach2",
     "AttachmentOffset",
-    // Of every object.
+    // Properties of every object.
     "Visibility",
     "ExpressionEngine",
     "Proxy",
@@ -269,21 +270,21 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     fn assembly(&mut self) {
         let roots: Vec<&'a str> =
             self.objects.values().filter(|o| o.kind == "Assembly::AssemblyObject").map(|o| o.name).collect();
-        // The one that is in no other.
+        // The assembly that is in no other one.
         let inner: BTreeSet<&'a str> = roots.iter().flat_map(|r| self.objects[r].group()).collect();
         let mut outermost = roots.iter().copied().filter(|r| !inner.contains(r));
         let Some(root) = outermost.next() else {
             self.notes.problem_with(
                 "HP0803",
                 None,
-                "there is no assembly in the document",
-                "make one with FreeCAD's Assembly workbench",
+                "the document has no assembly",
+                "create one with FreeCAD's Assembly workbench",
             );
             return;
         };
         for other in outermost {
             let object = &self.objects[other];
-            let why = "a document becomes one mechanism: its first assembly is taken, this is another";
+            let why = "only the first assembly of a document is imported";
             self.notes.refused("assembly", object.label(), object.at(), why);
         }
         self.m.name = self.objects[root].label().to_owned();
@@ -300,17 +301,17 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let object = &self.objects[part];
             let pose = outer.compose(object.pose(self.notes));
             let object = &self.objects[part];
-            let called = JointSource { kind: "part", name: object.label(), at: object.at() };
+            let source = ElementSource { kind: "part", name: object.label(), at: object.at() };
             let body = if grounded.contains(part) {
                 GROUND
             } else {
-                self.m.body(object.label(), called.note(self.notes), Some(pose))
+                self.m.body(object.label(), source.note(self.notes), Some(pose))
             };
             if object.kind == "Assembly::AssemblyLink" && object.text_of("Rigid") == Some("false") {
-                let why = "an assembly whose parts may move: taken as one rigid part";
-                self.notes.approximated("part", called.name, called.at, why);
+                let why = "flexible assembly: imported as one rigid part";
+                self.notes.approximated("part", source.name, source.at, why);
             } else {
-                self.notes.taken("part", called.name, called.at);
+                self.notes.taken("part", source.name, source.at);
             }
             self.bodies.insert(part, body);
         }
@@ -333,18 +334,18 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                     "motion",
                     label,
                     at,
-                    format!("{why}; what it drives is fixed in the design configuration"),
+                    format!("{why}; its coordinate is fixed in the design configuration"),
                 );
             }
         }
         self.times();
     }
 
-    /// The parts and joints in a group, and in the groups in it.
+    /// Collects the parts and joints of a group and of its nested groups.
     fn sort(&mut self, group: &'a str, parts: &mut Vec<&'a str>, joints: &mut Vec<&'a str>, depth: usize) {
         let Some(object) = self.objects.get(group).filter(|_| depth < DEEPEST) else { return };
         for name in object.group() {
-            // An assembly lists what is in its groups too.
+            // An assembly also lists the content of its groups.
             let known = parts.contains(&name) || joints.contains(&name);
             let Some(inner) = self.objects.get(name).filter(|_| !known) else { continue };
             let is_joint =
@@ -373,7 +374,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// The marker at one end of a joint.
+    /// Returns the marker at one end of a joint.
     fn marker(&mut self, joint: &'a str, k: usize, root: &'a str, outer: Pose) -> Option<Marker> {
         let object = &self.objects[joint];
         let (label, at) = (object.label(), object.at());
@@ -382,10 +383,10 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let reference = object.link(&format!("Reference{k}")).or_else(|| object.link(&format!("Object{k}")));
         let Some((name, sub, _)) = reference else {
             let message = format!("`{label}` has no `Reference{k}`");
-            self.notes.problem_with("HP0803", at, message, "choose both ends of the joint in FreeCAD");
+            self.notes.problem_with("HP0803", at, message, "select both ends of the joint in FreeCAD");
             return None;
         };
-        // The path from the assembly down; the last word of it is a face, an edge or a vertex.
+        // The path from the assembly; its last word is a face, an edge or a vertex.
         let mut path: Vec<&str> = sub.split('.').collect();
         path.pop();
         if name != root {
@@ -394,8 +395,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let first = path.iter().position(|p| self.bodies.contains_key(*p));
         let Some(first) = first else {
             let place = if sub.is_empty() { name } else { sub.as_str() };
-            let message = format!("`{label}` refers to `{place}`, which is no part of the assembly");
-            self.notes.problem_with("HP0803", at, message, "choose both ends of the joint in FreeCAD");
+            let message = format!("`{label}` refers to `{place}`, which is not a part of the assembly");
+            self.notes.problem_with("HP0803", at, message, "select both ends of the joint in FreeCAD");
             return None;
         };
         let body = self.bodies[path[first]];
@@ -408,16 +409,16 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             if object.is_elsewhere() {
                 if !rest.is_empty() {
                     let why = format!(
-                        "`{}` is in another document: its places in there are taken for none",
+                        "`{}` is in another document: positions within it are ignored",
                         rest.join(".")
                     );
                     self.notes.approximated("reference", label, at, why);
                 }
                 break;
             }
-            // What is in a body is drawn in the body's frame, but for sketches and datums, which have their own.
-            let shape = object.linked().and_then(|name| self.objects.get(name)).unwrap_or(object);
-            let has_frame = |name: &&str| self.objects.get(name).is_some_and(Object::is_drawn_in_its_frame);
+            // The content of a body is in the body frame, except for sketches and datums.
+            let shape = object.linked_object().and_then(|name| self.objects.get(name)).unwrap_or(object);
+            let has_frame = |name: &&str| self.objects.get(name).is_some_and(Object::has_own_frame);
             if shape.is_shape() && !rest.first().is_some_and(has_frame) {
                 break;
             }
@@ -440,7 +441,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         for (property, node) in &object.properties {
             if !OF_JOINTS.contains(property) {
                 let at = xml::at(object.text, *node);
-                let why = format!("the joint has a property `{property}` that is not known here");
+                let why = format!("the joint has an unknown property `{property}`");
                 self.notes.not_understood("property", label, at, why);
             }
         }
@@ -468,12 +469,12 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         };
         let ends = [1, 2].map(|k| self.marker(joint, k, root, outer));
         let [Some(i), Some(j)] = ends else { return };
-        let called = JointSource { kind: &kind, name: label, at };
-        let note = called.note(self.notes);
+        let source = ElementSource { kind: &kind, name: label, at };
+        let note = source.note(self.notes);
         let number = match type_name {
             "distance" => {
                 let elements = [1, 2].map(|k| self.element(joint, k));
-                return self.distance(called, elements, [i, j], distance.unwrap_or(0.0));
+                return self.distance(source, elements, [i, j], distance.unwrap_or(0.0));
             }
             "angle" if i.z().cross(j.z()).norm() > 1e-6 && i.body != j.body => {
                 self.notes.taken(&kind, label, at);
@@ -481,36 +482,36 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                     Joint::new(label, note, "angle", [i.body, j.body], i.pose.r).with_axes(i.z(), j.z()),
                 ))
             }
-            "angle" => join(&mut self.m, self.notes, called, "parallel", [i, j]),
-            other => join(&mut self.m, self.notes, called, other, [i, j]),
+            "angle" => join(&mut self.m, self.notes, source, "parallel", [i, j]),
+            other => join(&mut self.m, self.notes, source, other, [i, j]),
         };
         let Some(number) = number else { return };
         self.m.joints[number].limits = self.limits(joint, type_name, &i, &j);
         if has_limits {
-            self.notes.refused("limits", label, at, "drivers prescribe what moves: nothing stops at a limit");
+            self.notes.refused("limits", label, at, "limits are not supported: drivers prescribe the motion");
         }
         self.joints.insert(joint, MarkerJoint { number, kind: type_name, markers: [i, j] });
     }
 
-    /// Between which values a hinge or a slide may go, counted from the drawing.
+    /// Returns the limits of a hinge or slide, relative to the design configuration.
     fn limits(&self, joint: &'a str, kind: &str, i: &Marker, j: &Marker) -> Option<[f64; 2]> {
         let object = &self.objects[joint];
-        let drawn = offset(i, j);
-        let (what, drawn, per_unit) = match kind {
-            "revolute" => ("Angle", drawn.angle, 1_f64.to_radians()),
-            "translational" => ("Length", drawn.displacement, 1.0),
+        let nominal = offset(i, j);
+        let (what, nominal, per_unit) = match kind {
+            "revolute" => ("Angle", nominal.angle, 1_f64.to_radians()),
+            "translational" => ("Length", nominal.displacement, 1.0),
             _ => return None,
         };
         let limit = |end: &str| {
             let is_set = object.text_of(&format!("Enable{what}{end}")) == Some("true");
-            Some(object.number(&format!("{what}{end}")).filter(|_| is_set)? * per_unit - drawn)
+            Some(object.number(&format!("{what}{end}")).filter(|_| is_set)? * per_unit - nominal)
         };
         let ends = [limit("Min"), limit("Max")];
         let open = [f64::NEG_INFINITY, f64::INFINITY];
         (ends != [None, None]).then(|| [0, 1].map(|k| ends[k].unwrap_or(open[k])))
     }
 
-    /// Element that an end of a joint is on: `Face`, `Edge` or `Vertex`; or a whole part.
+    /// Returns the element at an end of a joint: `Face`, `Edge` or `Vertex`, or an empty text for a whole part.
     fn element(&self, joint: &'a str, k: usize) -> &'static str {
         let reference = self.objects[joint].link(&format!("Reference{k}"));
         let sub = reference.map(|(_, sub, _)| sub).unwrap_or_default();
@@ -518,10 +519,16 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         ["Face", "Edge", "Vertex"].into_iter().find(|e| last.starts_with(e)).unwrap_or_default()
     }
 
-    /// A distance between two surfaces, lines or points. The kind of surface of a face is in its shape alone; the
-    /// position of its frame in the design configuration, where the distance holds, mostly indicates it.
-    fn distance(&mut self, called: JointSource<'_>, elements: [&str; 2], ends: [Marker; 2], said: f64) {
-        // The face, or else the edge, comes first.
+    /// Adds a distance between two surfaces, lines or points. The type of surface of a face is only in its shape. It is
+    /// inferred from the frames in the design configuration, where the distance holds.
+    fn distance(
+        &mut self,
+        source: ElementSource<'_>,
+        elements: [&str; 2],
+        ends: [Marker; 2],
+        specified: f64,
+    ) {
+        // The face, or otherwise the edge, comes first.
         let rank = |e: &str| ["Face", "Edge", "Vertex"].iter().position(|x| *x == e).unwrap_or(3);
         let swapped = rank(elements[1]) < rank(elements[0]);
         let [i, j] = if swapped { [ends[1], ends[0]] } else { ends };
@@ -534,70 +541,70 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let square = i.z().dot(j.z()).abs() <= DRAWN;
         let shifted = Marker { body: i.body, pose: Pose { r: i.pose.r + i.z() * along, ..i.pose } };
         let how = match elements {
-            ["Vertex", "Vertex"] if near(said, 0.0) => "spherical",
+            ["Vertex", "Vertex"] if near(specified, 0.0) => "spherical",
             ["Vertex", "Vertex"] => "distance",
-            ["Face", "Face"] | ["Face", "Edge"] if parallel && near(along, said) => "planar",
-            ["Face", "Edge"] if square && near(along, said) => "line in plane",
-            ["Face" | "Edge", "Vertex"] if near(along, said) && !near(across, said) => "inplane",
+            ["Face", "Face"] | ["Face", "Edge"] if parallel && near(along, specified) => "planar",
+            ["Face", "Edge"] if square && near(along, specified) => "line in plane",
+            ["Face" | "Edge", "Vertex"] if near(along, specified) && !near(across, specified) => "inplane",
             ["Face" | "Edge", "Vertex"] => "point and axis",
             ["Face", "Face"] | ["Edge", "Edge"] if parallel => "axes",
             _ => "",
         };
         if i.body == j.body {
-            let why = "both its markers are on the same body";
-            self.notes.refused(called.kind, called.name, called.at, why);
+            let why = "its markers are on the same body";
+            self.notes.refused(source.kind, source.name, source.at, why);
             return;
         }
-        // What the joints tell of themselves is informed of the distance instead.
-        let told = self.notes.report.entries.len();
+        // The entries of the joints are replaced by one entry for the distance.
+        let entry_count = self.notes.report.entries.len();
         let name = match how {
             "spherical" => {
-                join(&mut self.m, self.notes, called, how, [i, j]);
+                join(&mut self.m, self.notes, source, how, [i, j]);
                 return;
             }
             "distance" if across + along.abs() > 0.0 => {
-                let rod = Joint::new(called.name, called.note(self.notes), how, [i.body, j.body], i.pose.r);
+                let rod = Joint::new(source.name, source.note(self.notes), how, [i.body, j.body], i.pose.r);
                 let mut rod = rod.between(i.pose.r, j.pose.r);
-                rod.length = Some(said.abs()).filter(|d| !is_drawn(&self.m, *d, gap.norm()));
+                rod.length = Some(specified.abs()).filter(|d| !equals_nominal(&self.m, *d, gap.norm()));
                 self.m.joint(rod);
-                self.notes.taken(called.kind, called.name, called.at);
+                self.notes.taken(source.kind, source.name, source.at);
                 return;
             }
             "planar" => {
-                join(&mut self.m, self.notes, called, "planar", [shifted, j]);
+                join(&mut self.m, self.notes, source, "planar", [shifted, j]);
                 "two planes"
             }
             "inplane" => {
-                join(&mut self.m, self.notes, called, "inplane", [shifted, j]);
+                join(&mut self.m, self.notes, source, "inplane", [shifted, j]);
                 "a point and a plane"
             }
             "line in plane" => {
-                join(&mut self.m, self.notes, called, "dot1", [i, j]);
-                join(&mut self.m, self.notes, called, "inplane", [shifted, j]);
+                join(&mut self.m, self.notes, source, "dot1", [i, j]);
+                join(&mut self.m, self.notes, source, "inplane", [shifted, j]);
                 "a line and a plane"
             }
             "point and axis" => {
-                linked(&mut self.m, self.notes, called, ["cylindrical", "spherical"], [i, j], None);
+                join_by_link(&mut self.m, self.notes, source, ["cylindrical", "spherical"], [i, j], None);
                 "a point and an axis"
             }
             "axes" => {
-                linked(&mut self.m, self.notes, called, ["revolute", "cylindrical"], [i, j], None);
+                join_by_link(&mut self.m, self.notes, source, ["revolute", "cylindrical"], [i, j], None);
                 "two axes"
             }
             _ => {
-                let why = "which surfaces it is between is not in the file, nor does it show: what it holds is held by a driver";
-                self.notes.refused(called.kind, called.name, called.at, why);
+                let why = "its types of surfaces are not in the file and cannot be inferred: a driver fixes the motion instead";
+                self.notes.refused(source.kind, source.name, source.at, why);
                 return;
             }
         };
-        self.notes.report.entries.truncate(told);
+        self.notes.report.entries.truncate(entry_count);
         let why = format!(
-            "between {name}, of {said} mm, as it is drawn; which surfaces were meant is not in the file"
+            "imported as a distance of {specified} mm between {name}, inferred from the design configuration; the types of surfaces are not in the file"
         );
-        self.notes.approximated(called.kind, called.name, called.at, why);
+        self.notes.approximated(source.kind, source.name, source.at, why);
     }
 
-    /// Racks, gears, belts and screws: couplers of the joints that carry their parts.
+    /// Adds racks, gears, belts and screws as couplers of the joints that carry their parts.
     fn relation(&mut self, joint: &'a str, root: &'a str, outer: Pose) {
         let object = &self.objects[joint];
         let (label, at) = (object.label(), object.at());
@@ -616,15 +623,16 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
         let hinges = ["revolute", "cylindrical"];
         let hinge = |m: Marker, axis: Vec3| {
-            carrying(self.joints.values(), m.body, &hinges, m.z()).map(|k| (k.number, way(k, m.body, axis)))
+            carrying_joint(self.joints.values(), m.body, &hinges, m.z())
+                .map(|k| (k.number, coordinate_sign(k, m.body, axis)))
         };
         let slide = |m: Marker| {
-            carrying(self.joints.values(), m.body, &["translational"], m.z())
-                .map(|k| (k.number, way(k, m.body, m.z())))
+            carrying_joint(self.joints.values(), m.body, &["translational"], m.z())
+                .map(|k| (k.number, coordinate_sign(k, m.body, m.z())))
         };
         let angle = |joint: usize| Coordinate { joint, name: "angle" };
         let terms = if kind == "RackPinion" {
-            // Either end may be the rack.
+            // Either end can be the rack.
             let [a, b] =
                 [(i, j), (j, i)].map(|(rack, pinion)| Some((slide(rack)?, hinge(pinion, pinion.z())?)));
             first.zip(a.or(b)).map(|(radius, ((rack, u), (pinion, v)))| {
@@ -641,32 +649,37 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         };
         match terms {
             Some(terms) => {
-                let note = JointSource { kind: &kind, name: label, at }.note(self.notes);
+                let note = ElementSource { kind: &kind, name: label, at }.note(self.notes);
                 self.m.coupler(label, note, terms);
-                self.notes.approximated(&kind, label, at, "a coupler of the joints that carry its two parts");
+                self.notes.approximated(
+                    &kind,
+                    label,
+                    at,
+                    "imported as a coupler of the joints that carry its two parts",
+                );
             }
             None => self.notes.refused(
                 &kind,
                 label,
                 at,
-                "no joints that carry its two parts along its axes, or no radii",
+                "it has no radii, or no joints along its axes carry its parts",
             ),
         }
     }
 
-    /// As the solver has it, one relation of the slide and the turn; a joint of its own where no others say how its
-    /// parts move.
+    /// Adds a screw as a single relation between slide and rotation, like the solver, or as a joint if no other joints
+    /// guide its parts.
     fn screw(&mut self, joint: &'a str, markers: [Marker; 2], lead: Option<f64>) {
         let object = &self.objects[joint];
-        let called = JointSource { kind: "Screw", name: object.label(), at: object.at() };
+        let source = ElementSource { kind: "Screw", name: object.label(), at: object.at() };
         let Some(lead) = lead else {
-            let message = format!("the screw `{}` has no pitch", called.name);
-            self.notes.problem_with("HP0804", called.at, message, "give it a distance other than zero");
+            let message = format!("the screw `{}` has no pitch", source.name);
+            self.notes.problem_with("HP0804", source.at, message, "give it a non-zero distance");
             return;
         };
         let joints: Vec<MarkerJoint> = self.joints.values().copied().collect();
-        if screw(&mut self.m, self.notes, called, &joints, markers, lead).is_none()
-            && let Some(number) = join(&mut self.m, self.notes, called, "screw", markers)
+        if couple_screw(&mut self.m, self.notes, source, &joints, markers, lead).is_none()
+            && let Some(number) = join(&mut self.m, self.notes, source, "screw", markers)
         {
             self.m.joints[number].lead = Some(lead);
             self.joints.insert(joint, MarkerJoint { number, kind: "screw", markers });
@@ -681,7 +694,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let joint = object.link("Joint").map(|(name, ..)| name).unwrap_or_default();
         let function = object.text_of("Formula").unwrap_or_default();
         let Some(joint) = self.joints.get(joint).copied() else {
-            return Err(format!("there is no joint `{joint}` that it could drive"));
+            return Err(format!("it drives the joint `{joint}`, which does not exist or is not supported"));
         };
         let kind = hardpoint::joint::ALL.iter().find(|k| k.name == joint.kind);
         if !kind.is_some_and(|k| k.coordinates.iter().any(|c| c.name == name)) {
@@ -691,14 +704,14 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         if self.m.is_driven(coordinate) {
             return Err("the joint is driven already".into());
         }
-        let drawn = offset(&joint.markers[0], &joint.markers[1]);
-        let text = counted(
+        let nominal = offset(&joint.markers[0], &joint.markers[1]);
+        let text = relative_to_nominal(
             &law::translate(function, Language::FreeCad)?,
-            if turns { drawn.angle } else { drawn.displacement },
+            if turns { nominal.angle } else { nominal.displacement },
             turns,
         );
-        let law = if law::constant(&text) == Some(0.0) { Law::Held } else { Law::Text(text) };
-        let note = JointSource { kind: "motion", name: label, at }.note(self.notes);
+        let law = if law::constant(&text) == Some(0.0) { Law::Fixed } else { Law::Text(text) };
+        let note = ElementSource { kind: "motion", name: label, at }.note(self.notes);
         self.m.driver(label, note, Drives::Coordinate(coordinate), law);
         self.notes.taken("motion", label, at);
         Ok(())

@@ -1,50 +1,50 @@
-//! Functions of the time in other programs' languages, as expressions of model files.
+//! Translation of functions of the time from other programs to expressions of model files.
 
-/// Whose language it is.
+/// Language of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Language {
     /// Adams/Solver: `30D` is an angle, `**` a power, names in any case.
     Adams,
-    /// OndselSolver: `2.0d` is a number, `<n>` a new line, what is in quotes a comment.
+    /// OndselSolver: `2.0d` is a number, `<n>` a line break, text in quotes a comment.
     Ondsel,
-    /// FreeCAD's formulas of a simulation: as those of Ondsel.
+    /// FreeCAD's formulas of a simulation, similar to those of Ondsel.
     FreeCad,
 }
 
-/// Expressions may be nested so deep.
+/// Maximum depth of nested expressions.
 const DEEPEST: usize = 60;
-/// Number of bytes of a written-out expression at most: functions of other programs repeat their arguments.
+/// Maximum number of bytes of a translated expression: some functions of other programs repeat their arguments.
 const LONGEST: usize = 4 << 20;
-/// No function repeats an argument more often than this, but for the sums over all that follow.
+/// Maximum number of repetitions of an argument by a function, except for the sums over all further arguments.
 const REPEATED: usize = 8;
 
-/// The error of an expression that grows beyond all use.
+/// Error for an expression that exceeds [`LONGEST`].
 fn too_long() -> String {
-    format!("written out it would be longer than {} MiB", LONGEST >> 20)
+    format!("its translation would be longer than {} MiB", LONGEST >> 20)
 }
 
-/// The expression of model files that says the same, in SI's radians.
+/// Translates a function to an expression of model files; angles in rad.
 ///
 /// # Errors
-/// Why there is none.
+/// Returns the reason why the function has no equivalent.
 pub fn translate(text: &str, language: Language) -> Result<String, String> {
     translate_with(text, language, "t")
 }
 
-/// The same, where the source's time is another expression of seconds.
+/// Translates a function; `time` is the expression of the source's time in terms of seconds.
 ///
 /// # Errors
-/// As there.
+/// See [`translate`].
 pub fn translate_with(text: &str, language: Language, time: &'static str) -> Result<String, String> {
     let mut parser = Parser { tokens: tokens(text, language)?, at: 0, depth: 0, language, time };
     let out = parser.sum()?;
     match parser.tokens.get(parser.at) {
         None => Ok(out),
-        Some(extra) => Err(format!("`{}` is not expected there", extra.shown())),
+        Some(extra) => Err(format!("`{}` is not expected here", extra.text())),
     }
 }
 
-/// The value of a translated expression that does not depend on the time.
+/// Returns the value of a translated expression that does not depend on the time.
 pub fn constant(text: &str) -> Option<f64> {
     let law = hardpoint::law::Law::parse(text).ok()?;
     let [a, b] = [0.0, 0.7311].map(|t| law.at(t).0[0]);
@@ -59,7 +59,7 @@ enum Token {
 }
 
 impl Token {
-    fn shown(&self) -> &str {
+    fn text(&self) -> &str {
         match self {
             Self::Number(s) | Self::Name(s) => s,
             Self::Sign(s) => s,
@@ -80,7 +80,7 @@ fn tokens(text: &str, language: Language) -> Result<Vec<Token>, String> {
             let end = bytes[k + 1..].iter().position(|c| *c == '"');
             k += end.map_or(bytes.len() - k, |n| n + 2);
         } else if language == Language::Ondsel && bytes[k..].starts_with(&['<', 'n', '>']) {
-            // A new line.
+            // A line break.
             k += 3;
         } else if c.is_ascii_digit() || (c == '.' && next.is_ascii_digit()) {
             let start = k;
@@ -101,9 +101,9 @@ fn tokens(text: &str, language: Language) -> Result<Vec<Token>, String> {
                 number.push('e');
                 number.extend(&bytes[from..k]);
             }
-            let value: f64 = number.parse().map_err(|_| format!("`{number}` is no number"))?;
+            let value: f64 = number.parse().map_err(|_| format!("`{number}` is not a number"))?;
             if !value.is_finite() {
-                return Err(format!("`{number}` is too large a number"));
+                return Err(format!("`{number}` is too large"));
             }
             let after = bytes.get(k + 1).is_some_and(|c| c.is_alphanumeric() || *c == '_');
             if mark_is(&bytes, k, 'd') && !after {
@@ -134,7 +134,7 @@ fn tokens(text: &str, language: Language) -> Result<Vec<Token>, String> {
                 (')' | '}' | ']', _) => ")",
                 (',' | ';', _) => ",",
                 (':', _) => ":",
-                _ => return Err(format!("`{c}` is not expected there")),
+                _ => return Err(format!("`{c}` is not expected here")),
             };
             k += 1;
             out.push(Token::Sign(sign));
@@ -169,7 +169,7 @@ impl Parser {
             return Ok(());
         }
         Err(match self.tokens.get(self.at) {
-            Some(found) => format!("`{sign}` is expected where `{}` is", found.shown()),
+            Some(found) => format!("`{sign}` is expected instead of `{}`", found.text()),
             None => format!("`{sign}` is missing at the end"),
         })
     }
@@ -190,7 +190,7 @@ impl Parser {
         Ok(out)
     }
 
-    /// Text written so far, unless it is too long.
+    /// Checks the length of the translated text.
     fn bounded(&self, out: &str) -> Result<(), String> {
         if out.len() > LONGEST { Err(too_long()) } else { Ok(()) }
     }
@@ -233,7 +233,7 @@ impl Parser {
 
     fn atom(&mut self) -> Result<String, String> {
         let Some(token) = self.tokens.get(self.at).cloned() else {
-            return Err("a value is missing at its end".into());
+            return Err("a value is missing at the end".into());
         };
         self.at += 1;
         match token {
@@ -243,7 +243,7 @@ impl Parser {
                 self.take(")")?;
                 Ok(format!("({inner})"))
             }
-            Token::Sign(s) => Err(format!("`{s}` is where a value is expected")),
+            Token::Sign(s) => Err(format!("`{s}` is found where a value is expected")),
             Token::Name(name) if self.sign() == Some("(") => {
                 self.at += 1;
                 let mut arguments = Vec::new();
@@ -266,12 +266,12 @@ impl Parser {
                 "dtor" => Ok("(pi/180)".into()),
                 "rtod" => Ok("(180/pi)".into()),
                 "e" if self.language != Language::Adams => Ok("exp(1)".into()),
-                other => Err(format!("`{other}` depends on more than the time, or is not known")),
+                other => Err(format!("`{other}` is unknown, or depends on more than the time")),
             },
         }
     }
 
-    /// A function of the source by those of model files.
+    /// Translates a function call.
     fn call(&self, name: &str, x: &[String]) -> Result<String, String> {
         let each: usize = x.iter().map(String::len).sum();
         let first: usize = x.iter().take(3).map(String::len).sum();
@@ -282,10 +282,10 @@ impl Parser {
             if x.len() == n {
                 Ok(format!("{to}({})", x.join(", ")))
             } else {
-                Err(format!("`{name}` takes {n} values, and has {}", x.len()))
+                Err(format!("`{name}` requires {n} arguments, not {}", x.len()))
             }
         };
-        // How far x has gone from x0 to x1: 0 before, 1 after.
+        // Fraction of the interval from x0 to x1 before x, limited to 0..1.
         let gone =
             |x: &[String]| format!("min(1, max(0, (({}) - ({}))/(({}) - ({}))))", x[0], x[1], x[3], x[1]);
         let degrees = |inner: &str| format!("{inner}(({})*pi/180)", x.first().map_or("0", String::as_str));
@@ -323,7 +323,7 @@ impl Parser {
                     h1 = x[4]
                 ))
             }
-            // Half a sine from h0 to h1.
+            // Half a sine wave from h0 to h1.
             ("havsin", 5) => Ok(format!(
                 "((({h0}) + ({h1}))/2 - (({h1}) - ({h0}))/2*cos(pi*{u}))",
                 h0 = x[2],
@@ -353,7 +353,7 @@ impl Parser {
                 };
                 Ok(format!("({})", x[3..].iter().enumerate().map(term).collect::<Vec<_>>().join(" + ")))
             }
-            // The recurrence of Chebyshev's polynomials, written out as far as it is bearable.
+            // Chebyshev polynomials, expanded up to degree four.
             ("cheby", 3..=7) => {
                 let u = format!("(({}) - ({}))", x[0], x[1]);
                 let t = [
@@ -366,7 +366,7 @@ impl Parser {
                 let terms: Vec<String> = x[2..].iter().zip(&t).map(|(a, t)| format!("({a})*{t}")).collect();
                 Ok(format!("({})", terms.join(" + ")))
             }
-            _ => Err(format!("the function `{name}` with {} values has no equivalent", x.len())),
+            _ => Err(format!("the function `{name}` with {} arguments has no equivalent", x.len())),
         }
     }
 }
@@ -408,7 +408,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_equivalent_is_named() {
+    fn functions_without_equivalent_are_reported() {
         for (text, word) in [
             ("DX(1,2)", "dx"),
             ("AKISPL(TIME", "`)`"),
@@ -419,7 +419,7 @@ mod tests {
             let why = translate(text, Language::Adams).unwrap_err();
             assert!(why.contains(word), "{why}");
         }
-        // Functions that repeat their arguments, in each other, grow without bounds.
+        // Nested functions that repeat their arguments grow exponentially.
         let steps = format!("{}time{}", "step5(".repeat(50), ", 0, 0, 1, 1)".repeat(50));
         assert!(translate(&steps, Language::Adams).unwrap_err().contains("longer"));
         let signs = format!("{}time{}", "sign(1, ".repeat(50), ")".repeat(50));

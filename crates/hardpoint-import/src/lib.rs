@@ -1,8 +1,8 @@
-//! Mechanisms of other programs as model files of Hardpoint.
+//! Import of mechanisms from other programs as Hardpoint model files.
 //!
-//! Each format is one file that makes a [`Mechanism`] of a source and indicates what became of each element of it
-//! ([`Report`]). One writer makes the model file; what the source leaves undriven is held, or driven where it plainly
-//! is the input, and the report says so.
+//! Each format is a module that converts a source to a [`Mechanism`] and records the outcome of each of its elements
+//! ([`Report`]). One writer creates the model file. Motions that the source leaves undriven are fixed, or driven if
+//! there is only one; the report lists them.
 //!
 //! ```
 //! let urdf = r#"
@@ -61,54 +61,54 @@ pub use mechanism::Mechanism;
 pub use report::{ElementOutcome, Entry, ImportErrors, ImportLog, Report, SourceLocation, SourceSpan};
 pub use series::{Difference, Series, StoredPose};
 
-/// Access to other files of a source: their bytes by the path that the source names, if they can be read.
+/// Access to other files of a source: returns the bytes of a path that the source names, if it can be read.
 pub type Resolve<'r> = &'r dyn Fn(&str) -> Option<Vec<u8>>;
 
-/// A mechanism of another program, as a model file.
+/// Imported mechanism.
 #[derive(Clone, Debug)]
 pub struct ImportedModel {
-    /// The model file's text.
+    /// Text of the model file.
     pub text: String,
     /// Outcome of every element of the source.
     pub report: Report,
-    /// Files that it refers to, by their paths from its folder.
+    /// Files that the model refers to, by their paths from its folder.
     pub files: Vec<(String, Vec<u8>)>,
-    /// The motion that the source has stored.
+    /// Motion stored in the source.
     pub series: Option<Series>,
-    /// Reason why the model cannot be driven, if so. The text is complete all the same, for a user to correct it.
+    /// Reason why the model cannot be analysed, if any. The text is complete nevertheless, for the user to correct.
     pub fault: Option<ImportErrors>,
 }
 
-/// A source under way through its importer.
+/// Source that is being imported.
 pub struct Input<'s> {
-    /// Bytes.
+    /// Bytes of the source.
     pub bytes: &'s [u8],
-    /// The text of it.
+    /// Text of the source.
     pub text: &'s str,
-    /// Name without folder and ending.
+    /// File name without folder and extension.
     pub stem: &'s str,
-    /// Other files that it names.
+    /// Access to other files.
     pub resolve: Resolve<'s>,
     /// Shapes of bodies.
     pub(crate) shapes: shapes::Shapes,
-    /// The motion that it has stored.
+    /// Motion stored in the source.
     pub series: Option<Series>,
 }
 
-/// A format.
+/// Import format.
 #[derive(Clone, Copy)]
 pub struct Format {
-    /// The name by which it can be requested.
+    /// Name, as in `--format NAME`.
     pub name: &'static str,
     /// Description of the format.
     pub about: &'static str,
-    /// Endings of its files' names.
+    /// File extensions, without the dot.
     pub endings: &'static [&'static str],
-    /// True if a text (the first part of it) looks like it.
-    looks: fn(&str) -> bool,
-    /// Makes a mechanism of it; problems go to the notes.
+    /// Returns true if the beginning of a text looks like this format.
+    recognises: fn(&str) -> bool,
+    /// Reads a source into a mechanism; errors are added to the log.
     read: fn(&mut Input<'_>, &mut ImportLog) -> Option<Mechanism>,
-    /// True if it is no text.
+    /// True for binary formats.
     binary: bool,
 }
 
@@ -118,7 +118,7 @@ impl std::fmt::Debug for Format {
     }
 }
 
-/// All formats.
+/// All import formats.
 pub const FORMATS: &[Format] = &[
     asmt::FORMAT,
     adams::FORMAT,
@@ -133,12 +133,12 @@ pub const FORMATS: &[Format] = &[
 ];
 
 impl Format {
-    /// The format of that name.
+    /// Returns the format with a name.
     pub fn named(name: &str) -> Option<&'static Self> {
         FORMATS.iter().find(|f| f.name == name)
     }
 
-    /// The format of a file, by what is in it and how its name ends; what is in it counts more.
+    /// Returns the format of a file from its content, or otherwise from its extension.
     pub fn of(bytes: &[u8], name: &str) -> Option<&'static Self> {
         let ending = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
         let by_name = |f: &&Self| f.endings.contains(&ending.as_str());
@@ -146,44 +146,45 @@ impl Format {
             return FORMATS.iter().find(|f| f.binary && !TABLES.contains(&ending.as_str()));
         }
         let head = decoded(&bytes[..bytes.len().min(LOOKED_AT)]);
-        let alike: Vec<&Self> = FORMATS.iter().filter(|f| !f.binary && (f.looks)(&head)).collect();
+        let alike: Vec<&Self> = FORMATS.iter().filter(|f| !f.binary && (f.recognises)(&head)).collect();
         let by_look = alike.iter().copied().find(by_name).or(alike.first().copied());
         by_look.or_else(|| FORMATS.iter().find(by_name))
     }
 }
 
-/// Formats of robots, which name no points to look at.
+/// Robot formats, which define no points to observe.
 const ROBOTS: [&str; 3] = ["urdf", "sdf", "mjcf"];
-/// Tables, which many keep their hardpoints in.
+/// Extensions of tables, a frequent form of hardpoint lists.
 const TABLES: [&str; 7] = ["csv", "tsv", "txt", "xlsx", "xlsm", "xls", "ods"];
 /// Number of bytes of a file that are examined to identify its format.
 const LOOKED_AT: usize = 1 << 16;
-/// Places in files of robots agree to about this part of the mechanism's size.
+/// Relative accuracy of positions in robot files, as a fraction of the mechanism size.
 const FEW_DIGITS: f64 = 1e-4;
-/// Larger sources are not read, bytes.
+/// Maximum size of a source, bytes.
 pub const LARGEST: usize = 64 << 20;
 
-/// Makes a model file of a source, whose format shows. `resolve` gives the files that it names: includes, meshes.
+/// Imports a source, whose format is detected. `resolve` returns the files that the source names: included files and
+/// meshes.
 ///
 /// # Errors
-/// Everything that is wrong with it.
+/// Returns all errors of the source.
 pub fn import(bytes: &[u8], name: &str, resolve: Resolve<'_>) -> Result<ImportedModel, ImportErrors> {
     import_with(&Options::default(), bytes, name, resolve)
 }
 
-/// Options for reading a source.
+/// Options of an import.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Format; none to recognise it.
+    /// Format; `None` to detect it.
     pub format: Option<Format>,
-    /// Loops that the source leaves open.
+    /// Joints that close loops of the source.
     pub closings: Vec<Closing>,
 }
 
-/// The same, as the options say.
+/// Imports a source with options.
 ///
 /// # Errors
-/// As there.
+/// See [`import`].
 pub fn import_with(
     options: &Options,
     bytes: &[u8],
@@ -198,33 +199,33 @@ pub fn import_with(
                 return Err(is_sibling(&notes, sibling));
             }
             let message = notes.diagnostic("HP0801", None, "the format of the file is not recognised");
-            let message = message.note(format!("known are {}", known()));
-            let message = message.help("if it is one of these, name it, like `--format adams`");
+            let message = message.note(format!("the known formats are {}", known()));
+            let message = message.help("if it is one of these, specify it, like `--format adams`");
             let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
             let table = TABLES.contains(&ending.as_str());
-            let help = "a table of hardpoints begins a model from a template: \
+            let help = "to create a model from a template with a table of hardpoints, run \
                         `hardpoint new NAME --template TEMPLATE --hardpoints FILE`";
-            Err(notes.only(if table { message.help(help) } else { message }))
+            Err(notes.single_error(if table { message.help(help) } else { message }))
         }
     }
 }
 
-/// The formats, with what they are.
+/// Lists all formats with their descriptions.
 fn known() -> String {
     let known: Vec<String> = FORMATS.iter().map(|f| format!("`{}` ({})", f.name, f.about)).collect();
     known.join(", ")
 }
 
-/// HP0801: a file of a kind that is not read, with the file to export in place of it.
+/// HP0801 for a file of a related but unsupported kind, with the file to export instead.
 fn is_sibling(notes: &ImportLog, sibling: &siblings::Sibling) -> ImportErrors {
-    let message = format!("the file is {}: that is not read", sibling.what);
-    notes.only(notes.diagnostic("HP0801", None, message).help(sibling.help))
+    let message = format!("unsupported file: {}", sibling.what);
+    notes.single_error(notes.diagnostic("HP0801", None, message).help(sibling.help))
 }
 
-/// The same, of a format that is known.
+/// Imports a source of a known format.
 ///
 /// # Errors
-/// As there.
+/// See [`import`].
 pub fn import_as(
     format: &Format,
     bytes: &[u8],
@@ -244,7 +245,7 @@ fn read_as(
     let text = if format.binary { String::new() } else { decoded(bytes) };
     let mut notes = ImportLog::new(name, &text);
     let whole = |notes: &ImportLog, code, message: String, help: &str| {
-        Err(notes.only(notes.diagnostic(code, None, message).help(help)))
+        Err(notes.single_error(notes.diagnostic(code, None, message).help(help)))
     };
     if bytes.len() > LARGEST {
         let message = format!(
@@ -267,14 +268,14 @@ fn read_as(
     let mut mechanism = (format.read)(&mut input, &mut notes);
     if let Some(m) = mechanism.as_mut().filter(|_| notes.problem_count() == 0) {
         if is_robot {
-            closing::of_exporters(m, &mut notes);
+            closing::close_cut_by_exporters(m, &mut notes);
         }
         closing::close(m, &mut notes, closings);
-        closing::pairs(m, &mut notes);
+        closing::report_likely_pairs(m, &mut notes);
     }
-    // A file that cannot be read is perhaps of another kind: that says more than what it lacks of this one.
+    // If a file cannot be read, its kind is more informative than its errors as this format.
     let head = || decoded(&bytes[..bytes.len().min(LOOKED_AT)]);
-    let is_like_it = format.binary || (format.looks)(&head());
+    let is_like_it = format.binary || (format.recognises)(&head());
     let failed = notes.problem_count() > 0 || mechanism.is_none();
     if let (true, false, Some(sibling)) = (failed, is_like_it, siblings::of(&head(), name)) {
         return Err(is_sibling(&notes, sibling));
@@ -283,12 +284,12 @@ fn read_as(
         return Err(problems);
     }
     let Some(mut m) = mechanism else {
-        let message = format!("there is no mechanism in the file; it was read as {}", format.about);
+        let message = format!("the file has no mechanism; it was read as {}", format.about);
         let head = head();
-        let other = FORMATS.iter().find(|f| f.name != format.name && !f.binary && (f.looks)(&head));
+        let other = FORMATS.iter().find(|f| f.name != format.name && !f.binary && (f.recognises)(&head));
         return match other {
             Some(other) => {
-                let help = format!("import it with `--format {}`: it looks like {}", other.name, other.about);
+                let help = format!("import it with `--format {}`: it resembles {}", other.name, other.about);
                 whole(&notes, "HP0806", message, &help)
             }
             None if is_like_it => {
@@ -296,23 +297,21 @@ fn read_as(
             }
             None => {
                 let d = notes.diagnostic("HP0806", None, message);
-                let d = d.note(format!("it looks like none of the formats that are read: {}", known()));
-                Err(notes.only(d.help("export the mechanism in one of these formats")))
+                let d = d.note(format!("it resembles none of the known formats: {}", known()));
+                Err(notes.single_error(d.help("export the mechanism in one of these formats")))
             }
         };
     };
     let count = m.bodies.len().max(m.joints.len() / 2);
     if count > robot::MOST_PARTS {
         let message = format!("the mechanism has {} bodies and {} joints", m.bodies.len(), m.joints.len());
-        let help = format!(
-            "at most {} bodies are read: leave out of the source what need not move",
-            robot::MOST_PARTS
-        );
+        let help =
+            format!("reduce it to at most {} bodies by removing parts that need not move", robot::MOST_PARTS);
         return whole(&notes, "HP0802", message, &help);
     }
     let numbers = m.joints.iter().flat_map(|j| j.at.iter().chain(&j.axis).chain(&j.axis2));
     if !numbers.chain(m.hardpoints.iter().map(|h| &h.1)).all(|v| v.is_finite()) {
-        let message = "places of joints are beyond all numbers".to_owned();
+        let message = "positions of joints are not finite".to_owned();
         return whole(&notes, "HP0804", message, "correct the coordinates in the source");
     }
     let about = report::printable(&format!("Imported from {base} ({})", format.about));
@@ -320,30 +319,30 @@ fn read_as(
         if is_robot {
             finish::end_point(&mut m, &mut notes);
         }
-        // Robots say which frames meet: only what few digits leave open is closed where it is.
+        // Robot files define which frames coincide: only gaps due to few digits are closed.
         let closed = if is_robot { FEW_DIGITS } else { f64::INFINITY };
         let fault = finish::finish(&mut m, &mut notes, closed);
-        finish::remark(&m, &mut notes, is_robot);
+        finish::remark_undriven(&m, &mut notes, is_robot);
         if fault.is_none() {
-            cases::of_vehicle(&mut m, &mut notes);
+            cases::add_vehicle_cases(&mut m, &mut notes);
         }
         fault
     } else {
         let message = "the topology is not recognised: only the hardpoints are written";
-        let help = "write bodies and joints between them, as in docs/file-format.md";
+        let help = "add bodies and joints as described in docs/file-format.md";
         let message = notes.diagnostic("HP0807", None, message);
         let unplaced: Vec<String> = m.unplaced.iter().flatten().map(|name| format!("`{name}`")).collect();
         let message = match &m.unplaced {
             Some(names) if names.is_empty() => {
-                message.note("all their names are known, and a member or the wheel's centre is missing")
+                message.note("all names are known, but a member or the wheel centre is missing")
             }
-            Some(_) => message.note(format!("their names tell of no member: {}", unplaced.join(", "))),
+            Some(_) => message.note(format!("names without a known member: {}", unplaced.join(", "))),
             None => message,
         };
         Some(message.help(help))
     };
     let files = input.shapes.files(&mut m, &format!("{}_meshes", shapes::file_name(stem)));
-    let fault = fault.map(|diagnostic| notes.only(diagnostic));
+    let fault = fault.map(|diagnostic| notes.single_error(diagnostic));
     Ok(ImportedModel {
         text: write::text(&m, &about),
         report: notes.report,
@@ -353,13 +352,14 @@ fn read_as(
     })
 }
 
-/// The text of a file: UTF-8 or UTF-16, or else Latin-1, as older programs write; without a byte order mark.
+/// Decodes the text of a file: UTF-8 or UTF-16, otherwise Latin-1, as older programs write it; without a byte order
+/// mark.
 fn decoded(bytes: &[u8]) -> String {
     let wide = |unit: fn([u8; 2]) -> u16| {
         let units = bytes.chunks_exact(2).map(|b| unit([b[0], b[1]]));
         char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
     };
-    // By its mark, or by a first letter that is ASCII.
+    // Detected by the mark, or by an ASCII first character.
     let text = match bytes {
         [0xff, 0xfe, ..] | [b' '..=b'~', 0, ..] => wide(u16::from_le_bytes),
         [0xfe, 0xff, ..] | [0, b' '..=b'~', ..] => wide(u16::from_be_bytes),
@@ -369,13 +369,13 @@ fn decoded(bytes: &[u8]) -> String {
         },
     };
     let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
-    // Lines of old machines end with a carriage return alone.
+    // Some old systems end lines with a carriage return alone.
     if text.contains('\n') { text } else { text.replace('\r', "\n") }
 }
 
 impl Input<'_> {
-    /// The bytes of a file that the source names, as it is written or without the folders before that only its author
-    /// has.
+    /// Returns the bytes of a file that the source names: by the path as written, or without leading folders, which may
+    /// exist on the author's machine only.
     fn file(&self, path: &str) -> Option<Vec<u8>> {
         let local =
             ["file://", "package://", "model://"].iter().find_map(|p| path.strip_prefix(p)).unwrap_or(path);
@@ -384,8 +384,8 @@ impl Input<'_> {
         std::iter::once(local.to_owned()).chain(tails).find_map(|p| (self.resolve)(&p))
     }
 
-    /// Shows a mesh that the source names, or indicates why not.
-    #[expect(clippy::too_many_arguments, reason = "what is shown, where, and what is informed of it")]
+    /// Adds a mesh that the source names, or reports why it is missing.
+    #[expect(clippy::too_many_arguments, reason = "a mesh, its pose, and its position in the source")]
     fn mesh(
         &mut self,
         body: usize,
@@ -396,13 +396,13 @@ impl Input<'_> {
         at: Option<SourceSpan>,
         notes: &mut ImportLog,
     ) {
-        let shown = match self.file(path) {
+        let added = match self.file(path) {
             Some(bytes) => self.shapes.file(body, place, scale, path, &bytes),
-            None => Err("there is no such file beside the source".into()),
+            None => Err("the file does not exist next to the source".into()),
         };
-        match shown {
+        match added {
             Ok(()) => notes.taken("mesh", name, at),
-            Err(why) => shapes::not_shown(notes, "mesh", name, at, &format!("`{path}`: {why}")),
+            Err(why) => shapes::report_missing_shape(notes, "mesh", name, at, &format!("`{path}`: {why}")),
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Live axles by the names of their hardpoints: rods between the body of the vehicle and one rigid axle, a Panhard rod
-//! or a Watt linkage across, springs and dampers.
+//! Live axles recognised by the names of their hardpoints: rods between the vehicle body and one rigid axle, a Panhard
+//! rod or a Watt linkage, springs and dampers.
 
 use std::collections::BTreeMap;
 
@@ -12,38 +12,38 @@ use crate::report::{ImportLog, SourceSpan};
 use crate::sides::SIDES;
 use crate::turn::X;
 
-/// Words of members that are rods.
+/// Words in the names of rods.
 const RODS: [&str; 9] = ["link", "arm", "rod", "bar", "panhard", "track", "trackbar", "strut", "watts"];
-/// Words of members that only a live axle has.
+/// Words in the names of members that only live axles have.
 const OWN: [&str; 6] = ["panhard", "track_bar", "trackbar", "watts", "watt", "axle_tube"];
-/// Words of the ends of rods: on the vehicle, on the axle or its lever.
+/// Suffixes of the ends of rods: on the vehicle, and on the axle or its lever.
 const ENDS: [&[&str]; 2] = [
     &["frame", "chassis", "body", "inner", "inboard"],
     &["axle", "outer", "outboard", "lever", "crank", "bellcrank"],
 ];
-/// Words of ends of which the one nearer to the wheel is on the axle.
+/// Suffixes of ends of which the one nearer to the wheel is on the axle.
 const LENGTHWISE: [&str; 2] = ["front", "rear"];
-/// Words of the pivot of a Watt linkage's lever.
+/// Suffixes of the pivot of a Watt linkage's lever.
 const PIVOT: [&str; 3] = ["pivot", "centre", "center"];
 
-/// The hardpoints of one side, or those without one.
+/// Hardpoints of one side, or those without a side.
 #[derive(Clone, Debug, Default)]
-pub struct Places {
-    /// By their names in small letters.
+pub struct SideHardpoints {
+    /// Hardpoints by their names in lower case.
     pub named: Vec<(String, Vec3)>,
 }
 
-/// A rod as its ends come.
+/// Ends of a rod that have been read.
 #[derive(Clone, Copy, Debug, Default)]
 struct Rod {
-    /// On the vehicle and on the axle.
+    /// Ends on the vehicle and on the axle.
     ends: [Option<Vec3>; 2],
-    /// In front and in the rear.
+    /// Front and rear end.
     lengthwise: [Option<Vec3>; 2],
 }
 
 impl Rod {
-    /// Returns its ends, on the vehicle first; `centre` is that of the wheel, or of the axle.
+    /// Returns the ends, that on the vehicle first; `centre` is the centre of the wheel or axle.
     fn places(&self, centre: Vec3) -> Option<[Vec3; 2]> {
         let from = |p: Vec3| (p.x - centre.x).abs();
         let [front, rear] = self.lengthwise;
@@ -58,29 +58,29 @@ impl Rod {
     }
 }
 
-/// Splits a name into a member and the word of its end.
+/// Splits a name into a member and the suffix of its end.
 fn member(name: &str) -> Option<(&str, &str)> {
     let (member, end) = name.rsplit_once('_')?;
     let member = member.strip_suffix("_to").unwrap_or(member);
     member.split('_').any(|word| RODS.contains(&word) || word == "watt").then_some((member, end))
 }
 
-/// Returns whether these names are those of a live axle.
-pub fn names_one(places: &[Places; 3]) -> bool {
+/// Returns true if the names are those of a live axle.
+pub fn names_one(places: &[SideHardpoints; 3]) -> bool {
     let names = places.iter().flat_map(|p| &p.named);
     names.into_iter().any(|(name, _)| OWN.iter().any(|word| name.contains(word)))
 }
 
-/// Returns whether a leaf spring guides the axle.
-pub fn has_leaf_springs(places: &[Places; 3]) -> bool {
+/// Returns true if a leaf spring guides the axle.
+pub fn has_leaf_springs(places: &[SideHardpoints; 3]) -> bool {
     let names = places.iter().flat_map(|p| &p.named);
     names
         .into_iter()
         .any(|(name, _)| ["leaf", "shackle", "spring_eye"].iter().any(|word| name.contains(word)))
 }
 
-/// The rods of all sides by side and member, and the pivot of a Watt linkage.
-fn rods(places: &[Places; 3]) -> (BTreeMap<(usize, &str), Rod>, Option<Vec3>) {
+/// Returns the rods of all sides by side and member, and the pivot of a Watt linkage.
+fn rods(places: &[SideHardpoints; 3]) -> (BTreeMap<(usize, &str), Rod>, Option<Vec3>) {
     let mut rods: BTreeMap<(usize, &str), Rod> = BTreeMap::new();
     let mut pivot = None;
     for (k, side) in places.iter().enumerate() {
@@ -99,12 +99,12 @@ fn rods(places: &[Places; 3]) -> (BTreeMap<(usize, &str), Rod>, Option<Vec3>) {
     (rods, pivot)
 }
 
-/// Builds the axle of the places of the left and right side and of those in between; `corners` are the known hardpoints
-/// of both sides. Returns whether its rods leave it one or two freedoms.
+/// Builds the axle from the hardpoints of the left and right side and those in between; `corners` are the known
+/// hardpoints of both sides. Returns true if the rods leave the axle one or two degrees of freedom.
 pub fn build(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    places: &[Places; 3],
+    places: &[SideHardpoints; 3],
     corners: &[Corner; 2],
     at: Option<SourceSpan>,
 ) -> bool {
@@ -120,7 +120,7 @@ pub fn build(
         .collect();
     let watt = rods.iter().filter(|(_, member, _)| is_watt(member)).count();
     let lever = pivot.filter(|_| watt == 2);
-    // Both rods of a Watt linkage and its lever hold one freedom.
+    // Both rods of a Watt linkage and its lever remove one degree of freedom.
     let held = rods.len() - if lever.is_some() { 1 } else { 0 };
     if !(4..=5).contains(&held) || (watt > 0 && lever.is_none()) {
         return false;
@@ -142,9 +142,9 @@ pub fn build(
         let carrier = lever.filter(|_| is_watt(member)).unwrap_or(axle);
         axle::rod(m, notes, &name, [GROUND, carrier], *places, at);
     }
-    // Five rods leave one freedom: both wheels go up and down together.
+    // Five rods leave one degree of freedom: both wheels move vertically together.
     let shared = (held == 5).then(|| {
-        let why = "its five rods leave it one freedom: it goes up and down, and rolls in its bushings alone, which are not in the file";
+        let why = "its five rods leave one degree of freedom: it heaves, but does not roll, since its bushings are not in the file";
         notes.approximated("axle", "axle", at, why);
         bump(m, notes, "", at, axle, middle)
     });
@@ -174,8 +174,8 @@ fn is_watt(member: &str) -> bool {
     member.split('_').any(|word| ["watt", "watts"].contains(&word))
 }
 
-/// Names that tell of no member: neither a place of a suspension that is known, nor one of two ends of a rod.
-pub fn unplaced(places: &[Places; 3], is_known: impl Fn(&str) -> bool) -> Vec<String> {
+/// Returns the names that are neither a known hardpoint of a suspension nor one of the two ends of a rod.
+pub fn unplaced(places: &[SideHardpoints; 3], is_known: impl Fn(&str) -> bool) -> Vec<String> {
     let (rods, _) = rods(places);
     let mut out = Vec::new();
     for (k, side) in places.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Models of Lotus Suspension Analysis (`.shk`): one corner by the names of its points.
+//! Models of Lotus Suspension Analysis (`.shk`): one corner, recognised by the names of its points.
 
 use hardpoint::space::Vec3;
 
@@ -7,22 +7,22 @@ use crate::mechanism::{Mechanism, end_named};
 use crate::report::{ImportLog, SourceSpan};
 use crate::{Format, Input};
 
-/// See the module.
+/// Lotus format.
 pub const FORMAT: Format = Format {
     name: "lotus",
     about: "Lotus Suspension Analysis model",
     endings: &["shk"],
-    looks: |text| text.lines().any(|l| l.trim() == "TEMP_SETTINGS"),
+    recognises: |text| text.lines().any(|l| l.trim() == "TEMP_SETTINGS"),
     read,
     binary: false,
 };
 
-/// A point is reported in that many lines: its name, five of words, and three of numbers.
+/// Number of lines of a point in the template: its name, five lines of words, and three of numbers.
 const LINES_OF_A_POINT: usize = 9;
-/// A template has that many parts and points at most.
+/// Maximum number of parts and points of a template.
 const MOST: usize = 500;
 
-/// A line and where it is.
+/// Line with its position.
 #[derive(Clone, Copy)]
 struct Line<'t> {
     text: &'t str,
@@ -30,7 +30,7 @@ struct Line<'t> {
 }
 
 impl Line<'_> {
-    /// Numbers, if it has nothing else.
+    /// Returns the numbers of a line, or none if it contains anything else.
     fn numbers(&self) -> Vec<f64> {
         let words = self.text.split(|c: char| c.is_whitespace() || c == ',').filter(|w| !w.is_empty());
         let list: Option<Vec<f64>> =
@@ -55,7 +55,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         notes.problem_with(
             "HP0803",
             None,
-            "there is no block `TEMP_SETTINGS`, which names the points",
+            "the block `TEMP_SETTINGS` with the names of the points is missing",
             "save the model from Lotus again",
         );
         return None;
@@ -66,7 +66,12 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         .collect();
     let Some(block) = blocks.first() else {
         let help = "save the model from Lotus again";
-        notes.problem_with("HP0803", None, "there is no block `FRONT SUSPENSION` or `REAR SUSPENSION`", help);
+        notes.problem_with(
+            "HP0803",
+            None,
+            "the block `FRONT SUSPENSION` or `REAR SUSPENSION` is missing",
+            help,
+        );
         return None;
     };
     for other in &blocks[1..] {
@@ -74,7 +79,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             "block",
             lines[*other].text,
             Some(lines[*other].at),
-            "the points are named for one suspension: the first is taken",
+            "the names of the points apply to one suspension: only the first is imported",
         );
     }
     let (mut places, mut scalars) = (Vec::new(), Vec::new());
@@ -86,25 +91,25 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         }
     }
     if places.len() < names.len() {
-        let message = format!("there are {} names of points and {} places", names.len(), places.len());
+        let message = format!("the file has {} names of points, but {} positions", names.len(), places.len());
         notes.problem_with(
             "HP0803",
             Some(lines[*block].at),
             message,
-            "each place is a line of three numbers below the block's second line",
+            "write each position as a line of three numbers below the second line of the block",
         );
         return None;
     }
     let mut m = Mechanism::new(input.stem, "mm", "deg");
-    // Lotus' x points back, y to the right; the arm's pivots tell where somebody has it forward.
+    // Lotus uses x back and y right. The pivots of the arm show if a file has x forward.
     let at = |role| names.iter().position(|name| role_of(name) == Some(role)).map(|k| places[k].0);
     let pivots = [[Role::LowerFront, Role::LowerRear], [Role::UpperFront, Role::UpperRear]];
     let forward =
         pivots.iter().find_map(|[front, rear]| Some(at(*front)?[0] > at(*rear)?[0])).unwrap_or(false);
     let why = if forward {
-        "taken as they are: x points forward, as the front pivots lie"
+        "not rotated: according to the front pivots, x points forward"
     } else {
-        "turned half round about z, so that x points forward and y left"
+        "rotated by 180 deg about z, so that x points forward and y left"
     };
     notes.approximated("axes", "", Some(lines[*block].at), why);
     let radius = scalars.first().map(|(x, _)| *x).filter(|r| *r > 0.0);
@@ -113,18 +118,18 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             "radius",
             &format!("{radius}"),
             Some(*at),
-            "the first number behind the points is taken for the wheel's loaded radius",
+            "the first number after the points is assumed to be the loaded radius of the wheel",
         );
     }
     for (number, at) in scalars.iter().skip(1) {
-        let why = "the file does not name what it is";
+        let why = "the file does not name its meaning";
         notes.refused("number", &format!("{number}"), Some(*at), why);
     }
     let end = lines[*block].text.split_whitespace().next().and_then(end_named);
     let mut corner = Corner { at: Some(lines[*block].at), rack: true, radius, end, ..Corner::default() };
     for (name, (place, at)) in names.iter().zip(&places) {
         if name.contains("C of G") {
-            let why = "a centre of gravity without a mass in the file";
+            let why = "the centre of gravity has no mass in the file";
             notes.refused("point", name, Some(*at), why);
             continue;
         }
@@ -141,7 +146,8 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     (!m.hardpoints.is_empty()).then_some(m)
 }
 
-/// The names of the points: behind the template's name, the numbers of parts and points, and the names of the parts.
+/// Returns the names of the points. They follow the name of the template, the numbers of parts and points, and the
+/// names of the parts.
 fn names<'t>(lines: &[Line<'t>], settings: usize, notes: &mut ImportLog) -> Option<Vec<&'t str>> {
     let header = lines.get(settings + 3);
     let counts = header.map(Line::numbers).unwrap_or_default();
@@ -153,8 +159,8 @@ fn names<'t>(lines: &[Line<'t>], settings: usize, notes: &mut ImportLog) -> Opti
         }
         _ => {
             let at = header.map(|h| h.at);
-            let help = "three lines below `TEMP_SETTINGS` stand how many parts and points there are";
-            notes.problem_with("HP0804", at, "the numbers of parts and points cannot be read", help);
+            let help = "write the numbers of parts and points three lines below `TEMP_SETTINGS`";
+            notes.problem_with("HP0804", at, "the numbers of parts and points are not readable", help);
             return None;
         }
     };
@@ -169,7 +175,7 @@ fn names<'t>(lines: &[Line<'t>], settings: usize, notes: &mut ImportLog) -> Opti
         notes.problem_with(
             "HP0802",
             at,
-            "the names of the points are not where they should be",
+            "the names of the points are not at their expected lines",
             "save the model from Lotus again",
         );
         return None;
@@ -177,14 +183,13 @@ fn names<'t>(lines: &[Line<'t>], settings: usize, notes: &mut ImportLog) -> Opti
     Some(names)
 }
 
-/// From x back, y right to x forward, y left.
+/// Converts from x back, y right to x forward, y left.
 pub fn half_round([x, y, z]: [f64; 3]) -> Vec3 {
     // Zero is written without a sign.
     Vec3::from([0.0 - x, 0.0 - y, z])
 }
 
-/// The ball joint of a strut's arm may have its own name; a spindle point outboard of the centre is the axis all the
-/// same.
+/// Removes a spindle point that coincides with the wheel centre, since it defines no axis.
 fn complete(corner: &mut Corner) {
     let [spindle, centre] = [Role::Spindle, Role::WheelCentre].map(|r| corner.points.get(&r).copied());
     if let (Some(spindle), Some(centre)) = (spindle, centre)

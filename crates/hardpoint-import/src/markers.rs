@@ -1,4 +1,4 @@
-//! Joints between two markers, each a frame on a body: as Adams, Ondsel and FreeCAD have them.
+//! Joints between two markers, each a frame on a body, as in Adams, Ondsel and FreeCAD.
 
 use std::collections::BTreeSet;
 
@@ -10,53 +10,53 @@ use crate::report::{ImportLog, SourceSpan};
 use crate::straighten::MEANT;
 use crate::turn::{angle_about, from_z_and_x, none};
 
-/// Markers nearer than this part of the mechanism's size are at one place: files have about seven digits.
+/// Distance below which markers coincide, as a fraction of the mechanism size: files have about seven digits.
 const APART: f64 = 1e-7;
-/// Axes nearer than this, in rad, are one: files have about six digits.
+/// Angle below which axes are parallel, rad: files have about six digits.
 const AWRY: f64 = 1e-5;
 
-/// A frame on a body, in the design configuration.
+/// Frame on a body in the design configuration.
 #[derive(Clone, Copy, Debug)]
 pub struct Marker {
-    /// The body.
+    /// Body.
     pub body: usize,
-    /// The frame, global.
+    /// Pose of the frame, global.
     pub pose: Pose,
 }
 
 impl Marker {
-    /// Z axis.
+    /// Z axis, global.
     pub fn z(&self) -> Vec3 {
         self.pose.rot.cols[2]
     }
 
-    /// X axis.
+    /// X axis, global.
     pub fn x(&self) -> Vec3 {
         self.pose.rot.cols[0]
     }
 
-    /// Y axis.
+    /// Y axis, global.
     pub fn y(&self) -> Vec3 {
         self.pose.rot.cols[1]
     }
 }
 
-/// Offset of the second marker from the first, as the coordinates of joints count.
+/// Joint coordinates of the second marker relative to the first.
 pub struct Offset {
-    /// Turn about the first's z, in rad.
+    /// Rotation about z of the first marker, rad.
     pub angle: f64,
-    /// Way along the first's z.
+    /// Displacement along z of the first marker.
     pub displacement: f64,
 }
 
-/// See [`Offset`].
+/// Returns the offset of marker j from marker i.
 pub fn offset(i: &Marker, j: &Marker) -> Offset {
     Offset { angle: angle_about(i.z(), i.x(), j.x()), displacement: i.z().dot(j.pose.r - i.pose.r) }
 }
 
 /// Name and position of a joint in the source.
 #[derive(Clone, Copy, Debug)]
-pub struct JointSource<'s> {
+pub struct ElementSource<'s> {
     /// Kind in the source.
     pub kind: &'s str,
     /// Name.
@@ -65,8 +65,8 @@ pub struct JointSource<'s> {
     pub at: Option<SourceSpan>,
 }
 
-impl JointSource<'_> {
-    /// For a comment in the model file.
+impl ElementSource<'_> {
+    /// Returns a comment for the model file.
     pub fn note(&self, notes: &ImportLog) -> String {
         match self.at.and_then(|at| notes.place(at)) {
             Some(place) => format!("{} {}, {place}", self.kind, self.name),
@@ -75,27 +75,26 @@ impl JointSource<'_> {
     }
 }
 
-/// Adds a joint of a type whose geometry follows from two markers, body i's and body j's; its number. What is drawn
-/// open is reported.
+/// Adds a joint between two markers, of body i and body j, and returns its index. Gaps and misalignments are reported.
 pub fn join(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: JointSource<'_>,
+    source: ElementSource<'_>,
     kind: &'static str,
     [i, j]: [Marker; 2],
 ) -> Option<usize> {
     if i.body == j.body {
-        notes.refused(called.kind, called.name, called.at, "both its markers are on the same body");
+        notes.refused(source.kind, source.name, source.at, "its markers are on the same body");
         return None;
     }
     if ["fixed", "orientation"].contains(&kind) {
-        return crate::robot::weld(m, notes, called, kind, [i, j]);
+        return crate::robot::weld(m, notes, source, kind, [i, j]);
     }
     let reach = [i, j].iter().map(|k| k.pose.r.norm()).fold(m.size(), f64::max);
     let gap = j.pose.r - i.pose.r;
     let across = gap - i.z() * i.z().dot(gap);
     let (mut open, mut awry) = (false, false);
-    let mut joint = Joint::new(called.name, called.note(notes), kind, [i.body, j.body], j.pose.r);
+    let mut joint = Joint::new(source.name, source.note(notes), kind, [i.body, j.body], j.pose.r);
     let parallel = |a: Vec3, b: Vec3| a.cross(b).norm() <= AWRY;
     match kind {
         "spherical" => open = gap.norm() > APART * reach,
@@ -123,10 +122,10 @@ pub fn join(
             let square = (b - a * a.dot(b)).unit();
             let Some(square) = square else {
                 notes.refused(
-                    called.kind,
-                    called.name,
-                    called.at,
-                    "its two axes are parallel where they should be square",
+                    source.kind,
+                    source.name,
+                    source.at,
+                    "its two axes are parallel, but must be perpendicular",
                 );
                 return None;
             };
@@ -141,43 +140,45 @@ pub fn join(
         }
         _ => {}
     }
-    // What is turned by more than digits that are missing is closed: by a frame on body i that turns, with what the
-    // joint has there.
+    // A misalignment beyond missing digits is assembled: a frame on body i rotates, and carries the geometry of the
+    // joint there.
     let turn = if awry { turn_between(kind, [&i, &j]) } else { None };
     if let Some(turn) = turn {
         let holds_point = ["revolute", "universal"].contains(&kind);
-        let drawn = Pose { rot: j.pose.rot, r: if holds_point { i.pose.r } else { j.pose.r } };
-        let note = called.note(notes);
-        joint.bodies[0] = crate::robot::turned_frame(m, called.name, note, i.body, drawn, turn);
+        let nominal = Pose { rot: j.pose.rot, r: if holds_point { i.pose.r } else { j.pose.r } };
+        let note = source.note(notes);
+        joint.bodies[0] = crate::robot::turned_frame(m, source.name, note, i.body, nominal, turn);
         let back = turn.transpose();
         joint.axis = joint.axis.map(|axis| back * axis);
         joint.axis2 = joint.axis2.map(|axis| back * axis);
     }
     if open && ["revolute", "spherical", "universal", "constant_velocity"].contains(&kind) {
         joint = joint.between(i.pose.r, j.pose.r);
-        let why = "its markers lie apart in the design configuration: the mechanism is assembled there before it moves";
-        notes.approximated(called.kind, called.name, called.at, why);
+        let why =
+            "its markers are apart in the design configuration: the mechanism is assembled before it moves";
+        notes.approximated(source.kind, source.name, source.at, why);
     } else if open {
-        let why = "its markers do not meet in the design configuration: it is taken as closed where the bodies stand";
-        notes.approximated(called.kind, called.name, called.at, why);
+        let why = "its markers do not coincide in the design configuration: the joint is closed as drawn";
+        notes.approximated(source.kind, source.name, source.at, why);
     } else if turn.is_some() {
-        let why = "its markers' axes are turned against each other in the file: the mechanism is assembled there before it moves";
-        notes.approximated(called.kind, called.name, called.at, why);
+        let why =
+            "the axes of its markers are misaligned in the file: the mechanism is assembled before it moves";
+        notes.approximated(source.kind, source.name, source.at, why);
     } else if awry {
-        let why = "its markers' axes are turned against each other in the file: the first marker's axis is taken for both";
-        notes.approximated(called.kind, called.name, called.at, why);
+        let why = "the axes of its markers are misaligned in the file: the axis of the first marker is used for both";
+        notes.approximated(source.kind, source.name, source.at, why);
     } else {
-        notes.taken(called.kind, called.name, called.at);
+        notes.taken(source.kind, source.name, source.at);
     }
     Some(m.joint(joint))
 }
 
-/// Rotation of body j that makes the axes of a joint agree and keeps the angle about them; none where no rotation does,
-/// or one that is only digits that are missing.
+/// Returns the rotation of body j that aligns the axes of a joint and preserves the angle about them; `None` if there
+/// is none, or if it is within the missing digits.
 fn turn_between(kind: &str, [i, j]: [&Marker; 2]) -> Option<Mat3> {
     let turn = if ["universal", "dot1"].contains(&kind) {
         let (a, b) = (i.z(), j.z());
-        // About the common normal of both pins, until they are square
+        // Rotation about the common normal of both pins that makes them perpendicular
         let normal = a.cross(b).unit()?;
         let square = normal.cross(a);
         from_z_and_x(square, normal)? * from_z_and_x(b, normal)?.transpose()
@@ -190,22 +191,21 @@ fn turn_between(kind: &str, [i, j]: [&Marker; 2]) -> Option<Mat3> {
     (turn.angle_to(none()) > MEANT).then_some(turn)
 }
 
-/// Numbers of a source that differ by less than this part of the mechanism's size from what is drawn say the same as
-/// that.
+/// Relative tolerance for a specified length that equals the nominal one, as a fraction of the mechanism size.
 const SAID: f64 = 1e-6;
 
-/// True if a length that the source says is the drawn one.
-pub fn is_drawn(m: &Mechanism, said: f64, drawn: f64) -> bool {
-    (said - drawn).abs() <= SAID * m.size().max(said.abs())
+/// Returns true if a specified length equals that in the design configuration.
+pub fn equals_nominal(m: &Mechanism, specified: f64, nominal: f64) -> bool {
+    (specified - nominal).abs() <= SAID * m.size().max(specified.abs())
 }
 
-/// Two joints with a link between them, which has a body of its own: the parts keep a distance from axis to axis, or
-/// from an axis to a point. The first joint, of body i, and the link's, are about z of the first marker; of the second
-/// the type is reported.
-pub fn linked(
+/// Adds two joints with a link between them that has its own body: the parts keep a distance between two axes, or
+/// between an axis and a point. The first joint, between body i and the link, is about z of the first marker; the type
+/// of the second joint is given.
+pub fn join_by_link(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: JointSource<'_>,
+    source: ElementSource<'_>,
     kinds: [&'static str; 2],
     [i, j]: [Marker; 2],
     distance: Option<f64>,
@@ -213,58 +213,59 @@ pub fn linked(
     let axis = i.z();
     let foot = i.pose.r + axis * axis.dot(j.pose.r - i.pose.r);
     let across = j.pose.r - foot;
-    let drawn = across.norm();
-    let distance = distance.map_or(drawn, f64::abs);
+    let nominal = across.norm();
+    let distance = distance.map_or(nominal, f64::abs);
     if distance == 0.0 {
         let kind = match kinds {
             ["revolute", "revolute"] => "revolute",
             [.., "spherical"] => "inline",
             _ => "cylindrical",
         };
-        join(m, notes, called, kind, [i, j]);
+        join(m, notes, source, kind, [i, j]);
         return;
     }
     if i.body == j.body {
-        notes.refused(called.kind, called.name, called.at, "both its markers are on the same body");
+        notes.refused(source.kind, source.name, source.at, "its markers are on the same body");
         return;
     }
     let along = across.unit().unwrap_or_else(|| axis.any_perpendicular());
     let end = foot + along * distance;
-    let same = is_drawn(m, distance, drawn);
+    let same = equals_nominal(m, distance, nominal);
     let rot = from_z_and_x(axis, along).unwrap_or_else(none);
-    let link = m.body(&format!("{}_link", called.name), called.note(notes), Some(Pose { rot, r: foot }));
-    let first = Joint::new(&format!("{}_i", called.name), called.note(notes), kinds[0], [i.body, link], foot);
+    let link = m.body(&format!("{}_link", source.name), source.note(notes), Some(Pose { rot, r: foot }));
+    let first = Joint::new(&format!("{}_i", source.name), source.note(notes), kinds[0], [i.body, link], foot);
     let skew = kinds[1] != "spherical" && axis.cross(j.z()).norm() > AWRY;
     let there = Marker { body: link, pose: Pose { rot: from_z_and_x(axis, j.x()).unwrap_or(rot), r: end } };
     let turn = if skew { turn_between(kinds[1], [&there, &j]) } else { None };
     m.joint(first.along(axis));
     let (mut carrier, mut second_axis) = (link, axis);
     if let Some(turn) = turn {
-        let drawn = Pose { rot: j.pose.rot, r: if same { j.pose.r } else { end } };
-        let name = format!("{}_j", called.name);
-        carrier = crate::robot::turned_frame(m, &name, called.note(notes), link, drawn, turn);
+        let nominal = Pose { rot: j.pose.rot, r: if same { j.pose.r } else { end } };
+        let name = format!("{}_j", source.name);
+        carrier = crate::robot::turned_frame(m, &name, source.note(notes), link, nominal, turn);
         second_axis = turn.transpose() * axis;
     }
     let second =
-        Joint::new(&format!("{}_j", called.name), called.note(notes), kinds[1], [carrier, j.body], j.pose.r);
+        Joint::new(&format!("{}_j", source.name), source.note(notes), kinds[1], [carrier, j.body], j.pose.r);
     let second = if kinds[1] == "spherical" { second } else { second.along(second_axis) };
     m.joint(if same { second } else { second.between(end, j.pose.r) });
     if skew || !same {
         let how = if turn.is_some() {
-            "its axes are turned against each other in the file: the mechanism is assembled there before it moves"
+            "its axes are misaligned in the file: the mechanism is assembled before it moves"
         } else if skew {
-            "its axes are turned against each other in the file: the first is taken for both"
+            "its axes are misaligned in the file: the first axis is used for both"
         } else {
-            "it is drawn at another distance: the mechanism is assembled to the one that is said"
+            "its distance differs in the design configuration: the mechanism is assembled to the specified distance"
         };
-        notes.approximated(called.kind, called.name, called.at, how);
+        notes.approximated(source.kind, source.name, source.at, how);
     } else {
-        notes.taken(called.kind, called.name, called.at);
+        notes.taken(source.kind, source.name, source.at);
     }
 }
 
-/// Coordinates of sliding along an axis and rotation about it of body j relative to body i: coordinates of joints with
-/// their factors. Either of one joint between both, or of those that carry them on a third body.
+/// Returns the displacement along an axis and the rotation about it of body j relative to body i, as sums of joint
+/// coordinates with factors. The coordinates are those of one joint between both bodies, or of joints that carry both
+/// on a third body.
 pub fn relative(
     joints: &[MarkerJoint],
     [i, j]: [usize; 2],
@@ -272,7 +273,7 @@ pub fn relative(
 ) -> Option<[Vec<(Coordinate, f64)>; 2]> {
     let bases = joints.iter().flat_map(|k| k.markers.map(|m| m.body));
     let bases: BTreeSet<usize> = bases.chain([i, j]).collect();
-    // The joint between both, if there is one, is met with body i as the base.
+    // A joint between both bodies is found with body i as the base.
     [i, j].into_iter().chain(bases).find_map(|base| {
         let [mut slides, mut turns] = [Vec::new(), Vec::new()];
         for (body, sign) in [(i, -1.0), (j, 1.0)].into_iter().filter(|(body, _)| *body != base) {
@@ -283,7 +284,7 @@ pub fn relative(
                 if !is_along || !bodies.contains(&body) || !bodies.contains(&base) {
                     continue;
                 }
-                let factor = sign * way(joint, body, axis);
+                let factor = sign * coordinate_sign(joint, body, axis);
                 for (name, list) in [("displacement", &mut slides), ("angle", &mut turns)] {
                     let has = ALL
                         .iter()
@@ -302,11 +303,12 @@ pub fn relative(
     })
 }
 
-/// Couples what a screw couples, its parts held by other joints; none where no joints say how they slide and turn.
-pub fn screw(
+/// Adds the coupler of a screw whose parts are guided by other joints; `None` if no joints define the sliding and
+/// rotation.
+pub fn couple_screw(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: JointSource<'_>,
+    source: ElementSource<'_>,
     joints: &[MarkerJoint],
     [i, j]: [Marker; 2],
     pitch: f64,
@@ -315,24 +317,24 @@ pub fn screw(
     // z - pitch/(2 pi) angle = 0
     let per_rad = pitch / std::f64::consts::TAU;
     let turns = turns.into_iter().map(|(c, factor)| (c, -per_rad * factor));
-    m.coupler(called.name, called.note(notes), slides.into_iter().chain(turns).collect());
-    notes.taken(called.kind, called.name, called.at);
+    m.coupler(source.name, source.note(notes), slides.into_iter().chain(turns).collect());
+    notes.taken(source.kind, source.name, source.at);
     Some(())
 }
 
-/// A joint that was made of two markers.
+/// Joint between two markers.
 #[derive(Clone, Copy, Debug)]
 pub struct MarkerJoint {
-    /// Number.
+    /// Index of the joint.
     pub number: usize,
-    /// Type.
+    /// Joint type.
     pub kind: &'static str,
-    /// The markers of body i and of body j.
+    /// Markers on body i and body j.
     pub markers: [Marker; 2],
 }
 
-/// The joint of one of these types that carries a body, its axis along this one.
-pub fn carrying<'j>(
+/// Returns a joint of one of these types that carries a body and has a parallel axis.
+pub fn carrying_joint<'j>(
     mut joints: impl Iterator<Item = &'j MarkerJoint>,
     body: usize,
     kinds: &[&str],
@@ -344,20 +346,20 @@ pub fn carrying<'j>(
     })
 }
 
-/// Sign of a joint's coordinate for a body and an axis.
-pub fn way(joint: &MarkerJoint, body: usize, axis: Vec3) -> f64 {
+/// Sign of a joint's coordinate for the motion of a body along or about an axis.
+pub fn coordinate_sign(joint: &MarkerJoint, body: usize, axis: Vec3) -> f64 {
     let sign = if joint.markers[1].body == body { 1.0 } else { -1.0 };
     sign * joint.markers[0].z().dot(axis).signum()
 }
 
-/// A law that counts from what it counts from in the source, made to count from the drawing; of angles, by the shorter
-/// way round.
-pub fn counted(text: &str, drawn: f64, turns: bool) -> String {
+/// Converts a law of the source to one that is zero in the design configuration, where the source's coordinate is
+/// `nominal`. Angles are reduced by whole turns.
+pub fn relative_to_nominal(text: &str, nominal: f64, turns: bool) -> String {
     use std::f64::consts::TAU;
     let begins = hardpoint::law::Law::parse(text).map_or(0.0_f64, |law| law.at(0.0).0[0]);
-    let rounds = if turns && begins.is_finite() { ((begins - drawn) / TAU).round() } else { 0.0 };
-    let drawn = if drawn.abs() < 1e-12 { 0.0 } else { drawn };
-    match drawn + rounds * TAU {
+    let rounds = if turns && begins.is_finite() { ((begins - nominal) / TAU).round() } else { 0.0 };
+    let nominal = if nominal.abs() < 1e-12 { 0.0 } else { nominal };
+    match nominal + rounds * TAU {
         0.0 => text.to_owned(),
         d if d > 0.0 => format!("{text} - {d}"),
         d => format!("{text} + {}", -d),
@@ -365,7 +367,7 @@ pub fn counted(text: &str, drawn: f64, turns: bool) -> String {
 }
 
 impl Marker {
-    /// A frame at a place, its z along an axis; none where that has no direction.
+    /// Returns a marker with z along an axis; `None` if the axis is null.
     pub fn along(body: usize, at: Vec3, axis: Vec3) -> Option<Self> {
         let rot = from_z_and_x(axis, axis.any_perpendicular())?;
         Some(Self { body, pose: Pose { rot, r: at } })

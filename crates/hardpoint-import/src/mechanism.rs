@@ -1,15 +1,15 @@
-//! Common form of all formats: bodies, joints, couplers, drivers in the design configuration. Importers fill it; one
-//! writer makes a model file of it.
+//! Common representation of all formats: bodies, joints, couplers and drivers in the design configuration. Importers
+//! fill it; one writer creates the model file.
 
 use std::collections::{HashMap, HashSet};
 
 use hardpoint::model::{Vehicle, VehicleEnd};
 use hardpoint::space::{Mat3, Pose, Vec3};
 
-/// The body that does not move: the first of every mechanism.
+/// Index of the ground body, the first body of every mechanism.
 pub const GROUND: usize = 0;
 
-/// A mechanism between two formats. Coordinates are global, in the units that it names.
+/// Imported mechanism. Coordinates are global, in the units that it names.
 #[derive(Clone, Debug)]
 pub struct Mechanism {
     /// Name, for headings.
@@ -18,31 +18,31 @@ pub struct Mechanism {
     pub length: &'static str,
     /// Unit of every angle, as model files name it.
     pub angle: &'static str,
-    /// Places that the source names, whether anything is there or not.
+    /// Named points of the source, whether a joint is there or not.
     pub hardpoints: Vec<(String, Vec3)>,
-    /// The bodies; the first is ground.
+    /// Bodies; the first is ground.
     pub bodies: Vec<Body>,
-    /// The joints.
+    /// Joints.
     pub joints: Vec<Joint>,
-    /// Linear relations of joint coordinates.
+    /// Couplers: linear relations of joint coordinates.
     pub couplers: Vec<Coupler>,
     /// Drivers.
     pub drivers: Vec<Driver>,
-    /// Points whose motion is wanted.
+    /// Points whose motion is measured.
     pub points: Vec<Point>,
     /// Road wheels.
     pub wheels: Vec<Wheel>,
-    /// Figures of the vehicle; lengths are in the mechanism's unit.
+    /// Parameters of the vehicle; lengths are in the unit of the mechanism.
     pub vehicle: Vehicle,
-    /// The driver that steers the wheels.
+    /// Index of the driver that steers the wheels.
     pub steering: Option<usize>,
-    /// Motions of its own, each by some drivers while the others are held.
+    /// Cases: motions of some drivers while the others are fixed.
     pub cases: Vec<Case>,
-    /// Hardpoints of the source that no member is at, where its topology is not recognised and these are known.
+    /// Hardpoints of the source without a member, if the topology is not recognised and these are known.
     pub unplaced: Option<Vec<String>>,
-    /// Design variables that it cannot follow, by the names that the writer would give them.
-    pub unfollowed: Vec<String>,
-    /// The output times: when they end, and how many intervals there are.
+    /// Names of the inadmissible design variables, as the writer would name them.
+    pub inadmissible: Vec<String>,
+    /// Output times.
     pub times: Option<Times>,
     /// Masses of the bodies.
     pub masses: Vec<Mass>,
@@ -50,34 +50,34 @@ pub struct Mechanism {
     pub forces: Vec<Force>,
     /// Acceleration of gravity, m/s^2.
     pub gravity: Option<Vec3>,
-    /// Frames that the source names, each on a body: the ends of loops that it does not close.
+    /// Named frames of the source, each on a body: possible ends of open loops.
     pub frames: Vec<NamedFrame>,
-    /// Frames that turn from where they are drawn to where they belong, before the mechanism moves.
+    /// Frames that rotate from their drawn to their assembled orientation before the mechanism moves.
     pub turned: Vec<TurnedFrame>,
-    /// Names that are taken, by what they are of.
+    /// Names in use, by the kind of object.
     names: HashMap<&'static str, Names>,
 }
 
-/// A frame between two bodies whose markers are turned against each other in the design configuration.
+/// Frame between two bodies whose markers are misaligned in the design configuration.
 #[derive(Clone, Copy, Debug)]
 pub struct TurnedFrame {
-    /// The hinge about which it turns.
+    /// Index of the hinge about which it rotates.
     pub joint: usize,
-    /// The driver that turns it.
+    /// Index of the driver that rotates it.
     pub driver: usize,
-    /// By how much, rad.
+    /// Angle of rotation, rad.
     pub angle: f64,
 }
 
-/// Names of things of one kind.
+/// Names in use of one kind of object.
 #[derive(Clone, Debug, Default)]
 struct Names {
     taken: HashSet<String>,
-    /// The last number behind a name that is wanted more than once.
+    /// Last suffix of a name that is used more than once.
     numbers: HashMap<String, usize>,
 }
 
-/// Mass of a body: about its centre, along the global axes in the design configuration.
+/// Mass of a body; the inertia is about its centre of mass, along the global axes in the design configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mass {
     /// Name in the model file.
@@ -86,13 +86,13 @@ pub struct Mass {
     pub body: usize,
     /// Centre.
     pub centre: Vec3,
-    /// In kg.
+    /// Mass, kg.
     pub mass: f64,
-    /// Inertia matrix, kg m^2; none of a point mass.
+    /// Inertia matrix, kg m^2; `None` for a point mass.
     pub inertia: Option<Mat3>,
 }
 
-/// A motion of some drivers while all others are held.
+/// Motion of some drivers while all others are fixed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
     /// Name in the model file.
@@ -101,14 +101,14 @@ pub struct Case {
     pub laws: Vec<(usize, String)>,
 }
 
-/// A spring with a damper.
+/// Spring with a damper.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Force {
     /// Name in the model file.
     pub name: String,
     /// Name in the source.
     pub note: String,
-    /// On what it acts.
+    /// Point of application.
     pub on: ForceOn,
     /// Characteristic.
     pub spring: Spring,
@@ -119,50 +119,51 @@ pub struct Force {
 pub struct Spring {
     /// Stiffness.
     pub stiffness: f64,
-    /// Damping, per speed.
+    /// Damping coefficient.
     pub damping: f64,
-    /// The coordinate, counted from the drawing, or the length at which it has no force.
+    /// Coordinate, relative to the design configuration, or length at which the spring has no force.
     pub free: Option<f64>,
-    /// Tension in the design configuration, N, where the source gives that instead.
+    /// Tension in the design configuration, N, if the source defines it instead.
     pub preload: Option<f64>,
-    /// Points of extension beyond the free length and tension, N, beside the stiffness.
+    /// Points `[extension, tension]` of a nonlinear spring: extension beyond the free length, tension in N, in addition
+    /// to the stiffness.
     pub extension: Vec<[f64; 2]>,
 }
 
 /// Object that a spring acts on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ForceOn {
-    /// A joint's coordinate.
+    /// A joint coordinate.
     Coordinate(Coordinate),
-    /// Two points, each of a body.
+    /// Two points, each on a body.
     Points([(usize, Vec3); 2]),
 }
 
-/// A frame that the source names.
+/// Named frame of the source.
 #[derive(Clone, Debug)]
 pub struct NamedFrame {
     /// Name in the source.
     pub name: String,
-    /// The body that it is on.
+    /// Body that carries it.
     pub body: usize,
     /// The frame, global.
     pub pose: Pose,
-    /// True for a frame and nothing else, which may be the end of a loop.
+    /// True for a frame without mass or shape, which may be the end of a loop.
     pub bare: bool,
 }
 
 /// Output times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Times {
-    /// The first.
+    /// First output time, s.
     pub start: f64,
-    /// The last.
+    /// Last output time, s.
     pub end: f64,
     /// Number of intervals.
     pub steps: usize,
 }
 
-/// A body.
+/// Body.
 #[derive(Clone, Debug)]
 pub struct Body {
     /// Name in the model file.
@@ -175,43 +176,44 @@ pub struct Body {
     pub mesh: Option<Mesh>,
 }
 
-/// The shape of a body.
+/// Shape of a body.
 #[derive(Clone, Debug)]
 pub struct Mesh {
-    /// The file, from the model's folder; its coordinates are those of the body's frame, in the mechanism's unit.
+    /// Path of the file from the folder of the model; its coordinates are in the body frame, in the unit of the
+    /// mechanism.
     pub file: String,
 }
 
-/// A joint.
+/// Joint.
 #[derive(Clone, Debug)]
 pub struct Joint {
     /// Name in the model file.
     pub name: String,
     /// Name in the source.
     pub note: String,
-    /// The joint type, as model files name it.
+    /// Joint type, as in model files.
     pub kind: &'static str,
     /// Bodies i and j.
     pub bodies: [usize; 2],
-    /// Place, or one on each body.
+    /// Location, or one location on each body.
     pub at: Vec<Vec3>,
     /// Axis.
     pub axis: Option<Vec3>,
-    /// Two places that its axis goes through, where the source has it so: it follows them.
+    /// Two points that define its axis, if the source does so: the axis follows them.
     pub through: Option<[Vec3; 2]>,
     /// Second axis.
     pub axis2: Option<Vec3>,
     /// Advance of a screw per turn.
     pub lead: Option<f64>,
-    /// Length of a rod, where the source says another than the drawn one.
+    /// Length of a rod, if the source specifies another one than in the design configuration.
     pub length: Option<f64>,
-    /// Between which values the source lets its coordinate go.
+    /// Limits of its coordinate in the source.
     pub limits: Option<[f64; 2]>,
     /// Shape in drawings.
     pub draw: Option<&'static str>,
 }
 
-/// A coordinate of a joint, by the joint's number.
+/// Coordinate of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coordinate {
     /// Index of the joint.
@@ -220,20 +222,20 @@ pub struct Coordinate {
     pub name: &'static str,
 }
 
-/// A linear relation of joint coordinates: the sum of the terms is the constant.
+/// Linear relation of joint coordinates: the sum of the terms equals the constant.
 #[derive(Clone, Debug)]
 pub struct Coupler {
     /// Name in the model file.
     pub name: String,
     /// Name in the source.
     pub note: String,
-    /// Coordinates and their coefficients, per unit of the mechanism.
+    /// Coordinates and their coefficients, in the units of the mechanism.
     pub terms: Vec<(Coordinate, f64)>,
-    /// In the mechanism's units.
+    /// Constant, in the units of the mechanism.
     pub constant: f64,
 }
 
-/// A prescribed number.
+/// Prescribed quantity with its law.
 #[derive(Clone, Debug)]
 pub struct Driver {
     /// Name in the model file.
@@ -242,31 +244,31 @@ pub struct Driver {
     pub note: String,
     /// Prescribed quantity.
     pub drives: Drives,
-    /// Over time, counted from the drawing.
+    /// Function of time, relative to the design configuration.
     pub law: Law,
 }
 
 /// Quantity that a driver prescribes.
 #[derive(Clone, Copy, Debug)]
 pub enum Drives {
-    /// A joint's coordinate.
+    /// A joint coordinate.
     Coordinate(Coordinate),
-    /// The way of a point of a body along a direction.
-    Way {
+    /// The displacement of a point of a body along a direction.
+    Translation {
         /// The body.
         body: usize,
-        /// The point in the design configuration.
+        /// Point in the design configuration.
         at: Vec3,
-        /// The direction.
+        /// Direction.
         along: Vec3,
     },
-    /// The angle by which a body has turned against another, seen along a direction.
-    Heading {
+    /// The rotation of a body relative to another one about a direction.
+    Rotation {
         /// The body.
         body: usize,
-        /// The direction.
+        /// Direction.
         about: Vec3,
-        /// The other body.
+        /// Other body.
         relative_to: usize,
     },
 }
@@ -274,17 +276,17 @@ pub enum Drives {
 /// Law of a driver.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {
-    /// It stays in the design configuration.
-    Held,
-    /// It stays at this value.
-    Set(f64),
-    /// By an expression of model files.
+    /// Zero: the design configuration.
+    Fixed,
+    /// A constant value.
+    Constant(f64),
+    /// An expression of model files.
     Text(String),
-    /// Through points of time and value.
+    /// A smooth curve through points `[time, value]`.
     Table(Vec<[f64; 2]>),
 }
 
-/// A point.
+/// Point on a body.
 #[derive(Clone, Debug)]
 pub struct Point {
     /// Name in the model file.
@@ -295,40 +297,40 @@ pub struct Point {
     pub at: Vec3,
 }
 
-/// A road wheel.
+/// Road wheel.
 #[derive(Clone, Debug)]
 pub struct Wheel {
     /// Name in the model file.
     pub name: String,
-    /// The body that it turns on.
+    /// Body that carries the wheel.
     pub body: usize,
     /// Centre.
     pub centre: Vec3,
-    /// Spin axis, outboard.
+    /// Spin axis, pointing outboard.
     pub spin_axis: Vec3,
-    /// True if that comes from this place to the centre.
+    /// Point on the spin axis, if the axis is defined from it to the centre.
     pub spindle: Option<Vec3>,
-    /// From the centre to the ground.
+    /// Radius, from the centre to the road.
     pub radius: f64,
-    /// Two points of its steering axis, lower and upper, each on a body.
+    /// Two points on its steering axis, lower and upper, each on a body.
     pub kingpin: Option<[(usize, Vec3); 2]>,
-    /// The driver that moves it up and down.
+    /// Index of the driver that moves it vertically.
     pub bump: usize,
-    /// True if the steering turns it.
+    /// True if the wheel is steered.
     pub is_steered: bool,
-    /// The ends of its spring.
+    /// Ends of its spring.
     pub spring: Option<[(usize, Vec3); 2]>,
-    /// The end of the vehicle that it is at.
+    /// End of the vehicle.
     pub end: Option<VehicleEnd>,
 }
 
-/// The end of the vehicle that a word names, whatever its case.
+/// Returns the end of the vehicle that a word names, ignoring case.
 pub fn end_named(word: &str) -> Option<VehicleEnd> {
     VehicleEnd::ALL.into_iter().find(|end| word.trim().eq_ignore_ascii_case(end.name()))
 }
 
 impl Mechanism {
-    /// One with ground alone.
+    /// Creates a mechanism with ground only.
     pub fn new(name: &str, length: &'static str, angle: &'static str) -> Self {
         let ground = Body { name: "ground".into(), note: String::new(), pose: None, mesh: None };
         Self {
@@ -346,7 +348,7 @@ impl Mechanism {
             steering: None,
             cases: Vec::new(),
             unplaced: None,
-            unfollowed: Vec::new(),
+            inadmissible: Vec::new(),
             times: None,
             masses: Vec::new(),
             forces: Vec::new(),
@@ -357,7 +359,7 @@ impl Mechanism {
         }
     }
 
-    /// The name that comes nearest to the one that is wanted, and is not taken by another of this kind.
+    /// Returns a valid name of a kind of object that is as near as possible to the requested one and not in use.
     fn name(&mut self, wanted: &str, kind: &'static str) -> String {
         let names = self.names.entry(kind).or_default();
         let clean = clean_name(wanted, kind);
@@ -371,67 +373,67 @@ impl Mechanism {
         name
     }
 
-    /// A further body; its number.
+    /// Adds a body and returns its index.
     pub fn body(&mut self, name: &str, note: String, pose: Option<Pose>) -> usize {
         let name = self.name(name, "body");
         self.bodies.push(Body { name, note, pose, mesh: None });
         self.bodies.len() - 1
     }
 
-    /// A further joint; its number.
+    /// Adds a joint and returns its index.
     pub fn joint(&mut self, joint: Joint) -> usize {
         let name = self.name(&joint.name, "joint");
         self.joints.push(Joint { name, ..joint });
         self.joints.len() - 1
     }
 
-    /// A further coupler, whose terms sum up to zero.
+    /// Adds a coupler whose terms sum to zero.
     pub fn coupler(&mut self, name: &str, note: String, terms: Vec<(Coordinate, f64)>) {
         self.coupler_to(name, note, terms, 0.0);
     }
 
-    /// A further coupler, whose terms sum up to a constant.
+    /// Adds a coupler whose terms sum to a constant.
     pub fn coupler_to(&mut self, name: &str, note: String, terms: Vec<(Coordinate, f64)>, constant: f64) {
         let name = self.name(name, "coupler");
         self.couplers.push(Coupler { name, note, terms, constant });
     }
 
-    /// A further driver; its number.
+    /// Adds a driver and returns its index.
     pub fn driver(&mut self, name: &str, note: String, drives: Drives, law: Law) -> usize {
         let name = self.name(name, "driver");
         self.drivers.push(Driver { name, note, drives, law });
         self.drivers.len() - 1
     }
 
-    /// A further point.
+    /// Adds a point.
     pub fn point(&mut self, name: &str, body: usize, at: Vec3) {
         let name = self.name(name, "point");
         self.points.push(Point { name, body, at });
     }
 
-    /// A further mass.
+    /// Adds a mass.
     pub fn mass(&mut self, mass: Mass) {
         let name = self.name(&mass.name, "mass");
         self.masses.push(Mass { name, ..mass });
     }
 
-    /// A further spring or damper.
+    /// Adds a spring or damper.
     pub fn force(&mut self, force: Force) {
         let name = self.name(&force.name, "force");
         self.forces.push(Force { name, ..force });
     }
 
-    /// A further frame that the source names.
+    /// Adds a named frame of the source.
     pub fn frame(&mut self, name: &str, body: usize, pose: Pose, bare: bool) {
         self.frames.push(NamedFrame { name: name.to_owned(), body, pose, bare });
     }
 
-    /// True if something prescribes this coordinate.
+    /// Returns true if a driver prescribes this coordinate.
     pub fn is_driven(&self, coordinate: Coordinate) -> bool {
         self.drivers.iter().any(|d| matches!(d.drives, Drives::Coordinate(c) if c == coordinate))
     }
 
-    /// True if joints connect two bodies, by way of others or not.
+    /// Returns true if joints connect two bodies, directly or through other bodies.
     pub fn are_connected(&self, [from, to]: [usize; 2]) -> bool {
         let mut reached = vec![false; self.bodies.len()];
         let mut waiting = vec![from];
@@ -444,7 +446,7 @@ impl Mechanism {
         reached[to]
     }
 
-    /// Millimetres in its unit of length.
+    /// Returns 1 mm in the length unit of the mechanism.
     pub fn per_mm(&self) -> f64 {
         match self.length {
             "m" => 1e-3,
@@ -454,7 +456,7 @@ impl Mechanism {
         }
     }
 
-    /// Size of the mechanism: the largest distance of two of its points along an axis, above zero.
+    /// Size of the mechanism: the largest extent of its points along a global axis, positive.
     pub fn size(&self) -> f64 {
         let places = self.joints.iter().flat_map(|j| j.at.iter().copied());
         let places: Vec<Vec3> = places.chain(self.hardpoints.iter().map(|h| h.1)).collect();
@@ -468,7 +470,7 @@ impl Mechanism {
 }
 
 impl Joint {
-    /// A joint at one place.
+    /// Creates a joint at one location.
     pub fn new(name: &str, note: String, kind: &'static str, bodies: [usize; 2], at: Vec3) -> Self {
         Self {
             name: name.into(),
@@ -486,28 +488,28 @@ impl Joint {
         }
     }
 
-    /// With an axis.
+    /// Sets the axis.
     #[must_use]
     pub fn along(mut self, axis: Vec3) -> Self {
         self.axis = Some(axis);
         self
     }
 
-    /// With an axis through two places.
+    /// Sets an axis through two points.
     #[must_use]
     pub fn through(mut self, from: Vec3, to: Vec3) -> Self {
         (self.axis, self.through) = (Some(to - from), Some([from, to]));
         self
     }
 
-    /// With two axes.
+    /// Sets both axes.
     #[must_use]
     pub fn with_axes(mut self, axis: Vec3, axis2: Vec3) -> Self {
         (self.axis, self.axis2) = (Some(axis), Some(axis2));
         self
     }
 
-    /// With a place on each body.
+    /// Sets a location on each body.
     #[must_use]
     pub fn between(mut self, i: Vec3, j: Vec3) -> Self {
         self.at = vec![i, j];
@@ -515,16 +517,16 @@ impl Joint {
     }
 }
 
-/// Names of model files have at most that many characters.
+/// Maximum number of characters of a name in a model file.
 const LONGEST_NAME: usize = 100;
 
-/// Returns a name without the characters that no name may hold.
+/// Returns a name without invalid characters.
 fn clean_name(wanted: &str, kind: &str) -> String {
     let clean: String = wanted.trim().chars().filter(|c| !c.is_control()).take(LONGEST_NAME - 8).collect();
     if clean.is_empty() { kind.to_owned() } else { clean }
 }
 
-/// The name that comes nearest to the one that is wanted: without what no name may hold, and not taken.
+/// Returns a valid name that is as near as possible to the requested one and not in use.
 pub fn valid_name(wanted: &str, kind: &str, taken: &HashSet<&str>) -> String {
     let clean = clean_name(wanted, kind);
     let free = |name: &str| !taken.contains(name) && name != "ground";

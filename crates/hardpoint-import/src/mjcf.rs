@@ -1,5 +1,5 @@
-//! Models of MuJoCo (MJCF): includes, default classes, frames, bodies with several joints, equality constraints. Read
-//! with `roxmltree`: `mjcf-rs` knows neither classes of defaults nor places in the text.
+//! Models of MuJoCo (MJCF): includes, default classes, frames, bodies with several joints, equality constraints. Parsed
+//! with `roxmltree`, since `mjcf-rs` supports neither default classes nor positions in the text.
 
 mod defaults;
 mod equality;
@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use hardpoint::space::{Mat3, Pose, Vec3};
 use roxmltree::{Document, Node};
 
-use crate::markers::{JointSource, Marker, join};
+use crate::markers::{ElementSource, Marker, join};
 use crate::mechanism::{Coordinate, GROUND, Joint, Mechanism};
 use crate::report::{ImportLog, SourceSpan};
 use crate::shapes::Solid;
@@ -17,25 +17,25 @@ use crate::turn::{from_z_and_x, home};
 use crate::xml::{Vocabulary, children, exactly};
 use crate::{Format, Input, robot, xml};
 
-/// See the module.
+/// MJCF format.
 pub const FORMAT: Format = Format {
     name: "mjcf",
     about: "MuJoCo model",
     endings: &["xml", "mjcf"],
-    looks: |text| text.contains("<mujoco") && !text.contains("<robot"),
+    recognises: |text| text.contains("<mujoco") && !text.contains("<robot"),
     read,
     binary: false,
 };
 
-/// Bodies, and classes of defaults, are nested so deep at most.
+/// Maximum depth of nested bodies and default classes.
 const DEEPEST: usize = 100;
-/// Points nearer to each other than this part of the mechanism's size are one.
+/// Distance below which points coincide, as a fraction of the mechanism size.
 const CLOSED: f64 = 1e-7;
-/// Maximum number of files that are included.
+/// Maximum number of included files.
 const MOST_INCLUDED: usize = 100;
-/// Maximum number of times that files are put into each other.
+/// Maximum number of expanded includes.
 const MOST_EXPANDED: usize = 20_000;
-/// Sections that do not concern how bodies and joints move.
+/// Sections without effect on the motion of bodies and joints.
 const IRRELEVANT: [&str; 8] =
     ["size", "visual", "statistic", "contact", "sensor", "actuator", "custom", "option"];
 /// Known content of a joint.
@@ -108,12 +108,12 @@ const EQUALITY: Vocabulary = Vocabulary {
     read: &[],
     irrelevant: &[],
 };
-/// Gravity of MuJoCo where a source names none, m/s^2.
+/// Default gravity of MuJoCo, m/s^2.
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
-/// Density of MuJoCo where a source names none, kg/m^3.
+/// Default density of MuJoCo, kg/m^3.
 const DENSITY: f64 = 1000.0;
 
-/// An element, and the number of the text that it is in.
+/// Element with the index of its text.
 type Element<'d> = (usize, Node<'d, 'd>);
 
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
@@ -125,7 +125,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let root = documents.first()?.as_ref()?.root_element();
     if !["mujoco", "mujocoinclude"].contains(&root.tag_name().name()) {
         let message = format!("the first element is `{}`, not `mujoco`", root.tag_name().name());
-        notes.problem_with("HP0803", xml::at(0, root), message, "name the format, like `--format sdf`");
+        notes.problem_with("HP0803", xml::at(0, root), message, "specify the format, like `--format sdf`");
         return None;
     }
     let paths: Vec<String> = texts.iter().map(|(path, _)| path.clone()).collect();
@@ -135,7 +135,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     reader.settings(&top);
     for (text, node) in &top {
         if node.has_tag_name("worldbody") {
-            let world = Inside { body: GROUND, pose: home(), class: None, depth: 0 };
+            let world = TreePosition { body: GROUND, pose: home(), class: None, depth: 0 };
             reader.body((*text, *node), &world, "world");
         }
     }
@@ -148,7 +148,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             other => reader.section(other, (*text, *node)),
         }
     }
-    reader.meet();
+    reader.join_connections();
     reader.free_bodies();
     reader.masses(&top);
     for (list, bare) in [(&reader.bodies, false), (&reader.sites, true)] {
@@ -158,18 +158,18 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     }
     if reader.m.bodies.len() > robot::MOST_PARTS {
         let message = format!("it has more than {} bodies", robot::MOST_PARTS);
-        let help = "look for files that include each other more than once, or leave out what need not move";
+        let help = "remove repeated includes, or parts that need not move";
         reader.notes.problem_with("HP0802", None, message, help);
         return None;
     }
     let (m, shapes) = (reader.m, std::mem::take(&mut reader.shapes));
     for shape in shapes {
-        shown(input, notes, shape);
+        add_shape(input, notes, shape);
     }
     (m.bodies.len() > 1).then_some(m)
 }
 
-/// Equalities of MuJoCo in a file of another format, whose bodies and joints are there.
+/// Reads equalities of MuJoCo in a file of another format, with its bodies and joints.
 pub fn extension<'d>(
     m: Mechanism,
     notes: &mut ImportLog,
@@ -190,11 +190,11 @@ pub fn extension<'d>(
             other => reader.section(other, (*text, *node)),
         }
     }
-    reader.meet();
+    reader.join_connections();
     reader.m
 }
 
-/// The text itself and those that it includes, by the paths from the main file's folder.
+/// Returns the text itself and the included texts, by the paths from the main file's folder.
 fn included(input: &Input<'_>, notes: &mut ImportLog) -> Vec<(String, String)> {
     let mut texts = vec![(String::new(), xml::lenient(input.text))];
     let mut k = 0;
@@ -222,13 +222,14 @@ fn included(input: &Input<'_>, notes: &mut ImportLog) -> Vec<(String, String)> {
     texts
 }
 
-/// Possible paths of an included file: from the folder of the main file, or from that of the including file.
+/// Returns the possible paths of an included file: from the folder of the main file, or from that of the including
+/// file.
 fn paths_of(path: &str, from: &str) -> Vec<String> {
     let own = from.rsplit_once('/').map(|(folder, _)| format!("{folder}/{path}"));
     std::iter::once(path.to_owned()).chain(own).collect()
 }
 
-/// Settings of `compiler`, which define the meaning of the rest.
+/// Settings of `compiler`, which affect the meaning of other elements.
 struct Compiler {
     degrees: bool,
     euler: String,
@@ -242,19 +243,19 @@ impl Default for Compiler {
     }
 }
 
-/// Attributes by element, as a class of defaults gives them.
+/// Default class: values by element and attribute.
 type Class = HashMap<(String, String), String>;
 
-/// Position in the tree of bodies.
+/// Position in the body tree.
 #[derive(Clone)]
-struct Inside {
+struct TreePosition {
     body: usize,
     pose: Pose,
     class: Option<String>,
     depth: usize,
 }
 
-/// A joint of a body.
+/// Joint of a body.
 struct JointOnBody<'d> {
     element: Element<'d>,
     /// Frame of its coordinates.
@@ -262,31 +263,31 @@ struct JointOnBody<'d> {
     class: Option<String>,
 }
 
-/// A point in which two bodies meet.
-struct Meet {
+/// Point at which two bodies are connected.
+struct PointConnection {
     name: String,
     at: Option<SourceSpan>,
     ends: [Marker; 2],
 }
 
-/// A body that nothing but equalities may hold.
-struct Free {
+/// Free body, which equalities may constrain.
+struct FreeBody {
     name: String,
     at: Option<SourceSpan>,
     bodies: [usize; 2],
     place: Vec3,
 }
 
-/// A shape to be shown.
+/// Visible shape.
 struct VisibleShape<'d> {
     element: Element<'d>,
     body: usize,
     link: String,
-    /// In the body.
+    /// Pose in the body frame.
     place: Pose,
     kind: String,
     size: Vec<f64>,
-    /// The two ends, where it is given by them.
+    /// End points of the axis, if the shape is defined by them.
     ends: Option<[f64; 6]>,
     mesh: Option<(String, [f64; 3])>,
 }
@@ -298,7 +299,7 @@ struct Reader<'d, 'n> {
     documents: &'d [Option<Document<'d>>],
     compiler: Compiler,
     classes: BTreeMap<String, Class>,
-    /// Their files and scales.
+    /// Files and scales of the meshes.
     meshes: BTreeMap<String, (String, [f64; 3])>,
     bodies: BTreeMap<String, (usize, Pose)>,
     sites: BTreeMap<String, (usize, Pose)>,
@@ -306,29 +307,29 @@ struct Reader<'d, 'n> {
     tendons: BTreeMap<String, Vec<(Coordinate, f64)>>,
     /// Tendons between two sites.
     rods: BTreeMap<String, [String; 2]>,
-    meets: Vec<Meet>,
-    free: Vec<Free>,
+    connections: Vec<PointConnection>,
+    free: Vec<FreeBody>,
     shapes: Vec<VisibleShape<'d>>,
-    /// The names of all joints.
+    /// Names of all joints.
     names: BTreeSet<String>,
-    /// The places of the includes that have been reported of.
-    told: BTreeSet<(usize, usize)>,
-    /// Number of times that files were put into each other.
+    /// Positions of the reported includes.
+    reported_includes: BTreeSet<(usize, usize)>,
+    /// Number of expanded includes.
     expanded: usize,
     /// Masses of the geoms.
     solids: Vec<GeomMass>,
-    /// Bodies whose mass is written.
-    weighed: BTreeSet<usize>,
-    /// Number of geoms that are meshes, whose masses are not computed.
+    /// Bodies with an explicit mass.
+    with_explicit_mass: BTreeSet<usize>,
+    /// Number of meshes, whose masses are not computed.
     meshes_without_mass: usize,
 }
 
-/// The mass of a geom.
+/// Mass of a geom.
 struct GeomMass {
     body: usize,
     centre: Vec3,
     mass: f64,
-    /// About the centre, along the global axes.
+    /// Inertia matrix about the centre, along the global axes, kg m^2.
     inertia: Mat3,
 }
 
@@ -352,19 +353,19 @@ impl<'d, 'n> Reader<'d, 'n> {
             joints: BTreeMap::new(),
             tendons: BTreeMap::new(),
             rods: BTreeMap::new(),
-            meets: Vec::new(),
+            connections: Vec::new(),
             free: Vec::new(),
             shapes: Vec::new(),
             names: BTreeSet::new(),
-            told: BTreeSet::new(),
+            reported_includes: BTreeSet::new(),
             expanded: 0,
             solids: Vec::new(),
-            weighed: BTreeSet::new(),
+            with_explicit_mass: BTreeSet::new(),
             meshes_without_mass: 0,
         }
     }
 
-    /// The children of an element, with what `include` puts in its place.
+    /// Returns the children of an element, with includes expanded.
     fn contents(&mut self, (text, node): Element<'d>, depth: usize) -> Vec<Element<'d>> {
         let mut out = Vec::new();
         for inner in children(node) {
@@ -379,17 +380,17 @@ impl<'d, 'n> Reader<'d, 'n> {
             let at = xml::attribute_at(text, inner, "file").or_else(|| xml::at(text, inner));
             match root {
                 Some(_) if depth > DEEPEST => {
-                    let help = "look for a file that includes itself";
-                    self.notes.problem_with("HP0805", at, "files include each other in a circle", help);
+                    let help = "remove the recursive include";
+                    self.notes.problem_with("HP0805", at, "files include each other recursively", help);
                 }
                 Some(_) if self.expanded > MOST_EXPANDED => {}
                 Some(root) => {
                     self.expanded += 1;
                     if self.expanded > MOST_EXPANDED {
-                        let help = "look for files that include each other more than once";
+                        let help = "remove repeated includes";
                         self.notes.problem_with("HP0802", at, "files are included too often", help);
                     }
-                    if self.told.insert((text, inner.range().start)) {
+                    if self.reported_includes.insert((text, inner.range().start)) {
                         self.notes.taken("include", file, at);
                     }
                     let below = self.contents(root, depth + 1);
@@ -397,21 +398,26 @@ impl<'d, 'n> Reader<'d, 'n> {
                 }
                 None => {
                     let message = format!("the included file `{file}` cannot be read");
-                    self.notes.problem_with("HP0803", at, message, "put it beside the file that includes it");
+                    self.notes.problem_with(
+                        "HP0803",
+                        at,
+                        message,
+                        "place it next to the file that includes it",
+                    );
                 }
             }
         }
         out
     }
 
-    /// Reads a body, or a frame in it; `inside` is the frame of its coordinates.
-    fn body(&mut self, element: Element<'d>, inside: &Inside, name: &str) {
+    /// Reads the content of a body or of a frame in it; `inside` is its position in the body tree.
+    fn body(&mut self, element: Element<'d>, inside: &TreePosition, name: &str) {
         if inside.depth > DEEPEST {
             self.notes.problem_with(
                 "HP0805",
                 xml::at(element.0, element.1),
                 "bodies are nested too deep",
-                "bodies that deep belong to no mechanism",
+                "reduce the depth of the bodies",
             );
             return;
         }
@@ -426,7 +432,7 @@ impl<'d, 'n> Reader<'d, 'n> {
                     let pose = inside.pose.compose(self.pose((text, node), class.as_deref()));
                     self.body(
                         (text, node),
-                        &Inside { pose, class, depth: inside.depth + 1, ..inside.clone() },
+                        &TreePosition { pose, class, depth: inside.depth + 1, ..inside.clone() },
                         name,
                     );
                 }
@@ -442,7 +448,7 @@ impl<'d, 'n> Reader<'d, 'n> {
                 "joint" | "freejoint" => {}
                 "camera" | "light" => self.notes.ignored(node.tag_name().name(), at),
                 "composite" | "flexcomp" | "replicate" | "attach" => {
-                    let why = "it makes bodies by rules: save the model from MuJoCo, which writes them out";
+                    let why = "it generates bodies: save the model from MuJoCo, which expands it";
                     self.notes.refused(
                         node.tag_name().name(),
                         node.attribute("name").unwrap_or_default(),
@@ -451,30 +457,30 @@ impl<'d, 'n> Reader<'d, 'n> {
                     );
                 }
                 other => {
-                    let why = "an element of a body that is not known here";
+                    let why = "unknown element of a body";
                     self.notes.not_understood(other, name, at, why);
                 }
             }
         }
     }
 
-    /// A section of the model that is not read.
+    /// Reports a section of the model that is not read.
     fn section(&mut self, kind: &str, (text, node): Element<'d>) {
         let at = xml::at(text, node);
         if IRRELEVANT.contains(&kind) {
             self.notes.ignored(kind, at);
         } else {
             let name = node.attribute("name").unwrap_or_default();
-            self.notes.not_understood(kind, name, at, "a section of the model that is not known here");
+            self.notes.not_understood(kind, name, at, "unknown section of the model");
         }
     }
 
-    /// Postures that the source has stored.
+    /// Reports the stored configurations of the source.
     fn keys(&mut self, list: Element<'d>) {
         for (text, key) in self.contents(list, 0) {
             let (name, at) = (key.attribute("name").unwrap_or_default(), xml::at(text, key));
             if key.has_attribute("qpos") || key.has_attribute("mpos") || key.has_attribute("mquat") {
-                let why = "its posture is left out: the model begins where the source draws it, with joints at their reference (`qpos0`)";
+                let why = "its configuration is not imported: the model begins in the design configuration, with joints at their reference (`qpos0`)";
                 self.notes.refused("key", name, at, why);
             } else {
                 self.notes.ignored("key", at);
@@ -482,7 +488,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         }
     }
 
-    fn inner_body(&mut self, element: Element<'d>, outer: &Inside) {
+    fn inner_body(&mut self, element: Element<'d>, outer: &TreePosition) {
         let (text, node) = element;
         let at = xml::at(text, node);
         let class = node.attribute("childclass").map(str::to_owned).or_else(|| outer.class.clone());
@@ -490,21 +496,21 @@ impl<'d, 'n> Reader<'d, 'n> {
         let own = node.attribute("name").unwrap_or_default();
         let name = if own.is_empty() { format!("body_{}", self.m.bodies.len()) } else { own.to_owned() };
         if self.m.bodies.len() > robot::MOST_PARTS {
-            // That is reported when all is read.
+            // The limit is reported after reading.
             return;
         }
         for a in node.attributes().filter(|a| !BODY.contains(&a.name())) {
-            let why = format!("`body` has an attribute `{}` that is not known here", a.name());
+            let why = format!("`body` has an unknown attribute `{}`", a.name());
             self.notes.not_understood(a.name(), &name, xml::attribute_at(text, node, a.name()), why);
         }
         if node.attribute("mocap") == Some("true") {
-            let why = "a body that a program moves while it runs: it is in the design configuration";
+            let why = "mocap bodies are moved by a program: it is fixed in the design configuration";
             self.notes.approximated("mocap", &name, at, why);
         }
         let mut joints = Vec::new();
         self.joints_of(element, pose, class.as_deref(), 0, &mut joints);
-        let note = JointSource { kind: "body", name: &name, at }.note(self.notes);
-        // Several joints of a body follow each other: bodies without a shape are between them.
+        let note = ElementSource { kind: "body", name: &name, at }.note(self.notes);
+        // Several joints of a body form a chain, with bodies without shapes between them.
         let mut carrier = outer.body;
         let mut done = Vec::new();
         for (k, joint) in joints.iter().enumerate() {
@@ -525,7 +531,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         if joints.is_empty() {
             self.m.joint(Joint::new(
                 &format!("{name}_fixed"),
-                "a body without joints is on the one that it is in".into(),
+                "a body without joints is fixed to its parent".into(),
                 "fixed",
                 [outer.body, body],
                 pose.r,
@@ -535,14 +541,14 @@ impl<'d, 'n> Reader<'d, 'n> {
             self.notes.problem_with(
                 "HP0803",
                 at,
-                format!("there are two bodies `{name}`"),
+                format!("the body `{name}` is defined twice"),
                 "rename one of them",
             );
         }
-        self.body(element, &Inside { body, pose, class, depth: outer.depth + 1 }, &name);
+        self.body(element, &TreePosition { body, pose, class, depth: outer.depth + 1 }, &name);
     }
 
-    /// The joints of a body, also of those in frames in it.
+    /// Collects the joints of a body, including those in frames.
     fn joints_of(
         &mut self,
         element: Element<'d>,
@@ -577,17 +583,17 @@ impl<'d, 'n> Reader<'d, 'n> {
         let own = node.attribute("name").unwrap_or_default();
         let name = if own.is_empty() { format!("{of}_joint") } else { own.to_owned() };
         if !own.is_empty() && !self.names.insert(name.clone()) {
-            let message = format!("there are two joints `{name}`");
+            let message = format!("the joint `{name}` is defined twice");
             self.notes.problem_with("HP0803", at, message, "rename one of them");
         }
         xml::unknown(text, node, &name, JOINT, self.notes);
-        let called = JointSource { kind: "joint", name: &name, at };
+        let source = ElementSource { kind: "joint", name: &name, at };
         let (type_name, coordinate) = match kind.as_str() {
             "hinge" => ("revolute", Some("angle")),
             "slide" => ("translational", Some("displacement")),
             "ball" => ("spherical", None),
             "free" => {
-                self.free.push(Free { name, at, bodies: [i, j], place: pose.r });
+                self.free.push(FreeBody { name, at, bodies: [i, j], place: pose.r });
                 return;
             }
             _ => {
@@ -596,7 +602,7 @@ impl<'d, 'n> Reader<'d, 'n> {
                     "HP0805",
                     at,
                     format!("`{name}` is of the unknown type `{kind}`"),
-                    "MJCF knows hinge, slide, ball and free",
+                    "use hinge, slide, ball or free",
                 );
                 return;
             }
@@ -606,29 +612,24 @@ impl<'d, 'n> Reader<'d, 'n> {
             pose.rot * Vec3::from(self.numbers::<3>(element, "axis", class).unwrap_or([0.0, 0.0, 1.0]));
         let Some(marker) = Marker::along(i, place, axis) else {
             let at = xml::attribute_at(text, node, "axis").or(at);
-            self.notes.problem_with(
-                "HP0804",
-                at,
-                "the axis has no direction",
-                "give a vector other than zero",
-            );
+            self.notes.problem_with("HP0804", at, "the axis has no direction", "give a non-zero vector");
             return;
         };
         let Some(number) =
-            join(&mut self.m, self.notes, called, type_name, [marker, Marker { body: j, pose: marker.pose }])
+            join(&mut self.m, self.notes, source, type_name, [marker, Marker { body: j, pose: marker.pose }])
         else {
             return;
         };
         let limited = self.attribute(element, "limited", class).map_or("auto".into(), |(l, _)| l);
         if limited == "true" || (limited == "auto" && self.compiler.auto_limits) {
-            // Ranges count from `ref`, which is the value in the design configuration.
+            // Ranges are relative to `ref`, the value in the design configuration.
             let [zero] = self.numbers::<1>(element, "ref", class).unwrap_or_default();
             let range = self.range(element, class);
             let scaled = |x: f64| if coordinate == Some("angle") { self.angle(x - zero) } else { x - zero };
             self.m.joints[number].limits = range.map(|ends| ends.map(scaled));
         }
         let coordinate = coordinate.map(|name| Coordinate { joint: number, name });
-        self.spring(element, class, called, coordinate);
+        self.spring(element, class, source, coordinate);
         if let Some(coordinate) = coordinate
             && !own.is_empty()
         {
@@ -636,12 +637,12 @@ impl<'d, 'n> Reader<'d, 'n> {
         }
     }
 
-    /// The spring and damper of a joint.
+    /// Adds the spring and damper of a joint.
     fn spring(
         &mut self,
         element: Element<'d>,
         class: Option<&str>,
-        called: JointSource<'_>,
+        source: ElementSource<'_>,
         coordinate: Option<Coordinate>,
     ) {
         let mut number = |key: &str| {
@@ -650,14 +651,14 @@ impl<'d, 'n> Reader<'d, 'n> {
             match list.as_deref() {
                 Some([x]) => Some(*x),
                 Some([_, rest @ ..]) if rest.iter().any(|x| *x != 0.0) => {
-                    let why = format!("`{key}` that changes with the coordinate is left out");
-                    self.notes.refused(key, called.name, at, why);
+                    let why = format!("`{key}` that depends on the coordinate is not supported");
+                    self.notes.refused(key, source.name, at, why);
                     None
                 }
                 Some([x, ..]) => Some(*x),
                 _ => {
-                    let help = "write it with a point in fractions";
-                    let message = format!("`{key}` is a number, not `{}`", value.trim());
+                    let help = "write it with a decimal point";
+                    let message = format!("`{key}` must be a number, not `{}`", value.trim());
                     self.notes.problem_with("HP0804", at, message, help);
                     None
                 }
@@ -667,16 +668,16 @@ impl<'d, 'n> Reader<'d, 'n> {
             ["stiffness", "damping", "springref", "ref", "frictionloss"]
                 .map(|key| number(key).unwrap_or(0.0));
         let turns = coordinate.is_some_and(|c| c.name == "angle");
-        // Coordinates count from the drawing, where the joint's value is `ref`.
+        // Coordinates are relative to the design configuration, where the value is `ref`.
         let free = if turns { self.angle(springref - zero) } else { springref - zero };
-        let called = JointSource { kind: "spring", ..called };
-        robot::joint_spring(&mut self.m, self.notes, called, coordinate, [stiffness, damping, free]);
-        robot::friction(self.notes, called.name, called.at, friction);
+        let source = ElementSource { kind: "spring", ..source };
+        robot::joint_spring(&mut self.m, self.notes, source, coordinate, [stiffness, damping, free]);
+        robot::friction(self.notes, source.name, source.at, friction);
     }
 
-    /// The mass of a body that is written.
-    fn inertial(&mut self, element: Element<'d>, inside: &Inside, name: &str) {
-        let called = JointSource { kind: "inertial", name, at: xml::at(element.0, element.1) };
+    /// Adds the explicit mass of a body.
+    fn inertial(&mut self, element: Element<'d>, inside: &TreePosition, name: &str) {
+        let source = ElementSource { kind: "inertial", name, at: xml::at(element.0, element.1) };
         let frame = inside.pose.compose(self.pose(element, None));
         let [mass] = self.numbers::<1>(element, "mass", None).unwrap_or_default();
         let diagonal = self.numbers::<3>(element, "diaginertia", None);
@@ -686,12 +687,12 @@ impl<'d, 'n> Reader<'d, 'n> {
             [x, y, z, 0.0, 0.0, 0.0]
         });
         let matrix = Mat3 { cols: [[xx, xy, xz].into(), [xy, yy, yz].into(), [xz, yz, zz].into()] };
-        self.weighed.insert(inside.body);
-        robot::mass(&mut self.m, self.notes, called, inside.body, frame, mass, Some(matrix));
+        self.with_explicit_mass.insert(inside.body);
+        robot::mass(&mut self.m, self.notes, source, inside.body, frame, mass, Some(matrix));
     }
 
-    /// The mass of a geom: its volume times its density, as far as it is no mesh.
-    fn weigh(&mut self, element: Element<'d>, inside: &Inside, solid: Option<(Solid, Pose)>) {
+    /// Records the mass of a geom: its volume times its density, unless it is a mesh.
+    fn add_geom_mass(&mut self, element: Element<'d>, inside: &TreePosition, solid: Option<(Solid, Pose)>) {
         let class = inside.class.as_deref();
         let [mass] = self.numbers::<1>(element, "mass", class).map_or([f64::NAN], |m| m);
         let [density] = self.numbers::<1>(element, "density", class).unwrap_or([DENSITY]);
@@ -714,11 +715,11 @@ impl<'d, 'n> Reader<'d, 'n> {
         self.solids.push(GeomMass { body: inside.body, centre: inside.pose.point(place.r), mass, inertia });
     }
 
-    /// Masses of bodies by their geoms, where they are not written, and gravity.
+    /// Adds masses from geoms for the bodies without an explicit mass, and gravity.
     fn masses(&mut self, top: &[Element<'d>]) {
         let mut of_body: BTreeMap<usize, Vec<GeomMass>> = BTreeMap::new();
         for solid in std::mem::take(&mut self.solids) {
-            if solid.body != GROUND && !self.weighed.contains(&solid.body) {
+            if solid.body != GROUND && !self.with_explicit_mass.contains(&solid.body) {
                 of_body.entry(solid.body).or_default().push(solid);
             }
         }
@@ -737,14 +738,14 @@ impl<'d, 'n> Reader<'d, 'n> {
                 }
             }
             let name = self.m.bodies[body].name.clone();
-            let called = JointSource { kind: "mass of geoms", name: &name, at: None };
+            let source = ElementSource { kind: "mass of geoms", name: &name, at: None };
             let frame = Pose { rot: home().rot, r: centre };
             let matrix = Mat3 { cols: matrix.map(Vec3::from) };
-            robot::mass(&mut self.m, self.notes, called, body, frame, mass, Some(matrix));
+            robot::mass(&mut self.m, self.notes, source, body, frame, mass, Some(matrix));
         }
         if self.meshes_without_mass > 0 {
             let why =
-                format!("{} of them are meshes, whose masses are not worked out", self.meshes_without_mass);
+                format!("{} of them are meshes, whose masses are not computed", self.meshes_without_mass);
             self.notes.refused("mass of geoms", "", None, why);
         }
         if self.m.masses.is_empty() {
@@ -760,7 +761,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         }
     }
 
-    /// The range of a joint, if it has an end.
+    /// Returns the range of a joint, if it is bounded.
     fn range(&mut self, element: Element<'d>, class: Option<&str>) -> Option<[f64; 2]> {
         let (value, at) = self.attribute(element, "range", class)?;
         let words: Vec<&str> = value.split_whitespace().collect();
@@ -769,7 +770,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         xml::range(low?, high?)
     }
 
-    fn geom(&mut self, element: Element<'d>, inside: &Inside, link: &str) {
+    fn geom(&mut self, element: Element<'d>, inside: &TreePosition, link: &str) {
         let class = inside.class.clone();
         let class = class.as_deref();
         let at = xml::at(element.0, element.1);
@@ -782,9 +783,9 @@ impl<'d, 'n> Reader<'d, 'n> {
         let ends = self.numbers::<6>(element, "fromto", class);
         if inside.body != GROUND {
             let own = if ends.is_some() { home() } else { self.pose(element, class) };
-            self.weigh(element, inside, solid_of(&kind, &size, ends, own));
+            self.add_geom_mass(element, inside, solid_of(&kind, &size, ends, own));
         }
-        // Shapes for contact alone stand where the visible ones do.
+        // Shapes for contact only duplicate the visible ones.
         let group = self
             .attribute(element, "group", class)
             .and_then(|(g, _)| g.trim().parse::<i32>().ok())
@@ -798,7 +799,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         let mesh = mesh.and_then(|name| {
             let found = self.meshes.get(&name).cloned();
             if found.is_none() {
-                self.notes.refused("geom", link, at, format!("there is no mesh `{name}`"));
+                self.notes.refused("geom", link, at, format!("the mesh `{name}` does not exist"));
             }
             found
         });
@@ -816,8 +817,8 @@ impl<'d, 'n> Reader<'d, 'n> {
     }
 }
 
-/// Shows a geom.
-fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) {
+/// Adds the shape of a geom.
+fn add_shape(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) {
     let (text, node) = shape.element;
     let at = xml::at(text, node);
     match (shape.kind.as_str(), &shape.mesh) {
@@ -830,12 +831,14 @@ fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) 
                 input.shapes.solid(shape.body, place, solid);
                 notes.taken("geom", &shape.link, at);
             }
-            None => notes.refused("geom", &shape.link, at, format!("a shape `{kind}` is not shown")),
+            None => {
+                notes.refused("geom", &shape.link, at, format!("shapes of type `{kind}` are not supported"))
+            }
         },
     }
 }
 
-/// The solid that a geom is, and where: by its size, or by its two ends.
+/// Returns the solid of a geom and its pose, from its size or its two ends.
 fn solid_of(kind: &str, size: &[f64], ends: Option<[f64; 6]>, mut place: Pose) -> Option<(Solid, Pose)> {
     let by_ends = ends.is_some();
     let size = |k: usize| size.get(k).copied().unwrap_or(0.0);
@@ -849,7 +852,7 @@ fn solid_of(kind: &str, size: &[f64], ends: Option<[f64; 6]>, mut place: Pose) -
         }
     }
     let solid = match kind {
-        // By its ends a box or ellipsoid is as long as they are apart.
+        // A box or ellipsoid with two ends has their distance as its length.
         "box" if by_ends => Solid::Box([size(0), size(1), half].map(|x| 2.0 * x)),
         "ellipsoid" if by_ends => Solid::Ball([size(0), size(1), half]),
         "box" => Solid::Box([2.0 * size(0), 2.0 * size(1), 2.0 * size(2)]),
@@ -862,7 +865,7 @@ fn solid_of(kind: &str, size: &[f64], ends: Option<[f64; 6]>, mut place: Pose) -
     Some((solid, place))
 }
 
-/// The volume of a solid, and its moments of inertia about its own axes per mass.
+/// Returns the volume of a solid, m^3, and its moments of inertia about its own axes per unit of mass, m^2.
 fn volume_of(solid: Solid) -> (f64, [f64; 3]) {
     use std::f64::consts::PI;
     match solid {
@@ -875,7 +878,7 @@ fn volume_of(solid: Solid) -> (f64, [f64; 3]) {
             (PI * r * r * l, [across, across, r * r / 2.0])
         }
         Solid::Capsule(r, l) => {
-            // A cylinder, and two halves of a ball at its ends.
+            // A cylinder with half a ball at each end.
             let [tube, ball] = [PI * r * r * l, 4.0 / 3.0 * PI * r * r * r];
             let volume = tube + ball;
             let [t, b] = [tube / volume, ball / volume];

@@ -6,50 +6,50 @@ use std::fmt;
 use hardpoint_file::{Diagnostic, Severity, Source};
 use serde::Serialize;
 
-/// Number of entries of one kind that are listed in a text; the others are counted.
+/// Maximum number of entries of one outcome in the text report; further ones are counted.
 const LISTED: usize = 40;
-/// Number of problems that are shown; the others are counted.
+/// Maximum number of errors that are rendered; further ones are counted.
 const SHOWN: usize = 50;
-/// Maximum number of problems that are listed; the others are counted. Nobody corrects more of them at a time.
+/// Maximum number of errors that are recorded; further ones are counted, since nobody corrects more at a time.
 const MOST_PROBLEMS: usize = 200;
-/// Distance of marks in a text, bytes; each mark has the number of characters before it.
+/// Distance of the marks in a text, bytes. Each mark stores the number of characters before it.
 const MARK: usize = 1024;
 
-/// Outcome of an element.
+/// Outcome of an element of the source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ElementOutcome {
-    /// The model says the same.
+    /// Imported exactly.
     Taken,
-    /// The model says nearly the same.
+    /// Imported approximately, or added.
     Approximated,
-    /// It does not concern how things move.
+    /// Not imported: no effect on the motion.
     Ignored,
-    /// The model does not support it.
+    /// Not imported: the model does not support it.
     Refused,
-    /// The importer does not know it: it may concern how things move.
+    /// Not imported: unknown to the importer, possibly with an effect on the motion.
     NotUnderstood,
 }
 
-/// Position in a source: bytes of one of the texts that it consists of.
+/// Position in a source: byte range of one of its texts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SourceSpan {
-    /// Index of the text: the file itself is the first, included files follow.
+    /// Index of the text: 0 is the file itself, included files follow.
     pub text: usize,
     /// First byte.
     pub start: usize,
-    /// The byte behind it.
+    /// Byte after the last one.
     pub end: usize,
 }
 
-/// Position for people: file, line, column.
+/// Position as file, line and column.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SourceLocation {
-    /// The file's name.
+    /// Name of the file.
     pub file: String,
-    /// The line, from 1.
+    /// Line, from 1.
     pub line: usize,
-    /// The column in characters, from 1.
+    /// Column in characters, from 1.
     pub column: usize,
 }
 
@@ -60,28 +60,28 @@ pub struct Entry {
     pub fate: ElementOutcome,
     /// Kind in the source: `joint`, `PART`.
     pub kind: String,
-    /// Name there, or none.
+    /// Name in the source, or empty.
     pub name: String,
     /// Position in the source.
     pub place: Option<SourceLocation>,
-    /// Reason, or manner.
+    /// Reason or explanation; may be empty.
     pub why: String,
 }
 
 /// Outcomes of every element of a source.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Report {
-    /// In words, what the source is.
+    /// Description of the source: file name and format.
     pub format: String,
-    /// Remarks about the mechanism as a whole, which are read first.
+    /// Remarks about the mechanism as a whole, which are printed first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub remarks: Vec<String>,
-    /// In the order in which they were met.
+    /// Entries in the order of the import.
     pub entries: Vec<Entry>,
 }
 
 impl Report {
-    /// The entries of one fate.
+    /// Returns the entries of one outcome.
     pub fn of(&self, fate: ElementOutcome) -> impl Iterator<Item = &Entry> {
         self.entries.iter().filter(move |e| e.fate == fate)
     }
@@ -96,10 +96,10 @@ impl fmt::Display for Report {
         self.listed(
             f,
             ElementOutcome::NotUnderstood,
-            "not understood, and left out; it may concern the motion",
+            "not understood and not imported; may affect the motion",
         )?;
         for (fate, title) in
-            [(ElementOutcome::Taken, "taken"), (ElementOutcome::Ignored, "does not concern the motion")]
+            [(ElementOutcome::Taken, "taken"), (ElementOutcome::Ignored, "no effect on the motion")]
         {
             let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
             for e in self.of(fate) {
@@ -116,7 +116,7 @@ impl fmt::Display for Report {
 }
 
 impl Report {
-    /// Writes the entries of one fate, line by line.
+    /// Writes the entries of one outcome, one per line.
     fn listed(&self, f: &mut fmt::Formatter<'_>, fate: ElementOutcome, title: &str) -> fmt::Result {
         let list: Vec<&Entry> = self.of(fate).collect();
         if list.is_empty() {
@@ -155,22 +155,22 @@ impl fmt::Display for Entry {
     }
 }
 
-/// Everything that is wrong with a source, in the order of its text.
+/// Errors of a source, in the order of its text.
 #[derive(Clone, Debug)]
 pub struct ImportErrors {
     sources: Vec<Source>,
     list: Vec<(usize, Diagnostic)>,
-    /// Number of further ones.
+    /// Number of errors that were not recorded.
     dropped: usize,
 }
 
 impl ImportErrors {
-    /// The diagnostics, never none.
+    /// Returns the diagnostics; never empty.
     pub fn list(&self) -> impl Iterator<Item = &Diagnostic> {
         self.list.iter().map(|(_, d)| d)
     }
 
-    /// All of it for a terminal; with `color`, ANSI escapes.
+    /// Renders all errors for a terminal; with `color`, uses ANSI escapes.
     pub fn render(&self, color: bool) -> String {
         let shown = self.list.iter().take(SHOWN);
         let mut list: Vec<String> = shown.map(|(k, d)| self.sources[*k].render(d, color)).collect();
@@ -189,29 +189,29 @@ impl fmt::Display for ImportErrors {
 
 impl std::error::Error for ImportErrors {}
 
-/// Log of an importer while it reads.
+/// Log of an import in progress.
 #[derive(Debug)]
 pub struct ImportLog {
-    /// The texts that there are.
+    /// Texts of the source.
     sources: Vec<Source>,
-    /// Places of the lines and characters of these texts.
+    /// Indexes of the lines and characters of these texts.
     indexes: Vec<Index>,
     /// Outcomes so far.
     pub report: Report,
-    /// Errors; with any of them there is no model.
+    /// Errors, each of which prevents the import.
     problems: Vec<(usize, Diagnostic)>,
-    /// Text, line, column and message of these.
+    /// Text, line, column and message of the recorded errors.
     known: HashSet<(usize, Option<usize>, Option<usize>, String)>,
-    /// Number of further ones.
+    /// Number of errors that were not recorded.
     dropped: usize,
 }
 
-/// Lines and characters of a text, so that places in it are found in a time that does not grow with it.
+/// Index of the lines and characters of a text, so that the time to find a position does not depend on its length.
 #[derive(Debug)]
 struct Index {
-    /// Beginnings of lines.
+    /// First bytes of the lines.
     lines: Vec<usize>,
-    /// Per [`MARK`] bytes, how many characters begin before.
+    /// Number of characters before each multiple of [`MARK`] bytes.
     marks: Vec<usize>,
 }
 
@@ -234,7 +234,7 @@ impl Index {
         self.marks[block] + begins(&text.as_bytes()[block * MARK..at])
     }
 
-    /// The line and the column in characters of a byte, from 1.
+    /// Returns the line and the column in characters of a byte, from 1.
     fn line_column(&self, text: &str, at: usize) -> (usize, usize) {
         let at = at.min(text.len());
         let line = self.lines.partition_point(|start| *start <= at);
@@ -248,7 +248,7 @@ fn begins(bytes: &[u8]) -> usize {
 }
 
 impl ImportLog {
-    /// Empty log of a file.
+    /// Creates an empty log for a file.
     pub fn new(file: &str, text: &str) -> Self {
         let sources = vec![Source::new(&printable(file), text)];
         let indexes = vec![Index::new(text)];
@@ -256,21 +256,21 @@ impl ImportLog {
         Self { sources, indexes, report, problems, known: HashSet::new(), dropped: 0 }
     }
 
-    /// A further text that the source includes; its number.
+    /// Adds an included text and returns its index.
     pub fn text(&mut self, file: &str, text: &str) -> usize {
         self.sources.push(Source::new(&printable(file), text));
         self.indexes.push(Index::new(text));
         self.sources.len() - 1
     }
 
-    /// Position for people.
+    /// Converts a position to file, line and column.
     pub fn place(&self, at: SourceSpan) -> Option<SourceLocation> {
         let source = self.sources.get(at.text)?;
         let (line, column) = self.indexes[at.text].line_column(&source.text, at.start);
         Some(SourceLocation { file: source.file.to_string(), line, column })
     }
 
-    /// A diagnostic about a place, or about the file as a whole.
+    /// Creates an error at a position, or for the file as a whole.
     pub fn diagnostic(
         &self,
         code: &'static str,
@@ -282,7 +282,7 @@ impl ImportLog {
         source.diagnostic(Severity::Error, code, printable(message.as_ref()), span)
     }
 
-    /// Something is wrong, and what to do is what one does about such.
+    /// Records an error with the default help of its code.
     pub fn problem(&mut self, code: &'static str, at: Option<SourceSpan>, message: impl AsRef<str>) {
         let help = match code {
             "HP0803" => "correct the name, or export the file again",
@@ -290,15 +290,15 @@ impl ImportLog {
             _ => "export the file again",
         };
         if self.problems.len() >= MOST_PROBLEMS {
-            // To show its place would take time, and nobody sees it.
+            // The position is not computed, since the error is not shown.
             self.dropped += 1;
             return;
         }
         let diagnostic = self.diagnostic(code, at, message).help(help);
-        self.tell(at.map_or(0, |at| at.text), diagnostic);
+        self.push_problem(at.map_or(0, |at| at.text), diagnostic);
     }
 
-    /// The same, with what to do.
+    /// Records an error with its help.
     pub fn problem_with(
         &mut self,
         code: &'static str,
@@ -307,15 +307,15 @@ impl ImportLog {
         help: &str,
     ) {
         if self.problems.len() >= MOST_PROBLEMS {
-            // To show its place would take time, and nobody sees it.
+            // The position is not computed, since the error is not shown.
             self.dropped += 1;
             return;
         }
         let diagnostic = self.diagnostic(code, at, message).help(help);
-        self.tell(at.map_or(0, |at| at.text), diagnostic);
+        self.push_problem(at.map_or(0, |at| at.text), diagnostic);
     }
 
-    fn tell(&mut self, text: usize, diagnostic: Diagnostic) {
+    fn push_problem(&mut self, text: usize, diagnostic: Diagnostic) {
         let key = (text, diagnostic.line, diagnostic.column, diagnostic.message.clone());
         if self.known.insert(key) {
             self.problems.push((text, diagnostic));
@@ -327,7 +327,7 @@ impl ImportLog {
         self.problems.len()
     }
 
-    /// All that is wrong, if anything is.
+    /// Returns all errors, if there are any.
     pub fn problems(&mut self) -> Option<ImportErrors> {
         if self.problems.is_empty() {
             return None;
@@ -337,8 +337,8 @@ impl ImportLog {
         Some(ImportErrors { sources: self.sources.clone(), list, dropped: self.dropped })
     }
 
-    /// One thing that is wrong with the file as a whole.
-    pub fn only(&self, diagnostic: Diagnostic) -> ImportErrors {
+    /// Returns a single error for the file as a whole.
+    pub fn single_error(&self, diagnostic: Diagnostic) -> ImportErrors {
         ImportErrors { sources: self.sources.clone(), list: vec![(0, diagnostic)], dropped: 0 }
     }
 
@@ -348,40 +348,40 @@ impl ImportLog {
         self.report.entries.push(Entry { fate, kind, name, place, why });
     }
 
-    /// The model says the same.
+    /// Records an element that is imported exactly.
     pub fn taken(&mut self, kind: &str, name: &str, at: Option<SourceSpan>) {
         self.entry(ElementOutcome::Taken, kind, name, at, "");
     }
 
-    /// The model says nearly the same, or what the source leaves open.
+    /// Records an element that is imported approximately, or an addition.
     pub fn approximated(&mut self, kind: &str, name: &str, at: Option<SourceSpan>, why: impl AsRef<str>) {
         self.entry(ElementOutcome::Approximated, kind, name, at, why.as_ref());
     }
 
-    /// It does not concern how things move.
+    /// Records an element without effect on the motion.
     pub fn ignored(&mut self, kind: &str, at: Option<SourceSpan>) {
         self.entry(ElementOutcome::Ignored, kind, "", at, "");
     }
 
-    /// A remark about the mechanism as a whole.
+    /// Adds a remark about the mechanism as a whole.
     pub fn remark(&mut self, remark: impl AsRef<str>) {
         self.report
             .remarks
             .push(remark.as_ref().chars().map(|c| if c.is_control() { ' ' } else { c }).collect());
     }
 
-    /// The importer does not know it, and it may concern how things move.
+    /// Records an unknown element, which may affect the motion.
     pub fn not_understood(&mut self, kind: &str, name: &str, at: Option<SourceSpan>, why: impl AsRef<str>) {
         self.entry(ElementOutcome::NotUnderstood, kind, name, at, why.as_ref());
     }
 
-    /// The model does not support it.
+    /// Records an element that the model does not support.
     pub fn refused(&mut self, kind: &str, name: &str, at: Option<SourceSpan>, why: impl AsRef<str>) {
         self.entry(ElementOutcome::Refused, kind, name, at, why.as_ref());
     }
 }
 
-/// A text of the source for people: on one line, of bearable length.
+/// Returns a text of the source on one line, limited in length.
 pub fn printable(text: &str) -> String {
     const LONGEST: usize = 300;
     let mut out: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(LONGEST).collect();

@@ -1,17 +1,17 @@
-//! Shared parts of the robot formats: welds of frames that lie apart, joints that follow others, masses, springs,
-//! plugins. Vehicles share their masses and gravity.
+//! Common parts of the robot formats: welds of separated frames, mimic joints, masses, springs, plugins. Vehicles use
+//! the masses and gravity.
 
 use hardpoint::space::{Mat3, Pose};
 use roxmltree::Node;
 
-use crate::markers::{JointSource, Marker};
+use crate::markers::{ElementSource, Marker};
 use crate::mechanism::{
     Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Mass, Mechanism, Spring, TurnedFrame,
 };
 use crate::report::{ImportLog, SourceSpan};
 use crate::xml::{self, Vocabulary, child};
 
-/// Elements of a ball constraint, as Drake adds it to URDF and SDFormat.
+/// Elements of Drake's ball constraint in URDF and SDFormat.
 pub const BALL_CONSTRAINT: Vocabulary = Vocabulary {
     attributes: &[],
     read: &[
@@ -22,20 +22,20 @@ pub const BALL_CONSTRAINT: Vocabulary = Vocabulary {
     ],
     irrelevant: &[],
 };
-/// Per end of a ball constraint, the elements that name its body and its place there.
+/// For each end of a ball constraint, the elements that name its body and its point.
 pub const BALL_ENDS: [(&str, &str); 2] =
     [("ball_constraint_body_A", "ball_constraint_p_AP"), ("ball_constraint_body_B", "ball_constraint_p_BQ")];
 
-/// Frames that are turned against each other by less than this, rad, are parallel: exporters write six digits.
+/// Angle below which frames are parallel, rad: exporters write six digits.
 const PARALLEL: f64 = 1e-5;
-/// Frames nearer than this part of the mechanism's size are at one place, for the same reason.
+/// Distance below which frames coincide, as a fraction of the mechanism size, for the same reason.
 const SAME_PLACE: f64 = 1e-5;
-/// Excess that a principal moment of inertia may have over the sum of the two others, as a part of the largest: files
+/// Tolerated excess of a principal moment of inertia over the sum of the other two, as a fraction of the largest: files
 /// have few digits.
 const FLAT: f64 = 5e-4;
-/// Number of links, joints and bodies of a source that are read at most.
+/// Maximum number of links, joints and bodies of a source.
 pub const MOST_PARTS: usize = 5000;
-/// Words in the names of plugins that measure, control and draw, and hold no bodies together.
+/// Words in the names of plugins that measure, control or draw, without constraining bodies.
 const IRRELEVANT_PLUGINS: &[&str] = &[
     "ros_control",
     "ros2_control",
@@ -108,33 +108,32 @@ const IRRELEVANT_PLUGINS: &[&str] = &[
     "template",
 ];
 
-/// Gravity for the masses of a format that has none, m/s^2.
+/// Gravity for formats that do not define it, m/s^2.
 const STANDARD_GRAVITY: f64 = 9.80665;
 
-/// A joint that follows another: `own = factor master + offset`.
+/// Mimic joint: `own = factor master + offset`.
 pub struct Follower<'a, 'i> {
-    /// The element that says so.
+    /// Element that defines the relation.
     pub node: Node<'a, 'i>,
-    /// The joint that follows.
+    /// Name of the dependent joint.
     pub own: String,
-    /// The one that it follows.
+    /// Name of the independent joint.
     pub master: String,
-    /// By what factor.
+    /// Factor.
     pub factor: f64,
-    /// And what is added to that.
+    /// Offset, rad or m.
     pub offset: f64,
 }
 
-/// The element of a plugin for joints that follow others in which the one that follows is named.
+/// Elements of a mimic plugin that name the dependent joint.
 const FOLLOWS: [&str; 3] = ["mimicJoint", "mimic_joint", "mimicJointName"];
 
-/// Returns whether a plugin of Gazebo says that a joint follows another.
+/// Returns true for a Gazebo plugin that defines a mimic joint.
 pub fn is_mimic_plugin(node: Node<'_, '_>) -> bool {
     FOLLOWS.iter().any(|key| child(node, key).is_some())
 }
 
-/// Reads a plugin of Gazebo that makes a joint follow another, if it is one of those: in `mimicJoint` the one that
-/// follows.
+/// Reads a Gazebo plugin that defines a mimic joint; `None` for other plugins. `mimicJoint` names the dependent joint.
 pub fn mimic_plugin<'a, 'i>(
     text: usize,
     node: Node<'a, 'i>,
@@ -166,7 +165,7 @@ pub fn mimic_plugin<'a, 'i>(
             "multiplier",
             "offset",
         ],
-        // How it is controlled: the constraint itself is exact here.
+        // Parameters of its controller, since the constraint is exact here.
         irrelevant: &[
             "hasPID",
             "maxEffort",
@@ -184,7 +183,7 @@ pub fn mimic_plugin<'a, 'i>(
     Some(Follower { node, own, master, factor, offset })
 }
 
-/// Reads the joints that follow others in `ros2_control`.
+/// Reads the mimic joints of `ros2_control`.
 pub fn followers_of_control<'a, 'i>(
     text: usize,
     node: Node<'a, 'i>,
@@ -213,7 +212,7 @@ pub fn followers_of_control<'a, 'i>(
     out
 }
 
-/// Lists a plugin that is none of those that are read.
+/// Reports a plugin that is not read.
 pub fn plugin(text: usize, node: Node<'_, '_>, notes: &mut ImportLog) {
     let [name, file] = ["name", "filename"].map(|key| node.attribute(key).unwrap_or_default());
     let words = format!("{name} {file}").to_ascii_lowercase();
@@ -221,11 +220,11 @@ pub fn plugin(text: usize, node: Node<'_, '_>, notes: &mut ImportLog) {
     if IRRELEVANT_PLUGINS.iter().any(|known| words.contains(known)) {
         notes.ignored("plugin", at);
     } else {
-        notes.not_understood("plugin", name, at, format!("a plugin `{file}` that is not known here"));
+        notes.not_understood("plugin", name, at, format!("unknown plugin `{file}`"));
     }
 }
 
-/// Couples a joint to the one that it follows: `own - factor master = constant`.
+/// Adds the coupler of a mimic joint: `own - factor master = constant`.
 pub fn follow(
     m: &mut Mechanism,
     notes: &mut ImportLog,
@@ -234,72 +233,72 @@ pub fn follow(
     [own, master]: [Coordinate; 2],
     [factor, constant]: [f64; 2],
 ) {
-    let note = JointSource { kind: "mimic of", name: other, at }.note(notes);
+    let note = ElementSource { kind: "mimic of", name: other, at }.note(notes);
     m.coupler_to(&format!("{name}_mimic"), note, vec![(own, 1.0), (master, -factor)], constant);
     notes.taken("mimic", name, at);
 }
 
-/// Holds two frames on two bodies together, as a joint of type `fixed` or, but for their places, `orientation`; its
-/// number. Where they lie apart or are turned against each other in the design configuration, the mechanism is
-/// assembled so.
+/// Welds two frames on two bodies by a joint of type `fixed`, or `orientation` without their positions. Returns the
+/// index of the joint. Frames that are apart or misaligned in the design configuration are assembled.
 pub fn weld(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: JointSource<'_>,
+    source: ElementSource<'_>,
     kind: &'static str,
     [i, j]: [Marker; 2],
 ) -> Option<usize> {
     if i.body == j.body {
-        notes.refused(called.kind, called.name, called.at, "both its frames are on the same body");
+        notes.refused(source.kind, source.name, source.at, "its frames are on the same body");
         return None;
     }
-    let note = called.note(notes);
+    let note = source.note(notes);
     let angle = j.pose.rot.angle_to(i.pose.rot);
     let apart = kind == "fixed" && (i.pose.r - j.pose.r).norm() > SAME_PLACE * m.size();
     let turned = angle > PARALLEL;
     let mut body = i.body;
     if turned {
-        // From where body j is drawn to where it belongs: R = A_i A_j^T
-        let drawn = Pose { rot: j.pose.rot, r: i.pose.r };
-        body = turned_frame(m, called.name, note.clone(), i.body, drawn, i.pose.rot * j.pose.rot.transpose());
+        // From the drawn to the assembled orientation of body j: R = A_i A_j^T
+        let nominal = Pose { rot: j.pose.rot, r: i.pose.r };
+        body =
+            turned_frame(m, source.name, note.clone(), i.body, nominal, i.pose.rot * j.pose.rot.transpose());
     }
-    let held = Joint::new(called.name, note, kind, [body, j.body], j.pose.r);
+    let held = Joint::new(source.name, note, kind, [body, j.body], j.pose.r);
     let number = m.joint(if apart { held.between(i.pose.r, j.pose.r) } else { held });
     if apart || turned {
-        let why = "its frames lie apart in the design configuration: the mechanism is assembled to it before it moves";
-        notes.approximated(called.kind, called.name, called.at, why);
+        let why = "its frames do not coincide in the design configuration: the mechanism is assembled before it moves";
+        notes.approximated(source.kind, source.name, source.at, why);
     } else {
-        notes.taken(called.kind, called.name, called.at);
+        notes.taken(source.kind, source.name, source.at);
     }
     Some(number)
 }
 
-/// Adds a frame on a body that turns, about its origin, from where it is drawn to where it belongs before the mechanism
-/// moves; its number.
+/// Adds a frame on a body that rotates about its origin from its drawn to its assembled orientation before the
+/// mechanism moves. Returns its body.
 pub fn turned_frame(
     m: &mut Mechanism,
     name: &str,
     note: String,
     body: usize,
-    drawn: Pose,
+    nominal: Pose,
     turn: Mat3,
 ) -> usize {
     let angle = turn.angle_to(Mat3::IDENTITY);
-    let frame = m.body(&format!("{name}_frame"), note.clone(), Some(drawn));
+    let frame = m.body(&format!("{name}_frame"), note.clone(), Some(nominal));
     let name = format!("{name}_turn");
-    let hinge = Joint::new(&name, note.clone(), "revolute", [body, frame], drawn.r);
+    let hinge = Joint::new(&name, note.clone(), "revolute", [body, frame], nominal.r);
     let joint = m.joint(hinge.along(turn_of(turn, angle)));
     let drives = Drives::Coordinate(Coordinate { joint, name: "angle" });
-    m.driver(&name, note, drives, Law::Set(angle));
+    m.driver(&name, note, drives, Law::Constant(angle));
     m.turned.push(TurnedFrame { joint, driver: m.drivers.len() - 1, angle });
     frame
 }
 
-/// The axis about which a rotation turns by this angle.
+/// Returns the axis of a rotation with this angle.
 fn turn_of(turn: Mat3, angle: f64) -> hardpoint::space::Vec3 {
     let c = |row: usize, col: usize| turn.cols[col][row];
     let skew = hardpoint::space::Vec3::from([c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1)]);
-    // Near half a turn the skew part vanishes; then (R + 1) has the axis in its columns.
+    // Near half a turn the skew part vanishes; the columns of (R + 1) are then parallel to the axis.
     let half = std::f64::consts::PI - angle;
     if half > 1e-3 {
         return skew.unit().unwrap_or_else(|| [0.0, 0.0, 1.0].into());
@@ -317,44 +316,44 @@ fn turn_of(turn: Mat3, angle: f64) -> hardpoint::space::Vec3 {
     if axis.dot(skew) < 0.0 { -axis } else { axis }
 }
 
-/// The mass of a body: `frame` is that of its centre, along whose axes the inertia matrix is.
+/// Adds the mass of a body; `frame` has its origin at the centre of mass and the axes of the inertia matrix.
 pub fn mass(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: JointSource<'_>,
+    source: ElementSource<'_>,
     body: usize,
     frame: Pose,
     mass: f64,
     inertia: Option<Mat3>,
 ) {
     if body == GROUND || mass == 0.0 {
-        notes.ignored(called.kind, called.at);
+        notes.ignored(source.kind, source.at);
         return;
     }
     if !(mass > 0.0 && mass.is_finite()) {
-        notes.refused(called.kind, called.name, called.at, format!("no body has a mass of {mass} kg"));
+        notes.refused(source.kind, source.name, source.at, format!("invalid mass of {mass} kg"));
         return;
     }
     let matrix = inertia.map(|i| frame.rot * i * frame.rot.transpose());
     let matrix = matrix.filter(|i| i.cols.iter().any(|c| c.norm() > 0.0));
     let possible = matrix.is_none_or(is_possible);
     m.mass(Mass {
-        name: called.name.to_owned(),
+        name: source.name.to_owned(),
         body,
         centre: frame.r,
         mass,
         inertia: matrix.filter(|_| possible),
     });
     if possible {
-        notes.taken(called.kind, called.name, called.at);
+        notes.taken(source.kind, source.name, source.at);
     } else {
-        let why = "no body can have its moments of inertia, of which none is above the sum of the other two: it is taken as a point mass";
-        notes.approximated(called.kind, called.name, called.at, why);
+        let why = "its moments of inertia are impossible, since one exceeds the sum of the other two: it is imported as a point mass";
+        notes.approximated(source.kind, source.name, source.at, why);
     }
 }
 
-/// Returns whether a body can have this inertia matrix about its centre: half its trace times 1, less it, has no
-/// negative eigenvalue.
+/// Returns true if a body can have this inertia matrix about its centre: half its trace times 1, minus the matrix, has
+/// no negative eigenvalue.
 fn is_possible(i: Mat3) -> bool {
     let m = |r: usize, c: usize| i.cols[c][r];
     let half = 0.5 * (m(0, 0) + m(1, 1) + m(2, 2));
@@ -368,20 +367,20 @@ fn is_possible(i: Mat3) -> bool {
     above && minors.iter().all(|x| *x >= 0.0) && determinant >= 0.0
 }
 
-/// Standard gravity along -z, if there are masses: this format has none.
+/// Adds standard gravity along -z if there are masses, for formats without gravity.
 pub fn standard_gravity(m: &mut Mechanism, notes: &mut ImportLog, format: &str) {
     if !m.masses.is_empty() {
         m.gravity = Some([0.0, 0.0, -STANDARD_GRAVITY].into());
-        let why = format!("{format} has none: {STANDARD_GRAVITY} m/s^2 along -z");
+        let why = format!("{format} defines no gravity: {STANDARD_GRAVITY} m/s^2 along -z is used");
         notes.approximated("gravity", "", None, why);
     }
 }
 
-/// A spring with a damper on a joint's coordinate; `free` counts from the drawing.
+/// Adds a spring with a damper on a joint coordinate; `free` is relative to the design configuration.
 pub fn joint_spring(
     m: &mut Mechanism,
     notes: &mut ImportLog,
-    called: JointSource<'_>,
+    source: ElementSource<'_>,
     coordinate: Option<Coordinate>,
     [stiffness, damping, free]: [f64; 3],
 ) {
@@ -389,8 +388,8 @@ pub fn joint_spring(
         return;
     }
     let Some(coordinate) = coordinate else {
-        let why = "a spring or damper of a joint without a single coordinate is left out";
-        notes.refused(called.kind, called.name, called.at, why);
+        let why = "springs and dampers require a joint with a single coordinate";
+        notes.refused(source.kind, source.name, source.at, why);
         return;
     };
     if !(stiffness >= 0.0
@@ -399,24 +398,24 @@ pub fn joint_spring(
         && damping.is_finite()
         && free.is_finite())
     {
-        let why = format!("no spring has a stiffness of {stiffness} and a damping of {damping}");
-        notes.refused(called.kind, called.name, called.at, why);
+        let why = format!("invalid stiffness {stiffness} or damping {damping}");
+        notes.refused(source.kind, source.name, source.at, why);
         return;
     }
     m.force(Force {
-        name: called.name.to_owned(),
-        note: called.note(notes),
+        name: source.name.to_owned(),
+        note: source.note(notes),
         on: ForceOn::Coordinate(coordinate),
         spring: Spring { stiffness, damping, free: (stiffness != 0.0).then_some(free), ..Spring::default() },
     });
-    notes.taken(called.kind, called.name, called.at);
+    notes.taken(source.kind, source.name, source.at);
 }
 
-/// A constant friction of a joint, which the model cannot have.
+/// Reports a constant friction of a joint, which the model does not support.
 pub fn friction(notes: &mut ImportLog, name: &str, at: Option<SourceSpan>, friction: f64) {
     if friction != 0.0 {
         let why = format!(
-            "a constant friction of {friction}: friction of the model follows what presses, see docs/loads.md"
+            "constant friction of {friction} is not supported: friction of the model depends on the normal force, see docs/loads.md"
         );
         notes.refused("friction", name, at, why);
     }

@@ -1,5 +1,5 @@
-//! Models and worlds in SDFormat (Gazebo): frames, nested and included models, joints with their axes, mimic and
-//! gearbox.
+//! Models and worlds in SDFormat (Gazebo): frames, nested and included models, joints with their axes, mimic joints and
+//! gearboxes.
 
 mod joints;
 
@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use hardpoint::space::{Pose, Quat};
 use roxmltree::{Document, Node};
 
-use crate::markers::{JointSource, MarkerJoint};
+use crate::markers::{ElementSource, MarkerJoint};
 use crate::mechanism::{GROUND, Joint, Mechanism};
 use crate::report::ImportLog;
 use crate::shapes::Solid;
@@ -16,21 +16,21 @@ use crate::turn::{home, roll_pitch_yaw};
 use crate::xml::{Vocabulary, child, children, exactly, local, named};
 use crate::{Format, Input, robot, xml};
 
-/// See the module.
+/// SDFormat format.
 pub const FORMAT: Format = Format {
     name: "sdf",
     about: "SDFormat model or world",
     endings: &["sdf", "world"],
-    looks: |text| text.contains("<sdf"),
+    recognises: |text| text.contains("<sdf"),
     read,
     binary: false,
 };
 
-/// Models contain models, and frames refer to frames, so deep at most.
+/// Maximum depth of nested models and of frames that refer to each other.
 const DEEPEST: usize = 40;
-/// Maximum number of files that are included.
+/// Maximum number of included files.
 const MOST_INCLUDED: usize = 100;
-/// Maximum number of times that models are placed; nested ones count more than once.
+/// Maximum number of placements of models; nested models count more than once.
 const MOST_PLACED: usize = 20_000;
 /// Known content of a link.
 const LINK: Vocabulary = Vocabulary {
@@ -54,7 +54,7 @@ const LINK: Vocabulary = Vocabulary {
         "damping",
     ],
 };
-/// Elements of models and worlds that do not concern the motion of links and joints.
+/// Elements of models and worlds without effect on the motion of links and joints.
 const IRRELEVANT: [&str; 22] = [
     "self_collide",
     "allow_auto_disable",
@@ -79,13 +79,13 @@ const IRRELEVANT: [&str; 22] = [
     "name",
     "placement_frame",
 ];
-/// Gravity of SDFormat where a source names none, m/s^2.
+/// Default gravity of SDFormat, m/s^2.
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.8];
 /// Elements with a pose in a model or world.
 const PLACED: [&str; 5] = ["link", "frame", "joint", "model", "include"];
 
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
-    // Texts first: what is read of them refers to all of them.
+    // All texts are read first, since they refer to each other.
     let texts = included(input, notes);
     let mut documents: Vec<Option<Document<'_>>> = Vec::new();
     for (number, (_, text)) in texts.iter().enumerate() {
@@ -94,7 +94,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let root = documents.first()?.as_ref()?.root_element();
     if root.tag_name().name() != "sdf" {
         let message = format!("the first element is `{}`, not `sdf`", root.tag_name().name());
-        notes.problem_with("HP0803", xml::at(0, root), message, "name the format, like `--format urdf`");
+        notes.problem_with("HP0803", xml::at(0, root), message, "specify the format, like `--format urdf`");
         return None;
     }
     let mut reader = Reader {
@@ -118,10 +118,10 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let world = worlds.next();
     for other in worlds {
         let name = other.attribute("name").unwrap_or_default();
-        reader.notes.refused("world", name, xml::at(0, other), "only the first world of a file is read");
+        reader.notes.refused("world", name, xml::at(0, other), "only the first world of a file is imported");
     }
     let outer: Vec<Node<'_, '_>> = world.into_iter().chain([root]).collect();
-    // What is in the world itself refers to its models by their names.
+    // Elements of the world refer to its models by their names.
     let own = |n: &Node<'_, '_>| PLACED.contains(&n.tag_name().name());
     reader.several = outer.iter().copied().flat_map(children).filter(own).count() > 1;
     for node in &outer {
@@ -149,12 +149,12 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     }
     let (m, shapes) = (reader.m, std::mem::take(&mut reader.shapes));
     for shape in shapes {
-        shown(input, notes, shape);
+        add_shape(input, notes, shape);
     }
     (m.bodies.len() > 1).then_some(m)
 }
 
-/// The text itself and those that it includes, by the paths that name them.
+/// Returns the text itself and the included texts, by the paths that name them.
 fn included(input: &Input<'_>, notes: &mut ImportLog) -> Vec<(String, String)> {
     let mut texts = vec![(String::new(), xml::lenient(input.text))];
     let mut k = 0;
@@ -168,7 +168,7 @@ fn included(input: &Input<'_>, notes: &mut ImportLog) -> Vec<(String, String)> {
             if texts.iter().any(|(path, _)| *path == uri) {
                 continue;
             }
-            let named = || input.file(&format!("{uri}/{}", described(input, &uri)?));
+            let named = || input.file(&format!("{uri}/{}", newest_file(input, &uri)?));
             let bytes = input.file(&uri).or_else(|| input.file(&format!("{uri}/model.sdf"))).or_else(named);
             if let Some(text) = bytes.map(|b| crate::decoded(&b)) {
                 notes.text(&uri, &text);
@@ -180,55 +180,55 @@ fn included(input: &Input<'_>, notes: &mut ImportLog) -> Vec<(String, String)> {
     texts
 }
 
-/// The file of a model that its description names last: mostly that of the newest version.
-fn described(input: &Input<'_>, uri: &str) -> Option<String> {
+/// Returns the file that a model's description names last, usually the newest version.
+fn newest_file(input: &Input<'_>, uri: &str) -> Option<String> {
     let text = xml::lenient(&crate::decoded(&input.file(&format!("{uri}/model.config"))?));
     let document = xml::parse_quietly(&text).ok()?;
     let name = named(document.root_element(), "sdf").last()?.text()?.trim().to_owned();
     Some(name)
 }
 
-/// The version of SDFormat that a text is in: 1.10 comes after 1.9.
+/// Returns the SDFormat version of a text; 1.10 is later than 1.9.
 fn version(root: Node<'_, '_>) -> Option<(u32, u32)> {
     let (major, minor) = root.attribute("version")?.trim().split_once('.')?;
     Some((major.parse().ok()?, minor.parse().ok()?))
 }
 
-/// A frame that has a name: on which body, and where.
+/// Named frame: its body and pose.
 #[derive(Clone, Copy)]
 struct Frame {
     body: usize,
     pose: Pose,
 }
 
-/// A model, or the world as the one that holds them.
+/// Model, or the world that contains the models.
 #[derive(Clone)]
 struct Model<'d> {
     node: Node<'d, 'd>,
-    /// The number of its text.
+    /// Index of its text.
     text: usize,
     /// Prefix of the names in it.
     scope: String,
-    /// The element that includes it, and the number of that one's text.
+    /// Index of the text with the including element, and that element.
     include: Option<(usize, Node<'d, 'd>)>,
     is_static: bool,
-    /// True if what is in it belongs to the model that includes it.
+    /// True if its content is merged into the including model.
     is_merged: bool,
-    /// The models in it.
+    /// Indices of the models in it.
     inner: Vec<usize>,
-    /// The body that its frame is on.
+    /// Body that carries its frame.
     canonical: Option<usize>,
     place: Pose,
 }
 
-/// Something in a model that has yet to be placed.
+/// Element or model that is not placed yet.
 #[derive(Clone, Copy)]
 enum UnplacedItem<'d> {
     Element(Node<'d, 'd>),
     Model(usize),
 }
 
-/// A shape of a link.
+/// Shape of a link.
 struct VisibleShape<'d> {
     text: usize,
     visual: Node<'d, 'd>,
@@ -242,35 +242,35 @@ struct Reader<'d, 'n> {
     notes: &'n mut ImportLog,
     paths: Vec<String>,
     documents: &'d [Option<Document<'d>>],
-    /// In an order in which what contains comes after what is in it.
+    /// Models; a model follows the models in it.
     models: Vec<Model<'d>>,
-    /// Bodies of the links, by their names with those of the models that contain them.
+    /// Bodies of the links, by their names with the names of the models that contain them.
     bodies: BTreeMap<String, usize>,
-    /// Likewise.
+    /// Frames by their names, likewise.
     frames: BTreeMap<String, Frame>,
     /// Prefixes of the names in each model.
     scopes: BTreeSet<String>,
-    /// The names of all joints, likewise.
+    /// Names of all joints, likewise.
     names: BTreeSet<String>,
     joints: BTreeMap<String, MarkerJoint>,
-    /// True if the file has more than one model: then names have their model's before them.
+    /// True if the file has several models, whose names then precede the names in them.
     several: bool,
     shapes: Vec<VisibleShape<'d>>,
     /// Number of models, links, frames and joints.
     declared: usize,
     /// Frames that are neither links nor joints.
     bare: BTreeSet<String>,
-    /// Number of times that a model was placed.
+    /// Number of placements of models.
     placed: usize,
 }
 
 impl<'d> Reader<'d, '_> {
-    /// Makes the bodies of a model and of those in it; its number.
+    /// Adds the bodies of a model and of the models in it. Returns the index of the model.
     fn declare(&mut self, mut model: Model<'d>, depth: usize) -> usize {
         if depth > DEEPEST {
-            let help = "look for a model that includes itself";
+            let help = "remove the recursive include";
             let at = xml::at(model.text, model.node);
-            self.notes.problem_with("HP0805", at, "models include each other too deep", help);
+            self.notes.problem_with("HP0805", at, "models are nested too deep", help);
             self.models.push(model);
             return self.models.len() - 1;
         }
@@ -278,8 +278,7 @@ impl<'d> Reader<'d, '_> {
             1 + children(model.node).filter(|n| ["link", "joint", "frame"].contains(&local(*n))).count();
         if self.declared > robot::MOST_PARTS {
             let message = format!("it has more than {} models, links, frames and joints", robot::MOST_PARTS);
-            let help =
-                "look for models that include each other more than once, or leave out what need not move";
+            let help = "remove repeated includes, or parts that need not move";
             self.notes.problem_with("HP0802", None, message, help);
             self.models.push(model);
             return self.models.len() - 1;
@@ -300,12 +299,12 @@ impl<'d> Reader<'d, '_> {
         for link in named(model.node, "link") {
             let name = self.name_of(model.text, link);
             let at = xml::at(model.text, link);
-            let note = JointSource { kind: "link", name: &name, at }.note(self.notes);
+            let note = ElementSource { kind: "link", name: &name, at }.note(self.notes);
             let full = format!("{}{name}", model.scope);
             let body = self.m.body(&full, note, None);
             self.notes.taken("link", &name, at);
             if self.bodies.insert(full, body).is_some() {
-                let message = format!("there are two links `{name}`");
+                let message = format!("the link `{name}` is defined twice");
                 self.notes.problem_with("HP0803", at, message, "rename one of them");
             }
             xml::unknown(model.text, link, &name, LINK, self.notes);
@@ -325,7 +324,7 @@ impl<'d> Reader<'d, '_> {
                 "plugin" => robot::plugin(model.text, node, self.notes),
                 name if IRRELEVANT.contains(&name) => self.notes.ignored(name, at),
                 name => {
-                    let why = "an element of a model or world that is not known here";
+                    let why = "unknown element of a model or world";
                     self.notes.not_understood(name, node.attribute("name").unwrap_or_default(), at, why);
                 }
             }
@@ -334,7 +333,7 @@ impl<'d> Reader<'d, '_> {
         self.models.len() - 1
     }
 
-    /// A model in another.
+    /// Creates a nested model.
     fn inner(
         &mut self,
         outer: &Model<'d>,
@@ -352,14 +351,14 @@ impl<'d> Reader<'d, '_> {
             .is_some_and(|(_, i)| i.attribute("merge").is_some_and(|m| ["1", "true"].contains(&m.trim())));
         let is_static =
             outer.is_static || flag(node, "static") || include.is_some_and(|(_, i)| flag(i, "static"));
-        // Names within a model are seen from outside with the model's before them.
+        // From outside, the names in a model have its name as a prefix.
         let alone = depth == 0 && !self.several;
         let scope = if alone || is_merged {
             outer.scope.clone()
         } else {
             let own = (1..).map(|k| if k == 1 { name.clone() } else { format!("{name}_{k}") });
             let mut scopes = own.map(|name| format!("{}{name}::", outer.scope));
-            // Two models of one name are two models all the same.
+            // Models may have the same name.
             scopes.find(|scope| self.scopes.insert(scope.clone())).unwrap_or_default()
         };
         Model {
@@ -375,7 +374,7 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// The model that an element includes, and the number of its text.
+    /// Returns the model that an element includes, with the index of its text.
     fn included(&mut self, text: usize, include: Node<'d, 'd>) -> Option<(usize, Node<'d, 'd>)> {
         let uri = child(include, "uri").and_then(|u| u.text()).unwrap_or_default().trim();
         let number = self.paths.iter().position(|p| p == uri).filter(|k| *k > 0);
@@ -384,7 +383,7 @@ impl<'d> Reader<'d, '_> {
         let at = xml::at(text, include);
         match found {
             Some(_) => self.notes.taken("include", uri, at),
-            None => self.notes.refused("include", uri, at, "there is no such model beside the file"),
+            None => self.notes.refused("include", uri, at, "the model does not exist next to the file"),
         }
         found
     }
@@ -393,18 +392,23 @@ impl<'d> Reader<'d, '_> {
         let name = node.attribute("name").map(str::trim).filter(|n| !n.is_empty());
         if name.is_none() {
             let message = format!("`{}` has no name", node.tag_name().name());
-            self.notes.problem_with("HP0803", xml::at(text, node), message, "give it an attribute `name`");
+            self.notes.problem_with("HP0803", xml::at(text, node), message, "add an attribute `name`");
         }
         name.unwrap_or_default().to_owned()
     }
 
-    /// Places what is in a model as its poses refer to each other. A model may be placed more than once: its own frame
-    /// may depend on another that is in it.
+    /// Places the content of a model in the order in which its poses refer to each other. A model may be placed more
+    /// than once: its frame may depend on a frame in it.
     fn place(&mut self, k: usize, place: Pose) {
         self.placed += 1;
         if self.placed > MOST_PLACED {
-            let help = "look for models with a `placement_frame` in each other";
-            self.notes.problem_with("HP0802", None, "its models are placed by each other too often", help);
+            let help = "remove `placement_frame` from nested models";
+            self.notes.problem_with(
+                "HP0802",
+                None,
+                "its models depend on each other's placement too often",
+                help,
+            );
             return;
         }
         self.models[k].place = place;
@@ -439,20 +443,20 @@ impl<'d> Reader<'d, '_> {
             };
             let held = child(node, "child").and_then(|c| c.text()).unwrap_or_default().trim();
             if node.has_tag_name("joint") && self.frame(&model.scope, held).is_none() {
-                // That is reported where it is joined.
+                // The joint reports the error.
                 continue;
             }
             let name = node.attribute("name").unwrap_or_default();
-            let message = format!("the pose of `{name}` refers to a frame that is not there, or in a circle");
-            let help = "name a link, joint, frame or model of the file";
+            let message = format!("the pose of `{name}` refers to a frame that does not exist, or to itself");
+            let help = "use a link, joint, frame or model of the file";
             self.notes.problem_with("HP0803", xml::at(text, node), message, help);
         }
     }
 
-    /// True if a model in another could be placed.
+    /// Places a nested model. Returns true on success.
     fn place_inner(&mut self, k: usize, outer: &Model<'d>, of_outer: Frame) -> bool {
         let inner = self.models[k].clone();
-        // What includes it says where it is, if it does.
+        // The pose of the including element takes precedence.
         let by_include = inner.include.and_then(|(text, i)| Some((text, child(i, "pose")?)));
         let written = by_include.or_else(|| Some((inner.text, child(inner.node, "pose")?)));
         let base = match written.and_then(|(_, p)| relative_to(p)) {
@@ -462,8 +466,8 @@ impl<'d> Reader<'d, '_> {
         let Some(base) = base else { return false };
         let pose = base.pose.compose(written.map_or_else(home, |(text, p)| self.written_pose(text, p)));
         let by_include = inner.include.and_then(|(_, i)| child(i, "placement_frame")?.text());
-        let stands_by = by_include.or_else(|| inner.node.attribute("placement_frame")).map(str::trim);
-        match stands_by.filter(|f| !f.is_empty()) {
+        let placement_frame = by_include.or_else(|| inner.node.attribute("placement_frame")).map(str::trim);
+        match placement_frame.filter(|f| !f.is_empty()) {
             None => self.place(k, pose),
             Some(frame) => {
                 self.place(k, home());
@@ -474,7 +478,7 @@ impl<'d> Reader<'d, '_> {
         true
     }
 
-    /// True if the frame of a link, joint or `frame` could be placed.
+    /// Places the frame of a link, joint or `frame`. Returns true on success.
     fn place_frame(&mut self, node: Node<'d, 'd>, model: &Model<'d>, of_model: Frame) -> bool {
         let (text, scope) = (model.text, &model.scope);
         let name = node.attribute("name").unwrap_or_default().trim();
@@ -505,7 +509,7 @@ impl<'d> Reader<'d, '_> {
                 self.frames.insert(full, Frame { body, pose });
             }
             "joint" => {
-                // A joint may have the name of a link.
+                // A joint and a link may have the same name.
                 if !self.bodies.contains_key(&full) {
                     self.frames.insert(full, Frame { body: on.body, pose });
                 }
@@ -513,7 +517,7 @@ impl<'d> Reader<'d, '_> {
             }
             _ => {
                 if self.bodies.contains_key(&full) {
-                    let message = format!("there are a link and a frame `{name}`");
+                    let message = format!("a link and a frame are named `{name}`");
                     self.notes.problem_with("HP0803", xml::at(text, node), message, "rename one of them");
                 }
                 self.bare.insert(full.clone());
@@ -528,11 +532,11 @@ impl<'d> Reader<'d, '_> {
             return Some(Frame { body: GROUND, pose: home() });
         }
         let own = self.frames.get(&format!("{scope}{name}"));
-        // A nested model's name is its frame.
+        // The name of a nested model refers to its frame.
         own.or_else(|| self.frames.get(&format!("{scope}{name}::__model__"))).copied()
     }
 
-    /// A pose as it is written: x y z roll pitch yaw, or with a quaternion.
+    /// Reads a pose: x y z roll pitch yaw, or with a quaternion.
     fn written_pose(&mut self, text: usize, node: Node<'d, 'd>) -> Pose {
         let words = node.text().unwrap_or_default();
         let at = xml::at(text, node);
@@ -548,7 +552,7 @@ impl<'d> Reader<'d, '_> {
                     "HP0804",
                     at,
                     "the quaternion of the pose is null",
-                    "give it a length other than zero",
+                    "give a non-zero quaternion",
                 );
                 return home();
             };
@@ -563,12 +567,12 @@ impl<'d> Reader<'d, '_> {
         Pose { rot: roll_pitch_yaw([a, b, c]), r: [x, y, z].into() }
     }
 
-    /// Joints, what ties them to each other, and shapes.
+    /// Adds joints, their relations, and shapes.
     fn connect(&mut self) {
         let models = self.models.clone();
         for model in &models {
             for link in named(model.node, "link") {
-                self.stands(link, model);
+                self.add_link(link, model);
             }
             for joint in named(model.node, "joint") {
                 self.joint(joint, model);
@@ -595,7 +599,7 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// Reports content of a pose that is not known.
+    /// Reports unknown content of poses.
     fn poses_of(&mut self, text: usize, node: Node<'d, 'd>, owner: &str) {
         const POSE: Vocabulary = Vocabulary {
             attributes: &["relative_to", "frame", "degrees", "rotation_format"],
@@ -607,7 +611,7 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// The masses of links, and gravity.
+    /// Adds the masses of links, and gravity.
     fn masses(&mut self, outer: &[Node<'d, 'd>]) {
         for model in self.models.clone() {
             for link in named(model.node, "link") {
@@ -627,16 +631,16 @@ impl<'d> Reader<'d, '_> {
                     let [x] = found.unwrap_or([default]);
                     x
                 };
-                // These are the defaults of SDFormat.
+                // Defaults of SDFormat.
                 let mass = number(Some(inertial), "mass", 1.0);
                 let i = child(inertial, "inertia");
                 let diagonal = ["ixx", "iyy", "izz"].map(|key| number(i, key, 1.0));
                 let [xy, xz, yz] = ["ixy", "ixz", "iyz"].map(|key| number(i, key, 0.0));
                 let [xx, yy, zz] = diagonal;
                 let cols = [[xx, xy, xz].into(), [xy, yy, yz].into(), [xz, yz, zz].into()];
-                let called = JointSource { kind: "inertial", name, at: xml::at(model.text, inertial) };
+                let source = ElementSource { kind: "inertial", name, at: xml::at(model.text, inertial) };
                 let matrix = hardpoint::space::Mat3 { cols };
-                robot::mass(&mut self.m, self.notes, called, body, frame, mass, Some(matrix));
+                robot::mass(&mut self.m, self.notes, source, body, frame, mass, Some(matrix));
             }
         }
         if self.m.masses.is_empty() {
@@ -657,14 +661,14 @@ impl<'d> Reader<'d, '_> {
                     "gravity",
                     "",
                     None,
-                    "none is written: that of SDFormat, 9.8 m/s^2 along -z",
+                    "no gravity is defined: the default of SDFormat, 9.8 m/s^2 along -z, is used",
                 );
             }
         }
     }
 
-    /// A link of a static model does not move; and what it looks like.
-    fn stands(&mut self, link: Node<'d, 'd>, model: &Model<'d>) {
+    /// Fixes a link of a static model, and adds the shapes of the link.
+    fn add_link(&mut self, link: Node<'d, 'd>, model: &Model<'d>) {
         let name = link.attribute("name").unwrap_or_default().trim();
         let Some(Frame { body, pose }) = self.frame(&model.scope, name) else { return };
         if model.is_static {
@@ -682,14 +686,14 @@ impl<'d> Reader<'d, '_> {
     }
 }
 
-/// The frame that a pose counts from, where it names one; before version 1.7 by another attribute.
+/// Returns the frame that a pose is relative to, if it names one; versions before 1.7 use another attribute.
 fn relative_to<'a>(pose: Node<'a, '_>) -> Option<&'a str> {
     let named = pose.attribute("relative_to").or_else(|| pose.attribute("frame")).map(str::trim);
     named.filter(|r| !r.is_empty())
 }
 
-/// The shape of a link, of one `visual`.
-fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) {
+/// Adds the shape of a `visual`.
+fn add_shape(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) {
     let VisibleShape { text, visual, body, link, place } = shape;
     let at = xml::at(text, visual);
     let Some(shape) = child(visual, "geometry").and_then(|g| children(g).next()) else {
@@ -718,12 +722,12 @@ fn shown(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'_>) 
             return;
         }
         other => {
-            notes.refused("visual", &link, at, format!("a shape `{other}` is not shown"));
+            notes.refused("visual", &link, at, format!("shapes of type `{other}` are not supported"));
             return;
         }
     };
     let Some(solid) = solid else {
-        notes.refused("visual", &link, xml::at(text, shape), "its size is not written in numbers");
+        notes.refused("visual", &link, xml::at(text, shape), "its size is not numeric");
         return;
     };
     input.shapes.solid(body, place, solid);

@@ -1,4 +1,4 @@
-//! The motion that a source has stored, for comparison.
+//! Stored motion of a source, for comparison.
 
 use hardpoint::Solution;
 use hardpoint::joint::Quantity;
@@ -6,19 +6,19 @@ use hardpoint::model::BodyId;
 use hardpoint::space::{Pose, Vec3};
 use hardpoint_file::ModelFile;
 
-/// Times nearer than this, of a second or of themselves, are the same: files have about ten digits.
+/// Tolerance of equal times, absolute (s) or relative: files have about ten digits.
 const SAME_TIME: f64 = 1e-9;
 
 /// Stored motion of a source's bodies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
-    /// The times.
+    /// Output times, s.
     pub times: Vec<f64>,
-    /// By the bodies' names in the model file, all as long as the times; lengths in the file's unit.
+    /// Poses at the output times by the name of the body in the model file; lengths in the unit of the file.
     pub bodies: Vec<(String, Vec<StoredPose>)>,
 }
 
-/// A body at one time.
+/// State of a body at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredPose {
     /// Pose of its frame.
@@ -28,12 +28,12 @@ pub struct StoredPose {
     pub rates: [Option<Vec3>; 4],
 }
 
-/// By how much a solution differs from what was stored, at most, over all bodies and times.
+/// Maximum differences of a solution from the stored motion, over all bodies and times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Difference {
-    /// Number of times that were compared.
+    /// Number of compared times.
     pub times: usize,
-    /// Difference of positions, in the file's unit.
+    /// Difference of positions, in the unit of the file.
     pub place: f64,
     /// Difference of orientations, rad.
     pub turn: f64,
@@ -45,7 +45,7 @@ pub struct Difference {
 }
 
 impl Series {
-    /// Sets what a model's solution says beside it, at the times that both have.
+    /// Compares a solution of the model with the stored motion at their common times.
     pub fn compare(&self, file: &ModelFile, solution: &Solution) -> Difference {
         let unit = file.units.of(Quantity::Length).1;
         let mut out = Difference::default();

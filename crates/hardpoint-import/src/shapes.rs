@@ -1,5 +1,5 @@
-//! Shapes of bodies: meshes that a source names, boxes, cylinders and balls; all of a body become one file of
-//! triangles.
+//! Shapes of bodies: meshes that a source names, boxes, cylinders and balls. The shapes of a body are combined in one
+//! file of triangles.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -9,34 +9,34 @@ use hardpoint::space::{Pose, Vec3};
 use crate::mechanism::{GROUND, Mechanism, Mesh};
 use crate::report::{ImportLog, SourceSpan};
 
-/// A body is drawn with at most that many triangles.
+/// Maximum number of triangles of a body.
 const MOST: usize = 200_000;
-/// Cylinders and balls have that many sides: round enough to look at.
+/// Number of sides of cylinders and balls.
 const SIDES: usize = 24;
 
 type Triangle = [Vec3; 3];
 
-/// The shapes of a mechanism, by body; in the body's frame and the mechanism's unit.
+/// Shapes of a mechanism by body, in the body frame and the unit of the mechanism.
 #[derive(Debug, Default)]
 pub struct Shapes {
     bodies: BTreeMap<usize, Vec<Triangle>>,
 }
 
-/// A simple shape, in the way of the robot formats: axes along z, the origin in the middle.
+/// Simple shape as in the robot formats: axis along z, origin in the middle.
 #[derive(Clone, Copy, Debug)]
 pub enum Solid {
-    /// By its three sides.
+    /// A box with the lengths of its sides.
     Box([f64; 3]),
-    /// By its radius and length.
+    /// A cylinder with its radius and length.
     Cylinder(f64, f64),
-    /// By its radius and the length of the cylinder between its halves.
+    /// A capsule with its radius and the length of its cylinder.
     Capsule(f64, f64),
-    /// By its three half axes.
+    /// An ellipsoid with its three semi-axes.
     Ball([f64; 3]),
 }
 
 impl Shapes {
-    /// A simple shape, placed in its body.
+    /// Adds a simple shape at a pose in its body.
     pub fn solid(&mut self, body: usize, place: Pose, solid: Solid) {
         let triangles = match solid {
             Solid::Box(sides) => cuboid(sides),
@@ -53,10 +53,10 @@ impl Shapes {
         self.push(body, place, [1.0; 3], triangles.into_iter());
     }
 
-    /// A file of triangles, placed in its body, its coordinates times `scale`.
+    /// Adds a file of triangles at a pose in its body, with its coordinates scaled by `scale`.
     ///
     /// # Errors
-    /// Why it cannot be shown.
+    /// Returns the reason why the file cannot be read.
     pub fn file(
         &mut self,
         body: usize,
@@ -80,11 +80,11 @@ impl Shapes {
         list.extend(triangles.take(MOST.saturating_sub(list.len())).map(|t| t.map(put)));
     }
 
-    /// A file for each body that has a shape, in a folder of that name; the mechanism's bodies refer to them.
+    /// Returns a file for each body with a shape, in a folder, and sets the meshes of the bodies.
     pub fn files(&self, m: &mut Mechanism, folder: &str) -> Vec<(String, Vec<u8>)> {
         let mut files: Vec<(String, Vec<u8>)> = Vec::new();
         for (&body, triangles) in &self.bodies {
-            // A ball of radius 0 is there for contact alone.
+            // Balls of radius 0 are for contact only.
             let seen = |[a, b, c]: &&Triangle| {
                 [a, b, c].iter().all(|p| p.is_finite()) && (*b - *a).cross(*c - *a).norm() > 0.0
             };
@@ -103,18 +103,24 @@ impl Shapes {
     }
 }
 
-/// A name as part of a file's name.
+/// Returns a name without characters that are invalid in file names.
 pub fn file_name(name: &str) -> String {
     let kept = |c: char| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '_' };
     name.chars().map(kept).collect()
 }
 
-/// That the shape of something is not shown, and why.
-pub fn not_shown(notes: &mut ImportLog, kind: &str, name: &str, at: Option<SourceSpan>, why: &str) {
-    notes.refused(kind, name, at, format!("the shape is not shown: {why}"));
+/// Reports a missing shape with the reason.
+pub fn report_missing_shape(
+    notes: &mut ImportLog,
+    kind: &str,
+    name: &str,
+    at: Option<SourceSpan>,
+    why: &str,
+) {
+    notes.refused(kind, name, at, format!("the shape is not imported: {why}"));
 }
 
-/// A binary STL file.
+/// Returns a binary STL file.
 fn stl(triangles: &[&Triangle]) -> Vec<u8> {
     let mut out = vec![b' '; 80];
     let words = |v: Vec3| v.to_array().into_iter().flat_map(|x| (x as f32).to_le_bytes());
@@ -133,12 +139,12 @@ fn cuboid(sides: [f64; 3]) -> Vec<Triangle> {
         let side = |axis: usize| if k >> axis & 1 == 1 { sides[axis] / 2.0 } else { -sides[axis] / 2.0 };
         Vec3::from([side(0), side(1), side(2)])
     };
-    // Each face by its corners, seen from outside counter-clockwise.
+    // Corners of each face, counter-clockwise seen from outside.
     let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).map(|t| t.map(corner)).collect()
 }
 
-/// The outline of a ball whose halves stand apart: radius and height.
+/// Outline `[radius, height]` of a ball whose halves are separated by `2 * half`.
 fn arc(radius: f64, half: f64) -> Vec<[f64; 2]> {
     let point = |k: usize| {
         let angle = TAU * (k as f64 / SIDES as f64 - 0.25);
@@ -147,7 +153,7 @@ fn arc(radius: f64, half: f64) -> Vec<[f64; 2]> {
     (0..=SIDES / 2).map(point).collect()
 }
 
-/// An outline of radii and heights, turned about z.
+/// Surface of revolution of an outline `[radius, height]` about z.
 fn turned(outline: &[[f64; 2]]) -> Vec<Triangle> {
     let at = |[r, z]: [f64; 2], k: usize| {
         let (sin, cos) = (TAU * (k % SIDES) as f64 / SIDES as f64).sin_cos();

@@ -1,25 +1,24 @@
-//! Files of programs whose other files are read here, by what is in them: a message names the file to export in place
-//! of them.
+//! Detection of related file types that are not supported: the error names the file to import instead.
 
-/// A kind of file that is not read.
+/// Unsupported kind of file.
 pub struct Sibling {
-    /// The kind, with its article.
+    /// Description of the kind, with its article.
     pub what: &'static str,
-    /// The file to import in place of it, and where it comes from.
+    /// File to import instead, and how to create it.
     pub help: &'static str,
 }
 
-/// Recognises a kind by its text (in small letters) or, where the text says nothing, by the ending of the name.
+/// Kind that is recognised by its text (in lower case) or by its extension.
 struct Kind {
     endings: &'static [&'static str],
-    looks: fn(&str) -> bool,
+    recognises: fn(&str) -> bool,
     sibling: Sibling,
 }
 
 const KINDS: &[Kind] = &[
     Kind {
         endings: &["cmd"],
-        looks: |text| {
+        recognises: |text| {
             let command = |l: &str| {
                 ["model create", "part create", "marker create", "constraint create", "defaults "]
                     .iter()
@@ -34,7 +33,7 @@ const KINDS: &[Kind] = &[
     },
     Kind {
         endings: &["bin"],
-        looks: |_| false,
+        recognises: |_| false,
         sibling: Sibling {
             what: "a binary database of Adams/View (.bin)",
             help: "open it in Adams/View, export the model as an Adams/Solver dataset (.adm), and import that",
@@ -42,23 +41,23 @@ const KINDS: &[Kind] = &[
     },
     Kind {
         endings: &["acf"],
-        looks: |text| text.contains("simulate/"),
+        recognises: |text| text.contains("simulate/"),
         sibling: Sibling {
-            what: "a command file of Adams/Solver (.acf), which has no mechanism",
+            what: "a command file of Adams/Solver (.acf), which contains no mechanism",
             help: "import the dataset (.adm) that its first line names",
         },
     },
     Kind {
         endings: &["asy", "tpl"],
-        looks: |text| text.contains("file_type") && ["'asy'", "'tpl'"].iter().any(|t| text.contains(t)),
+        recognises: |text| text.contains("file_type") && ["'asy'", "'tpl'"].iter().any(|t| text.contains(t)),
         sibling: Sibling {
             what: "an assembly or a template of Adams/Car (.asy, .tpl)",
-            help: "import one of its subsystems (.sub), which hold the hardpoints",
+            help: "import one of its subsystems (.sub), which contain the hardpoints",
         },
     },
     Kind {
         endings: &["mbd", "mbdyn"],
-        looks: |text| {
+        recognises: |text| {
             text.contains("begin:")
                 && text.contains("end:")
                 && text.contains("problem")
@@ -66,12 +65,12 @@ const KINDS: &[Kind] = &[
         },
         sibling: Sibling {
             what: "an input file of MBDyn (.mbd)",
-            help: "MBDyn exports no other format: write bodies and joints as in docs/file-format.md",
+            help: "MBDyn exports no other format: write bodies and joints as described in docs/file-format.md",
         },
     },
     Kind {
         endings: &["mdl"],
-        looks: |text| text.contains("*beginmdl") || text.contains("*begincontext"),
+        recognises: |text| text.contains("*beginmdl") || text.contains("*begincontext"),
         sibling: Sibling {
             what: "a model of MotionView (.mdl)",
             help: "export it as an Adams/Solver dataset (.adm), and import that",
@@ -79,7 +78,7 @@ const KINDS: &[Kind] = &[
     },
     Kind {
         endings: &["xacro"],
-        looks: |_| false,
+        recognises: |_| false,
         sibling: Sibling {
             what: "a xacro file, from which a URDF is made",
             help: "run `xacro FILE > robot.urdf` and import that",
@@ -87,7 +86,7 @@ const KINDS: &[Kind] = &[
     },
     Kind {
         endings: &["slx", "sldasm", "iam", "catproduct", "step", "stp", "rdyn", "mjb"],
-        looks: |text| text.starts_with("iso-10303-21"),
+        recognises: |text| text.starts_with("iso-10303-21"),
         sibling: Sibling {
             what: "a CAD, Simscape, RecurDyn or compiled MuJoCo file, whose joints are not read",
             help: "export the mechanism as URDF, SDF, MJCF or an Adams/Solver dataset, and import that",
@@ -95,10 +94,10 @@ const KINDS: &[Kind] = &[
     },
 ];
 
-/// The kind of a file that is not read: by its text first, then by its ending.
+/// Returns the unsupported kind of a file, from its text or otherwise from its extension.
 pub fn of(text: &str, name: &str) -> Option<&'static Sibling> {
     let text = text.to_ascii_lowercase();
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
-    let by_text = KINDS.iter().find(|k| (k.looks)(&text));
+    let by_text = KINDS.iter().find(|k| (k.recognises)(&text));
     by_text.or_else(|| KINDS.iter().find(|k| k.endings.contains(&ending.as_str()))).map(|k| &k.sibling)
 }

@@ -1,5 +1,4 @@
-//! Left and right sides of a vehicle: names, mirror images across y = 0, and the test whether the right side is the
-//! image of the left one.
+//! Left and right sides of a vehicle: names, mirror images across y = 0, and the test for symmetry of both sides.
 
 use std::collections::HashSet;
 
@@ -9,18 +8,18 @@ use hardpoint_file::side_names::{WORDS, exchanged, is_original, pieces};
 use crate::mechanism::{Body, Driver, Drives, Force, ForceOn, Joint, Law, Mass, Mechanism, Point, Wheel};
 use crate::write::SAME_PLACE;
 
-/// Sign of y and ending of names, left and right.
+/// Sign of y and suffix of names, left and right.
 pub const SIDES: [(f64, &str); 2] = [(1.0, "_left"), (-1.0, "_right")];
 
-/// The words of both sides, as a mirror has them by default.
+/// Words of both sides, the default of a mirror.
 const BOTH: [(&str, &str); 1] = [(WORDS[0], WORDS[1])];
 
-/// A place or direction of the left side, on the left (1) or on the right (-1).
+/// Returns a point or vector of the left side on the left (1) or mirrored to the right (-1).
 pub fn over(v: Vec3, side: f64) -> Vec3 {
     Vec3::from([v.x, side * v.y, v.z])
 }
 
-/// A name with a further word; the side remains its last word.
+/// Appends a word to a name; the side remains the last word.
 pub fn with_word(name: &str, word: &str) -> String {
     let sided = SIDES.iter().find_map(|(_, suffix)| Some((name.strip_suffix(suffix)?, suffix)));
     match sided {
@@ -29,17 +28,17 @@ pub fn with_word(name: &str, word: &str) -> String {
     }
 }
 
-/// Returns whether a name is of the right side.
+/// Returns true for names of the right side.
 pub fn is_right(name: &str) -> bool {
     is_original(name, &BOTH) == Some(false)
 }
 
-/// The name of the same thing on the other side, of a name that has one; the name itself of all others.
+/// Returns the name of the counterpart on the other side, or the name itself if it has no side.
 pub fn other(name: &str) -> String {
     exchanged(name, &BOTH).unwrap_or_else(|| name.to_owned())
 }
 
-/// The name without its side, of the left one of a pair.
+/// Returns a name of the left side without its side.
 pub fn base(name: &str) -> Option<String> {
     if is_original(name, &BOTH) != Some(true) {
         return None;
@@ -48,8 +47,8 @@ pub fn base(name: &str) -> Option<String> {
     Some(words.join("_")).filter(|base| !base.is_empty() && is_original(base, &BOTH).is_none())
 }
 
-/// The joints of the right side that are no images of their counterparts, if all else of it is the image of the left
-/// side; none if it is not, or if there are no sides.
+/// Returns the joints of the right side that are not images of their counterparts, if everything else is symmetric;
+/// `None` if it is not, or if there are no sides.
 pub fn symmetry(m: &Mechanism) -> Option<HashSet<&str>> {
     let is_sided = |c: &crate::mechanism::Coupler| {
         let joints = c.terms.iter().map(|(c, _)| m.joints[c.joint].name.as_str());
@@ -80,7 +79,7 @@ pub fn symmetry(m: &Mechanism) -> Option<HashSet<&str>> {
     is_image.then(|| differs.map(|(_, right)| right.name.as_str()).collect())
 }
 
-/// The things of the left side with those of the right one; none if any is on one side only.
+/// Pairs the objects of the left side with those of the right side; `None` if one has no counterpart.
 fn pairs<T>(list: &[T], name: impl Fn(&T) -> &String) -> Option<Vec<(&T, &T)>> {
     let of =
         |left: bool| list.iter().filter(|t| is_original(name(t), &BOTH) == Some(left)).collect::<Vec<_>>();
@@ -90,12 +89,12 @@ fn pairs<T>(list: &[T], name: impl Fn(&T) -> &String) -> Option<Vec<(&T, &T)>> {
     pairs.filter(|_| left.len() == right.len())
 }
 
-/// Images of the bodies of a mechanism, and tests whether other things are images.
+/// Images of the bodies of a mechanism, and tests for images of other objects.
 struct Mirror<'m> {
     m: &'m Mechanism,
-    /// The image of each body.
+    /// Image of each body.
     bodies: Vec<usize>,
-    /// Distance of places that are the same.
+    /// Distance below which points coincide.
     near: f64,
 }
 
@@ -109,8 +108,8 @@ impl Mirror<'_> {
         left.unit().zip(right.unit()).is_some_and(|(l, r)| apart(l, r))
     }
 
-    /// Returns whether one axis is the other's image up to its sign, or both are none: an axis that turns is one either
-    /// way round.
+    /// Returns true if one axis is the image of the other up to its sign, or if both are missing. The sign of an axis
+    /// of rotation does not matter.
     fn is_axis(left: Option<Vec3>, right: Option<Vec3>) -> bool {
         match (left, right) {
             (Some(l), Some(r)) => Self::is_direction(l, r) || Self::is_direction(l, -r),
@@ -153,27 +152,29 @@ impl Mirror<'_> {
     }
 
     fn is_driver(&self, left: &Driver, right: &Driver) -> bool {
-        let held = left.law == Law::Held && right.law == Law::Held;
+        let held = left.law == Law::Fixed && right.law == Law::Fixed;
         match (left.drives, right.drives) {
             (Drives::Coordinate(l), Drives::Coordinate(r)) => {
                 let [one, two] = [l, r].map(|c| &self.m.joints[c.joint].name);
                 held && l.name == r.name && *two == other(one)
             }
             (
-                Drives::Way { body: l, at: from, along: way },
-                Drives::Way { body: r, at: to, along: other_way },
+                Drives::Translation { body: l, at: from, along },
+                Drives::Translation { body: r, at: to, along: other_along },
             ) => {
-                self.is_at((l, from), (r, to)) && Self::is_direction(way, other_way) && left.law == right.law
+                self.is_at((l, from), (r, to))
+                    && Self::is_direction(along, other_along)
+                    && left.law == right.law
             }
             (
-                Drives::Heading { body: l, about, relative_to: base },
-                Drives::Heading { body: r, about: other_about, relative_to: other_base },
+                Drives::Rotation { body: l, about, relative_to: base },
+                Drives::Rotation { body: r, about: other_about, relative_to: other_base },
             ) => {
                 held && self.bodies[l] == r
                     && self.bodies[base] == other_base
                     && Self::is_axis(Some(about), Some(other_about))
             }
-            (Drives::Coordinate(_) | Drives::Way { .. } | Drives::Heading { .. }, _) => false,
+            (Drives::Coordinate(_) | Drives::Translation { .. } | Drives::Rotation { .. }, _) => false,
         }
     }
 
@@ -194,7 +195,7 @@ impl Mirror<'_> {
     fn is_force(&self, left: &Force, right: &Force) -> bool {
         let ends = |on| match on {
             ForceOn::Points(ends) => Some(ends),
-            // Its sign on the other side depends on the joint.
+            // The sign on the other side depends on the joint.
             ForceOn::Coordinate(_) => None,
         };
         let (l, r) = (ends(left.on), ends(right.on));

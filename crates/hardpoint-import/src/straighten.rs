@@ -1,4 +1,4 @@
-//! Axes that are meant to be parallel: sources write angles with few digits, and a loop whose axes are off by a little
+//! Alignment of nearly parallel axes: sources write angles with few digits, and a loop with slightly misaligned axes
 //! cannot move.
 
 use std::collections::BTreeSet;
@@ -8,26 +8,26 @@ use hardpoint::space::Vec3;
 use crate::mechanism::Mechanism;
 use crate::turn::{X, Y, Z};
 
-/// Axes nearer to each other than this, in rad, may be meant to be parallel: half a turn is often written as 3.14.
+/// Angle below which axes are assumed to be parallel, rad: half a turn is often written as 3.14.
 pub const MEANT: f64 = 2e-3;
 
-/// Axes that were straightened.
+/// Axes that were aligned.
 pub struct StraightenedAxes {
-    /// The joints whose axes are turned.
+    /// Names of the joints whose axes were rotated.
     pub joints: Vec<String>,
-    /// By how much at most, in rad.
+    /// Maximum angle of rotation, rad.
     pub by: f64,
 }
 
-/// Turns the axes in loops that are nearly parallel to a global axis, or to one before them, until they are.
+/// Aligns the axes in loops that are nearly parallel to a global axis or to a previous axis.
 pub fn straighten(m: &mut Mechanism) -> Option<StraightenedAxes> {
     let mut known: Vec<Vec3> = [X, Y, Z].map(Vec3::from).to_vec();
     let mut done = StraightenedAxes { joints: Vec::new(), by: 0.0 };
     let turned: Vec<usize> = m.turned.iter().map(|frame| frame.joint).collect();
-    // A frame turns about the axis that closes it, whatever that is near.
+    // The axis of an assembled frame follows from its closure.
     for k in in_loops(m).into_iter().filter(|k| !turned.contains(k)) {
         let joint = &mut m.joints[k];
-        // Where there are two they stay square.
+        // Pairs of axes remain perpendicular.
         let (Some(axis), None, None) = (joint.axis.and_then(Vec3::unit), joint.axis2, joint.through) else {
             continue;
         };
@@ -46,7 +46,8 @@ pub fn straighten(m: &mut Mechanism) -> Option<StraightenedAxes> {
     (!done.joints.is_empty()).then_some(done)
 }
 
-/// The joints without those of bodies that hang on a single one: what remains are the loops, and what is between them.
+/// Returns the joints that remain when bodies with a single joint are removed repeatedly: those in loops and between
+/// loops.
 fn in_loops(m: &Mechanism) -> BTreeSet<usize> {
     let mut left: BTreeSet<usize> = (0..m.joints.len()).collect();
     loop {

@@ -5,26 +5,26 @@ use std::collections::BTreeMap;
 use hardpoint::space::Vec3;
 
 use crate::corner::{Corner, Link, plain, role_of, spin_axis};
-use crate::live_axle::{self, Places};
+use crate::live_axle::{self, SideHardpoints};
 use crate::lotus::half_round;
 use crate::mechanism::{Mechanism, end_named};
 use crate::report::{ImportLog, SourceSpan};
 use crate::sides::SIDES;
 use crate::{Format, Input, teimorbit_blocks};
 
-/// See the module.
+/// TeimOrbit format.
 pub const FORMAT: Format = Format {
     name: "teimorbit",
     about: "TeimOrbit hardpoints",
     endings: &["sub", "hpt", "txt", "teim"],
-    looks: |text| text.lines().any(|l| l.trim().eq_ignore_ascii_case("[HARDPOINT]")),
+    recognises: |text| text.lines().any(|l| l.trim().eq_ignore_ascii_case("[HARDPOINT]")),
     read,
     binary: false,
 };
 
-/// The columns of parameters.
+/// Columns of parameters.
 const PARAMETERS: [&str; 4] = ["parameter_name", "symmetry", "type", "value"];
-/// Default columns of a row.
+/// Default columns of hardpoints.
 const COLUMNS: [&str; 5] = ["hardpoint_name", "symmetry", "x_value", "y_value", "z_value"];
 
 fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
@@ -55,7 +55,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             }
             continue;
         }
-        // `(COMMENTS)`, or `(VARIANTS)`, whose rows are those of other designs.
+        // `(COMMENTS)`, or `(VARIANTS)`, whose rows belong to other designs.
         if line.starts_with('(') {
             if ["HARDPOINT", "PARAMETER"].contains(&section.as_str()) {
                 notes.ignored(line, Some(at));
@@ -90,19 +90,19 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         notes.problem_with(
             "HP0803",
             None,
-            "there is no block `[HARDPOINT]`",
-            "import the subsystem file (.sub) that holds the hardpoints; an assembly (.asy) names its subsystems",
+            "the block `[HARDPOINT]` is missing",
+            "import the subsystem file (.sub) with the hardpoints; an assembly (.asy) names its subsystems",
         );
         return None;
     };
     if !has_units {
-        notes.approximated("UNITS", "", None, "the file names no unit of length: millimetres are taken");
+        notes.approximated("UNITS", "", None, "the file defines no unit of length: millimetres are assumed");
     }
     notes.approximated(
         "axes",
         "",
         Some(block),
-        "turned half round about z, so that x points forward and y left",
+        "rotated by 180 deg about z, so that x points forward and y left",
     );
     let end = blocks.iter().find_map(|b| end_named(b.value("MINOR_ROLE")?));
     let places = sides.each_ref().map(|side| side.places.clone());
@@ -134,7 +134,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         let corner = Corner { at: Some(block), rack: true, radius: parameters.radius, end, ..single };
         known = corner.build(&mut m, notes, &mut rack);
     }
-    // Arms without their ball joints are no links of an axle.
+    // Arms without ball joints are not links of an axle.
     let has_arms = corners.iter().flat_map(|c| c.points.keys()).any(|role| role.is_of_an_arm());
     if !known && !has_arms {
         known = live_axle::build(&mut m, notes, &places, &corners, Some(block));
@@ -142,60 +142,60 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     if !known {
         m.unplaced = Some(live_axle::unplaced(&places, |name| role_of(name).is_some()));
         if live_axle::has_leaf_springs(&places) {
-            let why = "leaf springs guide the axle by bending: the model has no such member";
+            let why = "leaf springs guide the axle by bending, which the model does not support";
             notes.refused("hardpoint", "leaf spring", Some(block), why);
         }
     }
-    teimorbit_blocks::take(&blocks, &mut m, parameters.mass_is_kg, notes);
+    teimorbit_blocks::read_blocks(&blocks, &mut m, parameters.mass_is_kg, notes);
     (!m.hardpoints.is_empty()).then_some(m)
 }
 
-/// A block of values by keys.
+/// Block of keys and values.
 pub struct Block {
     /// Name, in capital letters.
     pub name: String,
-    /// Place of its beginning.
+    /// Position of its heading.
     pub at: SourceSpan,
-    /// Keys in capital letters, and their values.
+    /// Keys in capital letters, with their values.
     pub values: Vec<(String, String)>,
 }
 
 impl Block {
-    /// The value of a key.
+    /// Returns the value of a key.
     pub fn value(&self, key: &str) -> Option<&str> {
         self.values.iter().find(|(k, _)| k == key).map(|(_, value)| value.as_str())
     }
 
-    /// The number of a key.
+    /// Returns the number of a key.
     pub fn number(&self, key: &str) -> Option<f64> {
         number(self.value(key)?)
     }
 }
 
-/// A finite number, whose exponent may begin with D.
+/// Reads a finite number; its exponent may begin with D.
 fn number(word: &str) -> Option<f64> {
     word.to_ascii_lowercase().replace('d', "e").parse().ok().filter(|x: &f64| x.is_finite())
 }
 
-/// Returns whether a line of units gives masses in another unit than kilograms.
+/// Returns true if a line of units defines another unit of mass than kilograms.
 fn is_other_mass(line: &str) -> bool {
     let Some((key, value)) = line.split_once('=') else { return false };
     let unit = value.trim().trim_matches(['\'', '"']).to_ascii_lowercase();
     key.trim().eq_ignore_ascii_case("MASS") && !["kg", "kilogram"].contains(&unit.as_str())
 }
 
-/// The hardpoints of one side, or those without a side.
+/// Hardpoints of one side, or those without a side.
 #[derive(Default)]
 struct Side {
     corner: Corner,
-    /// Ends of rods by their names, inboard first, of names that mean nothing else.
+    /// Ends of rods by their names, inboard first, for names without another role.
     rods: BTreeMap<String, [Option<Vec3>; 2]>,
-    /// All of them, for a live axle.
-    places: Places,
+    /// All hardpoints, for a live axle.
+    places: SideHardpoints,
 }
 
 impl Side {
-    /// The corner. Pairs of inner and outer points are its rods where it is a multi-link suspension by their number.
+    /// Returns the corner. Pairs of inner and outer points are links if their number makes it a multi-link suspension.
     fn corner(self) -> Corner {
         let mut corner = self.corner;
         let rods: Vec<Link> = (self.rods.into_iter())
@@ -210,15 +210,15 @@ impl Side {
     }
 }
 
-/// Endings of the names of a rod's ends.
+/// Suffixes of the names of a rod's ends.
 const ENDS: [[&str; 3]; 2] = [["_inner", "_inboard", "_chassis"], ["_outer", "_outboard", "_upright"]];
 
-/// Parameters of the subsystem that the model has.
+/// Parameters of the subsystem that are imported.
 #[derive(Debug)]
 struct Parameters {
     /// Static camber and toe of both sides, rad.
     angles: [[f64; 2]; 2],
-    /// From the wheel's centre to the ground.
+    /// Radius of the wheel, from its centre to the road.
     radius: Option<f64>,
     /// True if masses are in kg.
     mass_is_kg: bool,
@@ -230,7 +230,7 @@ impl Default for Parameters {
     }
 }
 
-/// Names of parameters: the static angles, figures of the vehicle and the wheel's radius, the loaded one first.
+/// Names of parameters: static angles, vehicle parameters, and wheel radii with the loaded radius first.
 const ANGLES: [&str; 2] = ["camber_angle", "toe_angle"];
 const WHEELBASE: [&str; 1] = ["wheelbase"];
 const HEIGHT: [&str; 3] = ["cg_height", "cog_height", "centre_of_gravity_height"];
@@ -244,7 +244,7 @@ const RADII: [&str; 6] = [
 ];
 
 impl Parameters {
-    /// A row: static camber and toe, which the wheel's axis follows, and figures of the vehicle.
+    /// Reads a row: static camber and toe, which define the spin axis, or parameters of the vehicle.
     fn row(
         &mut self,
         m: &mut Mechanism,
@@ -260,15 +260,15 @@ impl Parameters {
         let is = |list: &[&str]| list.contains(&short);
         if !(is(&ANGLES) || is(&WHEELBASE) || is(&HEIGHT) || is(&RADII)) {
             if column("type").is_some_and(|kind| kind.eq_ignore_ascii_case("real")) {
-                notes.not_understood("PARAMETER", name, Some(at), "a parameter that is not known here");
+                notes.not_understood("PARAMETER", name, Some(at), "unknown parameter");
             } else {
                 notes.ignored("PARAMETER", Some(at));
             }
             return;
         }
         let Some(value) = column("value").and_then(|v| number(v)) else {
-            let help = format!("its columns are {}", columns.join(", "));
-            notes.problem_with("HP0804", Some(at), format!("`{name}` is no number"), &help);
+            let help = format!("write a value for each of the columns {}", columns.join(", "));
+            notes.problem_with("HP0804", Some(at), format!("`{name}` is not a number"), &help);
             return;
         };
         if let Some(k) = ANGLES.iter().position(|angle| *angle == short) {
@@ -279,7 +279,7 @@ impl Parameters {
                 }
             }
         } else if !(value > 0.0) {
-            notes.refused("PARAMETER", name, Some(at), format!("{value} is no length of a vehicle"));
+            notes.refused("PARAMETER", name, Some(at), format!("{value} is not a valid length"));
             return;
         } else if is(&WHEELBASE) {
             m.vehicle.wheelbase = Some(value);
@@ -292,7 +292,7 @@ impl Parameters {
     }
 }
 
-/// True if the line says the unit of length.
+/// Reads the unit of length. Returns true if the line defines it.
 fn unit(m: &mut Mechanism, line: &str, at: SourceSpan, notes: &mut ImportLog) -> bool {
     let Some((key, value)) = line.split_once('=') else { return false };
     if !key.trim().eq_ignore_ascii_case("LENGTH") {
@@ -306,7 +306,7 @@ fn unit(m: &mut Mechanism, line: &str, at: SourceSpan, notes: &mut ImportLog) ->
         "inch" | "in" => "in",
         _ => {
             let help = "write 'mm', 'cm', 'meter' or 'inch'";
-            notes.problem_with("HP0804", Some(at), format!("`{word}` is no unit of length"), help);
+            notes.problem_with("HP0804", Some(at), format!("`{word}` is not a known unit of length"), help);
             "mm"
         }
     };
@@ -314,7 +314,7 @@ fn unit(m: &mut Mechanism, line: &str, at: SourceSpan, notes: &mut ImportLog) ->
     true
 }
 
-/// The words of a row; those in quotes may have blanks in them.
+/// Returns the words of a row; quoted words may contain blanks.
 fn words(line: &str) -> Vec<String> {
     let (mut out, mut quote, mut word) = (Vec::new(), None, String::new());
     for c in line.chars() {
@@ -354,8 +354,13 @@ fn row(
     let value = |axis: [&str; 2]| column(axis).and_then(|w| number(w));
     let place = [value(["x_value", "x"]), value(["y_value", "y"]), value(["z_value", "z"])];
     let (Some(name), [Some(x), Some(y), Some(z)]) = (name, place) else {
-        let help = format!("its columns are {}", columns.join(", "));
-        notes.problem_with("HP0804", Some(at), "the row is no hardpoint: a name and three numbers", &help);
+        let help = format!("write a value for each of the columns {}", columns.join(", "));
+        notes.problem_with(
+            "HP0804",
+            Some(at),
+            "the row is not a hardpoint with a name and three numbers",
+            &help,
+        );
         return;
     };
     let symmetry = column(["symmetry", "symmetry"]).map_or("", String::as_str).to_ascii_lowercase();
@@ -366,7 +371,7 @@ fn row(
             Some((short, prefix)) => (short, prefix),
             None => (name.as_str(), ""),
         };
-    // A side that is the first or last word of the name is not named once more.
+    // The side is not appended if it is already the first or last word of the name.
     let mut put = |k: usize, suffix: &str, place: Vec3| {
         let word = suffix.trim_start_matches('_');
         let in_front = short.strip_prefix(word).and_then(|s| s.strip_prefix('_'));
@@ -387,7 +392,7 @@ fn row(
     };
     match (symmetry.as_str(), prefix) {
         ("left/right" | "symmetric", _) => {
-            // Written is the left one, in Adams/Car at negative y.
+            // The row defines the left point, at negative y in Adams/Car.
             put(0, "_left", place);
             put(1, "_right", mirrored);
         }

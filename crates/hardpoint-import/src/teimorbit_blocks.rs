@@ -1,10 +1,9 @@
-//! Blocks of Adams/Car subsystems besides their hardpoints and parameters: masses of parts, and elements whose property
-//! files hold what they do.
+//! Further blocks of Adams/Car subsystems: masses of parts, and elements whose characteristics are in property files.
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::lotus::half_round;
-use crate::markers::JointSource;
+use crate::markers::ElementSource;
 use crate::mechanism::Mechanism;
 use crate::report::ImportLog;
 use crate::robot;
@@ -12,7 +11,7 @@ use crate::sides::{SIDES, over};
 use crate::teimorbit::Block;
 use crate::turn::none;
 
-/// Words in the names of parts, by the bodies that they are here. The first that fits is taken.
+/// Words in the names of parts, by their body. The first match is used.
 const PARTS: [(&str, &[&str]); 6] = [
     ("lower_arm", &["lower_control_arm", "lower_arm", "lca", "control_arm"]),
     ("upper_arm", &["upper_control_arm", "upper_arm", "uca"]),
@@ -22,21 +21,21 @@ const PARTS: [(&str, &[&str]); 6] = [
     ("axle", &["axle"]),
 ];
 
-/// Takes the masses of parts, and names what else there is.
-pub fn take(blocks: &[Block], m: &mut Mechanism, is_kg: bool, notes: &mut ImportLog) {
+/// Reads the masses of parts, and reports the other blocks.
+pub fn read_blocks(blocks: &[Block], m: &mut Mechanism, is_kg: bool, notes: &mut ImportLog) {
     for block in blocks {
         let usage = block.value("USAGE").unwrap_or_default();
         match block.name.as_str() {
             "PART_ASSEMBLY" if is_kg => part(block, usage, m, notes),
             "PART_ASSEMBLY" => {
-                notes.refused("mass", usage, Some(block.at), "masses are read in kilograms alone");
+                notes.refused("mass", usage, Some(block.at), "masses are supported in kilograms only");
             }
             name if name.ends_with("_ASSEMBLY") => {
                 let file =
                     ["PROPERTY_FILE", "PROPERTY_FILE_LIST"].into_iter().find_map(|key| block.value(key));
                 let why = match file {
                     Some(file) => {
-                        format!("its characteristic is in the property file `{file}`, which is not read")
+                        format!("its characteristic is in the property file `{file}`, which is not imported")
                     }
                     None => "its characteristic is not in the file".into(),
                 };
@@ -48,7 +47,7 @@ pub fn take(blocks: &[Block], m: &mut Mechanism, is_kg: bool, notes: &mut Import
     robot::standard_gravity(m, notes, "an Adams/Car subsystem");
 }
 
-/// The mass of a part on each side that has its body.
+/// Adds the mass of a part on each side that has its body.
 fn part(block: &Block, usage: &str, m: &mut Mechanism, notes: &mut ImportLog) {
     let Some(mass) = block.number("MASS").filter(|mass| *mass != 0.0) else {
         notes.ignored(&block.name, Some(block.at));
@@ -58,15 +57,21 @@ fn part(block: &Block, usage: &str, m: &mut Mechanism, notes: &mut ImportLog) {
     let found = PARTS.iter().find(|(_, words)| words.iter().any(|word| name.contains(word)));
     let place = ["X", "Y", "Z"].map(|axis| block.number(&format!("PART_LOC_{axis}")));
     let (Some((body, _)), [Some(x), Some(y), Some(z)]) = (found, place) else {
-        notes.refused("mass", usage, Some(block.at), "it has no body here, or no place in the file");
+        notes.refused(
+            "mass",
+            usage,
+            Some(block.at),
+            "it has no body in the model, or no position in the file",
+        );
         return;
     };
-    // Square millimetres, say, to square metres.
+    // From the square of the length unit to m^2.
     let unit = (1e-3 / m.per_mm()).powi(2);
     let numbers =
         ["IXX", "IYY", "IZZ", "IXY", "IYZ", "IZX"].map(|key| unit * block.number(key).unwrap_or(0.0));
     let [xx, yy, zz, xy, yz, zx] = numbers;
-    // Half round about z: x and y change their signs. Products are integrals, the opposite of the matrix's entries.
+    // Half a turn about z: x and y change sign. Products of inertia are integrals: the entries of the matrix have the
+    // opposite sign.
     let rows = [[xx, -xy, zx], [-xy, yy, yz], [zx, yz, zz]];
     let has_side = |suffix: &str| m.bodies.iter().position(|b| b.name == format!("{body}{suffix}"));
     let symmetry = block.value("SYMMETRY").unwrap_or_default().to_ascii_lowercase();
@@ -77,7 +82,7 @@ fn part(block: &Block, usage: &str, m: &mut Mechanism, notes: &mut ImportLog) {
         _ => has_side("").map(|b| (1.0, "", b)).into_iter().collect(),
     };
     if carriers.is_empty() {
-        notes.refused("mass", usage, Some(block.at), "it has no body here");
+        notes.refused("mass", usage, Some(block.at), "it has no body in the model");
         return;
     }
     for (side, suffix, carrier) in carriers {
@@ -88,11 +93,11 @@ fn part(block: &Block, usage: &str, m: &mut Mechanism, notes: &mut ImportLog) {
         }
         let frame = Pose { rot: none(), r: over(half_round([x, y, z]), side) };
         let name = format!("{name}{suffix}");
-        let called = JointSource { kind: "mass", name: &name, at: Some(block.at) };
-        robot::mass(m, notes, called, carrier, frame, mass, Some(Mat3 { cols }));
+        let source = ElementSource { kind: "mass", name: &name, at: Some(block.at) };
+        robot::mass(m, notes, source, carrier, frame, mass, Some(Mat3 { cols }));
     }
     if numbers.iter().any(|x| *x != 0.0) {
-        let why = "the axes of its moments of inertia are taken for those of the vehicle";
+        let why = "its moments of inertia are assumed to refer to the axes of the vehicle";
         notes.approximated("inertia", usage, Some(block.at), why);
     }
 }

@@ -1,4 +1,4 @@
-//! YAML and JSON as one tree whose every node knows its place in the text.
+//! Tree of a YAML or JSON text; every node has its position in the text.
 
 use std::collections::HashSet;
 
@@ -6,51 +6,51 @@ use saphyr_parser::{Event, Parser, ScalarStyle};
 
 use crate::report::{ImportLog, SourceSpan};
 
-/// Maps and lists are nested so deep at most.
+/// Maximum depth of nested maps and lists.
 const DEEPEST: usize = 60;
 
-/// A value and where it is.
+/// Value with its position.
 #[derive(Clone, Debug)]
 pub struct Tree {
-    /// Where.
+    /// Position.
     pub at: SourceSpan,
-    /// What.
+    /// Value.
     pub value: Value,
 }
 
-/// A value.
+/// Value.
 #[derive(Clone, Debug)]
 pub enum Value {
-    /// Keys, where they stand, and values, in order.
+    /// Keys, their positions, and values, in order.
     Map(Vec<(String, SourceSpan, Tree)>),
-    /// Values.
+    /// Values of a list.
     List(Vec<Tree>),
-    /// A text or number as it is written, and whether it is in quotes.
+    /// A text or number as written, and true if it is quoted.
     Scalar(String, bool),
 }
 
 impl Tree {
-    /// The value of a key, whatever its case.
+    /// Returns the value of a key, ignoring case.
     pub fn get(&self, key: &str) -> Option<&Self> {
         self.entries().iter().find(|(k, ..)| k.eq_ignore_ascii_case(key)).map(|(.., v)| v)
     }
 
-    /// The entries of a map; none of anything else.
+    /// Returns the entries of a map; empty for other values.
     pub fn entries(&self) -> &[(String, SourceSpan, Self)] {
         if let Value::Map(entries) = &self.value { entries } else { &[] }
     }
 
-    /// A text.
+    /// Returns the text of a scalar.
     pub fn text(&self) -> Option<&str> {
         if let Value::Scalar(text, _) = &self.value { Some(text) } else { None }
     }
 
-    /// The text of a key.
+    /// Returns the text of a key.
     pub fn text_of(&self, key: &str) -> Option<&str> {
         self.get(key)?.text()
     }
 
-    /// A finite number.
+    /// Returns a finite number.
     pub fn number(&self) -> Option<f64> {
         match &self.value {
             Value::Scalar(text, false) => text.replace('_', "").parse().ok().filter(|x: &f64| x.is_finite()),
@@ -58,7 +58,7 @@ impl Tree {
         }
     }
 
-    /// Three numbers: a list, or a map of x, y and z; none where it is something else.
+    /// Returns three numbers from a list or from a map of x, y and z.
     pub fn vector(&self) -> Option<[f64; 3]> {
         match &self.value {
             Value::List(list) => {
@@ -73,17 +73,17 @@ impl Tree {
     }
 }
 
-/// The tree of a YAML text; what is wrong with it is reported.
+/// Parses a YAML text; errors are reported.
 pub fn yaml(text: &str, notes: &mut ImportLog) -> Option<Tree> {
     parse(text, text, "YAML", notes)
 }
 
-/// The tree of a JSON text, which may have comments: JSON is YAML, but for these and for tabs.
+/// Parses a JSON text, which may have comments: except for comments and tabs, JSON is YAML.
 pub fn json(text: &str, notes: &mut ImportLog) -> Option<Tree> {
     parse(text, &blanked(text), "JSON", notes)
 }
 
-/// The text with blanks, as many bytes, in place of comments and tabs.
+/// Replaces comments and tabs by the same number of blanks.
 fn blanked(text: &str) -> String {
     let mut out: Vec<u8> = text.bytes().collect();
     let (mut k, mut quoted) = (0, false);
@@ -114,7 +114,7 @@ fn blanked(text: &str) -> String {
     String::from_utf8(out).unwrap_or_default()
 }
 
-/// Open container while events arrive: a map with its next key, or a list.
+/// Open container: a map with its pending key, or a list.
 enum Open {
     Map(SourceSpan, Vec<(String, SourceSpan, Tree)>, Option<(String, SourceSpan)>, HashSet<String>),
     List(SourceSpan, Vec<Tree>),
@@ -133,13 +133,8 @@ fn parse(original: &str, text: &str, language: &str, notes: &mut ImportLog) -> O
                 let start = byte(e.marker().index());
                 let at = SourceSpan { text: 0, start, end: start };
                 let help =
-                    "mostly a bracket, a quote or a comma, or the depth of a line, at or before this place";
-                notes.problem_with(
-                    "HP0802",
-                    Some(at),
-                    format!("this is not valid {language}: {}", e.info()),
-                    help,
-                );
+                    "check the brackets, quotes, commas and the indentation at or before this position";
+                notes.problem_with("HP0802", Some(at), format!("invalid {language}: {}", e.info()), help);
                 return None;
             }
         };
@@ -163,19 +158,14 @@ fn parse(original: &str, text: &str, language: &str, notes: &mut ImportLog) -> O
                 Some(Tree { at, value })
             }
             Event::Alias(_) => {
-                let help = "write the value out where the alias is";
-                notes.problem_with("HP0805", Some(at), "aliases are not read here", help);
+                let help = "write the value in place of the alias";
+                notes.problem_with("HP0805", Some(at), "aliases are not supported", help);
                 return None;
             }
             _ => None,
         };
         if open.len() > DEEPEST {
-            notes.problem_with(
-                "HP0802",
-                Some(at),
-                "it is nested too deep",
-                "no such file has that many levels",
-            );
+            notes.problem_with("HP0802", Some(at), "it is nested too deep", "reduce its levels to 60");
             return None;
         }
         let Some(tree) = done else { continue };
@@ -186,8 +176,8 @@ fn parse(original: &str, text: &str, language: &str, notes: &mut ImportLog) -> O
                         notes.problem_with(
                             "HP0803",
                             Some(at),
-                            format!("`{name}` is there twice"),
-                            "remove one of the two",
+                            format!("`{name}` is defined twice"),
+                            "remove one of them",
                         );
                     }
                     entries.push((name, at, tree));

@@ -1,5 +1,5 @@
-//! Robots in URDF: the tree, mimic joints, loops by the usual extensions. Read with `roxmltree`: `urdf-rs` gives no
-//! places in the text and leaves out what it does not know.
+//! Robots in URDF: tree joints, mimic joints, loops by common extensions. Parsed with `roxmltree`, since `urdf-rs`
+//! provides no positions in the text and drops unknown content.
 
 mod loops;
 
@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use hardpoint::space::{Pose, Vec3};
 use roxmltree::Node;
 
-use crate::markers::{JointSource, Marker, join};
+use crate::markers::{ElementSource, Marker, join};
 use crate::mechanism::{Coordinate, GROUND, Mechanism};
 use crate::report::{ImportLog, SourceSpan};
 use crate::shapes::Solid;
@@ -16,17 +16,17 @@ use crate::turn::{X, Y, home, roll_pitch_yaw};
 use crate::xml::{Vocabulary, attribute, attribute_at, child, children, local, named};
 use crate::{Format, Input, robot, xml};
 
-/// See the module.
+/// URDF format.
 pub const FORMAT: Format = Format {
     name: "urdf",
     about: "URDF robot description",
     endings: &["urdf"],
-    looks: |text| text.contains("<robot") && (text.contains("<link") || text.contains("<joint")),
+    recognises: |text| text.contains("<robot") && (text.contains("<link") || text.contains("<joint")),
     read,
     binary: false,
 };
 
-/// Types of joints without an axis.
+/// Joint types without an axis.
 const WITHOUT_AXIS: [&str; 5] = ["fixed", "floating", "ball", "spherical", "universal"];
 /// Known content of a joint.
 const JOINT: Vocabulary = Vocabulary {
@@ -34,7 +34,7 @@ const JOINT: Vocabulary = Vocabulary {
     read: &["parent", "child", "origin", "axis", "limit", "mimic", "screw_thread_pitch", "dynamics"],
     irrelevant: &["safety_controller", "calibration", "hardwareInterface", "visual", "material"],
 };
-/// Known content of the parts of a joint.
+/// Known content of the elements of a joint.
 const PARTS_OF_JOINTS: [(&str, &[&str]); 8] = [
     ("parent", &["link"]),
     ("child", &["link"]),
@@ -71,7 +71,7 @@ const LINK: Vocabulary = Vocabulary {
         "origin",
     ],
 };
-/// Elements of a robot that do not concern how it moves.
+/// Elements of a robot without effect on its motion.
 const IRRELEVANT: [&str; 8] = [
     "material",
     "transmission",
@@ -82,7 +82,7 @@ const IRRELEVANT: [&str; 8] = [
     "disable_collisions",
     "light",
 ];
-/// Elements for Gazebo that do not concern how links and joints move.
+/// Elements for Gazebo without effect on the motion of links and joints.
 const IRRELEVANT_IN_GAZEBO: [&str; 36] = [
     "material",
     "mu1",
@@ -121,10 +121,10 @@ const IRRELEVANT_IN_GAZEBO: [&str; 36] = [
     "maxSpeed",
     "springReference",
 ];
-/// Mimic joints follow each other so deep at most.
+/// Maximum length of a chain of mimic joints.
 const DEEPEST: usize = 100;
 
-/// A joint as it is written.
+/// Declaration of a joint.
 struct JointDeclaration<'a, 'i> {
     node: Node<'a, 'i>,
     name: String,
@@ -134,14 +134,14 @@ struct JointDeclaration<'a, 'i> {
     origin: Pose,
     axis: Vec3,
     limits: Option<[f64; 2]>,
-    /// The advance of a screw per turn.
+    /// Lead of a screw, m per turn.
     pitch: Option<f64>,
     mimic: Option<Mimic<'a, 'i>>,
-    /// Stiffness, damping, and the value at which the spring has no force.
+    /// Stiffness, damping, and coordinate at which the spring has no force.
     spring: [f64; 3],
 }
 
-/// The joint that a joint follows, by what factor and offset.
+/// Independent joint of a mimic joint, with factor and offset.
 struct Mimic<'a, 'i> {
     node: Node<'a, 'i>,
     joint: String,
@@ -155,7 +155,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let robot = document.root_element();
     if robot.tag_name().name() != "robot" {
         let message = format!("the first element is `{}`, not `robot`", robot.tag_name().name());
-        notes.problem_with("HP0803", xml::at(0, robot), message, "name the format, like `--format sdf`");
+        notes.problem_with("HP0803", xml::at(0, robot), message, "specify the format, like `--format sdf`");
         return None;
     }
     if xml_macros(robot, notes) {
@@ -174,19 +174,18 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     for link in named(robot, "link") {
         let Some(name) = reader.name(link) else { continue };
         if reader.links.insert(name.clone(), link).is_some() {
-            let message = format!("there are two links `{name}`");
+            let message = format!("the link `{name}` is defined twice");
             reader.notes.problem_with("HP0803", xml::at(0, link), message, "rename one of them");
         }
     }
     let count = reader.links.len().max(named(robot, "joint").count());
     if count > robot::MOST_PARTS {
-        let message =
-            format!("the robot has {count} links or joints; at most {} are read", robot::MOST_PARTS);
-        reader.notes.problem_with("HP0802", None, message, "leave out of the source what need not move");
+        let message = format!("the robot has {count} links or joints; the maximum is {}", robot::MOST_PARTS);
+        reader.notes.problem_with("HP0802", None, message, "remove parts that need not move from the source");
         return None;
     }
     let mut joints: Vec<JointDeclaration<'_, '_>> =
-        named(robot, "joint").filter_map(|j| reader.written(j)).collect();
+        named(robot, "joint").filter_map(|j| reader.declaration(j)).collect();
     reader.followers(robot, &mut joints);
     reader.tree(&joints);
     reader.mimics(&joints);
@@ -200,7 +199,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             "link" | "joint" | "loop_joint" | "ball_constraint" | "mujoco" => {}
             "gazebo" => reader.gazebo(node),
             "linear_bushing_rpy" => {
-                let why = "a bushing is a force: where it closes a loop, write a `loop_joint` instead";
+                let why = "bushings are forces: if it closes a loop, use a `loop_joint` instead";
                 reader.notes.refused("linear_bushing_rpy", "", xml::at(0, node), why);
             }
             other if IRRELEVANT.contains(&other) => reader.notes.ignored(other, xml::at(0, node)),
@@ -217,15 +216,15 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     (m.bodies.len() > 1).then_some(m)
 }
 
-/// True if the file has yet to be expanded by xacro.
+/// Reports a file with unexpanded xacro macros. Returns true for such a file.
 fn xml_macros(robot: Node<'_, '_>, notes: &mut ImportLog) -> bool {
     let is_macro = |n: &Node<'_, '_>| {
         let declared = n.tag_name().namespace().is_some_and(|s| s.contains("xacro"));
-        // Without a declaration the prefix is part of the name.
+        // Without a declaration, the prefix is part of the name.
         declared || n.tag_name().name().starts_with("xacro_")
     };
     let Some(first) = robot.descendants().find(is_macro) else { return false };
-    let message = "the file is a xacro, whose macros have yet to be expanded";
+    let message = "the file is a xacro with unexpanded macros";
     notes.problem_with("HP0805", xml::at(0, first), message, "run `xacro FILE > robot.urdf` and import that");
     true
 }
@@ -234,13 +233,13 @@ struct Reader<'a, 'i, 'n> {
     m: Mechanism,
     notes: &'n mut ImportLog,
     links: BTreeMap<String, Node<'a, 'i>>,
-    /// Bodies and poses of the links in the design configuration.
+    /// Bodies of the links, and their poses in the design configuration.
     poses: BTreeMap<String, (usize, Pose)>,
-    /// The numbers of joints with one coordinate, and which.
+    /// Coordinates of the joints with a single coordinate.
     joints: BTreeMap<String, Coordinate>,
-    /// Joints that hold nothing: name, element, bodies, place.
+    /// Floating joints: name, element, bodies, location.
     floating: Vec<(String, Node<'a, 'i>, [usize; 2], Vec3)>,
-    /// The names of all joints.
+    /// Names of all joints.
     names: BTreeSet<String>,
 }
 
@@ -249,7 +248,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let name = node.attribute("name").map(str::trim).filter(|n| !n.is_empty());
         if name.is_none() {
             let message = format!("`{}` has no name", node.tag_name().name());
-            self.notes.problem_with("HP0803", xml::at(0, node), message, "give it an attribute `name`");
+            self.notes.problem_with("HP0803", xml::at(0, node), message, "add an attribute `name`");
         }
         name.map(str::to_owned)
     }
@@ -258,7 +257,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         child(node, "origin").map_or_else(home, |origin| pose(origin, self.notes))
     }
 
-    /// The axis of a joint of that type; exporters write one of zero for those that have none.
+    /// Returns the axis of a joint; exporters write a null axis for types without one.
     fn axis(&mut self, node: Node<'a, 'i>, kind: &str) -> Vec3 {
         if WITHOUT_AXIS.contains(&kind) {
             return [0.0, 0.0, 1.0].into();
@@ -268,17 +267,12 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         let v: Vec3 = given.unwrap_or([1.0, 0.0, 0.0]).into();
         if v.unit().is_none() {
             let at = axis.and_then(|axis| attribute_at(0, axis, "xyz"));
-            self.notes.problem_with(
-                "HP0804",
-                at,
-                "the axis has no direction",
-                "give a vector other than zero",
-            );
+            self.notes.problem_with("HP0804", at, "the axis has no direction", "give a non-zero vector");
         }
         v
     }
 
-    fn linked(&mut self, node: Node<'a, 'i>, end: &'static str) -> Option<String> {
+    fn link_of(&mut self, node: Node<'a, 'i>, end: &'static str) -> Option<String> {
         let element = child(node, end);
         let name = element.and_then(|e| e.attribute("link").or_else(|| e.text()).map(str::trim));
         let Some(name) = name else {
@@ -287,7 +281,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 "HP0803",
                 xml::at(0, node),
                 message,
-                "name a link in it, as in `<parent link=\"base\"/>`",
+                "add it with the name of a link, as in `<parent link=\"base\"/>`",
             );
             return None;
         };
@@ -295,16 +289,16 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let at = element.and_then(|e| attribute_at(0, e, "link").or_else(|| xml::at(0, e)));
             let known = self.links.keys().map(String::as_str);
             let near = hardpoint::draft::did_you_mean(name, known);
-            let help = near.map_or("declare the link".into(), |n| format!("did you mean `{n}`?"));
-            self.notes.problem_with("HP0803", at, format!("there is no link `{name}`"), &help);
+            let help = near.map_or("define the link".into(), |n| format!("did you mean `{n}`?"));
+            self.notes.problem_with("HP0803", at, format!("the link `{name}` does not exist"), &help);
             return None;
         }
         Some(name.to_owned())
     }
 
-    fn written(&mut self, node: Node<'a, 'i>) -> Option<JointDeclaration<'a, 'i>> {
+    fn declaration(&mut self, node: Node<'a, 'i>) -> Option<JointDeclaration<'a, 'i>> {
         let name = self.name(node)?;
-        let (parent, child_link) = (self.linked(node, "parent"), self.linked(node, "child"));
+        let (parent, child_link) = (self.link_of(node, "parent"), self.link_of(node, "child"));
         let origin = self.origin(node);
         let kind = node.attribute("type").unwrap_or_default().trim().to_ascii_lowercase();
         let axis = self.axis(node, &kind);
@@ -316,7 +310,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 xml::bound(text, &format!("`{key}` of `limit`"), attribute_at(0, l, key), self.notes)
             };
             let ends = ["lower", "upper"].map(bound);
-            // One that is not written is 0.
+            // A missing limit is 0.
             if ends == [None, None] {
                 None
             } else {
@@ -346,7 +340,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             robot::friction(self.notes, &name, dynamics.and_then(|d| xml::at(0, d)), friction);
         }
         if !self.names.insert(name.clone()) {
-            let message = format!("there are two joints `{name}`");
+            let message = format!("the joint `{name}` is defined twice");
             self.notes.problem_with("HP0803", xml::at(0, node), message, "rename one of them");
         }
         Some(JointDeclaration {
@@ -364,7 +358,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         })
     }
 
-    /// Bodies and joints, from the roots outward.
+    /// Adds bodies and joints, from the roots outward.
     fn tree(&mut self, joints: &[JointDeclaration<'a, 'i>]) {
         let is_child = |name: &str| joints.iter().any(|j| j.child == name);
         let names: Vec<String> = self.links.keys().cloned().collect();
@@ -376,7 +370,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let body = self.body(name, home());
             self.poses.insert(name.clone(), (body, home()));
         }
-        // The first joint to a link carries it; any further one closes a loop.
+        // The first joint to a link carries it; further ones close loops.
         let mut carrier: BTreeMap<&str, usize> = BTreeMap::new();
         for (k, joint) in joints.iter().enumerate() {
             carrier.entry(&joint.child).or_insert(k);
@@ -389,7 +383,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             for &k in &ready {
                 let j = &joints[k];
                 let (_, outer) = self.poses[&j.parent];
-                let at = value_as_drawn(joints, k, 0);
+                let at = nominal_value(joints, k, 0);
                 let frame = outer.compose(j.origin);
                 let pose = moved(frame, &j.kind, j.axis, at);
                 let body = self.body(&j.child, pose);
@@ -401,25 +395,25 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             }
         }
         if let Some(j) = waiting.first().map(|k| &joints[*k]) {
-            let message = format!("the links `{}` and `{}` carry each other in a circle", j.parent, j.child);
-            let help = "one of them has to be carried by a link that is; loops are closed by `loop_joint`";
+            let message = format!("the links `{}` and `{}` are parents of each other", j.parent, j.child);
+            let help = "connect one of them to the tree; close loops with `loop_joint`";
             self.notes.problem_with("HP0803", xml::at(0, j.node), message, help);
             return;
         }
         for (k, j) in joints.iter().enumerate() {
-            self.joint(j, value_as_drawn(joints, k, 0));
+            self.joint(j, nominal_value(joints, k, 0));
         }
     }
 
     fn body(&mut self, name: &str, pose: Pose) -> usize {
         let at = self.links.get(name).and_then(|n| xml::at(0, *n));
         self.notes.taken("link", name, at);
-        let note = JointSource { kind: "link", name, at }.note(self.notes);
+        let note = ElementSource { kind: "link", name, at }.note(self.notes);
         self.m.body(name, note, Some(pose))
     }
 
-    /// A joint of the tree, which is drawn where its coordinate has the value `drawn`.
-    fn joint(&mut self, j: &JointDeclaration<'a, 'i>, drawn: f64) {
+    /// Adds a tree joint whose coordinate has the value `nominal` in the design configuration.
+    fn joint(&mut self, j: &JointDeclaration<'a, 'i>, nominal: f64) {
         let (Some(&(parent, outer)), Some(&(body, inner))) =
             (self.poses.get(&j.parent), self.poses.get(&j.child))
         else {
@@ -430,19 +424,19 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         else {
             return;
         };
-        self.m.joints[number].limits = j.limits.map(|ends| ends.map(|x| x - drawn));
+        self.m.joints[number].limits = j.limits.map(|ends| ends.map(|x| x - nominal));
         if j.kind == "screw" {
             self.m.joints[number].lead = j.pitch.filter(|p| *p != 0.0);
             if self.m.joints[number].lead.is_none() {
-                let help = "give it a `screw_thread_pitch` other than zero";
+                let help = "give it a non-zero `screw_thread_pitch`";
                 let message = format!("the screw `{}` has no pitch", j.name);
                 self.notes.problem_with("HP0804", xml::at(0, j.node), message, help);
             }
         }
     }
 
-    /// A joint of a type of URDF between two frames, whose axis is the same in both; its number, if it is more than a
-    /// hold.
+    /// Adds a joint of a URDF type between two frames; the axis has the same components in both. Returns the index of
+    /// the joint, unless it is floating or unknown.
     fn connect(
         &mut self,
         node: Node<'a, 'i>,
@@ -457,7 +451,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             "prismatic" => ("translational", Some("displacement")),
             "fixed" => ("fixed", None),
             "planar" => ("planar", None),
-            // These are Drake's.
+            // Drake's extensions.
             "ball" | "spherical" => ("spherical", None),
             "universal" => ("universal", None),
             "screw" => ("screw", Some("angle")),
@@ -467,7 +461,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             }
             _ => {
                 let at = attribute_at(0, node, "type").or(at);
-                let help = "URDF knows revolute, continuous, prismatic, fixed, planar and floating";
+                let help = "use revolute, continuous, prismatic, fixed, planar or floating";
                 let message = format!("`{name}` is of the unknown type `{kind}`");
                 self.notes.problem_with("HP0805", at, message, help);
                 return None;
@@ -478,16 +472,17 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             return robot::weld(
                 &mut self.m,
                 self.notes,
-                JointSource { kind: "joint", name, at },
+                ElementSource { kind: "joint", name, at },
                 "fixed",
                 ends,
             );
         }
-        // A universal joint turns about x of the first frame and y of the second.
+        // The axes of a universal joint are x of the first frame and y of the second.
         let axes = if kind == "universal" { [X, Y].map(Vec3::from) } else { [axis; 2] };
         let end = |body, pose: Pose, axis| Marker::along(body, pose.r, pose.rot * axis);
         let ends = [end(i, at_i, axes[0])?, end(j, at_j, axes[1])?];
-        let number = join(&mut self.m, self.notes, JointSource { kind: "joint", name, at }, type_name, ends)?;
+        let number =
+            join(&mut self.m, self.notes, ElementSource { kind: "joint", name, at }, type_name, ends)?;
         if let Some(coordinate) = coordinate {
             self.joints.insert(name.to_owned(), Coordinate { joint: number, name: coordinate });
         }
@@ -495,14 +490,14 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     }
 }
 
-/// Coordinate of a joint in the design configuration: zero, or the value given by the joint that it follows.
-fn value_as_drawn(joints: &[JointDeclaration<'_, '_>], k: usize, depth: usize) -> f64 {
+/// Coordinate of a joint in the design configuration: zero, or the value of a mimic joint.
+fn nominal_value(joints: &[JointDeclaration<'_, '_>], k: usize, depth: usize) -> f64 {
     let Some(mimic) = &joints[k].mimic else { return 0.0 };
     let master = joints.iter().position(|j| j.name == mimic.joint).filter(|_| depth < DEEPEST);
-    mimic.offset + mimic.factor * master.map_or(0.0, |m| value_as_drawn(joints, m, depth + 1))
+    mimic.offset + mimic.factor * master.map_or(0.0, |m| nominal_value(joints, m, depth + 1))
 }
 
-/// A frame moved by a joint's coordinate.
+/// Returns a frame displaced by a joint coordinate.
 fn moved(frame: Pose, kind: &str, axis: Vec3, by: f64) -> Pose {
     let Some(axis) = axis.unit().filter(|_| by != 0.0) else { return frame };
     match kind {
@@ -519,7 +514,7 @@ fn pose(origin: Node<'_, '_>, notes: &mut ImportLog) -> Pose {
     let rot = match attribute::<4>(0, origin, "quat_xyzw", notes) {
         Some([x, y, z, w]) => crate::turn::quaternion([w, x, y, z]).unwrap_or_else(|| {
             let at = attribute_at(0, origin, "quat_xyzw");
-            notes.problem_with("HP0804", at, "the quaternion is null", "give it a length other than zero");
+            notes.problem_with("HP0804", at, "the quaternion is null", "give a non-zero quaternion");
             home().rot
         }),
         None => roll_pitch_yaw(angles),
@@ -527,7 +522,7 @@ fn pose(origin: Node<'_, '_>, notes: &mut ImportLog) -> Pose {
     Pose { rot, r: r.into() }
 }
 
-/// The shapes of a link.
+/// Adds the shapes of a link.
 fn shapes(input: &mut Input<'_>, notes: &mut ImportLog, link: Node<'_, '_>, body: usize, name: &str) {
     xml::unknown(0, link, name, LINK, notes);
     for part in named(link, "visual") {
@@ -537,7 +532,7 @@ fn shapes(input: &mut Input<'_>, notes: &mut ImportLog, link: Node<'_, '_>, body
             notes.refused("visual", name, at, "it has no shape");
             continue;
         };
-        // What is only looked at does not keep a robot from being imported.
+        // Errors in shapes do not prevent the import.
         let numbers = |key: &str| shape.attribute(key).and_then(xml::numbers).unwrap_or_default();
         let three = |key: &str| <[f64; 3]>::try_from(numbers(key)).ok();
         let one = |key: &str| numbers(key).first().copied();
@@ -549,7 +544,7 @@ fn shapes(input: &mut Input<'_>, notes: &mut ImportLog, link: Node<'_, '_>, body
                         "mesh",
                         name,
                         attribute_at(0, shape, "scale"),
-                        "its scale is not three numbers",
+                        "its scale must be three numbers",
                     );
                     continue;
                 };
@@ -562,12 +557,17 @@ fn shapes(input: &mut Input<'_>, notes: &mut ImportLog, link: Node<'_, '_>, body
             "capsule" => one("radius").zip(one("length")).map(|(r, l)| Solid::Capsule(r, l)),
             "sphere" => one("radius").map(|r| Solid::Ball([r; 3])),
             other => {
-                notes.refused("visual", name, xml::at(0, shape), format!("a shape `{other}` is not shown"));
+                notes.refused(
+                    "visual",
+                    name,
+                    xml::at(0, shape),
+                    format!("shapes of type `{other}` are not supported"),
+                );
                 continue;
             }
         };
         let Some(solid) = solid else {
-            notes.refused("visual", name, xml::at(0, shape), "its size is not written in numbers");
+            notes.refused("visual", name, xml::at(0, shape), "its size is not numeric");
             continue;
         };
         input.shapes.solid(body, place, solid);

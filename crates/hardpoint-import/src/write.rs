@@ -1,4 +1,4 @@
-//! The mechanism as a model file.
+//! Writer of model files.
 
 use std::collections::HashSet;
 
@@ -8,23 +8,22 @@ use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value, value};
 use crate::mechanism::{Drives, ForceOn, GROUND, Law, Mechanism, valid_name};
 use crate::sides::{self, over, with_word};
 
-/// Places nearer to each other than this part of the mechanism's size are one hardpoint; coordinates that were typed
-/// agree to about this.
+/// Distance below which points are one hardpoint, as a fraction of the mechanism size; typed coordinates agree to about
+/// this.
 pub(crate) const SAME_PLACE: f64 = 1e-9;
-/// Coordinates below this part of the mechanism's size are what rounding left of zero.
+/// Coordinates below this fraction of the mechanism size are round-off.
 const ROUND_OFF: f64 = 1e-13;
-/// A model with more hardpoints than this gets no design variables of its own accord: a page with three hundred helps
-/// nobody.
+/// Maximum number of hardpoints with automatic design variables: a page with three hundred is of no use.
 const MOST_VARIED: usize = 24;
-/// Without output times of the source there are that many intervals in one second.
+/// Default number of intervals in one second.
 const STEPS: i64 = 100;
 
-/// The text of a model file: of a vehicle whose right side is the image of the left one the left side, with a mirror.
+/// Returns the text of a model file. For a symmetric vehicle, only the left side is written, with a mirror.
 pub fn text(mechanism: &Mechanism, about: &str) -> String {
     Writer::new(mechanism, sides::symmetry(mechanism)).text(about)
 }
 
-/// The text of a model file in which the bodies and joints are those of the mechanism, in its order.
+/// Returns the text of a model file with all bodies and joints of the mechanism, in its order.
 pub fn explicit(mechanism: &Mechanism, about: &str) -> String {
     Writer::new(mechanism, None).text(about)
 }
@@ -33,9 +32,9 @@ struct Writer<'m> {
     m: &'m Mechanism,
     size: f64,
     hardpoints: Vec<(String, Vec3)>,
-    /// Those that something is at.
+    /// Names of the hardpoints in use.
     named: HashSet<String>,
-    /// Joints of the right side that are written beside a mirror; none without one.
+    /// Joints of the right side that are written although there is a mirror; `None` without a mirror.
     mirror: Option<HashSet<&'m str>>,
 }
 
@@ -49,7 +48,7 @@ impl<'m> Writer<'m> {
         Self { m, size: m.size(), hardpoints, named: HashSet::new(), mirror }
     }
 
-    /// The hardpoint there, made where there is none yet.
+    /// Returns the hardpoint at a position, which is added if necessary.
     fn hardpoint(&mut self, wanted: &str, at: Vec3) -> String {
         let near = |p: &Vec3| (*p - at).norm() <= SAME_PLACE * self.size;
         if let Some((name, _)) = self.hardpoints.iter().find(|(_, p)| near(p)) {
@@ -79,7 +78,7 @@ impl<'m> Writer<'m> {
             table["across"] = value("y");
             table
                 .decor_mut()
-                .set_prefix(format!("\n{}", comment("the right side is the mirror image of the left one")));
+                .set_prefix(format!("\n{}", comment("the right side is the mirror image of the left side")));
             doc["mirror"] = Item::Table(table);
         }
         put(&mut doc, "vehicle", self.vehicle());
@@ -123,7 +122,7 @@ impl<'m> Writer<'m> {
         doc.to_string()
     }
 
-    /// Leaves out the entries that a mirror makes of those of the left side.
+    /// Removes the entries that the mirror creates from the left side.
     fn one_side(&self, mut table: Table) -> Table {
         if let Some(written) = &self.mirror {
             let names: Vec<String> = table.iter().map(|(name, _)| name.to_owned()).collect();
@@ -134,12 +133,12 @@ impl<'m> Writer<'m> {
         table
     }
 
-    /// Returns whether a mirror makes this hardpoint of one of the left side.
+    /// Returns true if the mirror creates this hardpoint from one of the left side.
     fn is_image_of_one(&self, (name, at): &(String, Vec3)) -> bool {
         self.mirror.is_some() && sides::is_right(name) && self.is_image(&sides::other(name), *at)
     }
 
-    /// Returns whether the hardpoint of that name is the mirror image of a place.
+    /// Returns true if the hardpoint of that name is the mirror image of a point.
     fn is_image(&self, name: &str, at: Vec3) -> bool {
         let image = over(at, -1.0);
         self.hardpoints.iter().any(|(n, p)| n == name && (*p - image).norm() <= SAME_PLACE * self.size)
@@ -220,7 +219,7 @@ impl<'m> Writer<'m> {
             t["type"] = value(joint.kind);
             t["bodies"] = value(joint.bodies.iter().map(|b| m.bodies[*b].name.as_str()).collect::<Array>());
             let kind = hardpoint::joint::ALL.iter().find(|k| k.name == joint.kind);
-            // Of joints of which only directions matter a place would be no mistake, and no help.
+            // Joints that only constrain directions need no location.
             if kind.is_none_or(|k| k.places > 0) {
                 match joint.at[..] {
                     [at] => t["at"] = value(self.hardpoint(&joint.name, at)),
@@ -255,7 +254,7 @@ impl<'m> Writer<'m> {
         table
     }
 
-    /// A direction from one hardpoint to another.
+    /// Writes a direction from one hardpoint to another.
     fn through(&mut self, name: &str, [from, to]: [Vec3; 2]) -> InlineTable {
         let ends = [("from", from), ("to", to)].map(|(end, at)| self.hardpoint(&with_word(name, end), at));
         let mut axis = InlineTable::new();
@@ -285,12 +284,12 @@ impl<'m> Writer<'m> {
         table
     }
 
-    /// A point of a body, at a hardpoint if there is one.
+    /// Writes a point of a body, as a hardpoint if there is one.
     fn point(&self, body: usize, at: Vec3) -> Value {
         self.point_at(body, at, &self.hardpoints)
     }
 
-    /// A point of a body, at one of these hardpoints if it is there.
+    /// Writes a point of a body, as one of the given hardpoints if it coincides with one.
     fn point_at(&self, body: usize, at: Vec3, hardpoints: &[(String, Vec3)]) -> Value {
         let mut point = InlineTable::new();
         point.insert("body", self.m.bodies[body].name.as_str().into());
@@ -299,7 +298,7 @@ impl<'m> Writer<'m> {
         point.into()
     }
 
-    /// Masses follow the hardpoints that the source names.
+    /// Writes masses, whose centres follow the hardpoints of the source.
     fn masses(&self) -> Table {
         let mut table = Table::new();
         for mass in &self.m.masses {
@@ -313,7 +312,7 @@ impl<'m> Writer<'m> {
             if let Some(inertia) = mass.inertia {
                 let i = |r: usize, c: usize| inertia.cols[c][r];
                 let most = i(0, 0).max(i(1, 1)).max(i(2, 2));
-                // Products are the opposite of the matrix's entries.
+                // Products of inertia are the negative entries of the matrix.
                 let moments = [("ixx", i(0, 0)), ("iyy", i(1, 1)), ("izz", i(2, 2))];
                 let products = [("ixy", -i(0, 1)), ("iyz", -i(1, 2)), ("izx", -i(2, 0))];
                 moments.into_iter().for_each(|(key, x)| drop(entry.insert(key, x.into())));
@@ -374,11 +373,11 @@ impl<'m> Writer<'m> {
                     t["joint"] = value(m.joints[c.joint].name.as_str());
                     t["coordinate"] = value(c.name);
                 }
-                Drives::Way { body, at, along } => {
+                Drives::Translation { body, at, along } => {
                     t["point"] = value(self.point(body, at));
                     t["along"] = direction(along);
                 }
-                Drives::Heading { body, about, relative_to } => {
+                Drives::Rotation { body, about, relative_to } => {
                     t["body"] = value(m.bodies[body].name.as_str());
                     t["about"] = direction(about);
                     if relative_to != GROUND {
@@ -387,8 +386,8 @@ impl<'m> Writer<'m> {
                 }
             }
             match &driver.law {
-                Law::Held => t["law"] = value(0),
-                Law::Set(x) => t["law"] = value(*x),
+                Law::Fixed => t["law"] = value(0),
+                Law::Constant(x) => t["law"] = value(*x),
                 Law::Text(text) => t["law"] = value(text.as_str()),
                 Law::Table(points) => {
                     let mut law = InlineTable::new();
@@ -407,14 +406,14 @@ impl<'m> Writer<'m> {
         table
     }
 
-    /// Variables that move hardpoints; those of the left side move their mirror images alike.
+    /// Writes variables that move hardpoints; those of the left side also move their mirror images.
     fn design(&self) -> Table {
         let mut table = Table::new();
         let twin = |(name, at): &(String, Vec3)| {
             let other = sides::other(name);
             (other != *name && self.is_image(&other, *at)).then_some(other)
         };
-        // What nothing is at moves nothing.
+        // Unused hardpoints have no effect.
         let used = self.hardpoints.iter().filter(|h| self.named.contains(&h.0));
         let own: Vec<(&(String, Vec3), Option<String>)> =
             used.map(|h| (h, twin(h))).filter(|(h, twin)| twin.is_none() || !sides::is_right(&h.0)).collect();
@@ -435,7 +434,7 @@ impl<'m> Writer<'m> {
                 }
                 value(entry)
             };
-            let followed = |axis: &&str| !self.m.unfollowed.contains(&format!("{base}_{axis}"));
+            let followed = |axis: &&str| !self.m.inadmissible.contains(&format!("{base}_{axis}"));
             let axes: Vec<&str> = ["x", "y", "z"].into_iter().filter(followed).collect();
             match axes[..] {
                 [_, _, _] => table[base] = variable("xyz"),
@@ -507,7 +506,7 @@ fn free_name(wanted: &str, taken: &[(String, Vec3)]) -> String {
     valid_name(wanted, "point", &taken)
 }
 
-/// A table in the document, unless it is empty.
+/// Adds a table to the document, unless it is empty.
 fn put(doc: &mut DocumentMut, name: &str, mut table: Table) {
     if table.is_empty() {
         return;
@@ -534,7 +533,7 @@ fn numbers(list: &[f64]) -> Array {
     list.iter().copied().collect()
 }
 
-/// A direction: by its letter where it is that of a global axis.
+/// Writes a direction, by its name if it is a global axis.
 fn direction(v: Vec3) -> Item {
     let v = v.unit().unwrap_or(v).to_array().map(|x| clean(x, ROUND_OFF));
     for (k, names) in [["x", "-x"], ["y", "-y"], ["z", "-z"]].iter().enumerate() {

@@ -6,39 +6,35 @@ use roxmltree::{Document, Node, ParsingOptions};
 
 use crate::report::{ImportLog, SourceSpan};
 
-/// A document has at most that many nodes.
+/// Maximum number of nodes of a document.
 const MOST_NODES: u32 = 2_000_000;
-/// Elements are nested so deep at most.
+/// Maximum depth of nested elements.
 pub const DEEPEST: usize = 200;
-/// Limits as far off as this say that there are none: SDFormat's own default is 1e16.
+/// Magnitude from which a limit is none: the default of SDFormat is 1e16.
 const UNLIMITED: f64 = 1e15;
 
 /// Maximum number of attributes of an element: parsers compare each with all others.
 const MOST_ATTRIBUTES: usize = 1000;
 
-/// Reason why a text is not given to the parser.
-enum Unfit {
+/// Exceeded limit of a text, which is not parsed.
+enum ExceededLimit {
     /// Elements are nested too deep, from this byte on.
     Deep(usize),
     /// The element at this byte has too many attributes.
     Wide(usize),
-    /// It declares entities at this byte, of which few stand for any length of text.
+    /// Entities are declared at this byte; a few can expand to a text of any length.
     Entities(usize),
 }
 
-impl Unfit {
+impl ExceededLimit {
     fn message(&self) -> (usize, &'static str, &'static str) {
         match *self {
             Self::Deep(at) => (at, "its elements are nested too deep", "export the mechanism again"),
-            Self::Wide(at) => (
-                at,
-                "an element has more than a thousand attributes",
-                "no element of such a file has that many",
-            ),
+            Self::Wide(at) => (at, "an element has more than a thousand attributes", "reduce them to 1000"),
             Self::Entities(at) => (
                 at,
-                "the file declares entities of its own, which are not expanded",
-                "write out what they stand for, as `xmllint --noent FILE` does",
+                "the file declares entities, which are not supported",
+                "expand them, for example with `xmllint --noent FILE`",
             ),
         }
     }
@@ -48,10 +44,10 @@ fn options<'t>() -> ParsingOptions<'t> {
     ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() }
 }
 
-/// The document of a text; what is wrong with it is reported.
+/// Parses a text; errors are reported.
 pub fn parse<'t>(text: &'t str, number: usize, notes: &mut ImportLog) -> Option<Document<'t>> {
-    if let Some(unfit) = unfit(text) {
-        let (start, message, help) = unfit.message();
+    if let Some(exceeded_limit) = exceeded_limit(text) {
+        let (start, message, help) = exceeded_limit.message();
         notes.problem_with("HP0802", Some(SourceSpan { text: number, start, end: start + 1 }), message, help);
         return None;
     }
@@ -62,29 +58,29 @@ pub fn parse<'t>(text: &'t str, number: usize, notes: &mut ImportLog) -> Option<
             let end = start + text[start..].chars().next().map_or(0, char::len_utf8);
             let at = Some(SourceSpan { text: number, start, end });
             let what = e.to_string();
-            // The parser's own place is the one that is shown.
+            // The position is reported separately.
             let what = what.rsplit_once(" at ").map_or(what.as_str(), |(what, _)| what);
-            let help = "mostly a tag that is not closed, or a `<` or `&` in a text, at or before this place";
-            notes.problem_with("HP0802", at, format!("this is not valid XML: {what}"), help);
+            let help = "check for an unclosed tag, or a `<` or `&` in a text, at or before this position";
+            notes.problem_with("HP0802", at, format!("invalid XML: {what}"), help);
             None
         }
     }
 }
 
-/// The document of a text.
+/// Parses a text.
 ///
 /// # Errors
-/// Lists the problems of the document.
+/// Returns the first error of the document.
 pub fn parse_quietly(text: &str) -> Result<Document<'_>, String> {
-    if let Some(unfit) = unfit(text) {
-        return Err(unfit.message().1.into());
+    if let Some(exceeded_limit) = exceeded_limit(text) {
+        return Err(exceeded_limit.message().1.into());
     }
-    Document::parse_with_options(text, options()).map_err(|e| format!("it is not valid XML: {e}"))
+    Document::parse_with_options(text, options()).map_err(|e| format!("invalid XML: {e}"))
 }
 
-/// The text as the readers of robot formats take it, every byte where it was: comments, which may hold `--`, and the
-/// declaration, which need not come first, are blank, and so is a document type that declares no entities; what has a
-/// prefix that nothing declares is written with `_`, as `controller_joint`.
+/// Returns the text as tolerant readers of robot formats see it, with all byte positions preserved. Comments, which may
+/// contain `--`, the declaration, which may come late, and a document type without entities are blanked. Undeclared
+/// prefixes are written with `_`, as in `controller_joint`.
 pub fn lenient(text: &str) -> String {
     let mut out = text.as_bytes().to_vec();
     let blank = |out: &mut Vec<u8>, range: std::ops::Range<usize>| {
@@ -131,7 +127,7 @@ pub fn lenient(text: &str) -> String {
     String::from_utf8(out).unwrap_or_else(|_| text.to_owned())
 }
 
-/// The byte behind a document type that begins at `start`, with what is declared in its brackets.
+/// Returns the byte after a document type that begins at `start`, including its declarations in brackets.
 fn document_type(text: &str, start: usize) -> usize {
     let (mut inner, mut quote) = (false, None);
     for (k, b) in text.bytes().enumerate().skip(start) {
@@ -168,8 +164,8 @@ fn colons(text: &[u8]) -> Vec<usize> {
     out
 }
 
-/// Reason why a parser would need too much time or memory for a text.
-fn unfit(text: &str) -> Option<Unfit> {
+/// Returns the limit on time or memory of the parser that a text would exceed.
+fn exceeded_limit(text: &str) -> Option<ExceededLimit> {
     let bytes = text.as_bytes();
     let (mut k, mut depth) = (0, 0_usize);
     while let Some(start) = bytes[k..].iter().position(|b| *b == b'<').map(|n| k + n) {
@@ -186,12 +182,12 @@ fn unfit(text: &str) -> Option<Unfit> {
         if rest.starts_with("<!DOCTYPE") {
             let end = document_type(text, start);
             if let Some(at) = text[start..end].find("<!ENTITY") {
-                return Some(Unfit::Entities(start + at));
+                return Some(ExceededLimit::Entities(start + at));
             }
             k = end;
             continue;
         }
-        // A tag: to its end outside of quotes.
+        // A tag, up to its end outside quotes.
         let (mut quote, mut attributes, mut end) = (None, 0, bytes.len());
         for (n, b) in bytes.iter().enumerate().skip(start + 1) {
             match (quote, b) {
@@ -207,7 +203,7 @@ fn unfit(text: &str) -> Option<Unfit> {
             }
         }
         if attributes > MOST_ATTRIBUTES {
-            return Some(Unfit::Wide(start));
+            return Some(ExceededLimit::Wide(start));
         }
         match (bytes.get(start + 1), bytes.get(end.saturating_sub(2))) {
             (Some(b'/'), _) => depth = depth.saturating_sub(1),
@@ -215,14 +211,14 @@ fn unfit(text: &str) -> Option<Unfit> {
             _ => depth += 1,
         }
         if depth > DEEPEST {
-            return Some(Unfit::Deep(start));
+            return Some(ExceededLimit::Deep(start));
         }
         k = end;
     }
     None
 }
 
-/// The byte at a line and column.
+/// Returns the byte at a line and column.
 fn offset(text: &str, pos: roxmltree::TextPos) -> usize {
     let line =
         text.split_inclusive('\n').take((pos.row as usize).saturating_sub(1)).map(str::len).sum::<usize>();
@@ -231,38 +227,37 @@ fn offset(text: &str, pos: roxmltree::TextPos) -> usize {
     line + column
 }
 
-/// Position of an element: its name.
+/// Returns the position of the name of an element.
 pub fn at(text: usize, node: Node<'_, '_>) -> Option<SourceSpan> {
     let start = node.range().start;
     Some(SourceSpan { text, start, end: start + 1 + node.tag_name().name().len() })
 }
 
-/// The name of an element without the prefix of a program that is known: `drake:ball_constraint`, whether the prefix is
-/// declared or not.
+/// Returns the name of an element without the prefix of a known program, declared or not: `drake:ball_constraint`.
 pub fn local<'a>(node: Node<'a, '_>) -> &'a str {
     let name = node.tag_name().name();
     name.strip_prefix("drake_").unwrap_or(name)
 }
 
-/// Content of an element that its reader knows.
+/// Known content of an element.
 #[derive(Clone, Copy, Debug)]
 pub struct Vocabulary {
-    /// Attributes that it reads, or that do not concern the motion.
+    /// Attributes that are read, or without effect on the motion.
     pub attributes: &'static [&'static str],
-    /// Elements that it reads.
+    /// Elements that are read.
     pub read: &'static [&'static str],
-    /// Elements that do not concern the motion.
+    /// Elements without effect on the motion.
     pub irrelevant: &'static [&'static str],
 }
 
-/// Lists what an element has that its reader does not know: unknown is not irrelevant. `owner` is the name of what it
-/// belongs to.
+/// Reports the unknown content of an element, which may affect the motion. `owner` is the name of the object that
+/// contains it.
 pub fn unknown(text: usize, node: Node<'_, '_>, owner: &str, words: Vocabulary, notes: &mut ImportLog) {
     let kind = node.tag_name().name();
     for a in node.attributes().filter(|a| !words.attributes.contains(&a.name())) {
         let range = a.range();
         let at = Some(SourceSpan { text, start: range.start, end: range.end });
-        let why = format!("`{}` has an attribute `{}` that is not known here", kind, a.name());
+        let why = format!("`{}` has an unknown attribute `{}`", kind, a.name());
         notes.not_understood(a.name(), owner, at, why);
     }
     for part in children(node) {
@@ -270,34 +265,34 @@ pub fn unknown(text: usize, node: Node<'_, '_>, owner: &str, words: Vocabulary, 
         if words.irrelevant.contains(&name) {
             notes.ignored(name, at(text, part));
         } else if !words.read.contains(&name) {
-            let why = format!("`{kind}` has an element `{name}` that is not known here");
+            let why = format!("`{kind}` has an unknown element `{name}`");
             notes.not_understood(name, owner, at(text, part), why);
         }
     }
 }
 
-/// The child elements.
+/// Returns the child elements.
 pub fn children<'a, 'i>(node: Node<'a, 'i>) -> impl Iterator<Item = Node<'a, 'i>> {
     node.children().filter(Node::is_element)
 }
 
-/// The child elements of a name.
+/// Returns the child elements with a name.
 pub fn named<'a, 'i: 'a>(node: Node<'a, 'i>, name: &'static str) -> impl Iterator<Item = Node<'a, 'i>> {
     children(node).filter(move |n| local(*n) == name)
 }
 
-/// The first child element of a name.
+/// Returns the first child element with a name.
 pub fn child<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> Option<Node<'a, 'i>> {
     named(node, name).next()
 }
 
-/// Numbers of a text, between blanks; none where one is no finite number.
+/// Returns the numbers of a text, separated by blanks; `None` if one is not finite.
 pub fn numbers(text: &str) -> Option<Vec<f64>> {
     let list: Option<Vec<f64>> = text.split_whitespace().map(|w| w.parse().ok()).collect();
     list.filter(|list| list.iter().all(|x: &f64| x.is_finite()))
 }
 
-/// Number of numbers of a text; what is wrong with them is reported.
+/// Returns exactly N numbers of a text; errors are reported.
 pub fn exactly<const N: usize>(
     text: &str,
     what: &str,
@@ -307,35 +302,35 @@ pub fn exactly<const N: usize>(
     let list = numbers(text).and_then(|list| <[f64; N]>::try_from(list).ok());
     if list.is_none() {
         let s = if N == 1 { "number" } else { "numbers" };
-        let help = "write them with blanks between, and a point in fractions";
-        notes.problem_with("HP0804", at, format!("{what} is {N} {s}, not `{}`", text.trim()), help);
+        let help = "separate them with blanks, and use decimal points";
+        notes.problem_with("HP0804", at, format!("{what} must be {N} {s}, not `{}`", text.trim()), help);
     }
     list
 }
 
-/// A bound of a range, which may be infinite; what is wrong with it is reported.
+/// Returns a bound of a range, which may be infinite; errors are reported.
 pub fn bound(text: &str, what: &str, at: Option<SourceSpan>, notes: &mut ImportLog) -> Option<f64> {
     let value = text.trim().parse().ok().filter(|x: &f64| !x.is_nan());
     if value.is_none() {
-        let help = "write it with a point in fractions, or `inf` where there is no bound";
-        notes.problem_with("HP0804", at, format!("{what} is a number, not `{}`", text.trim()), help);
+        let help = "use a decimal point, or `inf` if there is no bound";
+        notes.problem_with("HP0804", at, format!("{what} must be a number, not `{}`", text.trim()), help);
     }
     value
 }
 
-/// The range between two bounds; none where it is empty or has no end: such ends stand for no limit at all, as do
-/// numbers beyond these.
+/// Returns the range between two bounds; `None` if it is empty or unbounded, since such bounds, and numbers beyond
+/// [`UNLIMITED`], mean no limit.
 pub fn range(low: f64, high: f64) -> Option<[f64; 2]> {
     (low < high && low.abs() < UNLIMITED && high.abs() < UNLIMITED).then_some([low, high])
 }
 
-/// Position of an attribute's value.
+/// Returns the position of an attribute's value.
 pub fn attribute_at(text: usize, node: Node<'_, '_>, name: &str) -> Option<SourceSpan> {
     let range = node.attribute_node(name)?.range_value();
     Some(SourceSpan { text, start: range.start, end: range.end })
 }
 
-/// An attribute of that many numbers, where there is one.
+/// Returns an attribute of N numbers, if present; errors are reported.
 pub fn attribute<const N: usize>(
     text: usize,
     node: Node<'_, '_>,

@@ -1,5 +1,5 @@
-//! Answers requests as the page's engine does: a request of JSON on each line of its input, a block in base64 on each
-//! line of its output.
+//! Replies to requests like the engine of the page: reads one JSON request per line, and writes one base64 block per
+//! line.
 
 use std::io::{BufRead, Write};
 use std::ops::ControlFlow;

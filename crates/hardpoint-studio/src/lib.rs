@@ -1,12 +1,13 @@
-//! The engine as a page asks it: requests in, answers out, no files and no clock.
+//! Engine of the page: requests in, replies out, without files or a clock.
 //!
-//! An [`Engine`] keeps one model open and solves the designs of it that the reader makes: with a variable for every
-//! coordinate of its hardpoints, so that each can be taken hold of. What takes long - the whole page of a model, a
-//! search, tolerances - needs nothing that is open, and goes in an engine of its own while the first stays free.
+//! An [`Engine`] holds one open model and solves its designs as the reader changes them. Every coordinate of a
+//! hardpoint has a variable, so that every hardpoint can be dragged. Long tasks (the whole page of a model, an
+//! optimisation, a tolerance study) do not use the open model, and run in a second engine while the first one stays
+//! responsive.
 //!
-//! An answer is a block of bytes: the length of its JSON as four bytes, the JSON, zeros up to a multiple of four, then
-//! the numbers of its curves, `f32`, all little-endian. A curve is in the JSON as the place of its first number and how
-//! many it has.
+//! A reply is a block of bytes: the length of its JSON (four bytes), the JSON, zeros up to a multiple of four, and the
+//! values of its curves as `f32`, all little-endian. In the JSON, a curve is the index of its first value and the
+//! number of its values.
 
 mod offer;
 mod open;
@@ -26,22 +27,22 @@ pub use protocol::{
     StudyReply, Text, ToleranceChoice, ToleranceOffer, ToleranceRequest, VariableChoice, VariableSetting,
 };
 
-use open::Open;
+use open::OpenModel;
 
-/// Is reported how far a study is, and may end it.
+/// Callback that receives the progress of a study, and may end the study.
 pub type ProgressListener<'t> = dyn FnMut(&ProgressReply) -> ControlFlow<()> + Send + 't;
 
-/// Answers what a page asks.
+/// Replies to the requests of a page.
 #[derive(Debug, Default)]
 pub struct Engine {
-    open: Option<Open>,
+    open: Option<OpenModel>,
 }
 
-/// Reason why there is no answer.
-type Refusal = Vec<DiagnosticMessage>;
+/// Diagnostics in place of a reply; never empty.
+type RequestError = Vec<DiagnosticMessage>;
 
 impl Engine {
-    /// The answer to a request, which is JSON.
+    /// Returns the reply to a JSON request.
     ///
     /// ```
     /// let mut engine = hardpoint_studio::Engine::default();
@@ -50,61 +51,69 @@ impl Engine {
     /// });
     /// assert!(String::from_utf8_lossy(&answer).contains("HP0104"));
     /// ```
-    pub fn answer(&mut self, request: &[u8], tell: &mut ProgressListener<'_>) -> Vec<u8> {
-        let answered = match serde_json::from_slice(request) {
-            Ok(request) => self.answered(request, tell),
+    pub fn answer(&mut self, request: &[u8], listener: &mut ProgressListener<'_>) -> Vec<u8> {
+        let reply = match serde_json::from_slice(request) {
+            Ok(request) => self.dispatch(request, listener),
             Err(error) => {
                 let message = format!("unknown request: {error}");
                 Err(vec![DiagnosticMessage::plain(
                     "HP0701",
                     message,
-                    "make the page anew with this version of Hardpoint",
+                    "create the page again with this version of Hardpoint",
                 )])
             }
         };
-        answered.unwrap_or_else(|failed| json(&ErrorReply { failed }))
+        reply.unwrap_or_else(|failed| json(&ErrorReply { failed }))
     }
 
-    fn answered(&mut self, request: Request, tell: &mut ProgressListener<'_>) -> Result<Vec<u8>, Refusal> {
+    fn dispatch(
+        &mut self,
+        request: Request,
+        listener: &mut ProgressListener<'_>,
+    ) -> Result<Vec<u8>, RequestError> {
         match request {
-            Request::Check { model } => Ok(json(&checked(&model))),
+            Request::Check { model } => Ok(json(&check(&model))),
             Request::Open { model } => {
                 self.open = None;
-                let (open, opened) = Open::new(&model)?;
+                let (open, opened) = OpenModel::new(&model)?;
                 self.open = Some(open);
                 Ok(json(&opened))
             }
             Request::Design { change, from } => {
-                let mut solved = self.opened()?.design(&change, from.as_deref())?;
-                Ok(block(&mut solved))
+                let mut reply = self.open_model()?.design(&change, from.as_deref())?;
+                Ok(block(&mut reply))
             }
             Request::Beside { model } => {
-                let mut solved = self.opened()?.beside(&model)?;
-                Ok(block(&mut solved))
+                let mut reply = self.open_model()?.compare(&model)?;
+                Ok(block(&mut reply))
             }
-            Request::Text { change } => Ok(json(&Text { text: self.opened()?.text(&change)? })),
+            Request::Text { change } => Ok(json(&Text { text: self.open_model()?.text(&change)? })),
             Request::Page { model } => Ok(block(&mut study::page(&model)?)),
             Request::Optimize { model, asked } => {
-                study::optimized(&model, &asked, tell).map(|found| json(&found))
+                study::run_optimization(&model, &asked, listener).map(|found| json(&found))
             }
             Request::Tolerance { model, asked } => {
-                study::toleranced(&model, &asked, tell).map(|found| json(&found))
+                study::run_tolerance(&model, &asked, listener).map(|found| json(&found))
             }
-            Request::OptimizeOffer { model } => offer::optimize(&whole(&model)?).map(|offer| json(&offer)),
-            Request::ToleranceOffer { model } => offer::tolerance(&whole(&model)?).map(|offer| json(&offer)),
+            Request::OptimizeOffer { model } => {
+                offer::optimize(&parse_model(&model)?).map(|offer| json(&offer))
+            }
+            Request::ToleranceOffer { model } => {
+                offer::tolerance(&parse_model(&model)?).map(|offer| json(&offer))
+            }
         }
     }
 
-    fn opened(&mut self) -> Result<&mut Open, Refusal> {
+    fn open_model(&mut self) -> Result<&mut OpenModel, RequestError> {
         let nothing =
             || vec![DiagnosticMessage::plain("HP0702", "no model is open".into(), "open one first")];
         self.open.as_mut().ok_or_else(nothing)
     }
 }
 
-/// The model of a text, in its case.
-fn read(model: &ModelText) -> Result<ModelFile, Refusal> {
-    let file = whole(model)?;
+/// Parses a model in the requested case, or in its first case if there is no such case.
+fn parse_in_case(model: &ModelText) -> Result<ModelFile, RequestError> {
+    let file = parse_model(model)?;
     let Some(name) = &model.case else { return Ok(first_case(file)) };
     match file.model.cases.iter().position(|case| case.name == *name) {
         Some(case) => Ok(file.in_case(hardpoint::model::CaseId(case))),
@@ -112,20 +121,20 @@ fn read(model: &ModelText) -> Result<ModelFile, Refusal> {
     }
 }
 
-/// The model with all its cases.
-fn whole(model: &ModelText) -> Result<ModelFile, Refusal> {
+/// Parses a model with all its cases.
+fn parse_model(model: &ModelText) -> Result<ModelFile, RequestError> {
     parse_with(&model.text, &model.file, &model.files)
         .map_err(|all| all.list().iter().map(|d| DiagnosticMessage::of(&model.text, d)).collect())
 }
 
-/// For a file with cases, the model of the first case.
+/// Returns the model in its first case, or unchanged if it has no cases.
 fn first_case(file: ModelFile) -> ModelFile {
     if file.model.cases.is_empty() { file } else { file.in_case(hardpoint::model::CaseId(0)) }
 }
 
-/// Diagnostics of a text, including those of its motion.
-fn checked(model: &ModelText) -> CheckReply {
-    let file = match read(model) {
+/// Returns the diagnostics of a text, including those of its topology.
+fn check(model: &ModelText) -> CheckReply {
+    let file = match parse_in_case(model) {
         Ok(file) => file,
         Err(messages) => return CheckReply { messages },
     };
@@ -139,12 +148,12 @@ fn checked(model: &ModelText) -> CheckReply {
     CheckReply { messages }
 }
 
-/// An answer without curves.
+/// Encodes a reply without curves.
 fn json(answer: &impl Serialize) -> Vec<u8> {
     bytes(answer, &[])
 }
 
-/// An answer with curves.
+/// Encodes a reply with curves.
 fn block(answer: &mut impl Plain) -> Vec<u8> {
     let mut numbers = Vec::new();
     answer.lay_out(&mut numbers);

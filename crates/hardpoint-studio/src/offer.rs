@@ -1,4 +1,4 @@
-//! Options of a study, with their values in the text.
+//! Options of a study, with their values in the model text.
 
 use hardpoint::model::{
     Dimension, Goal, Limit, LimitTarget, Model, OptimizationSettings, ToleranceSettings, VariableId,
@@ -9,19 +9,19 @@ use hardpoint_file::{ModelFile, Units};
 use hardpoint_report::facts::variable_unit;
 use hardpoint_report::figures::{number, order_unit, with_unit};
 
-use crate::Refusal;
+use crate::RequestError;
 use crate::protocol::{
     DiagnosticMessage, OptimizeOffer, OptimizeRequest, SearchGoal, SearchVariable, ToleranceChoice,
     ToleranceOffer,
 };
 
-/// A search has that many starts and iterations where the text does not say.
+/// Default numbers of starts and iterations of an optimisation.
 const STARTS: usize = 1;
 const ITERATIONS: usize = 100;
 
-/// Options of an optimisation.
-pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, Refusal> {
-    let (model, units, asked) = (&file.model, file.units, file.model.optimization.as_ref());
+/// Returns the options of an optimisation.
+pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, RequestError> {
+    let (model, units, settings) = (&file.model, file.units, file.model.optimization.as_ref());
     let values = values(file);
     let variable = |(k, v): (usize, &hardpoint::model::DesignVariable)| SearchVariable {
         name: v.name.clone(),
@@ -29,10 +29,10 @@ pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, Refusal> {
         bounds: v
             .bounds
             .map(|b| b.map(|x| units.from_si(v.quantity, x + model.nominal_value(VariableId(k))))),
-        chosen: asked.is_some_and(|asked| asked.variables.contains(&VariableId(k))),
+        chosen: settings.is_some_and(|settings| settings.variables.contains(&VariableId(k))),
     };
     let goal = |(k, metric): (usize, &hardpoint::model::Metric)| {
-        let goal = asked.and_then(|asked| asked.goals.iter().find(|goal| goal.metric == k));
+        let goal = settings.and_then(|settings| settings.goals.iter().find(|goal| goal.metric == k));
         let dimension = model.metric_dimension(metric);
         SearchGoal {
             metric: metric.name.clone(),
@@ -47,14 +47,15 @@ pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, Refusal> {
     Ok(OptimizeOffer {
         variables: model.variables.iter().enumerate().map(variable).collect(),
         goals: model.metrics.iter().enumerate().map(goal).collect(),
-        limits: asked
-            .map_or(Vec::new(), |asked| asked.limits.iter().map(|l| sentence(model, units, l)).collect()),
-        starts: asked.map_or(STARTS, |asked| asked.starts),
-        iterations: asked.map_or(ITERATIONS, |asked| asked.iterations),
+        limits: settings.map_or(Vec::new(), |settings| {
+            settings.limits.iter().map(|l| sentence(model, units, l)).collect()
+        }),
+        starts: settings.map_or(STARTS, |settings| settings.starts),
+        iterations: settings.map_or(ITERATIONS, |settings| settings.iterations),
     })
 }
 
-/// Per metric its value, in SI, in the first motion that it is taken in.
+/// Value of each metric, SI, in the first motion in which it is evaluated.
 fn values(file: &ModelFile) -> Vec<Option<f64>> {
     let models = file.model.motions();
     let Ok(motions) = Motions::of(&models, Formulation::Relative) else { return Vec::new() };
@@ -79,7 +80,7 @@ fn sentence(model: &Model, units: Units, limit: &Limit) -> String {
         }
         LimitTarget::Distance(a, b) => {
             let [a, b] = [a, b].map(|h| &model.hardpoints[h.0].name);
-            (Dimension::LENGTH, format!("distance of {a} and {b}"))
+            (Dimension::LENGTH, format!("distance between {a} and {b}"))
         }
         LimitTarget::Length(j) => (Dimension::LENGTH, format!("length of {}", model.joints[j.0].name)),
     };
@@ -95,11 +96,12 @@ fn sentence(model: &Model, units: Units, limit: &Limit) -> String {
     }
 }
 
-/// Request on top of the settings in the text; the model has the requested bounds.
-pub(crate) fn asked(
+/// Returns the settings of the model text with those of the request in their place, and sets the requested bounds in
+/// the model.
+pub(crate) fn merged_settings(
     file: &mut ModelFile,
     request: &OptimizeRequest,
-) -> Result<OptimizationSettings, Refusal> {
+) -> Result<OptimizationSettings, RequestError> {
     let units = file.units;
     let unknown = |what: &str, name: &str| {
         vec![DiagnosticMessage::plain(
@@ -108,7 +110,7 @@ pub(crate) fn asked(
             "open the pane again",
         )]
     };
-    let mut asked = file.model.optimization.clone().unwrap_or(OptimizationSettings {
+    let mut settings = file.model.optimization.clone().unwrap_or(OptimizationSettings {
         variables: Vec::new(),
         goals: Vec::new(),
         limits: Vec::new(),
@@ -116,45 +118,44 @@ pub(crate) fn asked(
         starts: STARTS,
         iterations: ITERATIONS,
     });
-    asked.variables.clear();
-    for searched in &request.variables {
-        let v =
-            file.model.variable(&searched.name).ok_or_else(|| unknown("design variable", &searched.name))?;
-        let drawn = file.model.nominal_value(v);
+    settings.variables.clear();
+    for choice in &request.variables {
+        let v = file.model.variable(&choice.name).ok_or_else(|| unknown("design variable", &choice.name))?;
+        let nominal = file.model.nominal_value(v);
         let variable = &mut file.model.variables[v.0];
-        variable.bounds = Some(searched.bounds.map(|x| units.to_si(variable.quantity, x) - drawn));
-        asked.variables.push(v);
+        variable.bounds = Some(choice.bounds.map(|x| units.to_si(variable.quantity, x) - nominal));
+        settings.variables.push(v);
     }
-    let before = std::mem::take(&mut asked.goals);
-    for wanted in &request.goals {
-        let metric = file.model.metrics.iter().position(|m| m.name == wanted.metric);
-        let metric = metric.ok_or_else(|| unknown("metric", &wanted.metric))?;
+    let before = std::mem::take(&mut settings.goals);
+    for goal in &request.goals {
+        let metric = file.model.metrics.iter().position(|m| m.name == goal.metric);
+        let metric = metric.ok_or_else(|| unknown("metric", &goal.metric))?;
         let dimension = file.model.metric_dimension(&file.model.metrics[metric]);
-        let name = before.iter().find(|goal| goal.metric == metric).map_or(&wanted.metric, |goal| &goal.name);
-        asked.goals.push(Goal {
+        let name = before.iter().find(|goal| goal.metric == metric).map_or(&goal.metric, |goal| &goal.name);
+        settings.goals.push(Goal {
             name: name.clone(),
             metric,
-            target: wanted.target.map(|x| x / units.from_si(dimension, 1.0)),
-            weight: wanted.weight * units.from_si(dimension, 1.0),
+            target: goal.target.map(|x| x / units.from_si(dimension, 1.0)),
+            weight: goal.weight * units.from_si(dimension, 1.0),
         });
     }
-    if asked.variables.is_empty() || asked.goals.is_empty() {
-        let message = "a search needs a variable that may change and a goal".into();
+    if settings.variables.is_empty() || settings.goals.is_empty() {
+        let message = "an optimisation requires at least one variable and one goal".into();
         return Err(vec![DiagnosticMessage::plain(
             "HP0602",
             message,
-            "choose them in the pane, or add `[optimize.goals]` and `bounds`",
+            "select them in the pane, or add `[optimize.goals]` and `bounds`",
         )]);
     }
-    asked.starts = request.starts.max(1);
-    asked.iterations = request.iterations.max(1);
-    Ok(asked)
+    settings.starts = request.starts.max(1);
+    settings.iterations = request.iterations.max(1);
+    Ok(settings)
 }
 
-/// Options of a tolerance study.
-pub(crate) fn tolerance(file: &ModelFile) -> Result<ToleranceOffer, Refusal> {
+/// Returns the options of a tolerance study.
+pub(crate) fn tolerance(file: &ModelFile) -> Result<ToleranceOffer, RequestError> {
     let (model, units) = (&file.model, file.units);
-    let asked = model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(model));
+    let settings = model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(model));
     let scattered = |t: &hardpoint::model::Tolerance| {
         let first = &model.variables[t.variables[0].0];
         ToleranceChoice {
@@ -164,12 +165,12 @@ pub(crate) fn tolerance(file: &ModelFile) -> Result<ToleranceOffer, Refusal> {
             distribution: t.scatter.name().into(),
         }
     };
-    Ok(match asked {
-        Some(asked) => ToleranceOffer {
-            tolerances: asked.tolerances.iter().map(scattered).collect(),
-            metrics: asked.metrics.iter().map(|k| model.metrics[*k].name.clone()).collect(),
-            samples: asked.samples,
-            seed: asked.seed,
+    Ok(match settings {
+        Some(settings) => ToleranceOffer {
+            tolerances: settings.tolerances.iter().map(scattered).collect(),
+            metrics: settings.metrics.iter().map(|k| model.metrics[*k].name.clone()).collect(),
+            samples: settings.samples,
+            seed: settings.seed,
         },
         None => ToleranceOffer {
             tolerances: Vec::new(),

@@ -1,4 +1,4 @@
-//! A model that is kept open: its designs, solved as the reader makes them.
+//! OpenModel model, with its designs solved as the reader changes them.
 
 use std::sync::Arc;
 
@@ -17,39 +17,40 @@ use hardpoint_report::summary::Summary;
 use crate::protocol::{
     Coordinate, DesignReply, DiagnosticMessage, MovableHardpoint, OpenReply, VariableSetting,
 };
-use crate::{Refusal, first_case, read, whole};
+use crate::{RequestError, first_case, parse_in_case, parse_model};
 
-/// Maximum number of halvings of the path to a design that cannot be reached: the last step is a thousandth of it.
+/// Maximum number of bisections of the path to a design that cannot be reached; the last step is a thousandth of the
+/// path.
 const HALVINGS: usize = 10;
 
-/// A model that is open.
+/// OpenModel model.
 #[derive(Debug)]
-pub(crate) struct Open {
-    /// The file with all its cases, and a variable for every coordinate.
-    whole: ModelFile,
-    /// The file in the case that is shown, with the same variables.
+pub(crate) struct OpenModel {
+    /// The file with all its cases, and a variable for every hardpoint coordinate.
+    all_cases: ModelFile,
+    /// The file in the displayed case, with the same variables.
     file: ModelFile,
     analysis: Analysis<'static>,
-    /// The design as it is in the text.
-    today: Course,
-    /// As the page shows it, without variables.
+    /// Motion of the nominal design, as in the text.
+    nominal: Course,
+    /// The file as displayed, without variables.
     bare: ModelFile,
     summary: Summary,
     shown: Detail,
-    /// Memory of the last design.
+    /// Solution of the last design, whose memory is reused.
     memory: Solution,
 }
 
-impl Open {
-    /// Opens a model, and says what can be done with it.
-    pub fn new(model: &ModelText) -> Result<(Self, OpenReply), Refusal> {
-        let mut whole = whole(model)?;
-        add_coordinates(&mut whole.model);
-        let file = match whole.model.cases.iter().position(|c| Some(&c.name) == model.case.as_ref()) {
-            Some(case) => whole.in_case(hardpoint::model::CaseId(case)),
-            None => first_case(whole.clone()),
+impl OpenModel {
+    /// Opens a model, and returns its cases, hardpoints and frames.
+    pub fn new(model: &ModelText) -> Result<(Self, OpenReply), RequestError> {
+        let mut all_cases = parse_model(model)?;
+        add_coordinates(&mut all_cases.model);
+        let file = match all_cases.model.cases.iter().position(|c| Some(&c.name) == model.case.as_ref()) {
+            Some(case) => all_cases.in_case(hardpoint::model::CaseId(case)),
+            None => first_case(all_cases.clone()),
         };
-        let analysis = planned(&file, model)?;
+        let analysis = owned_analysis(&file, model)?;
         let solution = analysis.solve(Run::new().without_sensitivities());
         let mut bare = file.clone();
         bare.model.variables.clear();
@@ -59,10 +60,10 @@ impl Open {
         if let Some(stop) = stop.as_ref().filter(|_| solution.motion.is_empty()) {
             return Err(vec![stop.clone()]);
         }
-        let today = Course::of(&bare.model, &solution);
-        let summary = Summary::new(&bare, analysis.topology(), &today);
+        let nominal = Course::of(&bare.model, &solution);
+        let summary = Summary::new(&bare, analysis.topology(), &nominal);
         let shown = model.shown.unwrap_or_else(|| {
-            let request = Request::of(&bare, &analysis, &today, &summary);
+            let request = Request::of(&bare, &analysis, &nominal, &summary);
             payload::payload(&request).model.and_then(|m| m.shown).unwrap_or(Detail {
                 stride: 1,
                 origins: true,
@@ -72,8 +73,8 @@ impl Open {
             })
         });
         let opened = OpenReply {
-            cases: whole.model.cases.iter().map(|case| case.name.clone()).collect(),
-            grips: grips(&file),
+            cases: all_cases.model.cases.iter().map(|case| case.name.clone()).collect(),
+            grips: movable_hardpoints(&file),
             frames: file
                 .model
                 .bodies
@@ -82,31 +83,35 @@ impl Open {
                 .collect(),
             stop,
         };
-        Ok((Self { whole, file, analysis, today, bare, summary, shown, memory: Solution::default() }, opened))
+        Ok((
+            Self { all_cases, file, analysis, nominal, bare, summary, shown, memory: Solution::default() },
+            opened,
+        ))
     }
 
-    /// The design with these changes, or as near to it as can be on the way from a solved one.
+    /// Solves the design with some changes. If it cannot be reached from the solved design `from`, returns the last
+    /// design on the path between both that can be solved.
     pub fn design(
         &mut self,
         change: &[VariableSetting],
         from: Option<&[VariableSetting]>,
-    ) -> Result<DesignReply, Refusal> {
-        let wanted = self.values(change)?;
+    ) -> Result<DesignReply, RequestError> {
+        let target = self.values(change)?;
         let start = from.map(|from| self.values(from)).transpose()?;
-        let (mut solution, mut why) = self.solved(&wanted);
+        let (mut solution, mut why) = self.solve(&target);
         let mut part = 1.0;
-        let mut design = wanted.clone();
+        let mut design = target.clone();
         if let (Some(start), Some(_)) = (start, &why) {
-            // The way is halved towards where it ends.
+            // Bisects the path for the last admissible design.
             let (mut low, mut high) = (0.0, 1.0);
-            let on_the_way = |part: f64| -> Vec<f64> {
-                start.iter().zip(&wanted).map(|(a, b)| a + part * (b - a)).collect()
+            let on_path = |part: f64| -> Vec<f64> {
+                start.iter().zip(&target).map(|(a, b)| a + part * (b - a)).collect()
             };
             let mut reached = None;
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (low + high);
                 self.memory = solution;
-                let (found, stop) = self.solved(&on_the_way(middle));
+                let (found, stop) = self.solve(&on_path(middle));
                 solution = found;
                 match stop {
                     None => {
@@ -116,10 +121,10 @@ impl Open {
                     Some(stop) => (high, why) = (middle, Some(stop)),
                 }
             }
-            (part, design) = (low, on_the_way(low));
+            (part, design) = (low, on_path(low));
             solution = match reached {
                 Some(reached) => reached,
-                None => self.solved(&design).0,
+                None => self.solve(&design).0,
             };
         }
         let shown = self.shown(&solution, &design);
@@ -127,9 +132,9 @@ impl Open {
         Ok(DesignReply { part, design: shown, why })
     }
 
-    /// Another model's motion beside this one's, where the two have the same bodies and measures.
-    pub fn beside(&mut self, model: &ModelText) -> Result<DesignReply, Refusal> {
-        let other = read(model)?;
+    /// Solves another model for comparison. Both models must have the same bodies, measures, metrics and output times.
+    pub fn compare(&mut self, model: &ModelText) -> Result<DesignReply, RequestError> {
+        let other = parse_in_case(model)?;
         let same = |a: &Model, b: &Model| {
             let bodies = |m: &Model| m.bodies.iter().map(|b| b.name.clone()).collect::<Vec<_>>();
             let outputs = |m: &Model| {
@@ -146,7 +151,7 @@ impl Open {
             let message = "the two models have different bodies, measures, metrics or output times".into();
             return Err(vec![DiagnosticMessage::plain("HP0703", message, help)]);
         }
-        let analysis = planned(&other, model)?;
+        let analysis = owned_analysis(&other, model)?;
         let solution = analysis.solve(Run::new().without_sensitivities());
         let stop = solution.stop.as_ref();
         let why = stop.map(|stop| diagnose::stop(&other, stop, solution.motion.len(), None));
@@ -154,25 +159,26 @@ impl Open {
         Ok(DesignReply { part: 1.0, design: self.shown(&solution, &[]), why })
     }
 
-    /// The text with these changes.
-    pub fn text(&self, change: &[VariableSetting]) -> Result<String, Refusal> {
+    /// Returns the model text with some changes.
+    pub fn text(&self, change: &[VariableSetting]) -> Result<String, RequestError> {
         let values = self.values(change)?;
-        self.whole
-            .edit(&values)
-            .map_err(|all| all.list().iter().map(|d| DiagnosticMessage::of(self.whole.text(), d)).collect())
+        self.all_cases.edit(&values).map_err(|all| {
+            all.list().iter().map(|d| DiagnosticMessage::of(self.all_cases.text(), d)).collect()
+        })
     }
 
-    /// The values of all variables, SI.
-    fn values(&self, change: &[VariableSetting]) -> Result<Vec<f64>, Refusal> {
+    /// Returns the values of all variables, SI.
+    fn values(&self, change: &[VariableSetting]) -> Result<Vec<f64>, RequestError> {
         let model = &self.file.model;
         let mut values = vec![0.0; model.variables.len()];
         for VariableSetting { name, by } in change {
             let Some(v) = model.variable(name).or_else(|| variable_named(&mut model.clone(), name)) else {
-                let message = format!("`{name}` is no design variable or hardpoint coordinate of the model");
+                let message =
+                    format!("`{name}` is not a design variable or hardpoint coordinate of the model");
                 return Err(vec![DiagnosticMessage::plain("HP0704", message, "open the model again")]);
             };
             let Some(value) = values.get_mut(v.0) else {
-                let message = format!("`{name}` is a joint's tilt, which the page does not vary");
+                let message = format!("`{name}` is the tilt of a joint, which the page does not vary");
                 return Err(vec![DiagnosticMessage::plain(
                     "HP0704",
                     message,
@@ -184,28 +190,28 @@ impl Open {
         Ok(values)
     }
 
-    /// A design's motion, and why it ends before that of the design as it is does.
-    fn solved(&mut self, values: &[f64]) -> (Solution, Option<DiagnosticMessage>) {
+    /// Solves a design. The diagnostic reports why its motion ends earlier than that of the nominal design.
+    fn solve(&mut self, values: &[f64]) -> (Solution, Option<DiagnosticMessage>) {
         let memory = std::mem::take(&mut self.memory);
         let run = Run::new().at(values).without_sensitivities().reusing(memory);
         let solution = self.analysis.solve(run);
-        let stop = solution.stop.as_ref().filter(|_| solution.motion.len() < self.today.steps);
+        let stop = solution.stop.as_ref().filter(|_| solution.motion.len() < self.nominal.steps);
         let stop = stop.map(|stop| diagnose::stop_of_changed(&self.bare, stop, solution.motion.len()));
-        let stop = stop.map(|d| DiagnosticMessage::of(self.whole.text(), &d));
+        let stop = stop.map(|d| DiagnosticMessage::of(self.all_cases.text(), &d));
         (solution, stop)
     }
 
-    /// A design as the page shows it; `None` where nothing of it could be solved.
+    /// Returns a design for the page; `None` if its motion is empty.
     fn shown(&self, exact: &Solution, values: &[f64]) -> Option<Design> {
         if exact.motion.is_empty() {
             return None;
         }
-        let request = Request::of(&self.bare, &self.analysis, &self.today, &self.summary);
+        let request = Request::of(&self.bare, &self.analysis, &self.nominal, &self.summary);
         let changed = ChangedDesign {
             name: "changed".into(),
             note: String::new(),
             change: values,
-            today: &self.today.kept,
+            today: &self.nominal.kept,
             exact,
             foreseen: None,
         };
@@ -213,15 +219,15 @@ impl Open {
     }
 }
 
-/// The plan of a model that outlives the call.
-fn planned(file: &ModelFile, model: &ModelText) -> Result<Analysis<'static>, Refusal> {
+/// Creates an analysis that owns its model.
+fn owned_analysis(file: &ModelFile, model: &ModelText) -> Result<Analysis<'static>, RequestError> {
     Analysis::new(Arc::new(file.model.clone())).map_err(|fault: TopologyError| {
         vec![DiagnosticMessage::of(&model.text, &diagnose::topology_fault(file, &fault))]
     })
 }
 
-/// The hardpoints that have a name, with what their coordinates are varied by.
-fn grips(file: &ModelFile) -> Vec<MovableHardpoint> {
+/// Returns the named hardpoints, with the variables of their coordinates.
+fn movable_hardpoints(file: &ModelFile) -> Vec<MovableHardpoint> {
     let (model, units) = (&file.model, file.units);
     let grip = |(h, hardpoint): (usize, &hardpoint::model::Hardpoint)| {
         let of = |axis: usize| -> Option<Coordinate> {

@@ -1,4 +1,4 @@
-//! Requests of a page, and the replies.
+//! Requests of a page, and their replies.
 
 use hardpoint_file::Diagnostic;
 use hardpoint_report::page::{Design, ModelText, Table};
@@ -12,74 +12,74 @@ use ts_rs::TS;
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "ask", rename_all = "snake_case")]
 pub enum Request {
-    /// True if a text is a model. Answered by [`CheckReply`]; nothing that is open changes.
+    /// Checks a model text. Reply: [`CheckReply`]. The open model is unchanged.
     Check {
-        /// The text.
+        /// Model text.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
     },
-    /// To solve the designs of this model from now on. Answered by [`OpenReply`].
+    /// Opens a model, whose designs are solved from now on. Reply: [`OpenReply`].
     Open {
-        /// The model.
+        /// Model.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
     },
-    /// A design of the open model. Answered by [`DesignReply`].
+    /// Solves a design of the open model. Reply: [`DesignReply`].
     Design {
         /// Changed variables.
         change: Vec<VariableSetting>,
-        /// A design that is solved already: where the changed one cannot be, what is given is as far on the way from
-        /// this one to it as can be.
+        /// A solved design. If the changed design cannot be reached, the reply is the last design on the path from this
+        /// one that can be solved.
         from: Option<Vec<VariableSetting>>,
     },
-    /// The text of the open model with a changed design. Answered by [`Text`].
+    /// Returns the text of the open model with changes. Reply: [`Text`].
     Text {
         /// Changed variables.
         change: Vec<VariableSetting>,
     },
-    /// Everything that the page of a model shows, which need not be open. Answered by a payload.
+    /// Returns the whole page of a model, which need not be open. Reply: a payload.
     Page {
-        /// The model.
+        /// Model.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
     },
-    /// Another model's motion beside that of the open one. Answered by [`DesignReply`].
+    /// Solves another model for comparison with the open one. Reply: [`DesignReply`].
     Beside {
-        /// The other model.
+        /// Other model.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
     },
-    /// A search for the design that serves the goals of a model best. Answered by [`StudyReply`].
+    /// Optimises the design for the goals of a model. Reply: [`StudyReply`].
     Optimize {
-        /// The model.
+        /// Model.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
-        /// Options besides those of the text.
+        /// Options that replace those of the model text.
         asked: OptimizeRequest,
     },
-    /// Asks for the options of an optimisation. Answered by [`OptimizeOffer`].
+    /// Returns the options of an optimisation. Reply: [`OptimizeOffer`].
     OptimizeOffer {
-        /// The model.
+        /// Model.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
     },
-    /// Asks for the options of a tolerance study. Answered by [`ToleranceOffer`].
+    /// Returns the options of a tolerance study. Reply: [`ToleranceOffer`].
     ToleranceOffer {
-        /// The model.
+        /// Model.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
     },
-    /// Runs the tolerance study of a model. Answered by [`StudyReply`].
+    /// Runs the tolerance study of a model. Reply: [`StudyReply`].
     Tolerance {
-        /// The model.
+        /// Model.
         #[cfg_attr(test, ts(type = "ModelText"))]
         model: ModelText,
-        /// Options besides those of the text.
+        /// Options that replace those of the model text.
         asked: ToleranceRequest,
     },
 }
 
-/// Options of an optimisation; all others are those of the text.
+/// Options of an optimisation; all other options are those of the model text.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct OptimizeRequest {
@@ -87,35 +87,35 @@ pub struct OptimizeRequest {
     pub variables: Vec<VariableChoice>,
     /// Goals to minimise.
     pub goals: Vec<GoalChoice>,
-    /// From how many designs it starts.
+    /// Number of start designs.
     pub starts: usize,
-    /// After that many iterations a search ends.
+    /// Maximum number of iterations per start.
     pub iterations: usize,
 }
 
-/// A variable that is searched over.
+/// Variable of an optimisation.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct VariableChoice {
     /// Name.
     pub name: String,
-    /// Lowest and highest change, or value of a parameter.
+    /// Lower and upper bound of the change, or of the value of a parameter.
     pub bounds: [f64; 2],
 }
 
-/// A metric that is made small.
+/// Metric to minimise, or to bring to a target.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct GoalChoice {
     /// Name.
     pub metric: String,
-    /// Weight of one unit.
+    /// Weight per unit of the metric.
     pub weight: f64,
     /// Target; `null` to minimise.
     pub target: Option<f64>,
 }
 
-/// Options of an optimisation, with their values in the text: `[optimize]` and its possible entries.
+/// Options of an optimisation, with their values in the table `[optimize]` of the model text.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct OptimizeOffer {
@@ -123,11 +123,11 @@ pub struct OptimizeOffer {
     pub variables: Vec<SearchVariable>,
     /// All metrics.
     pub goals: Vec<SearchGoal>,
-    /// Limits, a sentence each.
+    /// Limits, one sentence each.
     pub limits: Vec<String>,
-    /// From how many designs it starts.
+    /// Number of start designs.
     pub starts: usize,
-    /// After that many iterations a search ends.
+    /// Maximum number of iterations per start.
     pub iterations: usize,
 }
 
@@ -139,13 +139,13 @@ pub struct SearchVariable {
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// Lowest and highest change, or value of a parameter; none where the text has no bounds.
+    /// Lower and upper bound of the change, or of the value of a parameter; `null` without bounds in the model text.
     pub bounds: Option<[f64; 2]>,
-    /// True if the search of the text changes it.
+    /// True if it is a variable of `[optimize]`.
     pub chosen: bool,
 }
 
-/// A metric that an optimisation may make small, or bring to a target.
+/// Metric that an optimisation may minimise or bring to a target.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct SearchGoal {
@@ -153,19 +153,19 @@ pub struct SearchGoal {
     pub metric: String,
     /// Unit.
     pub unit: String,
-    /// The value of the design of the text, in the first case that it is taken in, where it is known.
+    /// Value of the nominal design in the first case in which the metric is evaluated, if known.
     pub value: Option<f64>,
-    /// Weight of one unit.
+    /// Weight per unit of the metric.
     pub weight: f64,
     /// Target; `null` to minimise.
     pub target: Option<f64>,
-    /// True if its target is a curve, which the text has: then it has none of its own.
+    /// True if the target is a curve in the model text; `target` is `null` then.
     pub curve: bool,
-    /// True if it is a goal of the text.
+    /// True if it is a goal of `[optimize]`.
     pub chosen: bool,
 }
 
-/// Options of a tolerance study, with their values in the text: `[tolerance]`.
+/// Options of a tolerance study, with their values in the table `[tolerance]` of the model text.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ToleranceOffer {
@@ -173,20 +173,20 @@ pub struct ToleranceOffer {
     pub tolerances: Vec<ToleranceChoice>,
     /// Names of the metrics.
     pub metrics: Vec<String>,
-    /// Number of designs that are drawn.
+    /// Number of sampled designs.
     pub samples: usize,
     /// Seed of the random numbers.
     #[cfg_attr(test, ts(type = "number"))]
     pub seed: u64,
 }
 
-/// Something that may be off.
+/// Variable or group of variables with a tolerance.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ToleranceChoice {
     /// Name.
     pub name: String,
-    /// By so much either way.
+    /// Half width of the tolerance.
     pub tolerance: f64,
     /// Unit.
     pub unit: String,
@@ -194,27 +194,27 @@ pub struct ToleranceChoice {
     pub distribution: String,
 }
 
-/// Options of a tolerance study; all others are those of the text.
+/// Options of a tolerance study; all other options are those of the model text.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ToleranceRequest {
-    /// Number of designs that are drawn and solved exactly.
+    /// Number of designs that are sampled and solved exactly.
     pub samples: usize,
     /// Seed of the random numbers: the same seed gives the same designs.
     pub seed: u32,
 }
 
-/// A variable and its change.
+/// Change of a variable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct VariableSetting {
-    /// A design variable of the model, or a coordinate of a hardpoint like `tie_rod_outer.z`.
+    /// Design variable, or coordinate of a hardpoint such as `tie_rod_outer.z`.
     pub name: String,
-    /// By how much it is changed, in the model's unit.
+    /// Change from the nominal value, in the unit of the model.
     pub by: f64,
 }
 
-/// A diagnostic of the text, in the words of the command line.
+/// Diagnostic of the model text, worded as on the command line.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct DiagnosticMessage {
@@ -223,11 +223,11 @@ pub struct DiagnosticMessage {
     pub severity: String,
     /// Stable code.
     pub code: String,
-    /// The headline, enough alone.
+    /// Headline, complete by itself.
     pub message: String,
-    /// Name of the file; none for the text that the page shows.
+    /// Name of the file; `null` for the displayed text.
     pub file: Option<String>,
-    /// Line of the text, from 1; none where the text as a whole is meant.
+    /// Line of the text, from 1; `null` for the text as a whole.
     pub line: Option<usize>,
     /// Column of the line in characters, from 1.
     pub column: Option<usize>,
@@ -235,7 +235,7 @@ pub struct DiagnosticMessage {
     pub length: Option<usize>,
     /// Name of the entry that is underlined.
     pub element: Option<String>,
-    /// Text at that place.
+    /// Label of the underlined characters.
     pub label: Option<String>,
     /// Facts.
     pub notes: Vec<String>,
@@ -244,9 +244,9 @@ pub struct DiagnosticMessage {
 }
 
 impl DiagnosticMessage {
-    /// A diagnostic of this text.
+    /// Converts a diagnostic of a text.
     pub(crate) fn of(text: &str, d: &Diagnostic) -> Self {
-        // An included file has no place in the text that the page shows.
+        // An included file has no position in the displayed text.
         let is_here = d.span.as_ref().is_none_or(|span| text.get(span.clone()).is_some());
         let message = match (is_here, d.line) {
             (false, Some(line)) => format!("{}, line {line}: {}", d.file, d.message),
@@ -267,7 +267,7 @@ impl DiagnosticMessage {
         }
     }
 
-    /// Something that has no place in the text.
+    /// Creates an error without a position in the text.
     pub(crate) fn plain(code: &str, message: String, help: &str) -> Self {
         Self {
             severity: "error".into(),
@@ -285,7 +285,7 @@ impl DiagnosticMessage {
     }
 }
 
-/// Diagnostics of a text.
+/// Diagnostics of a model text.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct CheckReply {
@@ -293,17 +293,17 @@ pub struct CheckReply {
     pub messages: Vec<DiagnosticMessage>,
 }
 
-/// Abilities of a model that was opened.
+/// Properties of a model that was opened.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct OpenReply {
-    /// The cases of the file, of which one is open.
+    /// Names of the cases of the file, one of which is open.
     pub cases: Vec<String>,
-    /// The hardpoints that can be taken hold of.
+    /// Hardpoints that can be moved.
     pub grips: Vec<MovableHardpoint>,
-    /// Orientations of the bodies' frames in the design configuration, quaternions w x y z, ground first.
+    /// Orientations of the body frames in the design configuration, quaternions w, x, y, z; ground first.
     pub frames: Vec<[f64; 4]>,
-    /// Reason of an early end of its motion.
+    /// Reason why the motion ends early.
     pub stop: Option<DiagnosticMessage>,
 }
 
@@ -313,42 +313,42 @@ pub struct OpenReply {
 pub struct MovableHardpoint {
     /// Name.
     pub name: String,
-    /// Position in the design configuration, in the model's unit.
+    /// Position in the design configuration, in the unit of the model, global.
     pub place: [f64; 3],
     /// Variables of its coordinates.
     pub coordinates: [Coordinate; 3],
 }
 
-/// Variable of a coordinate of a hardpoint.
+/// Coordinate of a hardpoint, with its variable.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Coordinate {
-    /// The variable.
+    /// Name of the variable.
     pub variable: String,
-    /// By how much the coordinate goes with one unit of it: 1 or -1.
+    /// Derivative of the coordinate with respect to the variable: 1 or -1.
     pub sign: f64,
-    /// The bounds of the variable, where the model has it and gives them.
+    /// Bounds of the variable, in the unit of the model, if the model defines them.
     pub bounds: Option<[f64; 2]>,
 }
 
-/// A design that was solved.
+/// Solved design.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct DesignReply {
-    /// The part of the way to the design that was requested, 0 to 1: 1 where it is that one.
+    /// Fraction of the path to the requested design that was reached, 0 to 1.
     pub part: f64,
-    /// The design; `None` where nothing of its motion could be solved.
+    /// Design; `null` if its motion is empty.
     #[cfg_attr(test, ts(type = "Design | null"))]
     pub design: Option<Design>,
-    /// Reason why it is not the requested design, or of an early end of its motion.
+    /// Reason why the requested design was not reached, or why its motion ends early.
     pub why: Option<DiagnosticMessage>,
 }
 
-/// A text.
+/// Model text.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Text {
-    /// The text.
+    /// Model text.
     pub text: String,
 }
 
@@ -356,22 +356,22 @@ pub struct Text {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct StudyReply {
-    /// Sentence about its end.
+    /// Summary in one line.
     pub message: String,
     /// Tables of the result.
     #[cfg_attr(test, ts(type = "Array<Table>"))]
     pub tables: Vec<Table>,
-    /// The design found, where one was searched for.
+    /// Optimised design, after an optimisation.
     pub change: Option<Vec<VariableSetting>>,
-    /// The model's text with it.
+    /// Model text with the optimised design.
     pub text: Option<String>,
 }
 
-/// Reason why there is no answer.
+/// Failed request.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ErrorReply {
-    /// Never none.
+    /// Diagnostics; never empty.
     pub failed: Vec<DiagnosticMessage>,
 }
 
@@ -379,13 +379,13 @@ pub struct ErrorReply {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ProgressReply {
-    /// Amount that is done ...
+    /// Number of completed steps.
     pub done: usize,
-    /// ... of so much, where that is known.
+    /// Total number of steps, if known.
     pub total: Option<usize>,
-    /// Line about the last event.
+    /// Description of the last step.
     pub line: String,
-    /// The design that the study is at.
+    /// Current design of the study.
     pub change: Option<Vec<VariableSetting>>,
 }
 

@@ -1,4 +1,4 @@
-//! Studies that take time: the whole page of a model, optimisations, tolerances.
+//! Long tasks: the whole page of a model, optimisations, tolerance studies.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -17,17 +17,17 @@ use hardpoint_report::optimize::{OptimizeFacts, iteration_line, rounded, start_l
 use hardpoint_report::page::{ModelText, Payload};
 use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
-use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs as Toleranced};
+use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs};
 use hardpoint_report::validity::ValidityFact;
 
 use crate::protocol::{
     DiagnosticMessage, OptimizeRequest, ProgressReply, StudyReply, ToleranceRequest, VariableSetting,
 };
-use crate::{ProgressListener, Refusal, offer, read, whole};
+use crate::{ProgressListener, RequestError, offer, parse_in_case, parse_model};
 
-/// Everything that the page of a model shows.
-pub(crate) fn page(model: &ModelText) -> Result<Payload, Refusal> {
-    let file = read(model)?;
+/// Returns the whole page of a model.
+pub(crate) fn page(model: &ModelText) -> Result<Payload, RequestError> {
+    let file = parse_in_case(model)?;
     let fault = |fault: TopologyError| {
         vec![DiagnosticMessage::of(&model.text, &diagnose::topology_fault(&file, &fault))]
     };
@@ -45,8 +45,12 @@ pub(crate) fn page(model: &ModelText) -> Result<Payload, Refusal> {
     Ok(payload(&Request::of(&file, &analysis, &course, &summary)))
 }
 
-/// The plans of all motions of a file.
-fn motions<'m>(file: &ModelFile, models: &'m [Model], model: &ModelText) -> Result<Motions<'m>, Refusal> {
+/// Creates the analyses of all motions of a file.
+fn motions<'m>(
+    file: &ModelFile,
+    models: &'m [Model],
+    model: &ModelText,
+) -> Result<Motions<'m>, RequestError> {
     Motions::of(models, Formulation::Relative).map_err(|(_, fault)| {
         vec![DiagnosticMessage::of(&model.text, &diagnose::topology_fault(file, &fault))]
     })
@@ -59,46 +63,46 @@ fn changes(file: &ModelFile, design: &[f64]) -> Vec<VariableSetting> {
         .collect()
 }
 
-/// A search for the best design.
-pub(crate) fn optimized(
+/// Runs the optimisation of a model.
+pub(crate) fn run_optimization(
     model: &ModelText,
     request: &OptimizeRequest,
-    tell: &mut ProgressListener<'_>,
-) -> Result<StudyReply, Refusal> {
-    let mut file = whole(model)?;
-    let asked = offer::asked(&mut file, request)?;
+    listener: &mut ProgressListener<'_>,
+) -> Result<StudyReply, RequestError> {
+    let mut file = parse_model(model)?;
+    let settings = offer::merged_settings(&mut file, request)?;
     let models = file.model.motions();
     let motions = motions(&file, &models, model)?;
-    let (units, many, mut done) = (file.units, asked.starts > 1, 0);
-    let mut progress = |k: usize, told: SearchProgress<'_>| {
-        let told = match told {
+    let (units, many, mut done) = (file.units, settings.starts > 1, 0);
+    let mut progress = |k: usize, event: SearchProgress<'_>| {
+        let reply = match event {
             SearchProgress::Iteration(iteration) if !many => ProgressReply {
                 done: iteration.number,
-                total: Some(asked.iterations),
+                total: Some(settings.iterations),
                 line: iteration_line(&file.model, units, iteration),
                 change: Some(changes(&file, &iteration.best)),
             },
             SearchProgress::End(search) if many => {
                 done += 1;
                 let change = search.found.as_ref().map(|found| changes(&file, &found.design));
-                ProgressReply { done, total: Some(asked.starts), line: start_line(k, search), change }
+                ProgressReply { done, total: Some(settings.starts), line: start_line(k, search), change }
             }
             _ => return ControlFlow::Continue(()),
         };
-        tell(&told)
+        listener(&reply)
     };
-    let searching = OptimizationRequest {
+    let run = OptimizationRequest {
         progress: &mut progress,
         more: &|| true,
         threads: NonZero::<usize>::MIN,
         first: 0,
     };
-    let found = optimize(&file.model, &motions, &asked, searching);
-    let facts = OptimizeFacts::of(&file, &asked, &found);
+    let found = optimize(&file.model, &motions, &settings, run);
+    let facts = OptimizeFacts::of(&file, &settings, &found);
     let best = found.best.and_then(|k| found.searches[k].found.as_ref());
-    let design = best.map(|best| rounded(&file, &asked, &best.design));
+    let design = best.map(|best| rounded(&file, &settings, &best.design));
     let text = design.as_ref().map(|design| file.edit(design)).transpose();
-    let text = text.map_err(|all| -> Refusal {
+    let text = text.map_err(|all| -> RequestError {
         all.list().iter().map(|d| DiagnosticMessage::of(&model.text, d)).collect()
     })?;
     Ok(StudyReply {
@@ -115,20 +119,20 @@ pub(crate) fn optimized(
 }
 
 /// Runs the tolerance study of a model.
-pub(crate) fn toleranced(
+pub(crate) fn run_tolerance(
     model: &ModelText,
     request: &ToleranceRequest,
-    tell: &mut ProgressListener<'_>,
-) -> Result<StudyReply, Refusal> {
-    let file = whole(model)?;
-    let asked = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
-    let Some(mut asked) = asked else {
-        let message = "the model does not say how far its design variables may be off".into();
-        let help = "add `tolerance = 0.1` to those in `[design]` or `[parameters]` that may";
+    listener: &mut ProgressListener<'_>,
+) -> Result<StudyReply, RequestError> {
+    let file = parse_model(model)?;
+    let settings = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
+    let Some(mut settings) = settings else {
+        let message = "the design variables have no tolerances".into();
+        let help = "add `tolerance = 0.1` to variables in `[design]` or `[parameters]`";
         return Err(vec![DiagnosticMessage::plain("HP0602", message, help)]);
     };
-    asked.samples = request.samples;
-    asked.seed = request.seed.into();
+    settings.samples = request.samples;
+    settings.seed = request.seed.into();
     let models = file.model.motions();
     let motions = motions(&file, &models, model)?;
     let numbers: Vec<usize> = (0..models.len()).collect();
@@ -137,24 +141,29 @@ pub(crate) fn toleranced(
             ToleranceStage::Derivatives(done, of) => (done, of, "differentiating"),
             ToleranceStage::Designs(done, of) => (done, of, "solving designs"),
         };
-        tell(&ProgressReply { done, total: Some(of), line: line.into(), change: None })
+        listener(&ProgressReply { done, total: Some(of), line: line.into(), change: None })
     };
-    let found = tolerance(&file.model, &motions, &numbers, &asked, NonZero::<usize>::MIN, &mut on, &|| true);
+    let found =
+        tolerance(&file.model, &motions, &numbers, &settings, NonZero::<usize>::MIN, &mut on, &|| true);
     let found = found.map_err(|failure| match failure {
         ToleranceError::Drawn(rejection) => {
             vec![DiagnosticMessage::of(&model.text, &diagnose::stop(&file, &rejection.stop, 0, None))]
         }
         ToleranceError::NothingVaries => {
-            let message = "the mechanism can follow none of the variables with a tolerance".into();
+            let message = "none of the variables with a tolerance is admissible".into();
             vec![DiagnosticMessage::plain(
                 "HP0602",
                 message,
-                "give tolerances to variables that it can follow",
+                "give tolerances to variables that the mechanism can follow",
             )]
         }
     })?;
-    let facts =
-        ToleranceFacts::of(&Toleranced { file: &file, numbers: &numbers, asked: &asked, found: &found });
+    let facts = ToleranceFacts::of(&ToleranceInputs {
+        file: &file,
+        numbers: &numbers,
+        asked: &settings,
+        found: &found,
+    });
     let rows = facts.rows().into_iter().map(|(what, how)| format!("{what}: {how}"));
     Ok(StudyReply {
         message: rows.collect::<Vec<_>>().join("; "),

@@ -81,7 +81,7 @@ fn an_exported_model_is_imported_again_and_what_it_does_not_say_is_named() {
     hardpoint(folder.path()).args(["import", "door.urdf", "-o", "door.toml"]).assert().success();
     let out = hardpoint(folder.path()).args(["export", "door.toml", "-o", "again.urdf"]).assert().success();
     let told = String::from_utf8_lossy(&out.get_output().stdout).into_owned();
-    assert!(told.contains("driver `hinge_input`: URDF has no motions"), "{told}");
+    assert!(told.contains("driver `hinge_input`: URDF does not support motions"), "{told}");
     hardpoint(folder.path()).args(["import", "again.urdf", "-o", "again.toml"]).assert().success();
     let out = hardpoint(folder.path()).args(["export", "door.toml", "-o", "door.step"]).assert().code(2);
     assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("csv, teimorbit, urdf, mjcf"));

@@ -152,7 +152,7 @@ fn what_a_format_cannot_say_is_named() {
         .map(|format| {
             let exported = Format::named(format).unwrap().export(&file);
             let list: Vec<String> =
-                exported.unsaid.iter().map(|u| format!("{} `{}`: {}\n", u.kind, u.name, u.why)).collect();
+                exported.unsupported.iter().map(|u| format!("{} `{}`: {}\n", u.kind, u.name, u.why)).collect();
             format!("## {format}\n{}", list.concat())
         })
         .collect();
@@ -247,7 +247,7 @@ fn names_that_a_format_cannot_hold_are_written_otherwise_and_told() {
         // DXF ends its lines as on Windows.
         let odd = exported.text.chars().find(|c| c.is_control() && !['\n', '\r'].contains(c));
         assert_eq!(odd, None, "{format}: {}", exported.text);
-        let told: Vec<&str> = exported.unsaid.iter().map(|u| u.name.as_str()).collect();
+        let told: Vec<&str> = exported.unsupported.iter().map(|u| u.name.as_str()).collect();
         for renamed in ["tab\\there", "crank\\u{7}", "one\\nline", "pair\\u{1}"] {
             assert!(told.contains(&renamed), "{format}: {told:?}");
         }

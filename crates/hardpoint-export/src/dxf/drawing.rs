@@ -1,7 +1,8 @@
-//! The part of DXF (AutoCAD 2000) that a skeleton needs: layers, points, texts and lines in model space.
+//! Subset of DXF (AutoCAD 2000) for a skeleton: layers, points, texts and lines in model space.
 //!
-//! A drawing of this version needs its tables, the blocks of model space and paper space, and a root dictionary, each
-//! object with a handle of its own; [`HEAD`], [`MIDDLE`] and [`TAIL`] hold those that are the same in every drawing.
+//! A drawing of this version requires its tables, the blocks of model space and paper space, and a root dictionary,
+//! each object with its own handle. [`HEAD`], [`MIDDLE`] and [`TAIL`] contain the objects that are the same in every
+//! drawing.
 
 use std::fmt::Write;
 
@@ -11,11 +12,11 @@ const HEAD: &str = include_str!("head.dxf");
 const MIDDLE: &str = include_str!("middle.dxf");
 /// Sections after the entities.
 const TAIL: &str = include_str!("tail.dxf");
-/// First handle that the fixed sections leave free.
+/// First handle that the fixed sections do not use.
 const FIRST_FREE: usize = 0x100;
-/// AutoCAD's colours from red to magenta (1 to 6), for the layers of bodies in turn.
+/// AutoCAD's colours from red to magenta (1 to 6), which the layers of bodies cycle through.
 const COLOURS: usize = 6;
-/// Colour of the first layer: black or white, whichever is seen.
+/// Colour of the first layer: black or white, depending on the background.
 const FOREGROUND: usize = 7;
 /// Characters that names of layers must not contain.
 const FORBIDDEN: [char; 13] = ['<', '>', '/', '\\', '"', ':', ';', '?', '*', '|', ',', '=', '`'];
@@ -30,14 +31,14 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
-    /// Adds a layer and returns its name: the given one, with forbidden characters replaced, and numbered where it is
-    /// taken.
+    /// Adds a layer and returns its name: the given one with forbidden characters replaced, and numbered if it is in
+    /// use.
     pub(super) fn add_layer(&mut self, name: &str) -> String {
         let allowed = |c: char| if FORBIDDEN.contains(&c) || c.is_control() { '_' } else { c };
         let plain = single_line(&name.chars().map(allowed).collect::<String>());
         let mut own = plain.clone();
         let mut k = 1;
-        // Layer 0 is in every drawing.
+        // Layer 0 exists in every drawing.
         while own == "0" || own.is_empty() || self.names.iter().any(|n| n.eq_ignore_ascii_case(&own)) {
             k += 1;
             own = format!("{plain}_{k}");
@@ -62,7 +63,7 @@ impl Drawing {
         );
     }
 
-    /// The whole file, its lengths in the unit of a code of $INSUNITS.
+    /// Returns the whole file; `unit` is the code of $INSUNITS for its lengths.
     pub(super) fn to_text(&self, unit: usize) -> String {
         let seed = format!("{:X}", FIRST_FREE + self.handles);
         let head = HEAD.replace("@UNITS@", &unit.to_string()).replace("@SEED@", &seed);
@@ -76,23 +77,23 @@ impl Drawing {
     }
 }
 
-/// A number with all its digits, in plain notation or with an exponent, and always with a decimal point.
+/// Formats a number with all digits, in plain or exponent notation, always with a decimal point.
 pub(super) fn number(x: f64) -> String {
     format!("{x:?}")
 }
 
-/// The group codes of a point whose x coordinate has this code.
+/// Group codes of a point; `code` is that of its x coordinate.
 pub(super) fn point(code: usize, at: [f64; 3]) -> String {
     let group = |(k, x): (usize, &f64)| format!("{:3}\n{}\n", code + 10 * k, number(*x));
     at.iter().enumerate().map(group).collect()
 }
 
-/// A text on one line, with characters outside ASCII as this version of the format encodes them.
+/// Returns a text on one line, with characters outside ASCII encoded as this version of the format requires.
 pub(super) fn single_line(text: &str) -> String {
     let letter = |c: char| match c {
         c if c.is_control() => " ".to_owned(),
         c if c.is_ascii() => c.to_string(),
-        // Four digits are all that the escape has: a character beyond them is two, as UTF-16 encodes it.
+        // The escape has four digits: a character beyond them takes two, as in UTF-16.
         c => c.encode_utf16(&mut [0; 2]).iter().map(|unit| format!("\\U+{unit:04X}")).collect(),
     };
     text.chars().map(letter).collect()

@@ -1,11 +1,11 @@
-//! Data of a dataset that loads need: masses of parts, gravity, springs and dampers between points.
+//! Loads of a dataset: masses of parts, gravity, springs and dampers between points.
 
 use std::collections::BTreeSet;
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 
 use super::{Reader, Statement};
-use crate::markers::JointSource;
+use crate::markers::ElementSource;
 use crate::mechanism::{Force, ForceOn, GROUND, Spring};
 use crate::robot;
 
@@ -47,7 +47,7 @@ const SYSTEMS: [(&str, &str, &str); 5] = [
 ];
 
 impl Reader<'_> {
-    /// Masses, gravity and springs; the statements that are read.
+    /// Reads masses, gravity and springs, and returns the statements that were read.
     pub(super) fn loads(&mut self, statements: &[Statement]) -> BTreeSet<(String, String)> {
         let mut done = BTreeSet::new();
         let units = statements.iter().find(|s| s.name == "UNITS");
@@ -96,33 +96,33 @@ impl Reader<'_> {
         let unknown =
             statements.iter().find(|s| s.name == "PART" && s.has("MASS")).filter(|_| mass.is_none());
         if let Some(s) = unknown {
-            let why = "masses are left out: the file names no unit of mass that is known";
+            let why = "masses are not imported: the file defines no known unit of mass";
             self.notes.refused("MASS", "", Some(s.at), why);
         }
         done
     }
 
-    /// The mass of a part: moments about the marker IM, or else about its centre CM.
+    /// Reads the mass of a part; moments of inertia are about the marker IM, or otherwise about the centre CM.
     fn mass(&mut self, s: &Statement, unit: f64, metre: f64) {
         let Some(&body) = self.parts.get(&format!("{}/{}", s.name, s.id)) else { return };
         let mut first = |key: &str| s.numbers(key, self.notes).and_then(|n| n.first().copied());
         let Some(mass) = first("MASS").map(|m| m * unit).filter(|m| *m != 0.0 && body != GROUND) else {
             return;
         };
-        let called = JointSource { kind: "mass", ..s.called() };
+        let source = ElementSource { kind: "mass", ..s.source() };
         let marker =
             |reader: &Self, key: &str| s.reference(key).and_then(|id| reader.markers.get(id)).copied();
         let own = self.m.bodies[body].pose;
         let centre = match (marker(self, "CM"), s.name.as_str(), own) {
             (Some(cm), ..) => cm.pose,
-            // A point mass is where it is.
+            // The centre of a point mass is its origin.
             (None, "POINT_MASS", Some(own)) => own,
             _ => {
                 self.notes.refused(
                     "mass",
                     &s.label,
                     Some(s.at),
-                    "a mass without a marker CM of its centre is left out",
+                    "the mass has no marker CM for its centre and is not imported",
                 );
                 return;
             }
@@ -132,7 +132,7 @@ impl Reader<'_> {
         let get = |k: usize| {
             list.get(k).copied().unwrap_or(0.0) * unit * (self.scale * metre) * (self.scale * metre)
         };
-        // Products are integrals, the opposite of the matrix's entries.
+        // Products of inertia are integrals: the entries of the matrix have the opposite sign.
         let [xx, yy, zz, xy, xz, yz] = [0, 1, 2, 3, 4, 5].map(get);
         let mut matrix = Mat3 { cols: [[xx, -xy, -xz].into(), [-xy, yy, -yz].into(), [-xz, -yz, zz].into()] };
         // I_c = I_P - m (d^2 1 - d d^T), d in the marker's axes
@@ -143,10 +143,11 @@ impl Reader<'_> {
             *column -= (Vec3::from(one) - d * d[c]) * mass;
         }
         let frame = Pose { rot: about.rot, r: centre.r };
-        robot::mass(&mut self.m, self.notes, called, body, frame, mass, (!list.is_empty()).then_some(matrix));
+        robot::mass(&mut self.m, self.notes, source, body, frame, mass, (!list.is_empty()).then_some(matrix));
     }
 
-    /// A spring and damper between two markers: it pushes them apart with `-C R. - K (R - LENGTH) + FORCE`.
+    /// Reads a spring and damper between two markers. The force that separates them is
+    /// `-C dR/dt - K (R - LENGTH) + FORCE`.
     fn spring(&mut self, s: &Statement, unit: f64) {
         let Some([j, i]) = self.pair(s) else { return };
         let mut first =
@@ -156,20 +157,20 @@ impl Reader<'_> {
         let damping = c * per_length / self.per_second();
         let fits = [k, c, length, force].iter().all(|x| x.is_finite()) && k >= 0.0 && c >= 0.0;
         if !fits || i.body == j.body {
-            let why = "no spring has a stiffness or damping below zero, or both ends on one part";
+            let why = "a spring requires non-negative stiffness and damping, and ends on two parts";
             self.notes.refused("SPRINGDAMPER", &s.label, Some(s.at), why);
             return;
         }
-        // Without stiffness its force is constant: what pulls is above zero in the model.
+        // Without stiffness the force is constant. Tension is positive in the model.
         let free = (k > 0.0).then(|| (length + force / k) * scale);
         if free.is_some_and(|l| l <= 0.0) {
-            let why = "a spring whose free length is zero or less is left out";
+            let why = "a spring with a free length of zero or less is not imported";
             self.notes.refused("SPRINGDAMPER", &s.label, Some(s.at), why);
             return;
         }
         self.m.force(Force {
             name: s.label.clone(),
-            note: s.called().note(self.notes),
+            note: s.source().note(self.notes),
             on: ForceOn::Points([(i.body, i.pose.r), (j.body, j.pose.r)]),
             spring: Spring {
                 stiffness: k * per_length,

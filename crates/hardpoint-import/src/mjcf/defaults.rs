@@ -1,4 +1,4 @@
-//! Settings of MJCF for many elements at once (compiler, classes of defaults, meshes), and their values for an element.
+//! Shared settings of MJCF (compiler, default classes, meshes), and attributes of elements with their defaults.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use crate::turn::{from_z_and_x, none, sequence};
 use crate::xml;
 use crate::xml::exactly;
 
-/// Maximum number of attributes in all classes of defaults.
+/// Maximum number of attributes in all default classes.
 const MOST_DEFAULTS: usize = 100_000;
 
 impl<'d> Reader<'d, '_> {
@@ -29,8 +29,8 @@ impl<'d> Reader<'d, '_> {
                     self.notes.problem_with(
                         "HP0804",
                         at,
-                        format!("`{sequence}` is no sequence of axes"),
-                        "three of x, y, z, X, Y, Z",
+                        format!("`{sequence}` is not a sequence of axes"),
+                        "use three of x, y, z, X, Y, Z",
                     );
                 }
             }
@@ -45,8 +45,8 @@ impl<'d> Reader<'d, '_> {
                 self.notes.problem_with(
                     "HP0805",
                     at,
-                    "global coordinates are no part of MJCF any more",
-                    "save the model with MuJoCo 2.3.2 in local ones",
+                    "global coordinates are no longer part of MJCF",
+                    "convert the model to local coordinates with MuJoCo 2.3.2",
                 );
             }
             self.notes.taken("compiler", "", xml::at(*text, *node));
@@ -72,20 +72,20 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// A class of defaults and those in it.
+    /// Reads a default class and its nested classes.
     fn class(&mut self, (text, node): Element<'d>, outer: Option<&str>, depth: usize) {
-        // What classes hold in all, with what they take from those around them.
-        let held: usize = self.classes.values().map(HashMap::len).sum();
-        if held > MOST_DEFAULTS {
-            let help = "leave out classes that nothing names";
+        // Total number of attributes, including inherited ones.
+        let count: usize = self.classes.values().map(HashMap::len).sum();
+        if count > MOST_DEFAULTS {
+            let help = "remove unused classes";
             self.notes.problem_with(
                 "HP0802",
                 xml::at(text, node),
-                "its classes of defaults are too many",
+                "the file has too many default classes",
                 help,
             );
         }
-        if depth > DEEPEST || held > MOST_DEFAULTS {
+        if depth > DEEPEST || count > MOST_DEFAULTS {
             return;
         }
         let name = node.attribute("class").unwrap_or(if outer.is_none() { "main" } else { "" });
@@ -108,7 +108,7 @@ impl<'d> Reader<'d, '_> {
             }
         }
         if outer.is_none() && name != "main" {
-            // Older files name the class of all.
+            // Older files rename the top-level class.
             self.classes.insert("main".to_owned(), class.clone());
         }
         self.classes.insert(name.to_owned(), class);
@@ -118,7 +118,7 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// An attribute of an element, or what its class gives it, and where that is written.
+    /// Returns an attribute of an element or its default, with its position.
     pub(super) fn attribute(
         &self,
         (text, node): Element<'d>,
@@ -153,7 +153,7 @@ impl<'d> Reader<'d, '_> {
         if self.compiler.degrees { x.to_radians() } else { x }
     }
 
-    /// The orientation of an element by any of the ways to write it.
+    /// Returns the orientation of an element in any of the notations of MJCF.
     pub(super) fn orientation(&mut self, element: Element<'d>, class: Option<&str>) -> Mat3 {
         let (text, node) = element;
         let fault = |reader: &mut Self, key| {
@@ -161,16 +161,17 @@ impl<'d> Reader<'d, '_> {
             reader.notes.problem_with(
                 "HP0804",
                 at,
-                format!("`{key}` gives no orientation"),
-                "give vectors that are neither null nor parallel",
+                format!("`{key}` defines no orientation"),
+                "give non-zero vectors that are not parallel",
             );
             none()
         };
-        // The element's own way of writing it counts, whichever way its class has.
-        const WAYS: [&str; 5] = ["axisangle", "xyaxes", "zaxis", "euler", "quat"];
-        let own = WAYS.into_iter().find(|key| node.has_attribute(*key));
-        let way = own.or_else(|| WAYS.into_iter().find(|key| self.attribute(element, key, class).is_some()));
-        match way {
+        // The notation of the element takes precedence over that of its class.
+        const NOTATIONS: [&str; 5] = ["axisangle", "xyaxes", "zaxis", "euler", "quat"];
+        let own = NOTATIONS.into_iter().find(|key| node.has_attribute(*key));
+        let notation =
+            own.or_else(|| NOTATIONS.into_iter().find(|key| self.attribute(element, key, class).is_some()));
+        match notation {
             Some("axisangle") => {
                 let Some([x, y, z, angle]) = self.numbers::<4>(element, "axisangle", class) else {
                     return none();
@@ -187,7 +188,7 @@ impl<'d> Reader<'d, '_> {
             }
             Some("zaxis") => {
                 let Some(z) = self.numbers::<3>(element, "zaxis", class) else { return none() };
-                // The least turn that brings z there.
+                // The smallest rotation that takes z into the direction.
                 let up = Vec3::from([0.0, 0.0, 1.0]);
                 match Vec3::from(z).unit() {
                     Some(z) if (z + up).norm() < 1e-12 => {
@@ -214,19 +215,19 @@ impl<'d> Reader<'d, '_> {
         Pose { rot: self.orientation(element, class), r: r.into() }
     }
 
-    /// True if the classes that an element names are there.
+    /// Reports unknown default classes of an element.
     pub(super) fn classes_of(&mut self, (text, node): Element<'d>) {
         for key in ["class", "childclass"] {
             let Some(class) = node.attribute(key).filter(|c| !self.classes.contains_key(*c)) else {
                 continue;
             };
-            // Without any defaults the one of all is there too.
+            // The class `main` always exists.
             if class == "main" {
                 continue;
             }
             let near = hardpoint::draft::did_you_mean(class, self.classes.keys().map(String::as_str));
-            let help = near.map_or("declare it in `default`".into(), |n| format!("did you mean `{n}`?"));
-            let message = format!("there is no class of defaults `{class}`");
+            let help = near.map_or("define it in `default`".into(), |n| format!("did you mean `{n}`?"));
+            let message = format!("the default class `{class}` does not exist");
             self.notes.problem_with("HP0803", xml::attribute_at(text, node, key), message, &help);
         }
     }

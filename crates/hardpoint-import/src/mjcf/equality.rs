@@ -1,9 +1,9 @@
-//! Equality constraints of MJCF: what closes loops, couples joints, holds free bodies.
+//! Equality constraints of MJCF, which close loops, couple joints and constrain free bodies.
 
 use hardpoint::space::{Pose, Quat, Vec3};
 
-use super::{CLOSED, Element, Meet, Reader};
-use crate::markers::{JointSource, Marker, join};
+use super::{CLOSED, Element, PointConnection, Reader};
+use crate::markers::{ElementSource, Marker, join};
 use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Spring};
 use crate::turn::{home, none};
 use crate::{robot, xml};
@@ -20,9 +20,9 @@ impl<'d> Reader<'d, '_> {
             let name = name.unwrap_or_default();
             let known = self.bodies.keys().map(String::as_str);
             let near = hardpoint::draft::did_you_mean(name, known);
-            let help = near.map_or("name a body of the model".into(), |n| format!("did you mean `{n}`?"));
+            let help = near.map_or("use a body of the model".into(), |n| format!("did you mean `{n}`?"));
             let at = xml::attribute_at(text, node, key);
-            self.notes.problem_with("HP0803", at, format!("there is no body `{name}`"), &help);
+            self.notes.problem_with("HP0803", at, format!("the body `{name}` does not exist"), &help);
         }
         found
     }
@@ -35,12 +35,12 @@ impl<'d> Reader<'d, '_> {
             let known = self.joints.keys().map(String::as_str);
             let near = hardpoint::draft::did_you_mean(name, known);
             let help =
-                near.map_or("name a hinge or slide of the model".into(), |n| format!("did you mean `{n}`?"));
+                near.map_or("use a hinge or slide of the model".into(), |n| format!("did you mean `{n}`?"));
             let at = xml::attribute_at(text, node, key);
             self.notes.problem_with(
                 "HP0803",
                 at,
-                format!("there is no joint `{name}` with one coordinate"),
+                format!("no joint `{name}` with a single coordinate exists"),
                 &help,
             );
         }
@@ -61,16 +61,16 @@ impl<'d> Reader<'d, '_> {
             match kind {
                 "connect" | "weld" => self.closure(element, kind, &name),
                 "joint" | "tendon" => self.relation(element, kind, &name),
-                other => self.notes.refused(other, &name, at, "a constraint of this kind has no equivalent"),
+                other => self.notes.refused(other, &name, at, "constraints of this type have no equivalent"),
             }
         }
     }
 
-    /// Two bodies that meet: at a point, or altogether.
+    /// Reads a constraint between two bodies: at a point (`connect`), or of frames (`weld`).
     fn closure(&mut self, element: Element<'d>, kind: &str, name: &str) {
         let (text, node) = element;
         let at = xml::at(text, node);
-        let called = JointSource { kind, name, at };
+        let source = ElementSource { kind, name, at };
         let sites = ["site1", "site2"].map(|key| node.attribute(key));
         let ends = if let [Some(a), Some(b)] = sites {
             let found = [a, b].map(|s| self.sites.get(s).copied());
@@ -79,8 +79,8 @@ impl<'d> Reader<'d, '_> {
                     self.notes.problem_with(
                         "HP0803",
                         at,
-                        format!("there is no site `{site}`"),
-                        "name a site of the model",
+                        format!("the site `{site}` does not exist"),
+                        "use a site of the model",
                     );
                 }
             }
@@ -89,7 +89,7 @@ impl<'d> Reader<'d, '_> {
             let [first, second] = ["body1", "body2"].map(|key| self.end(element, key));
             let anchor = self.numbers::<3>(element, "anchor", None).unwrap_or_default();
             let place = |(_, pose): (usize, Pose)| pose.point(anchor.into());
-            // The anchor of a weld is of the second body.
+            // The anchor of a weld is in the frame of the second body.
             let place = if kind == "weld" { second.map(place) } else { first.map(place) };
             let put = |end: Option<(usize, Pose)>| Some((end?.0, Pose { rot: none(), r: place? }));
             [put(first), put(second)]
@@ -97,7 +97,7 @@ impl<'d> Reader<'d, '_> {
         let [Some(i), Some(j)] = ends else { return };
         let [mut i, mut j] = [i, j].map(|(body, pose)| Marker { body, pose });
         if kind == "connect" {
-            self.meets.push(Meet { name: name.to_owned(), at, ends: [i, j] });
+            self.connections.push(PointConnection { name: name.to_owned(), at, ends: [i, j] });
             return;
         }
         if !matches!(sites, [Some(_), Some(_)])
@@ -107,19 +107,19 @@ impl<'d> Reader<'d, '_> {
         }
         self.place_free(&i, &mut j);
         self.place_free(&j, &mut i);
-        robot::weld(&mut self.m, self.notes, called, "fixed", [i, j]);
+        robot::weld(&mut self.m, self.notes, source, "fixed", [i, j]);
     }
 
-    /// Places a body that nothing but a weld holds: its frame `own` is moved to the other one.
+    /// Places a free body that only this weld constrains: its frame `own` is moved to the other one.
     fn place_free(&mut self, other: &Marker, own: &mut Marker) {
         let body = own.body;
         let is_free = self.free.iter().any(|f| f.bodies[1] == body);
         let is_held = self.m.joints.iter().any(|j| j.bodies.contains(&body))
-            || self.meets.iter().any(|meet| meet.ends.iter().any(|end| end.body == body));
-        let Some(drawn) = self.m.bodies[body].pose.filter(|_| is_free && !is_held) else { return };
+            || self.connections.iter().any(|connection| connection.ends.iter().any(|end| end.body == body));
+        let Some(nominal) = self.m.bodies[body].pose.filter(|_| is_free && !is_held) else { return };
         // X_new = X_other (X^-1 X_own)^-1
-        let moved = other.pose.compose(own.pose.inverse()).compose(drawn);
-        let carried = |pose: Pose| moved.compose(drawn.inverse()).compose(pose);
+        let moved = other.pose.compose(own.pose.inverse()).compose(nominal);
+        let carried = |pose: Pose| moved.compose(nominal.inverse()).compose(pose);
         self.m.bodies[body].pose = Some(moved);
         for (_, pose) in self.bodies.values_mut().chain(self.sites.values_mut()).filter(|(b, _)| *b == body) {
             *pose = carried(*pose);
@@ -130,19 +130,20 @@ impl<'d> Reader<'d, '_> {
         own.pose = other.pose;
     }
 
-    /// Points in which two bodies meet. Where two bodies meet in two points, they turn about the line through both.
-    pub(super) fn meet(&mut self) {
-        let meets = std::mem::take(&mut self.meets);
+    /// Adds joints for connected points. Two bodies that are connected at two points rotate about the line through
+    /// both.
+    pub(super) fn join_connections(&mut self) {
+        let connections = std::mem::take(&mut self.connections);
         let apart = |a: Vec3, b: Vec3| (a - b).norm() > CLOSED * self.m.size();
-        let place = |k: usize| meets[k].ends[0].pose.r;
+        let place = |k: usize| connections[k].ends[0].pose.r;
         let pair = |k: usize| {
-            let [i, j] = meets[k].ends.map(|end| end.body);
+            let [i, j] = connections[k].ends.map(|end| end.body);
             (i.min(j), i.max(j))
         };
-        let closed = |k: usize| !apart(place(k), meets[k].ends[1].pose.r);
-        let mut partner = vec![None; meets.len()];
-        for k in 0..meets.len() {
-            let same: Vec<usize> = (0..meets.len()).filter(|l| pair(*l) == pair(k)).collect();
+        let closed = |k: usize| !apart(place(k), connections[k].ends[1].pose.r);
+        let mut partner = vec![None; connections.len()];
+        for k in 0..connections.len() {
+            let same: Vec<usize> = (0..connections.len()).filter(|l| pair(*l) == pair(k)).collect();
             if let [a, b] = same[..]
                 && closed(a)
                 && closed(b)
@@ -151,18 +152,19 @@ impl<'d> Reader<'d, '_> {
                 partner[k] = Some(if k == a { b } else { a });
             }
         }
-        for (k, meet) in meets.iter().enumerate() {
-            let called = JointSource { kind: "connect", name: &meet.name, at: meet.at };
+        for (k, connection) in connections.iter().enumerate() {
+            let source = ElementSource { kind: "connect", name: &connection.name, at: connection.at };
             match partner[k] {
                 None => {
-                    join(&mut self.m, self.notes, called, "spherical", meet.ends);
+                    join(&mut self.m, self.notes, source, "spherical", connection.ends);
                 }
                 Some(other) if other > k => {
-                    let axis = meets[other].ends[0].pose.r - meet.ends[0].pose.r;
-                    let ends = meet.ends.map(|end| Marker::along(end.body, meet.ends[0].pose.r, axis));
+                    let axis = connections[other].ends[0].pose.r - connection.ends[0].pose.r;
+                    let ends =
+                        connection.ends.map(|end| Marker::along(end.body, connection.ends[0].pose.r, axis));
                     if let [Some(i), Some(j)] = ends {
-                        join(&mut self.m, self.notes, called, "revolute", [i, j]);
-                        self.notes.taken("connect", &meets[other].name, meets[other].at);
+                        join(&mut self.m, self.notes, source, "revolute", [i, j]);
+                        self.notes.taken("connect", &connections[other].name, connections[other].at);
                     }
                 }
                 Some(_) => {}
@@ -170,33 +172,34 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// Free bodies: those that equalities hold are left to them, the others stand where they are drawn.
+    /// Handles free bodies: those with equalities remain free, the others are fixed in the design configuration.
     pub(super) fn free_bodies(&mut self) {
         for free in std::mem::take(&mut self.free) {
             let [i, j] = free.bodies;
             if self.m.are_connected([i, j]) {
-                let why = "no joint: the equalities of the body hold it, and drivers what these leave free";
+                let why = "no joint: equalities constrain the body, and drivers fix its remaining degrees of freedom";
                 self.notes.approximated("joint", &free.name, free.at, why);
                 continue;
             }
-            let why = "nothing holds its six freedoms in the source: it is fixed in the design configuration";
+            let why = "nothing constrains it in the source: it is fixed in the design configuration";
             self.notes.approximated("joint", &free.name, free.at, why);
-            let note = JointSource { kind: "joint", name: &free.name, at: free.at }.note(self.notes);
+            let note = ElementSource { kind: "joint", name: &free.name, at: free.at }.note(self.notes);
             self.m.joint(Joint::new(&free.name, note, "fixed", [i, j], free.place));
         }
     }
 
-    /// The two frames that a weld with a pose of its own brings together: where it puts the second body, and that body.
+    /// Returns the two frames of a weld with a relative pose: the target frame of the second body, and its current
+    /// frame.
     fn relative_pose(&mut self, element: Element<'d>) -> Option<(Pose, Pose)> {
         let [x, y, z, q @ ..] = self.numbers::<7>(element, "relpose", None)?;
-        // Without an orientation it represents the pose in the design configuration.
+        // A null quaternion means the relative pose in the design configuration.
         let rot = Quat::from_array(q)?.rotation();
         let (_, first) = self.end(element, "body1")?;
         let (_, second) = self.end(element, "body2")?;
         Some((first.compose(Pose { rot, r: [x, y, z].into() }), second))
     }
 
-    /// A polynomial between two joints, or two tendons that are sums of joints.
+    /// Reads a polynomial relation between two joints, or between two tendons that are sums of joints.
     fn relation(&mut self, element: Element<'d>, kind: &str, name: &str) {
         let (text, node) = element;
         let at = xml::at(text, node);
@@ -215,7 +218,7 @@ impl<'d> Reader<'d, '_> {
         }
         let Some(first) = first else {
             if kind == "tendon" {
-                self.notes.refused(kind, name, at, "only fixed tendons, sums of joints, have an equivalent");
+                self.notes.refused(kind, name, at, "only fixed tendons (sums of joints) have an equivalent");
             }
             return;
         };
@@ -226,20 +229,20 @@ impl<'d> Reader<'d, '_> {
         let mut a = coefficients.unwrap_or_else(|| vec![0.0, 1.0]);
         a.resize(5, 0.0);
         if has_second && a[2..].iter().any(|x| *x != 0.0) {
-            self.notes.refused(kind, name, at, "a relation that is not linear has no equivalent");
+            self.notes.refused(kind, name, at, "nonlinear relations have no equivalent");
             return;
         }
-        let called = JointSource { kind, name, at };
-        let note = called.note(self.notes);
+        let source = ElementSource { kind, name, at };
+        let note = source.note(self.notes);
         let mut terms = first;
         if let Some(second) = second {
             terms.extend(second.iter().map(|(c, k)| (*c, -a[1] * k)));
         }
-        // The constant counts from the reference, as coordinates of the model do.
+        // The constant is relative to the reference, like the coordinates of the model.
         match terms[..] {
             [(only, factor)] => {
                 let value = if factor == 0.0 { 0.0 } else { a[0] / factor };
-                let law = if value == 0.0 { Law::Held } else { Law::Set(value) };
+                let law = if value == 0.0 { Law::Fixed } else { Law::Constant(value) };
                 self.m.driver(name, note, Drives::Coordinate(only), law);
             }
             _ => self.m.coupler_to(name, note, terms, a[0]),
@@ -247,36 +250,36 @@ impl<'d> Reader<'d, '_> {
         self.notes.taken(kind, name, at);
     }
 
-    /// A tendon of constant length between two sites: a rod.
+    /// Adds a tendon of constant length between two sites as a rod.
     fn rod(&mut self, element: Element<'d>, name: &str, [from, to]: &[String; 2]) {
         let at = xml::at(element.0, element.1);
         let mut end = |site: &String| {
             let found = self.sites.get(site).copied();
             if found.is_none() {
-                let message = format!("there is no site `{site}`");
-                self.notes.problem_with("HP0803", at, message, "name a site of the model");
+                let message = format!("the site `{site}` does not exist");
+                self.notes.problem_with("HP0803", at, message, "use a site of the model");
             }
             found
         };
         let (Some((i, from)), Some((j, to))) = (end(from), end(to)) else { return };
         if i == j {
-            self.notes.refused("tendon", name, at, "both its sites are on the same body");
+            self.notes.refused("tendon", name, at, "its sites are on the same body");
             return;
         }
         let constant = self.attribute(element, "polycoef", None).and_then(|(p, _)| xml::numbers(&p));
         let constant = constant.and_then(|c| c.first().copied()).unwrap_or(0.0);
         let length = (to.r - from.r).norm() + constant;
         if !(length > 0.0) {
-            self.notes.refused("tendon", name, at, format!("it would be {length} m long"));
+            self.notes.refused("tendon", name, at, format!("its length would be {length} m"));
             return;
         }
         self.notes.taken("tendon", name, at);
-        let note = JointSource { kind: "tendon", name, at }.note(self.notes);
+        let note = ElementSource { kind: "tendon", name, at }.note(self.notes);
         let rod = Joint::new(name, note, "distance", [i, j], to.r).between(from.r, to.r);
         self.m.joint(Joint { length: (constant != 0.0).then_some(length), ..rod });
     }
 
-    /// Tendons: fixed ones are sums of joints, those between two sites can be rods.
+    /// Reads tendons: fixed ones are sums of joints, those between two sites can be rods.
     pub(super) fn tendons(&mut self, top: &[Element<'d>]) {
         for list in top.iter().filter(|(_, n)| n.has_tag_name("tendon")) {
             for element in self.contents(*list, 0) {
@@ -302,20 +305,20 @@ impl<'d> Reader<'d, '_> {
                 {
                     self.rods.insert(name.to_owned(), [from.clone(), to.clone()]);
                 }
-                // It holds nothing of its own; an equality may.
+                // A tendon constrains nothing by itself; an equality may.
                 self.tendon_spring(element, name);
             }
         }
     }
 
-    /// The spring and damper of a tendon between two sites, and what else it has.
+    /// Adds the spring and damper of a tendon between two sites, and reports its other properties.
     fn tendon_spring(&mut self, element: Element<'d>, name: &str) {
         let (text, node) = element;
         let (kind, at) = (node.tag_name().name(), xml::at(text, node));
         let list = |key: &str| node.attribute(key).and_then(xml::numbers).unwrap_or_default();
         let first = |key: &str| list(key).first().copied().unwrap_or(0.0);
         if node.has_attribute("range") && node.attribute("limited") != Some("false") {
-            self.notes.refused(kind, name, at, "its limits are not held: drivers prescribe what moves");
+            self.notes.refused(kind, name, at, "its limits are not supported: drivers prescribe the motion");
         }
         robot::friction(self.notes, name, at, first("frictionloss"));
         let [stiffness, damping] = ["stiffness", "damping"].map(first);
@@ -327,20 +330,21 @@ impl<'d> Reader<'d, '_> {
         let ends = self.rods.get(name).map(|ends| ends.each_ref().map(|site| self.sites.get(site).copied()));
         let (Some([Some((i, from)), Some((j, to))]), true) = (ends, lengths.len() < 2 && are_two(ends))
         else {
-            let why = "only springs of tendons between two sites on two bodies, with one length, have an equivalent";
+            let why =
+                "only springs of tendons with one length between two sites on two bodies have an equivalent";
             self.notes.refused(kind, name, at, why);
             return;
         };
         if !(stiffness >= 0.0 && damping >= 0.0) {
-            self.notes.refused(kind, name, at, "no spring has a stiffness or damping below zero");
+            self.notes.refused(kind, name, at, "stiffness and damping must not be negative");
             return;
         }
-        let called = JointSource { kind, name, at };
-        // A length below zero represents that of the drawing.
+        let source = ElementSource { kind, name, at };
+        // A negative length means the length in the design configuration.
         let free = lengths.first().copied().filter(|l| *l > 0.0 && stiffness > 0.0);
         self.m.force(Force {
             name: name.to_owned(),
-            note: called.note(self.notes),
+            note: source.note(self.notes),
             on: ForceOn::Points([(i, from.r), (j, to.r)]),
             spring: Spring { stiffness, damping, free, ..Spring::default() },
         });
@@ -348,7 +352,7 @@ impl<'d> Reader<'d, '_> {
     }
 }
 
-/// Returns whether the two ends of a tendon are on two bodies.
+/// Returns true if the two ends of a tendon are on two bodies.
 fn are_two(ends: Option<[Option<(usize, Pose)>; 2]>) -> bool {
     matches!(ends, Some([Some((i, _)), Some((j, _))]) if i != j)
 }

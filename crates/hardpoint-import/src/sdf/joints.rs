@@ -1,4 +1,4 @@
-//! Joints of SDFormat: their axes, what ties them to each other, and what Drake adds.
+//! Joints of SDFormat: their axes, their relations, and Drake's extensions.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use hardpoint::space::{Pose, Vec3};
 use roxmltree::Node;
 
 use super::{Frame, Model, Reader, version};
-use crate::markers::{JointSource, Marker, MarkerJoint, carrying, join, way};
+use crate::markers::{ElementSource, Marker, MarkerJoint, carrying_joint, coordinate_sign, join};
 use crate::mechanism::{Coordinate, Mechanism};
 use crate::turn::home;
 use crate::xml::{Vocabulary, child, children, exactly, local, named};
@@ -42,7 +42,7 @@ const AXIS: Vocabulary = Vocabulary {
     ],
     irrelevant: &[],
 };
-/// Known content of the parts of an axis.
+/// Known content of the elements of an axis.
 const OF_AXES: [(&str, Vocabulary); 4] = [
     ("xyz", Vocabulary { attributes: &["expressed_in"], read: &[], irrelevant: &[] }),
     (
@@ -81,14 +81,14 @@ impl<'d> Reader<'d, '_> {
             let at = element.map_or_else(|| xml::at(text, joint), |e| xml::at(text, e));
             let message = match name {
                 "" => format!("the joint has no `{end}`"),
-                name => format!("there is no link or frame `{name}`"),
+                name => format!("the link or frame `{name}` does not exist"),
             };
-            self.notes.problem_with("HP0803", at, message, "name a link, a frame, or `world`");
+            self.notes.problem_with("HP0803", at, message, "use a link, a frame, or `world`");
         }
         frame
     }
 
-    /// The axis of a joint, global.
+    /// Returns the axis of a joint, global.
     fn axis(&mut self, joint: Node<'d, 'd>, model: &Model<'d>, frame: Pose, key: &'static str) -> Vec3 {
         let text = model.text;
         let axis = child(joint, key);
@@ -97,7 +97,7 @@ impl<'d> Reader<'d, '_> {
             .and_then(|x| exactly::<3>(x.text().unwrap_or_default(), "`xyz`", xml::at(text, x), self.notes));
         let v = Vec3::from(given.unwrap_or([0.0, 0.0, 1.0]));
         let of_model = axis.and_then(|a| child(a, "use_parent_model_frame")).and_then(|n| n.text());
-        // Up to version 1.4 axes are those of the model.
+        // Up to version 1.4, axes are in the model frame.
         let older = version(joint.document().root_element()).is_some_and(|v| v < (1, 5));
         let of_model = of_model.map_or(older, |t| ["1", "true"].contains(&t.trim()));
         let expressed = xyz.and_then(|x| x.attribute("expressed_in")).filter(|e| !e.is_empty());
@@ -109,8 +109,8 @@ impl<'d> Reader<'d, '_> {
                     self.notes.problem_with(
                         "HP0803",
                         at,
-                        format!("there is no frame `{name}`"),
-                        "name a link, joint, frame or model of the file",
+                        format!("the frame `{name}` does not exist"),
+                        "use a link, joint, frame or model of the file",
                     );
                     frame.rot
                 }
@@ -120,12 +120,7 @@ impl<'d> Reader<'d, '_> {
         };
         if v.unit().is_none() {
             let at = xyz.and_then(|x| xml::at(text, x));
-            self.notes.problem_with(
-                "HP0804",
-                at,
-                "the axis has no direction",
-                "give a vector other than zero",
-            );
+            self.notes.problem_with("HP0804", at, "the axis has no direction", "give a non-zero vector");
             return [0.0, 0.0, 1.0].into();
         }
         rot * v
@@ -137,7 +132,7 @@ impl<'d> Reader<'d, '_> {
         let at = xml::at(text, joint);
         let full = format!("{scope}{name}");
         if !self.names.insert(full.clone()) {
-            let message = format!("there are two joints `{name}`");
+            let message = format!("the joint `{name}` is defined twice");
             self.notes.problem_with("HP0803", at, message, "rename one of them");
         }
         xml::unknown(text, joint, &name, JOINT, self.notes);
@@ -151,7 +146,7 @@ impl<'d> Reader<'d, '_> {
         let ends = ["parent", "child"].map(|end| self.end(joint, model, end));
         let [Some(i), Some(j)] = ends else { return };
         let Some(frame) = self.frames.get(&format!("{scope}joint {name}")).map(|f| f.pose) else { return };
-        let called = JointSource { kind: "joint", name: &full, at };
+        let source = ElementSource { kind: "joint", name: &full, at };
         let kind = joint.attribute("type").unwrap_or_default().trim();
         let type_name = match kind {
             "revolute" | "continuous" => "revolute",
@@ -160,12 +155,12 @@ impl<'d> Reader<'d, '_> {
             "fixed" => "fixed",
             "screw" => "screw",
             "universal" | "revolute2" => "universal",
-            // Drake's.
+            // Drake's extension.
             "planar" => "planar",
             "gearbox" => return,
             _ => {
                 let at = xml::attribute_at(text, joint, "type").or(at);
-                let help = "SDF knows revolute, continuous, prismatic, ball, universal, revolute2, screw, gearbox and fixed";
+                let help = "use revolute, continuous, prismatic, ball, universal, revolute2, screw, gearbox or fixed";
                 self.notes.problem_with(
                     "HP0805",
                     at,
@@ -183,7 +178,7 @@ impl<'d> Reader<'d, '_> {
         let second = if type_name == "universal" { self.axis(joint, model, frame, "axis2") } else { axis };
         let ends = [(i.body, axis), (j.body, second)].map(|(body, axis)| Marker::along(body, frame.r, axis));
         let [Some(i), Some(j)] = ends else { return };
-        let Some(number) = join(&mut self.m, self.notes, called, type_name, [i, j]) else { return };
+        let Some(number) = join(&mut self.m, self.notes, source, type_name, [i, j]) else { return };
         let limit = child(joint, "axis").and_then(|a| child(a, "limit"));
         let ends = ["lower", "upper"].map(|key| {
             let n = limit.and_then(|l| child(l, key))?;
@@ -198,7 +193,7 @@ impl<'d> Reader<'d, '_> {
                 exactly::<1>(n.text().unwrap_or_default(), key, xml::at(text, n), reader.notes).map(|[x]| x)
             };
             let own = number_of(self, "screw_thread_pitch");
-            // The older key is in rad per length, and counts the other way.
+            // The older key is in rad per length, with the opposite sign.
             let older =
                 number_of(self, "thread_pitch").filter(|p| *p != 0.0).map(|p| -std::f64::consts::TAU / p);
             match own.or(older).filter(|p| *p != 0.0) {
@@ -207,7 +202,7 @@ impl<'d> Reader<'d, '_> {
                     "HP0804",
                     at,
                     format!("the screw `{name}` has no pitch"),
-                    "give it a `screw_thread_pitch` other than zero",
+                    "give it a non-zero `screw_thread_pitch`",
                 ),
             }
         }
@@ -216,7 +211,7 @@ impl<'d> Reader<'d, '_> {
         self.joints.insert(full, joined);
     }
 
-    /// Springs and dampers of a joint.
+    /// Adds springs and dampers of a joint.
     fn dynamics(&mut self, joint: Node<'d, 'd>, text: usize, name: &str, coordinate: Option<Coordinate>) {
         for dynamics in children(joint).flat_map(|axis| named(axis, "dynamics")) {
             let at = xml::at(text, dynamics);
@@ -228,20 +223,20 @@ impl<'d> Reader<'d, '_> {
                     let [x] = found.unwrap_or_default();
                     x
                 });
-            let called = JointSource { kind: "spring", name, at };
-            robot::joint_spring(&mut self.m, self.notes, called, coordinate, [stiffness, damping, free]);
+            let source = ElementSource { kind: "spring", name, at };
+            robot::joint_spring(&mut self.m, self.notes, source, coordinate, [stiffness, damping, free]);
             robot::friction(self.notes, name, at, friction);
         }
     }
 
-    /// Reads the relations of a joint to others: `mimic`, and gearboxes.
+    /// Reads the relations of a joint to others: `mimic` and gearboxes.
     pub(super) fn relation(&mut self, joint: Node<'d, 'd>, model: &Model<'d>) {
         let (text, scope) = (model.text, &model.scope);
         let name = joint.attribute("name").unwrap_or_default().trim();
         let full = format!("{scope}{name}");
         let number = |reader: &mut Self, node: Node<'d, 'd>, key: &'static str| {
             if node.has_attribute(key) {
-                // As Drake has it.
+                // Drake's notation.
                 return xml::attribute::<1>(text, node, key, reader.notes).map(|[x]| x);
             }
             let n = child(node, key)?;
@@ -253,7 +248,7 @@ impl<'d> Reader<'d, '_> {
         {
             let other = mimic.attribute("joint").unwrap_or_default();
             let factor = number(self, mimic, "multiplier").unwrap_or(1.0);
-            let drawn = number(self, mimic, "offset").unwrap_or(0.0)
+            let constant = number(self, mimic, "offset").unwrap_or(0.0)
                 - factor * number(self, mimic, "reference").unwrap_or(0.0);
             let ends = [full.clone(), format!("{scope}{other}")]
                 .map(|n| self.joints.get(&n).and_then(only_coordinate));
@@ -265,12 +260,12 @@ impl<'d> Reader<'d, '_> {
                     continue;
                 }
                 let message = format!(
-                    "`{name}` follows the joint `{other}`, which is not there or has no single coordinate"
+                    "`{name}` follows the joint `{other}`, which does not exist or has no single coordinate"
                 );
-                self.notes.problem_with("HP0803", at, message, "name a joint that turns or slides");
+                self.notes.problem_with("HP0803", at, message, "use a revolute or prismatic joint");
                 continue;
             };
-            robot::follow(&mut self.m, self.notes, [name, other], at, [own, master], [factor, drawn]);
+            robot::follow(&mut self.m, self.notes, [name, other], at, [own, master], [factor, constant]);
         }
         if joint.attribute("type").map(str::trim) != Some("gearbox") {
             return;
@@ -285,7 +280,7 @@ impl<'d> Reader<'d, '_> {
         let [parent, driven] = ["parent", "child"].map(|end| self.end(joint, model, end));
         let (Some(parent), Some(driven), Some(carrier)) = (parent, driven, self.frame(scope, &reference))
         else {
-            self.notes.refused("joint", &full, at, "a gearbox whose reference body is not there");
+            self.notes.refused("joint", &full, at, "the reference body of the gearbox does not exist");
             return;
         };
         let Some(frame) = self.frames.get(&format!("{scope}joint {name}")).map(|f| f.pose) else { return };
@@ -294,8 +289,8 @@ impl<'d> Reader<'d, '_> {
             let on_carrier =
                 self.joints.values().filter(|k| k.markers.iter().any(|m| m.body == carrier.body));
             let axis = axis.unit().unwrap_or(axis);
-            let k = carrying(on_carrier, body, &["revolute"], axis)?;
-            Some((k.number, way(k, body, axis)))
+            let k = carrying_joint(on_carrier, body, &["revolute"], axis)?;
+            Some((k.number, coordinate_sign(k, body, axis)))
         };
         match (hinge(parent.body, axes[0]), hinge(driven.body, axes[1])) {
             (Some((a, u)), Some((b, v))) => {
@@ -303,7 +298,7 @@ impl<'d> Reader<'d, '_> {
                     (Coordinate { joint: b, name: "angle" }, v),
                     (Coordinate { joint: a, name: "angle" }, ratio * u),
                 ];
-                let note = JointSource { kind: "joint", name, at }.note(self.notes);
+                let note = ElementSource { kind: "joint", name, at }.note(self.notes);
                 self.m.coupler(name, note, terms);
                 self.notes.taken("gearbox", &full, at);
             }
@@ -311,13 +306,12 @@ impl<'d> Reader<'d, '_> {
                 "joint",
                 &full,
                 at,
-                "a gearbox needs hinges of both bodies on the reference body, along its axes",
+                "a gearbox requires hinges of both bodies on the reference body, along its axes",
             ),
         }
     }
 
-    /// Reads extensions of models by other programs: joints that follow others by plugins, equalities of MuJoCo, joints
-    /// that close loops.
+    /// Reads extensions by other programs: mimic plugins, equalities of MuJoCo, loop joints.
     pub(super) fn extensions(&mut self, model: &Model<'d>) {
         let (text, scope) = (model.text, &model.scope);
         for node in named(model.node, "plugin") {
@@ -327,7 +321,7 @@ impl<'d> Reader<'d, '_> {
                 .map(|n| self.joints.get(&format!("{scope}{n}")).and_then(only_coordinate));
             match ends {
                 [Some(own), Some(master)] if own != master => {
-                    // Most models say it twice, for those that draw them and for those that simulate them.
+                    // Most models define it twice, for visualisation and for simulation.
                     let coupled = |c: &crate::mechanism::Coupler| {
                         c.terms.len() == 2 && [own, master].iter().all(|x| c.terms.iter().any(|t| t.0 == *x))
                     };
@@ -345,7 +339,7 @@ impl<'d> Reader<'d, '_> {
                 }
                 _ => {
                     let why = format!(
-                        "there are no joints `{}` and `{}`, of which one follows the other",
+                        "it couples the joints `{}` and `{}`, which do not both exist",
                         f.own, f.master
                     );
                     self.notes.refused("plugin", node.attribute("name").unwrap_or_default(), at, why);
@@ -353,7 +347,7 @@ impl<'d> Reader<'d, '_> {
             }
         }
         for node in named(model.node, "loop_joint") {
-            let why = "an extension of URDF: write a `joint` of this model instead, which may close a loop";
+            let why = "`loop_joint` is an extension of URDF: use a `joint` of this model instead, which may close a loop";
             self.notes.refused(
                 "loop_joint",
                 node.attribute("name").unwrap_or_default(),
@@ -377,7 +371,7 @@ impl<'d> Reader<'d, '_> {
         self.m = crate::mjcf::extension(m, self.notes, &blocks, text, &bodies, &joints);
     }
 
-    /// Reads Drake's additions to models.
+    /// Reads Drake's constraints.
     pub(super) fn constraints(&mut self, model: &Model<'d>) {
         for (k, node) in named(model.node, "ball_constraint").enumerate() {
             let at = xml::at(model.text, node);
@@ -387,7 +381,7 @@ impl<'d> Reader<'d, '_> {
                 let place = child(node, place).and_then(|p| {
                     exactly::<3>(
                         p.text().unwrap_or_default(),
-                        "the place",
+                        "the point",
                         xml::at(model.text, p),
                         self.notes,
                     )
@@ -397,11 +391,11 @@ impl<'d> Reader<'d, '_> {
             });
             let [Some(i), Some(j)] = ends else { continue };
             let name = format!("{}ball_constraint_{}", model.scope, k + 1);
-            let called = JointSource { kind: "ball_constraint", name: &name, at };
-            join(&mut self.m, self.notes, called, "spherical", [i, j]);
+            let source = ElementSource { kind: "ball_constraint", name: &name, at };
+            join(&mut self.m, self.notes, source, "spherical", [i, j]);
         }
         for node in named(model.node, "linear_bushing_rpy") {
-            let why = "a bushing is a force: where it closes a loop, write a joint instead";
+            let why = "bushings are forces: if it closes a loop, use a joint instead";
             self.notes.refused("linear_bushing_rpy", "", xml::at(model.text, node), why);
         }
     }

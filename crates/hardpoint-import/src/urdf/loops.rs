@@ -1,12 +1,12 @@
-//! Features without an element of their own in URDF: joints that follow others, loops, floating links.
+//! Features without an element in URDF: extensions for mimic joints, loops, floating links.
 
 use std::collections::BTreeSet;
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 use roxmltree::Node;
 
-use super::{IRRELEVANT_IN_GAZEBO, JointDeclaration, Mimic, Reader, WITHOUT_AXIS, pose, value_as_drawn};
-use crate::markers::JointSource;
+use super::{IRRELEVANT_IN_GAZEBO, JointDeclaration, Mimic, Reader, WITHOUT_AXIS, nominal_value, pose};
+use crate::markers::ElementSource;
 use crate::mechanism::Mechanism;
 use crate::robot::{self, Follower};
 use crate::turn::{Z, home, roll_pitch_yaw};
@@ -19,11 +19,11 @@ const LOOP: Vocabulary = Vocabulary {
     read: &["link1", "link2", "parent", "child", "origin", "parent_origin", "child_origin", "pose", "axis"],
     irrelevant: &["limit", "dynamics", "physics", "sensor"],
 };
-/// Links lighter than this, kg, are there for their frames.
+/// Mass below which a link is a mere frame, kg.
 const LIGHT: f64 = 1e-6;
 
 impl<'a, 'i> Reader<'a, 'i, '_> {
-    /// Reads joints that follow others by plugins of Gazebo and `ros2_control`.
+    /// Reads mimic joints of Gazebo plugins and `ros2_control`.
     pub(super) fn followers(&mut self, robot: Node<'a, 'i>, joints: &mut [JointDeclaration<'a, 'i>]) {
         let mut found = Vec::new();
         for node in named(robot, "gazebo").flat_map(|g| named(g, "plugin")).chain(named(robot, "plugin")) {
@@ -36,12 +36,12 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let is_there = joints.iter().any(|j| j.name == master);
             match joints.iter_mut().find(|j| j.name == own) {
                 Some(j) if is_there => {
-                    // Most robots say it twice, for those that draw them and for those that simulate them.
+                    // Most robots define it twice, for visualisation and for simulation.
                     j.mimic.get_or_insert(Mimic { node, joint: master, factor, offset });
                 }
                 _ => {
                     let why =
-                        format!("there are no joints `{own}` and `{master}`, of which one follows the other");
+                        format!("it couples the joints `{own}` and `{master}`, which do not both exist");
                     let (kind, name) = (node.tag_name().name(), node.attribute("name").unwrap_or_default());
                     self.notes.refused(kind, name, xml::at(0, node), why);
                 }
@@ -49,7 +49,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// Springs and dampers of joints, their own and those of extensions for Gazebo.
+    /// Adds springs and dampers of joints, including those of Gazebo extensions.
     pub(super) fn springs(&mut self, robot: Node<'a, 'i>, joints: &[JointDeclaration<'a, 'i>]) {
         for (k, j) in joints.iter().enumerate() {
             let [mut stiffness, damping, mut free] = j.spring;
@@ -64,15 +64,15 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                     }
                 }
             }
-            // Coordinates count from the drawing.
-            let free = free - value_as_drawn(joints, k, 0);
-            let called = JointSource { kind: "spring", name: &j.name, at };
+            // Coordinates are relative to the design configuration.
+            let free = free - nominal_value(joints, k, 0);
+            let source = ElementSource { kind: "spring", name: &j.name, at };
             let coordinate = self.joints.get(&j.name).copied();
-            robot::joint_spring(&mut self.m, self.notes, called, coordinate, [stiffness, damping, free]);
+            robot::joint_spring(&mut self.m, self.notes, source, coordinate, [stiffness, damping, free]);
         }
     }
 
-    /// The masses of links.
+    /// Adds the masses of links.
     pub(super) fn masses(&mut self) {
         let links: Vec<(String, Node<'a, 'i>)> = self.links.iter().map(|(n, l)| (n.clone(), *l)).collect();
         for (name, link) in links {
@@ -91,13 +91,13 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let [xx, yy, zz, xy, xz, yz] =
                 ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"].map(|k| one(self, matrix, k));
             let matrix = Mat3 { cols: [[xx, xy, xz].into(), [xy, yy, yz].into(), [xz, yz, zz].into()] };
-            let called = JointSource { kind: "inertial", name: &name, at: xml::at(0, inertial) };
-            robot::mass(&mut self.m, self.notes, called, body, frame, mass, Some(matrix));
+            let source = ElementSource { kind: "inertial", name: &name, at: xml::at(0, inertial) };
+            robot::mass(&mut self.m, self.notes, source, body, frame, mass, Some(matrix));
         }
         robot::standard_gravity(&mut self.m, self.notes, "URDF");
     }
 
-    /// Equalities of MuJoCo in a URDF file.
+    /// Reads equalities of MuJoCo in a URDF file.
     pub(super) fn mujoco(&mut self, robot: Node<'a, 'i>) {
         let blocks: Vec<Node<'a, 'i>> = named(robot, "mujoco").collect();
         if blocks.is_empty() {
@@ -111,31 +111,31 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     pub(super) fn gazebo(&mut self, node: Node<'a, 'i>) {
         const READ: [&str; 2] = ["joint", "springStiffness"];
         let owner = node.attribute("reference").unwrap_or_default();
-        let mut told = false;
+        let mut is_reported = false;
         for part in children(node) {
             match local(part) {
-                name if READ.contains(&name) => told = true,
+                name if READ.contains(&name) => is_reported = true,
                 name if IRRELEVANT_IN_GAZEBO.contains(&name) => {}
                 "plugin" => {
-                    told = true;
+                    is_reported = true;
                     if robot::is_mimic_plugin(part) {
                         continue;
                     }
                     robot::plugin(0, part, self.notes);
                 }
                 name => {
-                    told = true;
-                    let why = "an element for Gazebo that is not known here";
+                    is_reported = true;
+                    let why = "unknown element for Gazebo";
                     self.notes.not_understood(name, owner, xml::at(0, part), why);
                 }
             }
         }
-        if !told {
+        if !is_reported {
             self.notes.ignored("gazebo", xml::at(0, node));
         }
     }
 
-    /// An element of the robot that is not known: perhaps the way in which another program closes loops.
+    /// Reports an unknown element of the robot, which may be a loop closure of another program.
     pub(super) fn unknown(&mut self, kind: &str, node: Node<'a, 'i>) {
         let mut named: Vec<&str> = Vec::new();
         for n in node.descendants() {
@@ -151,17 +151,17 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             [a, b] => {
                 let why = format!(
                     "it names the links `{a}` and `{b}`: if it closes a loop, `--close {a}={b}` does so at their origins, \
-                     `--close {a}@X,Y,Z={b}@X,Y,Z` at places in them"
+                     `--close {a}@X,Y,Z={b}@X,Y,Z` at points in them"
                 );
-                self.notes.remark(format!("`{kind}` is not understood, and may close a loop: {why}"));
+                self.notes.remark(format!("`{kind}` is not understood and may close a loop: {why}"));
                 why
             }
-            _ => "an element of the robot that is not known here".to_owned(),
+            _ => "unknown element of the robot".to_owned(),
         };
         self.notes.not_understood(kind, node.attribute("name").unwrap_or_default(), at, why);
     }
 
-    /// The frames of all links.
+    /// Adds the frames of all links.
     pub(super) fn frames(&mut self, joints: &[JointDeclaration<'a, 'i>]) {
         let parents: BTreeSet<&str> = joints.iter().map(|j| j.parent.as_str()).collect();
         for (name, (body, pose)) in &self.poses {
@@ -181,7 +181,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let at = attribute_at(0, mimic.node, "joint").or_else(|| xml::at(0, mimic.node));
             match (self.joints.get(&j.name).copied(), self.joints.get(&mimic.joint).copied()) {
                 (Some(own), Some(master)) if own != master => {
-                    let note = JointSource { kind: "mimic of", name: &mimic.joint, at }.note(self.notes);
+                    let note = ElementSource { kind: "mimic of", name: &mimic.joint, at }.note(self.notes);
                     let terms = vec![(own, 1.0), (master, -mimic.factor)];
                     self.m.coupler(&format!("{}_mimic", j.name), note, terms);
                     self.notes.taken("mimic", &j.name, at);
@@ -197,35 +197,35 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                     let near =
                         hardpoint::draft::did_you_mean(&mimic.joint, self.names.iter().map(String::as_str));
                     let help = near
-                        .map_or("name another joint of the robot".into(), |n| format!("did you mean `{n}`?"));
+                        .map_or("use another joint of the robot".into(), |n| format!("did you mean `{n}`?"));
                     let message =
-                        format!("`{}` follows the joint `{}`, which is not there", j.name, mimic.joint);
+                        format!("`{}` follows the joint `{}`, which does not exist", j.name, mimic.joint);
                     self.notes.problem_with("HP0803", at, message, &help);
                 }
             }
         }
     }
 
-    /// Joints that close loops: `loop_joint`, with the places on both links as in Drake and Isaac Sim, or like a joint;
-    /// ball constraints of Drake; joints of SDF in a `gazebo` element.
+    /// Reads joints that close loops: `loop_joint`, with the points on both links as in Drake and Isaac Sim, or like a
+    /// joint; ball constraints of Drake; joints of SDF in a `gazebo` element.
     pub(super) fn loops(&mut self, robot: Node<'a, 'i>) {
         for node in named(robot, "loop_joint") {
             let Some(name) = self.name(node) else { continue };
             let kind = node.attribute("type").unwrap_or("continuous").trim().to_ascii_lowercase();
             let axis = self.axis(node, &kind);
-            // Isaac Sim's documentation calls both of them `link1`.
+            // The documentation of Isaac Sim names both of them `link1`.
             let links: Vec<_> =
                 children(node).filter(|n| ["link1", "link2"].contains(&n.tag_name().name())).collect();
             let ends = match links[..] {
                 [a, b] => [a, b].map(|end| {
-                    let (body, outer) = self.standing(end, "link")?;
+                    let (body, outer) = self.link_frame(end, "link")?;
                     Some((body, outer.compose(pose(end, self.notes))))
                 }),
                 _ => self.ends(node),
             };
             xml::unknown(0, node, &name, LOOP, self.notes);
             if let [Some(i), Some(j)] = ends {
-                // Directions are those of the first link, but where frames are held together and both are written.
+                // Directions are those of the first link, except for fixed joints with both orientations.
                 let both = links.len() == 2 && links.iter().all(|end| end.has_attribute("rpy"));
                 let rot = if kind == "fixed" && both { j.1.rot } else { i.1.rot };
                 let j = (j.0, Pose { rot, r: j.1.r });
@@ -237,10 +237,15 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             let ends = robot::BALL_ENDS.map(|(body, place)| {
                 let Some(named) = child(node, body) else {
                     let message = format!("the ball constraint has no `{body}`");
-                    self.notes.problem_with("HP0803", xml::at(0, node), message, "name a link in it");
+                    self.notes.problem_with(
+                        "HP0803",
+                        xml::at(0, node),
+                        message,
+                        "add it with the name of a link",
+                    );
                     return None;
                 };
-                let (body, outer) = self.standing(named, "name")?;
+                let (body, outer) = self.link_frame(named, "name")?;
                 let place = child(node, place).and_then(|p| attribute::<3>(0, p, "value", self.notes));
                 Some((body, Pose { rot: home().rot, r: outer.point(place.unwrap_or_default().into()) }))
             });
@@ -262,7 +267,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 axis.and_then(|a| xml::exactly::<3>(a.text().unwrap_or_default(), "`xyz`", at, self.notes));
             let axis = Vec3::from(given.unwrap_or(Z));
             if axis.unit().is_none() && !WITHOUT_AXIS.contains(&kind.as_str()) {
-                let help = "give a vector other than zero";
+                let help = "give a non-zero vector";
                 self.notes.problem_with("HP0804", at, "the axis has no direction", help);
                 continue;
             }
@@ -270,38 +275,40 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// Floating links: those that loops hold are left to them, the others stand where they are drawn.
+    /// Handles floating links: those in loops remain free, the others are fixed in the design configuration.
     pub(super) fn floating(&mut self) {
         for (name, node, bodies, place) in std::mem::take(&mut self.floating) {
             let at = xml::at(0, node);
             if self.m.are_connected(bodies) {
-                let why = "no joint: the loops of the link hold it, and drivers what these leave free";
+                let why =
+                    "no joint: loops constrain the link, and drivers fix its remaining degrees of freedom";
                 self.notes.approximated("joint", &name, at, why);
                 continue;
             }
-            let why = "nothing holds its six freedoms in the source: it is fixed in the design configuration";
+            let why = "nothing constrains it in the source: it is fixed in the design configuration";
             self.notes.approximated("joint", &name, at, why);
-            let note = JointSource { kind: "joint", name: &name, at }.note(self.notes);
+            let note = ElementSource { kind: "joint", name: &name, at }.note(self.notes);
             self.m.joint(crate::mechanism::Joint::new(&name, note, "fixed", bodies, place));
         }
     }
 
-    /// The link that an attribute names, where it is.
-    fn standing(&mut self, node: Node<'a, 'i>, key: &str) -> Option<(usize, Pose)> {
+    /// Returns the body and pose of the link that an attribute names.
+    fn link_frame(&mut self, node: Node<'a, 'i>, key: &str) -> Option<(usize, Pose)> {
         let link = node.attribute(key).unwrap_or_default().trim();
         let found = self.poses.get(link).copied();
         if found.is_none() {
             let at = attribute_at(0, node, key).or_else(|| xml::at(0, node));
-            let message = format!("there is no link `{link}`");
-            self.notes.problem_with("HP0803", at, message, "name a link of the robot");
+            let message = format!("the link `{link}` does not exist");
+            self.notes.problem_with("HP0803", at, message, "use a link of the robot");
         }
         found
     }
 
-    /// The two ends of a joint that is written like others: on the child, or on the parent where `origin` is given.
+    /// Returns the two ends of a joint with `parent` and `child`: the frame is that of the child, or relative to the
+    /// parent if `origin` is given.
     fn ends(&mut self, node: Node<'a, 'i>) -> [Option<(usize, Pose)>; 2] {
         let [parent, body] = ["parent", "child"]
-            .map(|end| self.linked(node, end).and_then(|link| self.poses.get(&link).copied()));
+            .map(|end| self.link_of(node, end).and_then(|link| self.poses.get(&link).copied()));
         let (Some((i, outer)), Some((j, inner))) = (parent, body) else { return [None, None] };
         let on =
             |reader: &mut Self, key, outer: Pose| Some(outer.compose(pose(child(node, key)?, reader.notes)));

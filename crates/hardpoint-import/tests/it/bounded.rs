@@ -1,10 +1,11 @@
-//! Work that a small file could make endless ends in a diagnostic.
+//! Limits on the work that a small file can cause.
 
 use std::time::Instant;
 
 use hardpoint_import::{Format, ImportErrors, ImportedModel};
 
-/// More than any of these takes without optimisation on a busy machine, s; unbounded they take hours, or all memory.
+/// Upper bound of the time without optimisation on a busy machine, s. Without limits these files take hours, or all
+/// memory.
 const LONGEST: f64 = 30.0;
 
 fn import(
@@ -25,7 +26,7 @@ fn refused(format: &str, text: &str, words: &str) {
     assert!(problems.len() < 50_000, "{format}: {}", problems.len());
 }
 
-/// A document of each format in XML: its beginning, an element in it, its end.
+/// Document of each XML format: its beginning, an element in it, its end.
 const FORMATS: [(&str, [&str; 3]); 3] = [
     ("urdf", [r#"<robot name="r">"#, r#"<link name="a"/>"#, "</robot>"]),
     ("sdf", [r#"<sdf version="1.9"><model name="m">"#, r#"<link name="a"/>"#, "</model></sdf>"]),
@@ -34,7 +35,7 @@ const FORMATS: [(&str, [&str; 3]); 3] = [
 
 #[test]
 fn entities_are_not_expanded() {
-    // Ten to the power of ten letters, by ten entities.
+    // Ten entities that expand to 10^10 letters.
     let names: Vec<char> = ('a'..='k').collect();
     let inner: String = names
         .windows(2)
@@ -48,16 +49,16 @@ fn entities_are_not_expanded() {
             &format!("<?xml version=\"1.0\"?><!-- [ --> {kind}{begin}{element}{end}"),
             "entities",
         );
-        // A document type alone is no entity.
+        // A document type without entities is accepted.
         let plain = format!(
             "<?xml version=\"1.0\"?><!DOCTYPE x SYSTEM \"x.dtd\" [<!ELEMENT a ANY>]>{begin}{element}{end}"
         );
-        let told = import(format, plain.as_bytes(), &|_| None);
-        assert!(told.is_ok(), "{format}: {}", told.unwrap_err());
+        let reported = import(format, plain.as_bytes(), &|_| None);
+        assert!(reported.is_ok(), "{format}: {}", reported.unwrap_err());
     }
     let document = crate::document(format!("{kind}<Document>&k;</Document>").as_bytes());
     assert!(import("freecad", &document, &|_| None).unwrap_err().to_string().contains("entities"));
-    // Meshes, which are only looked at, are left out.
+    // Invalid meshes do not prevent the import.
     let robot = r#"<robot name="r"><link name="a"><visual><geometry><mesh filename="a.dae"/></geometry></visual></link></robot>"#;
     let mesh = format!("{kind}<COLLADA>&k;</COLLADA>");
     let imported = import("urdf", robot.as_bytes(), &|_| Some(mesh.clone().into_bytes())).unwrap();
@@ -73,10 +74,10 @@ fn elements_and_attributes_are_counted() {
         refused(format, &format!("{begin}<what{prefixes}/>{element}{end}"), "attributes");
         let deep = format!("{begin}{}{}{end}", "<a>".repeat(100_000), "</a>".repeat(100_000));
         refused(format, &deep, "too deep");
-        // What looks like an end is none within quotes.
+        // A closing tag within quotes is ignored.
         let quoted = format!("{begin}{}{}{end}", "<a x=\"</\">".repeat(100_000), "</a>".repeat(100_000));
         refused(format, &quoted, "too deep");
-        // Elements that nobody knows are listed, in a time that grows with their number.
+        // Unknown elements are listed, in linear time.
         let kinds: String = (0..20_000).map(|k| format!("<p{k}:x/>")).collect();
         let imported = import(format, format!("{begin}{element}{kinds}{end}").as_bytes(), &|_| None).unwrap();
         assert!(imported.report.to_string().contains("more like these"), "{}", imported.report);
@@ -122,18 +123,18 @@ fn files_that_include_each_other_twice_end() {
     let text = "<sdf version=\"1.9\"><model name=\"m0\"><include><uri>m1.sdf</uri></include></model></sdf>";
     let problems = import("sdf", text.as_bytes(), &sdf).unwrap_err().to_string();
     assert!(problems.contains("more than 5000 models"), "{problems}");
-    // Models that are placed by a frame of their own are placed twice, and what is in them twice as often.
+    // Models with a placement frame are placed twice, and nested models twice as often per level.
     let mut nested = "<link name=\"l\"/>".to_owned();
     for k in 0..30 {
         nested = format!("<model name=\"n{k}\" placement_frame=\"f\"><frame name=\"f\"/>{nested}</model>");
     }
     refused("sdf", &format!("<sdf version=\"1.9\">{nested}</sdf>"), "too often");
-    // Classes of defaults take what those around them have.
+    // Default classes inherit the attributes of the enclosing classes.
     let wide: String = (0..900).map(|k| format!(" a{k}=\"1\"")).collect();
     let classes: String = (0..3000).map(|k| format!("<default class=\"c{k}\"/>")).collect();
     let text =
         format!("<mujoco><default><geom{wide}/>{classes}</default><worldbody><body/></worldbody></mujoco>");
-    refused("mjcf", &text, "classes of defaults");
+    refused("mjcf", &text, "default classes");
 }
 
 #[test]
@@ -154,7 +155,7 @@ fn functions_of_many_terms_and_levels_are_read_or_refused() {
         ] {
             assert!(imported(&nested).report.to_string().contains("nested too deep"), "{format}");
         }
-        // Two functions that repeat their arguments, in each other.
+        // Nested functions that repeat their arguments.
         let repeated = format!("{}time{}", "step5(".repeat(40), ", 0, 0, 1, 1)".repeat(40));
         assert!(imported(&repeated).report.to_string().contains("longer"), "{format}");
         let signs = "+-".repeat(50_000) + "time*0.1";

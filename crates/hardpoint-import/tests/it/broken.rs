@@ -4,10 +4,10 @@ use std::fmt::Write;
 
 use crate::folder;
 
-/// A source with one thing changed: what is changed in words, what is there, and what instead.
+/// Modification of a source: description, original text, replacement.
 type Broken = (&'static str, &'static str, &'static str);
 
-fn told(format: &str, file: &str, changes: &[Broken]) -> String {
+fn reported(format: &str, file: &str, changes: &[Broken]) -> String {
     let path = folder().join(file);
     let is_folder = path.is_dir();
     let original = if is_folder { path.join("Document.xml") } else { path.clone() };
@@ -39,7 +39,7 @@ macro_rules! broken {
         $(
             #[test]
             fn $test() {
-                insta::assert_snapshot!(told($format, $file, &[$(($what, $from, $to)),*]));
+                insta::assert_snapshot!(reported($format, $file, &[$(($what, $from, $to)),*]));
             }
         )*
     };
@@ -78,7 +78,7 @@ broken! {
         ("a velocity", "ROTATIONAL, JOINT", "ROTATIONAL, VELOCITY, JOINT")
         ("both ends on a part", "I = 6, J = 4", "I = 6, J = 7")
         ("a marker on an elastic part", "MARKER/6, PART = 3", "MARKER/6, FE_PART = 3")
-        ("a motion of a joint that is refused", "JOINT/1, REVOLUTE", "JOINT/1, MAGIC")
+        ("a motion of a joint that is not supported", "JOINT/1, REVOLUTE", "JOINT/1, MAGIC")
         ("a velocity that is constant", "JOINT = 1, FUNCTION = 60D\n, + 360.0D*time", "JOINT = 1, VELOCITY, FUNCTION = 360.0D")
         ("no end", "\nEND\n", "\n")
     broken_urdf "urdf" "urdf/four_bar.urdf":
@@ -199,7 +199,7 @@ broken! {
 }
 
 #[test]
-fn what_is_no_format_is_told() {
+fn unrecognised_formats_are_reported() {
     let problems = hardpoint_import::import(b"hello", "hello.abc", &|_| None).unwrap_err();
     insta::assert_snapshot!(problems.to_string());
     let zip = crate::document(b"<Document/>");
@@ -244,8 +244,8 @@ fn tables_of_hardpoints_are_sent_to_new() {
     for (bytes, name) in
         [(&b"A,1,2,3\n"[..], "points.csv"), (&zip[..], "points.xlsx"), (&b"hello"[..], "x.abc")]
     {
-        let told = hardpoint_import::import(bytes, name, &|_| None).unwrap_err().to_string();
-        assert!(told.contains("HP0801"), "{told}");
-        assert_eq!(told.contains("--hardpoints"), name != "x.abc", "{told}");
+        let reported = hardpoint_import::import(bytes, name, &|_| None).unwrap_err().to_string();
+        assert!(reported.contains("HP0801"), "{reported}");
+        assert_eq!(reported.contains("--hardpoints"), name != "x.abc", "{reported}");
     }
 }

@@ -1,5 +1,5 @@
-//! Frames of welds, constants of relations, extensions, loops that are named by hand, masses and springs: the values
-//! that they give.
+//! Frames of welds, constants of relations, extensions, loops closed by the user, masses and springs: comparison of
+//! values.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ use hardpoint::{Analysis, Run};
 use hardpoint_file::ModelFile;
 use hardpoint_import::{Closing, ElementOutcome, ImportedModel, Options};
 
-/// Residual that the solver leaves of a position, m or rad.
+/// Residual of a solved position, m or rad.
 const SAME: f64 = 1e-9;
 
 fn read_with(name: &str, text: &str, closings: &[&str]) -> (ImportedModel, ModelFile) {
@@ -26,7 +26,7 @@ fn read(name: &str, text: &str) -> (ImportedModel, ModelFile) {
     read_with(name, text, &[])
 }
 
-/// The frames of bodies at all output times.
+/// Poses of bodies at all output times.
 fn poses(file: &ModelFile, names: &[&str]) -> Vec<Vec<Pose>> {
     let solution = Analysis::new(&file.model).unwrap().solve(Run::new().without_sensitivities());
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
@@ -55,13 +55,13 @@ fn at(r: [f64; 3]) -> Pose {
     pose(r, [1.0, 0.0, 0.0, 0.0])
 }
 
-/// The angle of a body about y against another one, at an output time.
+/// Angle of one body relative to another about y, rad.
 fn about_y([a, b]: [&Pose; 2]) -> f64 {
     let r = a.rot.transpose() * b.rot;
     r.cols[2].x.atan2(r.cols[2].z)
 }
 
-/// A four-bar, as far as `equality` closes it, with a further body.
+/// Four-bar that `equality` closes, with another body.
 fn linkage(tool: &str, equality: &str) -> String {
     format!(
         r#"<mujoco model="m"><worldbody>
@@ -74,7 +74,7 @@ fn linkage(tool: &str, equality: &str) -> String {
     )
 }
 
-/// A body that six joints carry, which a weld holds all the same.
+/// Body with six joints that a weld constrains.
 const CARRIED: &str = r#"<body name="tool" pos="0 0 3"><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 1 0"/><joint type="slide"/>
  <joint axis="1 0 0"/><joint axis="0 1 0"/><joint/><geom size=".1"/><site name="s3" pos="0 0 0.1" euler="30 0 0"/></body>"#;
 const FREE: &str = r#"<body name="tool" pos="0 0 3"><freejoint/><geom size=".1"/><site name="s3" pos="0 0 0.1" euler="30 0 0"/></body>"#;
@@ -101,7 +101,7 @@ fn a_weld_holds_the_frames_that_it_names() {
             r#"<weld body1="rocker" body2="tool" relpose="0.1 0.2 1 0.9 0.1 -0.2 0.3"/>"#,
             [pose([0.1, 0.2, 1.0], turned), at([0.0; 3])],
         ),
-        // Half a turn, of which there is no least one.
+        // Half a turn, without a unique smallest rotation.
         (
             "rocker",
             r#"<weld body1="rocker" body2="tool" relpose="0 0 1 0 1 0 0"/>"#,
@@ -121,7 +121,7 @@ fn a_weld_holds_the_frames_that_it_names() {
                 let poses = poses(&file, &[on, "tool"]);
                 let off = off(&poses, frames);
                 assert!(off < SAME, "{weld} is off by {off}\n{}", imported.report);
-                // And the linkage moves.
+                // The linkage moves.
                 let first = poses
                     .iter()
                     .map(|p| (p[0].r - poses[0][0].r).norm() + p[0].rot.angle_to(poses[0][0].rot));
@@ -145,13 +145,13 @@ fn points_that_lie_apart_are_brought_together() {
 
 #[test]
 fn constants_of_relations_count() {
-    // Of one joint, which then is there; against ground.
+    // Constant of a single joint relative to ground.
     let (_, file) = read("m.xml", &linkage("", r#"<joint joint1="D" polycoef="0.3 0 0 0 0"/>"#));
     for p in poses(&file, &["crank", "rocker"]) {
         let upright = at([0.0; 3]);
         assert!((about_y([&upright, &p[1]]) - 0.3).abs() < SAME);
     }
-    // Of two joints, and of tendons, with a factor: D = 0.25 - 0.5 A.
+    // Constants of two joints and of tendons, with a factor: D = 0.25 - 0.5 A.
     let relations = [
         r#"<joint joint1="D" joint2="A" polycoef="0.25 -0.5 0 0 0"/>"#,
         r#"<tendon tendon1="d" tendon2="a" polycoef="0.25 -0.5 0 0 0"/>"#,
@@ -176,7 +176,7 @@ fn constants_of_relations_count() {
             assert!((d - (0.25 - 0.5 * a)).abs() < SAME, "{relation}: {a} {d}");
         }
     }
-    // A rod between two sites is as much longer as its constant says.
+    // The constant of a rod between two sites is added to its length.
     let rod = r#"<spatial name="rod"><site site="s1"/><site site="s2"/></spatial>"#;
     let text = linkage("", r#"<tendon tendon1="rod" polycoef="0.3 0 0 0 0"/>"#)
         .replace("</mujoco>", &format!("<tendon>{rod}</tendon></mujoco>"))
@@ -188,7 +188,7 @@ fn constants_of_relations_count() {
     }
 }
 
-/// Two hinges about y of which one follows the other.
+/// Two hinges about y, one of which is a mimic joint.
 const SDF: &str = r#"<sdf version="1.11"><model name="m">
 <link name="a"/><link name="b"><pose>1 0 0 0 0 0</pose></link>PLUGIN
 <joint name="g" type="revolute"><parent>world</parent><child>a</child><axis><xyz>0 1 0</xyz></axis></joint>
@@ -265,7 +265,7 @@ fn loops_of_other_conventions_are_closed_or_named() {
     let block = r#"<mujoco><compiler meshdir="."/><equality><connect body1="coupler" body2="rocker" anchor="2 0 0"/></equality></mujoco>"#;
     let (_, file) = read("r.urdf", &FOUR_BAR.replace("FRAMES", "").replace("CLOSED", block));
     meets(&file);
-    // An element that nobody knows, which names two links.
+    // An unknown element that names two links.
     let unknown = "<loop><frame1>coupler</frame1><frame2>rocker</frame2></loop>";
     let text = FOUR_BAR.replace("FRAMES", "").replace("CLOSED", unknown);
     let (imported, _) = read("r.urdf", &text);
@@ -290,7 +290,7 @@ fn loops_of_other_conventions_are_closed_or_named() {
             imported.report
         );
     }
-    // Frames that are there for the loop: at one place, or by their names.
+    // Frames for a loop: coincident, or with matching names.
     let leaf = |name: &str, on: &str, at: &str| {
         format!(
             r#"<link name="{name}"/><joint name="{name}_fixed" type="fixed"><parent link="{on}"/><child link="{name}"/><origin xyz="{at}"/></joint>"#
@@ -309,7 +309,7 @@ fn loops_of_other_conventions_are_closed_or_named() {
             assert!((p[0].r - p[1].r).norm() < SAME);
         }
     }
-    // A closed one names none.
+    // A closed loop is not reported.
     let frames = leaf("tip", "coupler", "2 0 0") + &leaf("end", "rocker", "0 1 0");
     let (imported, _) = read("r.urdf", &FOUR_BAR.replace("FRAMES", &frames).replace("CLOSED", block));
     assert!(imported.report.remarks.is_empty(), "{}", imported.report);
@@ -327,7 +327,7 @@ fn loops_of_other_conventions_are_closed_or_named() {
 }
 
 #[test]
-fn what_is_to_be_closed_is_read() {
+fn closings_are_parsed() {
     let closing = |text: &str| text.parse::<Closing>();
     let read = closing("model::a@0,1,-2.5=b:revolute:x").unwrap();
     assert_eq!(read.frames, ["model::a", "b"].map(String::from));
@@ -340,10 +340,13 @@ fn what_is_to_be_closed_is_read() {
     let options = Options { format: None, closings: vec!["tip=nowhere".parse().unwrap()] };
     let text = FOUR_BAR.replace("FRAMES", "").replace("CLOSED", "");
     let problems = hardpoint_import::import_with(&options, text.as_bytes(), "r.urdf", &|_| None).unwrap_err();
-    assert!(problems.to_string().contains("there is no frame `nowhere`"), "{problems}");
+    assert!(
+        problems.to_string().contains("the frame `nowhere` for closing a loop does not exist"),
+        "{problems}"
+    );
 }
 
-/// The single mass of a model: its centre and its moments of inertia as written.
+/// Single mass of a model: centre and moments of inertia as written.
 fn mass_of(text: &str) -> Vec<(String, f64)> {
     let table: toml_edit::DocumentMut = text.parse().unwrap();
     let entry =
@@ -368,16 +371,15 @@ fn is(found: &[(String, f64)], wanted: &[(&str, f64)]) {
 
 #[test]
 fn masses_come_along_in_the_global_axes() {
-    // A link that is turned by 90 degrees about z, its inertia by another 90 about x: x, y, z become y, -z... of the
-    // world.
+    // A link rotated by 90 degrees about z, with its inertia rotated by another 90 degrees about x.
     let inertia =
         r#"<mass value="2"/><inertia ixx="0.3" iyy="0.4" izz="0.5" ixy="0.01" ixz="0.02" iyz="0.03"/>"#;
     let urdf = format!(
         r#"<robot name="r"><link name="world"/><link name="a"><inertial><origin xyz="0.1 0.2 0.3" rpy="1.5707963267948966 0 0"/>{inertia}</inertial></link>
         <joint name="j" type="continuous"><parent link="world"/><child link="a"/><origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/><axis xyz="0 1 0"/></joint></robot>"#
     );
-    // Columns of the inertia's frame in the world: Rz(90) Rx(90) e = y, z, x.  So I_yy = 0.3, I_zz = 0.4, I_xx = 0.5, and of the products
-    // ixy -> yz, ixz -> yx, iyz -> zx; in the model they have the opposite sign.
+    // Columns of the inertia's frame in the world: Rz(90) Rx(90) e = y, z, x. So I_yy = 0.3, I_zz = 0.4, I_xx = 0.5,
+    // and of the products ixy -> yz, ixz -> yx, iyz -> zx; in the model they have the opposite sign.
     let wanted = [
         ("mass", 2.0),
         ("x", 0.8),
@@ -402,7 +404,7 @@ fn masses_come_along_in_the_global_axes() {
         <inertial pos="0.1 0.2 0.3" euler="1.5707963267948966 0 0" mass="2" fullinertia="0.3 0.4 0.5 0.01 0.02 0.03"/><geom size="9"/></body></worldbody></mujoco>"#;
     let (imported, _) = read("m.xml", mjcf);
     is(&mass_of(&imported.text), &wanted);
-    // Of geoms: a ball of 0.1 m at x = 0.5 and one of half the density at x = -0.25.
+    // Masses of geoms: a ball of 0.1 m at x = 0.5 and one of half the density at x = -0.25.
     let balls = r#"<mujoco><worldbody><body name="a"><joint axis="0 1 0"/><geom size="0.1" pos="0.5 0 0"/>
         <geom size="0.1" pos="-0.25 0 0" density="500" group="4"/></body></worldbody></mujoco>"#;
     let (imported, _) = read("m.xml", balls);
@@ -414,7 +416,7 @@ fn masses_come_along_in_the_global_axes() {
         &mass_of(&imported.text),
         &[("mass", m + n), ("x", 0.25), ("ixx", own), ("iyy", own + moved), ("izz", own + moved)],
     );
-    // A capsule along x by its ends, by integrals of its slices.
+    // A capsule along x, compared with the integral over its slices.
     let capsule = r#"<mujoco><worldbody><body name="a"><joint axis="0 1 0"/><geom type="capsule" fromto="0 0 0 1 0 0" size="0.2"/></body></worldbody></mujoco>"#;
     let (imported, _) = read("m.xml", capsule);
     let steps = 200_000;
@@ -432,10 +434,10 @@ fn masses_come_along_in_the_global_axes() {
     let found = mass_of(&imported.text);
     for (key, wanted) in [("mass", mass), ("ixx", about_axis), ("iyy", across), ("izz", across), ("x", 0.5)] {
         let x = found.iter().find(|(k, _)| k == key).unwrap().1;
-        // What slices of that thickness leave.
+        // Error of the integration.
         assert!((x - wanted).abs() < 1e-6 * wanted, "{key}: {x} {wanted}");
     }
-    // Values that no body can have are reported, and the mass stays.
+    // Impossible inertia is reported, and the mass is preserved.
     let flat = urdf.replace("izz=\"0.5\"", "izz=\"5\"");
     let (imported, _) = read("r.urdf", &flat);
     assert!(
@@ -449,8 +451,8 @@ fn masses_come_along_in_the_global_axes() {
     assert!(imported.report.of(ElementOutcome::Refused).any(|e| e.kind == "inertial"), "{}", imported.report);
 }
 
-/// The force of the only driver of a model file at its first output time while it moves at 0.4 per second, with the
-/// file that gives it.
+/// Torque of the only driver at the first output time, with the driver moving at 0.4 per second, and the text of the
+/// model.
 fn driver_torque(text: &str) -> (f64, String) {
     let driver = text.lines().find_map(|l| l.strip_prefix("[drivers.")).unwrap().trim_end_matches(']');
     let start = text.find("law = \"").unwrap();
@@ -464,8 +466,8 @@ fn driver_torque(text: &str) -> (f64, String) {
 }
 
 #[test]
-fn springs_and_dampers_of_joints_push_as_the_source_says() {
-    // A pendulum of 2 kg, 0.5 m out along x, with a spring of 7 N m/rad that is free at 0.3 rad and a damper, held at
+fn springs_and_dampers_of_joints_have_the_forces_of_the_source() {
+    // A pendulum of 2 kg at 0.5 m along x, with a spring of 7 N m/rad (no force at 0.3 rad) and a damper, fixed at
     // zero.
     let urdf = r#"<robot name="r"><link name="world"/><link name="a"><inertial><origin xyz="0.5 0 0"/><mass value="2"/></inertial></link>
         <joint name="j" type="continuous"><parent link="world"/><child link="a"/><axis xyz="0 1 0"/><dynamics damping="0.6"/></joint>
@@ -477,8 +479,8 @@ fn springs_and_dampers_of_joints_push_as_the_source_says() {
         <joint name="j" axis="0 1 0" damping="0.6" stiffness="7" springref="0.5" ref="0.2"/><inertial pos="0.5 0 0" mass="2"/></body></worldbody></mujoco>"#;
     for (name, text) in [("r.urdf", urdf), ("m.sdf", sdf), ("m.xml", mjcf)] {
         let (found, measured) = driver_torque(&read(name, text).0.text);
-        // At t = 0: about y the weight turns the pendulum with +m g l, the spring with -k (0 - 0.3); the damper with -c 0.4. SDFormat
-        // has an inertia of 1 kg m^2 by default, which constant speed does not feel.
+        // At t = 0: about y the weight turns the pendulum with +m g l, the spring with -k (0 - 0.3); the damper with -c
+        // 0.4. SDFormat has an inertia of 1 kg m^2 by default, which constant speed does not feel.
         let wanted = -2.0 * 9.80665 * 0.5 - 7.0 * 0.3 + 0.6 * 0.4;
         assert!((found - wanted).abs() < 1e-9, "{name}: {found} instead of {wanted}\n{measured}");
     }
@@ -491,7 +493,7 @@ fn springs_of_tendons_pull() {
         <inertial pos="0.5 0 0" mass="2"/><site name="end" pos="0.5 0 0"/></body></worldbody>
         <tendon><spatial name="s" stiffness="40" damping="3" springlength="0.75"><site site="end"/><site site="top"/></spatial></tendon></mujoco>"#;
     let (found, measured) = driver_torque(&read("m.xml", text).0.text);
-    // Its end goes down with 0.4 x 0.5 m/s, so that it is drawn out.
+    // Its end moves down at 0.4 x 0.5 m/s, which extends the spring.
     let wanted = 0.5 * (40.0 * 0.25 + 3.0 * 0.4 * 0.5);
     assert!((found - wanted).abs() < 1e-9, "{found} instead of {wanted}\n{measured}");
 }
@@ -530,15 +532,15 @@ fn datasets_of_adams_bring_masses_gravity_and_springs() {
         let torque = run.measured.outputs.iter().position(|o| o.name == "torque").unwrap();
         run.measured.value(0, torque)[0]
     };
-    // About y: the weight turns with m g 0.1; the spring pulls its end at (0.2, 0, 0) towards (0, 0, 0.4), which comes nearer or goes
-    // farther with the component of 0.4 rad/s x 0.2 m along it.
+    // About y: the weight turns with m g 0.1; the spring pulls its end at (0.2, 0, 0) towards (0, 0, 0.4), which comes
+    // nearer or goes farther with the component of 0.4 rad/s x 0.2 m along it.
     let length = 0.2_f64.hypot(0.4);
     let up = 0.4 / length;
     let tension = 3.0 * (1e3 * length - 300.0) - 12.0 + 0.2 * 1e3 * (0.4 * 0.2 * up);
     let wanted = -(2.0 * 9.80665 * 0.1 - 0.2 * up * tension);
     let found = torque(text);
     assert!((found - wanted).abs() < 1e-9, "{found} instead of {wanted}");
-    // The same in other units of mass, force, length and time.
+    // The same dataset in other units of mass, force, length and time.
     let other = text
         .replace(
             "FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND",
@@ -558,8 +560,8 @@ fn datasets_of_adams_bring_masses_gravity_and_springs() {
 }
 
 #[test]
-fn fixed_joints_hold_the_frames_that_are_drawn_apart_in_every_format() {
-    // A hinge carries a, which carries b by a frame that is elsewhere and turned in the design configuration.
+fn fixed_joints_assemble_separated_frames_in_every_format() {
+    // A hinge carries a, which carries b with a frame that is displaced and rotated in the design configuration.
     let frame = |place: &str| format!("MARKER/22, PART=2, QP=100,0,0\nMARKER/30, PART=3, {place}\n");
     let adams = |place: &str| {
         format!(

@@ -1,5 +1,5 @@
-//! One four-bar in every format that can say it: a crank of 0.1, a coupler of 0.35 and a rocker of 0.25 m, the bearings
-//! 0.4 m apart, drawn with the crank at 60 deg.
+//! The same four-bar in every format that supports it: a crank of 0.1 m, a coupler of 0.35 m and a rocker of 0.25 m,
+//! with bearings 0.4 m apart and the crank at 60 deg in the design configuration.
 
 use hardpoint::model::BodyId;
 use hardpoint::{Analysis, Run};
@@ -11,7 +11,7 @@ const B: f64 = 0.35;
 const C: f64 = 0.25;
 const D: f64 = 0.4;
 
-/// The rocker's angle at a crank angle, the coupler above.
+/// Angle of the rocker at a crank angle, rad, with the coupler above.
 fn rocker(crank: f64) -> f64 {
     let a = [A * crank.cos(), A * crank.sin()];
     let (dx, dy) = (D - a[0], -a[1]);

@@ -1,14 +1,14 @@
-//! No bytes make an importer panic, or busy for long.
+//! Importers neither panic nor hang on any input.
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 use crate::{bytes, sources};
 
-/// That many changed files for each file; the generator starts from the same number every time.
+/// Number of mutated files per source; the generator has a fixed seed.
 const CHANGED: u32 = 40;
 
-/// One change of a file's bytes.
+/// Mutation of the bytes of a file.
 #[derive(Clone, Debug)]
 enum Change {
     Cut(usize, usize),
@@ -86,7 +86,7 @@ fn no_bytes_make_an_importer_panic() {
     let mut runner = TestRunner::new_with_rng(config, rng);
     for (format, path) in sources() {
         let format = hardpoint_import::Format::named(&format).unwrap();
-        // Of a zip, its document is changed: what else is in it is not looked at.
+        // Only the document in an archive is mutated, since nothing else in it is read.
         let is_folder = path.is_dir();
         let original =
             if is_folder { std::fs::read(path.join("Document.xml")).unwrap() } else { bytes(&path) };
@@ -99,7 +99,7 @@ fn no_bytes_make_an_importer_panic() {
             let resolve = |p: &str| std::fs::read(folder.join(p)).ok();
             match hardpoint_import::import_as(format, &bytes, "file", &resolve) {
                 Ok(imported) => {
-                    // What comes out is a model file, whatever may be wrong with the mechanism.
+                    // The result is a valid model file, even if the mechanism has errors.
                     let text: toml_edit::DocumentMut = imported.text.parse().unwrap();
                     prop_assert!(text.contains_key("name"));
                 }
@@ -114,7 +114,7 @@ fn no_bytes_make_an_importer_panic() {
 }
 
 #[test]
-fn what_is_nested_without_end_is_refused() {
+fn deeply_nested_files_are_rejected() {
     let deep = |open: &str, n: usize| open.repeat(n);
     for format in hardpoint_import::FORMATS {
         for open in ["<a>", "[", "{a: ", "- ", "(", "<default>", "<body>", "\t"] {

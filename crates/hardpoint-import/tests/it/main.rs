@@ -1,4 +1,4 @@
-//! Files of other programs become models that run.
+//! Imported files are models that can be analysed.
 
 mod bounded;
 mod broken;
@@ -16,12 +16,12 @@ use std::path::{Path, PathBuf};
 
 use hardpoint_import::{ImportErrors, ImportedModel};
 
-/// The folder of sources made in the manner of their programs, one folder for each format.
+/// Folder of the sources, written in the style of their programs, one folder per format.
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models")
 }
 
-/// The sources of all formats, by format and name; parts of others are left out.
+/// Sources of all formats, by format and name, without included files.
 fn sources() -> Vec<(String, PathBuf)> {
     const PARTS: [&str; 3] = ["finger.xml", "assets", "hook"];
     let mut out = Vec::new();
@@ -42,7 +42,7 @@ fn listed(folder: &Path) -> Vec<PathBuf> {
     list
 }
 
-/// The bytes of a source; of a folder, the document that FreeCAD would make of it.
+/// Returns the bytes of a source, or the FreeCAD document of a folder.
 fn bytes(path: &Path) -> Vec<u8> {
     if path.is_dir() {
         document(&std::fs::read(path.join("Document.xml")).unwrap())
@@ -51,7 +51,7 @@ fn bytes(path: &Path) -> Vec<u8> {
     }
 }
 
-/// A FreeCAD document.
+/// Returns a FreeCAD document.
 fn document(xml: &[u8]) -> Vec<u8> {
     let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
     zip.start_file("Document.xml", zip::write::SimpleFileOptions::default()).unwrap();
@@ -61,14 +61,14 @@ fn document(xml: &[u8]) -> Vec<u8> {
     zip.finish().unwrap().into_inner()
 }
 
-/// Imports a source with what lies beside it.
+/// Imports a source with access to its folder.
 fn import(path: &Path) -> Result<ImportedModel, ImportErrors> {
     let folder = path.parent().unwrap().to_owned();
     let name = path.file_name().unwrap().to_string_lossy().into_owned();
     hardpoint_import::import(&bytes(path), &name, &|p| std::fs::read(folder.join(p)).ok())
 }
 
-/// The model of an import, its files beside it.
+/// Reads the model of an import with its files.
 fn model(imported: &ImportedModel) -> hardpoint_file::ModelFile {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in &imported.files {

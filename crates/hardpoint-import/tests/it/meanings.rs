@@ -1,4 +1,4 @@
-//! Meaning of joints and motions in the programs that they come from, against closed forms.
+//! Joints and motions compared with closed forms of their meaning in the source programs.
 
 use hardpoint::model::BodyId;
 use hardpoint::space::Vec3;
@@ -43,7 +43,7 @@ impl Moving {
         state.r * 1e3 + state.rotation * Vec3::from(local)
     }
 
-    /// The angle by which a body is turned about y.
+    /// Rotation of a body about y, rad.
     fn about_y(&self, step: usize, body: &str) -> f64 {
         let x = self.solution.body(step, self.body(body)).rotation.cols[0];
         (-x.z).atan2(x.x)
@@ -64,9 +64,9 @@ fn ondsel_joints_hold_what_its_solver_holds() {
             ("Plunger", origin("Plunger").z, (5.0 - 40.0 * s) / c),
             // 70 mm from axis to axis, from the pin (-20 cos, 20 sin) to one on z = 0.
             ("Cross", origin("Cross").x, -20.0 * c - (70.0_f64.powi(2) - (20.0 * s).powi(2)).sqrt()),
-            // z of the plate against the nut is pitch * angle / 2 pi, so the nut goes the other way.
+            // z of the plate relative to the nut is pitch * angle / 2 pi; the nut moves in the opposite direction.
             ("Nut", origin("Nut").y, 60.0 - 6.0 * angle / std::f64::consts::TAU),
-            // The rack depends on radius * angle.
+            // The rack moves by radius * angle.
             ("Rack", origin("Rack").x, 15.0 * angle),
         ];
         // A path of all six coordinates: along the axes of marker I, then about its z and about the x that has turned
@@ -88,8 +88,8 @@ fn ondsel_joints_hold_what_its_solver_holds() {
 }
 
 #[test]
-fn adams_motions_by_velocity_come_to_their_integral() {
-    // Each key on a line of its own, as Adams/View writes.
+fn adams_motions_by_velocity_equal_their_integral() {
+    // Each key on its own line, as in files of Adams/View.
     let m = Moving::of("adams/shaper.adm");
     let length = (360.0_f64.powi(2) + 20.0_f64.powi(2)).sqrt();
     for k in m.steps() {
@@ -107,17 +107,17 @@ fn adams_motions_by_velocity_come_to_their_integral() {
 }
 
 #[test]
-fn freecad_distances_are_between_what_shows() {
+fn freecad_distances_are_inferred_from_the_design_configuration() {
     let m = Moving::of("freecad/gauge");
     let mut moved = 0.0_f64;
     for k in m.steps() {
         let shuttle = m.place(k, "shuttle", [0.0; 3]);
-        // Bed and fence: it slides along x alone.
+        // Bed and fence: it slides along x only.
         assert!((shuttle.y - 10.0).abs() < SAME && (shuttle.z - 12.0).abs() < SAME, "{shuttle:?}");
-        // The rocker's tip stays 8 mm before its end face.
+        // The tip of the rocker stays 8 mm in front of the end face.
         let tip = m.place(k, "rocker", [32.0, 5.0, -55.0]);
         assert!((shuttle.x - tip.x - 8.0).abs() < SAME, "at step {k}");
-        // Pin and pin.
+        // Two pins.
         let pins = m.place(k, "lever", [10.0, 5.0, -10.0]) - m.place(k, "shuttle", [70.0, 25.0, 0.0]);
         assert!((pins.x.hypot(pins.z) - 50.0).abs() < SAME, "at step {k}");
         moved = moved.max((shuttle.x - 100.0).abs());
@@ -126,17 +126,17 @@ fn freecad_distances_are_between_what_shows() {
 }
 
 #[test]
-fn what_is_listed_in_an_assembly_and_in_its_group_is_one_joint() {
+fn joints_listed_twice_are_imported_once() {
     let imported = import(&folder().join("freecad/gauge")).unwrap_or_else(|e| panic!("{e}"));
     let bearings = imported.report.entries.iter().filter(|e| e.name == "Bearing").count();
     assert_eq!(bearings, 1, "{}", imported.report);
 }
 
 #[test]
-fn parts_that_are_drawn_open_stand_where_their_stored_motion_begins() {
+fn open_parts_are_placed_at_the_start_of_the_stored_motion() {
     let path = folder().join("asmt/four_bar.asmt");
     let text = std::fs::read_to_string(&path).unwrap();
-    // The first part's place in the design configuration, a millimetre off.
+    // Position of the first part in the design configuration, moved by 1 mm.
     let head = text.find("\n\t\tPart\n").unwrap();
     let at = head + text[head..].find("Position3D\n\t\t\t\t").unwrap() + "Position3D\n\t\t\t\t".len();
     let end = at + text[at..].find('\n').unwrap();
@@ -146,7 +146,7 @@ fn parts_that_are_drawn_open_stand_where_their_stored_motion_begins() {
     let imported = hardpoint_import::import(changed.as_bytes(), "four_bar.asmt", &|_| None)
         .unwrap_or_else(|e| panic!("{e}"));
     assert!(
-        imported.report.to_string().contains("1 of them are drawn where no joint holds them"),
+        imported.report.to_string().contains("1 of them are drawn where their joints do not close"),
         "{}",
         imported.report
     );
@@ -157,8 +157,8 @@ fn parts_that_are_drawn_open_stand_where_their_stored_motion_begins() {
 }
 
 #[test]
-fn a_chrono_suspension_told_body_by_body_moves_as_its_template() {
-    // The points of `chrono/generic.json`, as the template of two wishbones has them.
+fn a_chrono_suspension_defined_body_by_body_moves_like_its_template() {
+    // The points of `chrono/generic.json` in the double wishbone template.
     let template = r#"{"Name": "Front", "Type": "Suspension", "Template": "DoubleWishbone",
         "Camber Angle (deg)": -0.5, "Toe Angle (deg)": 0.1,
         "Spindle": {"COM": [0.0, 0.78, 0.0]},
@@ -181,8 +181,7 @@ fn a_chrono_suspension_told_body_by_body_moves_as_its_template() {
     assert!(most > 0.01, "{most}");
 }
 
-/// A part whose marker is turned by an angle about x, and more about z, against the marker of the ground that its joint
-/// is between.
+/// Joint between ground and a part whose marker is rotated about x by an angle, and more about z.
 fn turned_joint(kind: &str, tilt: f64, about_z: f64) -> String {
     format!(
         "Adams View model name: turned\nUNITS/\n, FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = MILLIMETER\n, TIME = SECOND\n\
@@ -197,7 +196,7 @@ fn markers_that_are_turned_against_each_other_are_assembled() {
     for kind in ["REVOLUTE", "TRANSLATIONAL", "CYLINDRICAL", "PLANAR", "SCREW\n, PITCH = 5", "HOOKE", "FIXED"]
     {
         for tilt in [0.01, 0.1, 0.3] {
-            // The pins of a cross are square whatever the tilt about one of them.
+            // The pins of a cross remain perpendicular for any tilt about one of them.
             let (tilt, about_z) = if kind == "HOOKE" { (0.0, tilt) } else { (tilt, 0.2) };
             let text = turned_joint(kind, tilt, about_z);
             let imported = hardpoint_import::import(text.as_bytes(), "turned.adm", &|_| None)
@@ -225,7 +224,7 @@ fn markers_that_are_turned_against_each_other_are_assembled() {
             };
             assert!(off < 1e-9, "{kind} by {tilt}: {off}");
             if !["HOOKE", "FIXED"].contains(&kind) {
-                // The angle about the axis is kept: 0.2 rad.
+                // The angle about the axis is preserved: 0.2 rad.
                 assert!((x.y.atan2(x.x) - 0.2).abs() < 1e-2, "{kind}: {x:?}");
             }
         }

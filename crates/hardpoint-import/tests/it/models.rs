@@ -11,7 +11,7 @@ fn every_format_has_three_files_and_is_recognised_by_them() {
         for (_, path) in own {
             let found = hardpoint_import::Format::of(&crate::bytes(&path), &path.to_string_lossy());
             assert_eq!(found.map(|f| f.name), Some(format.name), "{}", path.display());
-            // Also by what is in it alone.
+            // Recognised from its content alone.
             let found = hardpoint_import::Format::of(&crate::bytes(&path), "file");
             assert_eq!(found.map(|f| f.name), Some(format.name), "{}", path.display());
         }
@@ -32,14 +32,14 @@ fn every_file_becomes_a_model_that_moves_from_end_to_end_and_follows_its_variabl
             let follows = !matches!(is, Admissibility::CannotFollow { .. });
             assert!(follows, "{}: `{}` cannot be followed", path.display(), variable.name);
         }
-        // Redundant loops, and bodies whose source gives no mass, are noted.
+        // Redundant loops and bodies without mass are reported.
         let noted = |code: &str| ["HP0503", "HP0253"].contains(&code);
         assert!(file.remarks.iter().all(|r| noted(r.code)), "{}: {:?}", path.display(), file.remarks);
     }
 }
 
 #[test]
-fn reports_say_what_became_of_everything() {
+fn reports_account_for_every_element() {
     for (format, path) in sources() {
         let imported = import(&path).unwrap_or_else(|e| panic!("{}:\n{e}", path.display()));
         let name = path.file_name().unwrap().to_string_lossy().replace('.', "_");
@@ -52,7 +52,7 @@ fn shapes_are_drawn_in_the_frames_of_their_bodies() {
     let imported = import(&folder().join("urdf/gripper.urdf")).unwrap();
     let file = model(&imported);
     let body = |name: &str| file.model.bodies.iter().position(|b| b.name == name).unwrap();
-    // A mesh in mm, 50 mm high, that begins 30 mm above its link.
+    // A mesh in mm, 50 mm high, beginning 30 mm above the origin of its link.
     let finger = &file.drawing.bodies[&body("finger_left")];
     let heights: Vec<f64> = finger.vertices.iter().map(|v| v.z).collect();
     let [low, high] = [f64::min, f64::max].map(|f| heights.iter().copied().reduce(f).unwrap());
@@ -67,7 +67,7 @@ fn shapes_are_drawn_in_the_frames_of_their_bodies() {
 
 #[test]
 fn a_stored_motion_is_reproduced() {
-    /// Tolerance of fourteen digits and of angles near their jump.
+    /// Tolerance for fourteen digits, and for angles near their jump.
     const SAME: f64 = 1e-10;
     let imported = import(&folder().join("asmt/four_bar.asmt")).unwrap();
     let series = imported.series.as_ref().unwrap();
@@ -80,7 +80,7 @@ fn a_stored_motion_is_reproduced() {
     for (by, of) in d.rates.iter().zip(d.largest) {
         assert!(of > 0.1 && *by < SAME * of, "{d:?}");
     }
-    // And what is stored counts: a point that is off is seen.
+    // A modified stored value is detected.
     let mut off = series.clone();
     off.bodies[1].1[20].pose.r.x += 1e-6;
     assert!((off.compare(&file, &solution).place - 1e-6).abs() < SAME);
@@ -92,7 +92,7 @@ fn robots_have_a_point_that_moves() {
         let path = folder().join(file);
         let imported = hardpoint_import::import(&std::fs::read(&path).unwrap(), file, &|_| None)
             .unwrap_or_else(|e| panic!("{e}"));
-        // Shapes lie in files.
+        // Shapes are in separate files.
         let bare = |line: &str| match (line.find(", mesh = {"), line.rfind(" }")) {
             (Some(k), Some(_)) => format!("{} }}\n", &line[..k]),
             _ => format!("{line}\n"),

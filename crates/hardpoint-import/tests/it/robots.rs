@@ -45,7 +45,7 @@ fn kinds(file: &ModelFile) -> Vec<(&str, &str)> {
     file.model.named_joints().map(|(_, j)| (j.name.as_str(), j.kind.name)).collect()
 }
 
-fn told(imported: &ImportedModel, fate: ElementOutcome, kind: &str) -> Vec<String> {
+fn reported(imported: &ImportedModel, fate: ElementOutcome, kind: &str) -> Vec<String> {
     imported.report.of(fate).filter(|e| e.kind == kind).map(|e| format!("{}: {}", e.name, e.why)).collect()
 }
 
@@ -74,7 +74,7 @@ const ARM: &str = r#"<robot name="arm">
 fn texts_are_read_however_exporters_write_them() {
     let (plain, file) = read("arm.urdf", ARM);
     is_at(place(&file, "flange"), [0.0, 0.0, 1.5]);
-    assert_eq!(told(&plain, ElementOutcome::Taken, "spring").len(), 1);
+    assert_eq!(reported(&plain, ElementOutcome::Taken, "spring").len(), 1);
     let remark = "<!-- ==== -- an arm -- ==== -->";
     let utf16: Vec<u8> = format!("\u{feff}{ARM}").encode_utf16().flat_map(u16::to_le_bytes).collect();
     let ways: [(&str, Vec<u8>); 7] = [
@@ -100,18 +100,21 @@ fn texts_are_read_however_exporters_write_them() {
         assert_eq!(kinds(&file), kinds(&other), "{what}");
         is_at(place(&other, "flange"), [0.0, 0.0, 1.5]);
     }
-    // Without a declaration macros are seen all the same, and a place is that of the text as it is written.
+    // Undeclared macros are detected, and positions refer to the text as written.
     let macros = ARM.replace("<link name=\"tool\"/>", "<xacro:leg side=\"left\"/>");
     assert!(refused("arm.urdf", &macros).contains("HP0805"));
     let wrong = ARM.replace("xyz=\"0 0 1\"", "xyz=\"0 0 one\"");
     assert!(refused("arm.urdf", &format!("{remark}\n{wrong}")).contains("arm.urdf:5:"), "{wrong}");
-    // Numbers that are none stay a fault.
+    // Invalid numbers remain errors.
     assert!(refused("arm.urdf", &ARM.replace("xyz=\"0 0 1\"", "xyz=\"0 0 nan\"")).contains("HP0804"));
-    assert!(refused("arm.urdf", &ARM.replace("name=\"flange\"", "name=\"shoulder\"")).contains("two joints"));
+    assert!(
+        refused("arm.urdf", &ARM.replace("name=\"flange\"", "name=\"shoulder\""))
+            .contains("is defined twice")
+    );
 }
 
-/// A plate of 2 by 1 mm as two triangles, and another turned upright and shifted by 3 mm, as a square; the file is in
-/// mm.
+/// Plate of 2 by 1 mm as two triangles, and a second one as a square, rotated upright and shifted by 3 mm; the file is
+/// in mm.
 const PLATES: &str = r##"<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
   <asset><unit name="millimeter" meter="0.001"/><up_axis>Y_UP</up_axis></asset>
   <library_geometries><geometry id="plate"><mesh>
@@ -136,7 +139,7 @@ fn meshes_in_collada_are_shown_in_metres_in_the_frame_of_the_link() {
     let shape = r#"<link name="upper"><visual><geometry><mesh filename="package://arm/meshes/plates.dae" scale="2 2 2"/></geometry></visual></link>"#;
     let text = ARM.replace("<link name=\"upper\"/>", shape);
     let (imported, file) = read_with("arm.urdf", text.as_bytes(), &[("meshes/plates.dae", PLATES)]);
-    assert_eq!(told(&imported, ElementOutcome::Taken, "mesh").len(), 1);
+    assert_eq!(reported(&imported, ElementOutcome::Taken, "mesh").len(), 1);
     let upper = file.model.bodies.iter().position(|b| b.name == "upper").unwrap();
     let drawing = &file.drawing.bodies[&upper];
     assert_eq!(drawing.triangles.len(), 4);
@@ -146,12 +149,11 @@ fn meshes_in_collada_are_shown_in_metres_in_the_frame_of_the_link() {
         assert!((most(k) - wanted).abs() < 1e-8, "{k}: {}", most(k));
     }
     let (imported, _) = read_with("arm.urdf", text.as_bytes(), &[("meshes/plates.dae", "<COLLADA/>")]);
-    let why = told(&imported, ElementOutcome::Refused, "mesh");
-    assert!(why.len() == 1 && why[0].contains("it shows no triangles"), "{why:?}");
+    let why = reported(&imported, ElementOutcome::Refused, "mesh");
+    assert!(why.len() == 1 && why[0].contains("it has no triangles"), "{why:?}");
 }
 
-/// A four-bar whose last joint is yet to be closed: a crank of 0.1, a coupler of 0.3, a rocker of 0.2 upright at x =
-/// 0.3.
+/// Four-bar with an open last joint: a crank of 0.1, a coupler of 0.3, a rocker of 0.2 upright at x = 0.3.
 const OPEN: &str = r#"<robot name="loop">
   <link name="base"/><link name="crank"/><link name="coupler"/><link name="rocker"/>
   <joint name="A" type="continuous"><parent link="base"/><child link="crank"/><axis xyz="0 1 0"/></joint>
@@ -164,12 +166,12 @@ const OPEN: &str = r#"<robot name="loop">
 fn loops_of_every_program_close() {
     let loops = [
         r#"<loop_joint name="C" type="continuous"><link1 link="coupler" xyz="0.3 0 0.1"/><link2 link="rocker" xyz="0 0 0.2"/><axis xyz="0 1 0"/></loop_joint>"#,
-        // As Isaac Sim documents it.
+        // Notation of Isaac Sim.
         r#"<loop_joint name="C" type="spherical"><link1 link="coupler" rpy="0 0 0" xyz="0.3 0 0.1"/><link1 link="rocker" rpy="0 0 0" xyz="0 0 0.2"/></loop_joint>"#,
         r#"<loop_joint name="C" type="revolute"><parent link="coupler"/><child link="rocker"/><parent_origin xyz="0.3 0 0.1"/><child_origin xyz="0 0 0.2"/><axis xyz="0 1 0" frame="parent"/></loop_joint>"#,
         r#"<drake:ball_constraint xmlns:drake="http://drake.mit.edu"><drake:ball_constraint_body_A name="coupler"/><drake:ball_constraint_body_B name="rocker"/><drake:ball_constraint_p_AP value="0.3 0 0.1"/><drake:ball_constraint_p_BQ value="0 0 0.2"/></drake:ball_constraint>"#,
         r#"<gazebo><joint name="C" type="revolute"><pose>0 0 0.2 0 0 0</pose><parent>coupler</parent><child>rocker</child><axis><xyz>0 1 0</xyz></axis></joint></gazebo>"#,
-        // As onshape-to-robot cuts it.
+        // Frames of onshape-to-robot.
         r#"<link name="closing_C_1"/><link name="closing_C_2"/>
            <joint name="C_1" type="fixed"><parent link="coupler"/><child link="closing_C_1"/><origin xyz="0.3 0 0.1"/></joint>
            <joint name="C_2" type="fixed"><parent link="rocker"/><child link="closing_C_2"/><origin xyz="0 0 0.2"/></joint>"#,
@@ -183,11 +185,11 @@ fn loops_of_every_program_close() {
     assert!(refused("loop.urdf", &none).contains("the axis has no direction"));
     let bushing = "<drake:linear_bushing_rpy xmlns:drake=\"http://drake.mit.edu\"/>";
     let (imported, _) = read("loop.urdf", &OPEN.replace("LOOP", bushing));
-    assert_eq!(told(&imported, ElementOutcome::Refused, "linear_bushing_rpy").len(), 1);
+    assert_eq!(reported(&imported, ElementOutcome::Refused, "linear_bushing_rpy").len(), 1);
 }
 
 #[test]
-fn floating_links_are_left_to_their_loops_or_stand() {
+fn floating_links_are_constrained_by_loops_or_fixed() {
     let floats = r#"<link name="lid"/><joint name="free" type="floating"><parent link="base"/><child link="lid"/><origin xyz="0 0 0.1"/></joint>"#;
     let (imported, file) = read("loop.urdf", &OPEN.replace("LOOP", floats));
     assert_eq!(joint(&file, "free").kind.name, "fixed", "{}", imported.report);
@@ -200,22 +202,22 @@ fn floating_links_are_left_to_their_loops_or_stand() {
 }
 
 #[test]
-fn plugins_say_which_joint_follows_and_limits_count_from_the_drawing() {
+fn plugins_define_mimic_joints_and_limits_are_relative_to_the_design_configuration() {
     let plugin = r#"<gazebo><plugin filename="libgazebo_mimic_joint_plugin.so" name="m">
         <joint>A</joint><mimicJoint>D</mimicJoint><multiplier>-2</multiplier><offset>0.25</offset></plugin></gazebo>"#;
     let (imported, file) = read("loop.urdf", &OPEN.replace("LOOP", plugin));
     assert_eq!(file.model.couplers.len(), 1);
-    assert_eq!(told(&imported, ElementOutcome::Taken, "mimic").len(), 1);
-    // The offset is in the drawing.
+    assert_eq!(reported(&imported, ElementOutcome::Taken, "mimic").len(), 1);
+    // The offset is part of the design configuration.
     let rocker = file.model.bodies.iter().find(|b| b.name == "rocker").unwrap();
     assert!((rocker.frame.rot.cols[0] - Vec3::new(0.25_f64.cos(), 0.0, -(0.25_f64.sin()))).norm() < SAME);
-    // A fixed joint follows nothing.
+    // A fixed joint cannot be a mimic joint.
     let fixed = r#"<link name="lid"/><joint name="F" type="fixed"><parent link="base"/><child link="lid"/><mimic joint="A"/></joint>"#;
     let (imported, _) = read("loop.urdf", &OPEN.replace("LOOP", fixed));
-    assert_eq!(told(&imported, ElementOutcome::Refused, "mimic").len(), 1);
+    assert_eq!(reported(&imported, ElementOutcome::Refused, "mimic").len(), 1);
 }
 
-/// A right angle with five digits, as many write it.
+/// A right angle with five digits, a frequent approximation.
 const ROUNDED: &str = r#"<?xml version="1.0"?>
 <sdf version="1.6"><model name="four_bar">
   <link name="base"/>
@@ -235,17 +237,17 @@ fn a_loop_whose_axes_are_rounded_moves_all_the_same() {
     let (imported, file) = read("four_bar.sdf", ROUNDED);
     assert_eq!(file.model.drivers.len(), 1);
     assert!(turns(&file, "rocker") > 0.01);
-    let axes = told(&imported, ElementOutcome::Approximated, "axes");
+    let axes = reported(&imported, ElementOutcome::Approximated, "axes");
     assert!(
         axes.len() == 1 && axes[0].contains("1.1e-5 rad") && axes[0].contains("`A`, `B`, `D`"),
         "{axes:?}"
     );
-    // A chain moves as it is written.
+    // A chain is not modified.
     let chain = ROUNDED
         .replace("<joint name=\"D\"", "<joint name=\"E\"")
         .replace("<parent>base</parent><child>rocker", "<parent>world</parent><child>base");
     let (imported, _) = read("chain.sdf", &chain);
-    assert!(told(&imported, ElementOutcome::Approximated, "axes").is_empty());
+    assert!(reported(&imported, ElementOutcome::Approximated, "axes").is_empty());
 }
 
 #[test]
@@ -285,7 +287,7 @@ const NESTED: &str = r#"<sdf version="1.10" xmlns:drake="http://drake.mit.edu"><
 const LAMP: &str = r#"<sdf version="1.9"><model name="lamp"><link name="bulb"><pose>0 0 0.5 0 0 0</pose></link></model></sdf>"#;
 
 #[test]
-fn frames_of_sdf_stand_where_gazebo_puts_them() {
+fn sdf_frames_have_the_poses_of_gazebo() {
     let config = "<model><sdf version=\"1.4\">old.sdf</sdf><sdf version=\"1.9\">lamp.sdf</sdf></model>";
     let beside = [("lamp/model.config", config), ("lamp/lamp.sdf", LAMP)];
     let (imported, file) = read_with("w.sdf", NESTED.as_bytes(), &beside);
@@ -299,10 +301,10 @@ fn frames_of_sdf_stand_where_gazebo_puts_them() {
     stands("stand::arm::rod", [1.0, 0.0, 3.5]);
     stands("cart::frame", [3.0, 0.0, 1.0]);
     stands("cart::wheel", [3.0, 1.0, 1.0]);
-    // Names are made unique where need be.
+    // Names are made unique.
     stands("cart_2::frame", [0.0, 0.0, 0.0]);
     stands("bulb", [7.0, 0.0, 0.5]);
-    // A joint of the world, on the body that a model's frame is on.
+    // A joint of the world on the body that carries the frame of a model.
     let bolted = joint(&file, "bolt").bodies.map(|b| file.model.bodies[b.0].name.as_str());
     assert_eq!(bolted, ["stand::arm::rod", "bulb"]);
     let mimic = &file.model.couplers[0].terms;
@@ -310,7 +312,7 @@ fn frames_of_sdf_stand_where_gazebo_puts_them() {
     let wheel = file.model.bodies.iter().position(|b| b.name == "cart::wheel").unwrap();
     let low = file.drawing.bodies[&wheel].vertices.iter().map(|v| v.z).fold(f64::INFINITY, f64::min);
     assert!(low.abs() < 1e-8, "{low}");
-    assert_eq!(told(&imported, ElementOutcome::Taken, "frame").len(), 3);
+    assert_eq!(reported(&imported, ElementOutcome::Taken, "frame").len(), 3);
     assert!(imported.report.of(ElementOutcome::Refused).next().is_none(), "{}", imported.report);
 }
 
@@ -328,10 +330,10 @@ fn joints_of_mjcf_in_frames_and_classes_and_includes_are_found() {
     let (imported, file) = read_with("m.xml", text.as_bytes(), &beside);
     is_at(joint(&file, "j").frames[0].cols[2], [0.0, 1.0, 0.0]);
     assert_eq!(joint(&file, "j").kind.name, "translational");
-    assert_eq!(told(&imported, ElementOutcome::Taken, "include").len(), 2);
+    assert_eq!(reported(&imported, ElementOutcome::Taken, "include").len(), 2);
     assert!(file.model.bodies.iter().any(|b| b.name == "e"));
-    // Each of the two ball joints is held in all its angles, also the spin of the body between them.
-    assert_eq!(told(&imported, ElementOutcome::Approximated, "motion").len(), 7, "{}", imported.report);
+    // Both ball joints are fixed in all angles, including the spin of the body between them.
+    assert_eq!(reported(&imported, ElementOutcome::Approximated, "motion").len(), 7, "{}", imported.report);
     assert!(
         refused(
             "m.xml",
@@ -342,7 +344,7 @@ fn joints_of_mjcf_in_frames_and_classes_and_includes_are_found() {
         .contains("did you mean `slider`?")
     );
     let twice = text.replace("name=\"k\"", "name=\"j\"").replace("<include file=\"parts/all.xml\"/>", "");
-    assert!(refused("m.xml", &twice).contains("two joints `j`"));
+    assert!(refused("m.xml", &twice).contains("the joint `j` is defined twice"));
 }
 
 #[test]
@@ -363,10 +365,10 @@ fn equalities_of_mjcf_hold_free_bodies_make_hinges_and_rods() {
         imported.report
     );
     is_at(joint(&file, "a").frames[0].cols[2], [0.0, 1.0, 0.0]);
-    // Without the rod the plate swings.
+    // Without the rod, the plate oscillates.
     let (_, file) = read("m.xml", &text.replace("<tendon name=\"rod\" tendon1=\"rope\"/>", ""));
     assert!(turns(&file, "plate") > 0.1);
-    // With one connect it is a ball joint.
+    // A single connect is a ball joint.
     let (_, file) =
         read("m.xml", &text.replace("<connect name=\"b\" body1=\"plate\" anchor=\"0 0.5 0\"/>", ""));
     assert_eq!(joint(&file, "a").kind.name, "spherical");

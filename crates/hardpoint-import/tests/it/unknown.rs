@@ -1,5 +1,4 @@
-//! Unknown is not irrelevant: what a reader does not know is named, never counted among what does not concern the
-//! motion.
+//! Unknown elements and attributes are reported as such, not as irrelevant to the motion.
 
 use hardpoint_import::{ElementOutcome, Format};
 
@@ -42,7 +41,7 @@ fn named_in(format: &str, bytes: &[u8], what: &str) {
     assert_eq!(named, [what], "{report}");
     let place = &report.of(ElementOutcome::NotUnderstood).next().unwrap().place;
     assert!(report.of(ElementOutcome::Ignored).all(|e| e.place != *place), "{report}");
-    // It is the first that is read, but for remarks about the whole.
+    // It comes first in the report, after the remarks.
     let text = report.to_string();
     let lines = text.lines().skip(1).find(|l| !l.starts_with("  note:"));
     assert!(lines.unwrap().starts_with("  not understood"), "{text}");
@@ -191,7 +190,7 @@ fn in_adams() {
             ("MOTION/8,TRANSLATIONAL", "MOTION/8,TRANSLATIONAL,PHASE=3", "PHASE"),
         ],
     );
-    // Where a joint starts is no detail of its own.
+    // Initial conditions of joints are reported.
     let starts = text.replace("JOINT/1, REVOLUTE", "JOINT/1, REVOLUTE, ICROT = 0.5, 0");
     let imported = hardpoint_import::import(starts.as_bytes(), "geared.adm", &|_| None).unwrap();
     assert_eq!(

@@ -1,5 +1,5 @@
-//! Vehicles: masses in their frames, springs' forces, live axles against closed forms and an independent solver, both
-//! sides, figures of the vehicle, cases, and that the report accounts for everything.
+//! Vehicles: masses in their frames, spring forces, live axles compared with closed forms and an independent solver,
+//! both sides, vehicle parameters, cases, and complete reports.
 
 use hardpoint::model::{BodyId, CaseId};
 use hardpoint::space::{Mat3, Vec3};
@@ -10,9 +10,9 @@ use toml_edit::DocumentMut;
 
 use crate::{folder, import, model, sources};
 
-/// Residual that both solvers leave, m.
+/// Residual of both solvers, m.
 const SOLVED: f64 = 1e-9;
-/// Round-off of numbers that went through a text, as a part of them.
+/// Relative round-off of numbers that were written as text.
 const WRITTEN: f64 = 1e-12;
 
 fn read(name: &str, text: &str) -> (ImportedModel, ModelFile) {
@@ -30,7 +30,7 @@ fn source(path: &str) -> (ImportedModel, ModelFile) {
     (imported, file)
 }
 
-/// A number of an entry of a table; zero where it is left out.
+/// Number of a table entry; zero if it is missing.
 fn number(doc: &DocumentMut, path: &[&str]) -> f64 {
     let mut item = doc.as_item();
     for key in path {
@@ -46,7 +46,7 @@ fn near(is: f64, should: f64, what: &str) {
     assert!((is - should).abs() <= WRITTEN * should.abs().max(1.0), "{what}: {is}, not {should}");
 }
 
-/// A double wishbone whose upper arm lies in a plane that leans by 45 degrees.
+/// Double wishbone with an upper arm in a plane that is inclined by 45 degrees.
 fn leaning(flag: &str, arm: &str, rest: &str) -> String {
     format!(
         r#"{{"Name": "n", "Type": "Suspension", "Template": "DoubleWishbone", {flag}
@@ -63,11 +63,11 @@ fn leaning(flag: &str, arm: &str, rest: &str) -> String {
 #[test]
 fn masses_of_chrono_parts_come_in_the_frames_that_chrono_gives_them() {
     let inertia = r#""Moments of Inertia": [0.2, 0.3, 0.4], "Products of Inertia": [0.05, 0, 0],"#;
-    // x of the arm is that of the vehicle; y = (0, 1, 1)/sqrt 2, z = (0, -1, 1)/sqrt 2:
-    // Iyy = Izz = (0.3 + 0.4)/2, the entry yz (0.3 - 0.4)/2, xy and xz 0.05/sqrt 2. Products in the model are their opposites.
+    // x of the arm is that of the vehicle; y = (0, 1, 1)/sqrt 2, z = (0, -1, 1)/sqrt 2: Iyy = Izz = (0.3 + 0.4)/2, the
+    // entry yz (0.3 - 0.4)/2, xy and xz 0.05/sqrt 2. Products in the model are their opposites.
     let product = -0.05 / 2_f64.sqrt();
     let own = [0.2, 0.35, 0.35, product, 0.05, product];
-    // Along the vehicle's axes the arm's matrix is as written.
+    // In the axes of the vehicle, the matrix of the arm is as written.
     let vehicle = [0.2, 0.3, 0.4, -0.05, 0.0, 0.0];
     for (flag, arm) in [("", own), (r#""Vehicle-Frame Inertia": true,"#, vehicle)] {
         let (imported, file) = read("front.json", &leaning(flag, inertia, ""));
@@ -80,15 +80,15 @@ fn masses_of_chrono_parts_come_in_the_frames_that_chrono_gives_them() {
         is("upper_control_arm", arm);
         is("upright", [0.3, 0.4, 0.5, -0.01, -0.02, -0.03]);
         is("spindle", [0.1, 0.2, 0.1, 0.0, 0.0, 0.0]);
-        // A tie rod is no body: its 2 kg are on the rack and the upright, as its centre lies between its ends.
+        // A tie rod has no body: its 2 kg are divided between the rack and the upright.
         let along = Vec3::from([0.04, 0.4, 0.0]);
         let outer = Vec3::from([0.01, 0.1, 0.0]).dot(along) / along.dot(along);
         near(number(&doc, &["masses", "tierod_outer", "mass"]), 2.0 * outer, "outer");
         near(number(&doc, &["masses", "tierod_inner", "mass"]), 2.0 * (1.0 - outer), "inner");
         assert_eq!(file.model.elements.len(), 5, "{}", imported.text);
-        let told: Vec<_> =
+        let reported: Vec<_> =
             imported.report.of(ElementOutcome::Approximated).filter(|e| e.kind == "mass").collect();
-        assert_eq!(told.iter().map(|e| e.name.as_str()).collect::<Vec<_>>(), ["tierod"]);
+        assert_eq!(reported.iter().map(|e| e.name.as_str()).collect::<Vec<_>>(), ["tierod"]);
         near(number(&doc, &["gravity", "acceleration"]), 9.80665, "gravity");
     }
 }
@@ -97,7 +97,7 @@ fn masses_of_chrono_parts_come_in_the_frames_that_chrono_gives_them() {
 fn masses_of_generic_bodies_turn_with_their_rotation() {
     let path = folder().join("chrono/generic.json");
     let text = std::fs::read_to_string(path).unwrap();
-    // Half a right angle about x.
+    // A rotation by 45 degrees about x.
     let (s, c) = (std::f64::consts::FRAC_PI_8).sin_cos();
     let upright = "\"Name\": \"Upright\", \"Mirrored\": true, \"Position\": [ 0.0, 0.72, 0.0 ], \"Rotation\": [ 1, 0, 0, 0 ], \"Mass\": 18.0,\n      \"Moments of Inertia\": [ 0.1, 0.1, 0.1 ]";
     let turned = format!(
@@ -114,7 +114,7 @@ fn masses_of_generic_bodies_turn_with_their_rotation() {
     }
 }
 
-/// Values of a measure at all output times of a case, with what follows it.
+/// Values of measures at all output times of a case; `further` is appended to the text.
 fn measured(text: &str, further: &str, case: &str, names: &[&str]) -> Vec<Vec<f64>> {
     let text = format!("{text}\n{further}");
     let file = hardpoint_file::parse(&text, "m.toml").unwrap_or_else(|e| panic!("{e}\n{text}"));
@@ -142,13 +142,13 @@ fn springs_and_dampers_of_chrono_have_its_forces() {
     let largest = |k: usize| found[k].iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     assert!(largest(0) > 1000.0 && largest(2) > 100.0, "{} {}", largest(0), largest(2));
     for step in 0..found[0].len() {
-        // It pushes with 300 - 40000 (L - 0.62), and pulls with the opposite.
+        // The compressive force is 300 - 40000 (L - 0.62), tension is its negative.
         let tension = 40_000.0 * (found[1][step] - 0.62) - 300.0;
         assert!((found[0][step] - tension).abs() < 1e-6, "{} {tension}", found[0][step]);
         assert!((found[2][step] - 2500.0 * found[3][step]).abs() < 1e-6, "{step}");
     }
-    // A curve of deformation and force: the drawn length is 0.58856..., so the table has a point 0.05 m shorter than
-    // 0.63856...
+    // A curve of deformation and force: the length in the design configuration is 0.58856..., so the table has a point
+    // 0.05 m shorter than 0.63856...
     let length = 0.1_f64.hypot(0.58);
     let curve = format!(
         r#", "Spring": {{"Location Chassis": [0, 0.5, 0.7], "Location Arm": [0, 0.6, 0.12], "Free Length": {}, "Spring Curve Data": [[-0.1, -5200], [-0.05, -2000], [0, 0], [0.05, 1000]]}},
@@ -168,14 +168,14 @@ fn springs_and_dampers_of_chrono_have_its_forces() {
     assert!(imported.report.of(ElementOutcome::Approximated).any(|e| e.kind == "Spring Curve Data"));
 }
 
-/// A pose as six numbers: a displacement, and a rotation vector about the origin.
+/// Applies a pose of six numbers, a displacement and a rotation vector about the origin, to a point.
 fn placed(q: &[f64; 6], p: Vec3) -> Vec3 {
     let turn = Vec3::from([q[3], q[4], q[5]]);
     let rot = turn.unit().map_or(Mat3::IDENTITY, |axis| Mat3::about(axis, turn.norm()));
     Vec3::from([q[0], q[1], q[2]]) + rot * p
 }
 
-/// Newton's method with differences, for six equations of a pose.
+/// Solves six equations for a pose by Newton's method with finite differences.
 fn solve(residual: &dyn Fn(&[f64; 6]) -> [f64; 6]) -> [f64; 6] {
     let mut q = [0.0; 6];
     for _ in 0..30 {
@@ -202,7 +202,7 @@ fn solve(residual: &dyn Fn(&[f64; 6]) -> [f64; 6]) -> [f64; 6] {
     q
 }
 
-/// The poses of a body in a case: where it takes points of the drawing, in the file's unit.
+/// Displacements of the points of a body in a case, from the design configuration, in the unit of the file.
 fn moved(file: &ModelFile, case: &str, body: &str) -> Vec<impl Fn(Vec3) -> Vec3 + use<>> {
     let k = file.model.cases.iter().position(|c| c.name == case).unwrap();
     let model = file.in_case(CaseId(k)).model;
@@ -253,7 +253,7 @@ fn an_axle_on_a_triangle_and_two_links_moves_as_an_independent_solver_says_and_a
                 let (is, should) = (place(p), placed(&q, p));
                 assert!((is - should).norm() < SOLVED, "{case} {step}: {is:?} {should:?}");
             }
-            // Half a period later it rolls as its mirror image.
+            // Half a period later, the roll position is the mirror image.
             if case == "roll" && step <= 50 {
                 let (left, right) = (place(wheels[0]), poses[step + 50](wheels[1]));
                 let image = Vec3::from([right.x, -right.y, right.z]);
@@ -301,7 +301,7 @@ fn a_live_axle_of_adams_car_is_recognised_by_its_names() {
         (["masses", "rear_axle", "mass"], 92.0),
         (["masses", "rear_axle", "ixx"], 18.0),
         (["masses", "rear_axle", "iyy"], 1.5),
-        // Half round about z the product of z and x changes its sign.
+        // Half a turn about z changes the sign of the product of z and x.
         (["masses", "rear_axle", "izx"], -0.04),
     ] {
         let path: Vec<&str> = path.into_iter().filter(|key| !key.is_empty()).collect();
@@ -317,7 +317,7 @@ fn a_live_axle_of_adams_car_is_recognised_by_its_names() {
     assert_eq!(imported.report.of(ElementOutcome::NotUnderstood).count(), 0, "{report}");
 }
 
-/// Another set of hardpoints in the axle's file.
+/// File of the axle with another set of hardpoints.
 fn hardpoints(rows: &[(&str, &str, [f64; 3])]) -> String {
     let rows: String =
         rows.iter().map(|(name, side, [x, y, z])| format!("'{name}' '{side}' {x} {y} {z}\n")).collect();
@@ -352,13 +352,13 @@ fn a_watt_linkage_holds_its_pivot_nearly_on_a_line() {
     let pivot = Vec3::from([-0.06, 0.0, 0.31]);
     for (step, place) in moved(&file, "heave", "axle").into_iter().enumerate() {
         let p = place(pivot);
-        // A Panhard rod as long as one of its links would move 4.5 mm aside.
+        // A Panhard rod of the length of one of its links would move 4.5 mm laterally.
         assert!(p.y.abs() < 2e-4, "{step}: {p:?}");
     }
 }
 
 #[test]
-fn an_axle_on_five_rods_has_one_driver_and_what_is_no_axle_is_told_by_name() {
+fn five_rods_leave_one_driver_and_unknown_names_are_reported() {
     let five = [
         WHEEL,
         LOWER[0],
@@ -370,8 +370,8 @@ fn an_axle_on_five_rods_has_one_driver_and_what_is_no_axle_is_told_by_name() {
     ];
     let (imported, file) = read("five.sub", &hardpoints(&five));
     assert_eq!(file.model.named_joints().filter(|(_, j)| j.kind.name == "distance").count(), 5);
-    let told = imported.report.to_string();
-    assert!(told.contains("its five rods leave it one freedom"), "{told}");
+    let reported = imported.report.to_string();
+    assert!(reported.contains("its five rods leave one degree of freedom"), "{reported}");
     assert_eq!(imported.text.matches("bump = \"bump\"").count(), 1, "{}", imported.text);
     let import = |rows: &[(&str, &str, [f64; 3])]| {
         let text = hardpoints(rows);
@@ -395,10 +395,10 @@ fn figures_of_the_vehicle_come_from_suspension_explorer() {
     let (imported, _) = read("w.yaml", &text);
     let doc: DocumentMut = imported.text.parse().unwrap();
     near(number(&doc, &["vehicle", "wheelbase"]), 2500.0, "wheelbase");
-    // The tyre: 0.5 x 200 mm and half of 15 inches.
+    // Radius of the tyre: 0.5 x 200 mm and half of 15 inches.
     let radius = 0.5 * 200.0 + 15.0 * 25.4 / 2.0;
     near(number(&doc, &["wheels", "wheel", "radius"]), radius, "radius");
-    // The road is below the wheel, whose axis drops by 2 in 120.
+    // The road is below the wheel, with an axis that drops by 2 in 120.
     let road = 298.0 - radius * 120.0 / 2_f64.hypot(120.0);
     near(number(&doc, &["vehicle", "cg_height"]), 400.0 - road, "centre of gravity");
     assert!(imported.text.contains("steer = \"steering\""), "{}", imported.text);
@@ -418,7 +418,7 @@ fn figures_of_the_vehicle_come_from_suspension_explorer() {
         read("w.yaml", &text.replace("wheelbase: 2500.0", "wheelbase: -1\n  driven_axle: both"));
     let refused: Vec<&str> = imported.report.of(ElementOutcome::Refused).map(|e| e.kind.as_str()).collect();
     assert!(["wheelbase", "driven_axle"].iter().all(|k| refused.contains(k)), "{refused:?}");
-    // In metres everything is.
+    // The same file in metres.
     let metres =
         text.replace("units: millimeters", "units: meters").replace("wheelbase: 2500.0", "wheelbase: 2.5");
     let imported = hardpoint_import::import(metres.as_bytes(), "w.yaml", &|_| None).unwrap();
@@ -439,7 +439,7 @@ fn the_right_side_is_left_to_a_mirror_where_it_is_the_image_of_the_left_one() {
             continue;
         }
         let file = model(&imported);
-        // Whatever the report says is there, is there on both sides.
+        // Every imported element exists on both sides.
         let m = &file.model;
         let names: Vec<&str> = m
             .bodies
@@ -456,7 +456,7 @@ fn the_right_side_is_left_to_a_mirror_where_it_is_the_image_of_the_left_one() {
         for entry in entries {
             assert!(names.contains(&entry.name.as_str()), "{name}: {} {}", entry.kind, entry.name);
         }
-        // Hardpoints of both sides are images of each other.
+        // Hardpoints of both sides are mirror images.
         for h in m.hardpoints.iter().filter(|h| !h.unnamed) {
             if let Some(base) = h.name.strip_suffix("_left") {
                 let twin = m.hardpoints.iter().find(|t| t.name == format!("{base}_right")).unwrap();
@@ -476,7 +476,7 @@ fn the_right_side_is_left_to_a_mirror_where_it_is_the_image_of_the_left_one() {
         "teimorbit/wishbone.sub",
     ];
     assert!(expected.iter().all(|e| mirrored.iter().any(|m| m == e)), "{mirrored:?}");
-    // Of one whose steering is on one side, both sides are written, and a variable moves both alike.
+    // With the steering on one side, both sides are written, and one variable moves both.
     let (imported, file) = source("chrono/bellcrank_axle.json");
     assert!(imported.text.contains("steer = \"steering\""), "{}", imported.text);
     assert!(file.model.cases.iter().any(|c| c.name == "steer"));
@@ -489,7 +489,7 @@ fn the_right_side_is_left_to_a_mirror_where_it_is_the_image_of_the_left_one() {
     assert!(!imported.text.contains("[mirror]"), "{}", imported.text);
     let both = "lca_front = { move = \"lca_front_left\", along = \"xyz\", mirror = \"y\", mirrored = \"lca_front_right\" }";
     assert!(imported.text.contains(both), "{}", imported.text);
-    // The points that differ move by themselves.
+    // Points without a mirror image have their own variables.
     let variables: Vec<&str> = file.model.variables.iter().map(|v| v.name.as_str()).collect();
     assert!(
         ["lca_outer_left_x", "lca_outer_right_y", "lca_front_y"].iter().all(|v| variables.contains(v)),

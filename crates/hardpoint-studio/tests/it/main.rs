@@ -1,4 +1,4 @@
-//! Replies to a page are the results of the command for the same text.
+//! The replies to a page are the results of the command for the same text.
 
 use std::fs;
 use std::ops::ControlFlow;
@@ -8,8 +8,8 @@ use hardpoint::Analysis;
 use hardpoint_studio::Engine;
 use serde_json::{Value, json};
 
-/// Curves of the page are `f32`, and an optimised design is that of the edited text but for the round-off of its
-/// digits.
+/// Relative tolerance: curves of the page are `f32`, and an optimised design is that of the edited text except for
+/// rounded digits.
 const SAME: f64 = 1e-5;
 /// Fraction of the largest quantity below which values are round-off.
 const NOTHING: f64 = 1e-9;
@@ -31,7 +31,7 @@ fn named(name: &str) -> Value {
     model(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models").join(name))
 }
 
-/// An answer, its curves put in their places.
+/// Returns the reply to a request, with its curves in place of their indices.
 fn ask(engine: &mut Engine, request: Value) -> Value {
     let block = engine.answer(&serde_json::to_vec(&request).unwrap(), &mut |_| ControlFlow::Continue(()));
     let length = u32::from_le_bytes(block[..4].try_into().unwrap()) as usize;
@@ -55,7 +55,7 @@ fn place(curve: &Value) -> Option<[usize; 2]> {
     Some([list.first()?.as_u64()? as usize, list.get(1)?.as_u64()? as usize])
 }
 
-/// The first values, rates and accelerations of a text's outputs as the core has them, in its units.
+/// Maximum absolute value and values of each output of a text, computed by the core, in the units of the file.
 fn solved(text: &str, model: &Value) -> Vec<(f64, Vec<f64>)> {
     let texts = serde_json::from_value(model["files"].clone()).unwrap();
     let mut file = hardpoint_file::parse_with(text, "model.toml", &texts).unwrap();
@@ -75,7 +75,7 @@ fn solved(text: &str, model: &Value) -> Vec<(f64, Vec<f64>)> {
 }
 
 #[test]
-fn hardpoints_are_drawn_where_the_changes_put_them() {
+fn changed_hardpoints_are_displayed_at_their_positions() {
     let (model, mut engine) = (named("macpherson.toml"), Engine::default());
     ask(&mut engine, json!({ "ask": "open", "model": model }));
     let change = json!([{ "name": "tie_rod_outer_z", "by": 20.0 }, { "name": "strut_top.x", "by": -8.0 }]);
@@ -108,7 +108,7 @@ fn a_design_is_that_of_the_text_with_its_changes() {
         let (model, mut engine) = (model(&path), Engine::default());
         let opened = ask(&mut engine, json!({ "ask": "open", "model": model }));
         let grips = opened["grips"].as_array().unwrap_or_else(|| panic!("{}: {opened}", path.display()));
-        // Of every model, hardpoints that can go a little without anything having to break.
+        // Every third hardpoint of every model, by a small amount.
         for grip in grips.iter().step_by(3) {
             let size = grips.iter().flat_map(|g| g["place"].as_array().unwrap()).filter_map(Value::as_f64);
             let by = 1e-3 * size.fold(0.0_f64, |most, x| most.max(x.abs()));
@@ -154,7 +154,7 @@ fn a_drag_stops_where_the_mechanism_locks_and_says_why() {
     let part = stopped["part"].as_f64().unwrap();
     assert!(part < 1.0, "{}", stopped["part"]);
     assert!(stopped["why"]["code"].as_str().unwrap().starts_with("HP04"), "{}", stopped["why"]);
-    // There it can be, and is as the text there says.
+    // The design at that fraction can be reached, and agrees with that of its text.
     let reached = json!([{ "name": variable, "by": 1e4 * part }]);
     let again = ask(&mut engine, json!({ "ask": "design", "change": reached, "from": null }));
     assert!(again["why"].is_null() && again["part"] == 1.0);
@@ -162,7 +162,7 @@ fn a_drag_stops_where_the_mechanism_locks_and_says_why() {
 }
 
 #[test]
-fn what_is_asked_in_vain_is_told() {
+fn failed_requests_are_reported() {
     let mut engine = Engine::default();
     let strut = named("macpherson.toml");
     for (request, code) in [
@@ -185,7 +185,7 @@ fn what_is_asked_in_vain_is_told() {
 }
 
 #[test]
-fn messages_stand_at_their_places() {
+fn messages_have_positions() {
     let mut strut = named("macpherson.toml");
     let text = strut["text"].as_str().unwrap().replace("type = \"spherical\"", "type = \"spherica\"");
     let line = 1 + text[..text.find("spherica\"").unwrap()].matches('\n').count();
@@ -197,7 +197,7 @@ fn messages_stand_at_their_places() {
 }
 
 #[test]
-fn another_design_of_the_mechanism_stands_beside_it() {
+fn another_design_is_compared() {
     let mut engine = Engine::default();
     let strut = named("macpherson.toml");
     ask(&mut engine, json!({ "ask": "open", "model": strut }));
